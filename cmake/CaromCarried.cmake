@@ -1,6 +1,6 @@
-# For what is carried to other machines (wheels of the Python package): libraries are linked into it where they can be. fmt and
-# toml++ are their headers then, libpng and zlib their static libraries. Box2D is static where its package says so; Debian's is
-# not, and auditwheel puts it into the wheel.
+# For wheels of the Python package, which run on other machines: links libraries statically if possible. fmt
+# and toml++ are used as headers, libpng and zlib as static libraries. Box2D is static if its package is;
+# Debian's is not, so auditwheel copies it into the wheel.
 set(CMAKE_FIND_LIBRARY_SUFFIXES .a ${CMAKE_FIND_LIBRARY_SUFFIXES})
 set(carom_fmt fmt::fmt-header-only)
 find_path(carom_toml_include toml++/toml.h REQUIRED)

@@ -1,10 +1,11 @@
-# carom.cps: the package in the words of the Common Package Specification, for tools that do not read CMake's files. Every exported target is a component, with
-# what it asks of those who link it; tests/install compares both.
+# carom.cps: the package in the Common Package Specification, for tools that do not read CMake's files. Every
+# exported target is a component, with the requirements for linking it; tests/install compares them with
+# CMake's.
 set(carom_prefix "@prefix@")
 set(carom_cps_requires)
 set(carom_cps_components)
 
-# carom_cps_component(NAME TYPE LOCATION REQUIRES ... LINKS ...): LINKS are asked for by the linker only.
+# carom_cps_component(NAME TYPE LOCATION REQUIRES ... LINKS ...): LINKS are needed only by the linker.
 function(carom_cps_component name type location)
   cmake_parse_arguments(ARG "" "" "REQUIRES;LINKS" ${ARGN})
   set(lines "\"type\": \"${type}\"" "\"location\": \"@prefix@/${CMAKE_INSTALL_LIBDIR}/${location}\""
@@ -38,7 +39,8 @@ if(CAROM_BUILD_C_LIBRARY)
   carom_cps_component(c dylib libcarom.so.${PROJECT_VERSION})
 endif()
 if(CAROM_BUILD_RENDER)
-  carom_cps_component(render archive libcarom_render.a REQUIRES :engine LINKS png:png zlib:zlib fmt:fmt threads:threads)
+  carom_cps_component(render archive libcarom_render.a REQUIRES :engine
+    LINKS png:png zlib:zlib fmt:fmt threads:threads)
   list(APPEND needed png zlib threads)
 endif()
 foreach(package ${needed})

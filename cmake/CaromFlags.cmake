@@ -1,4 +1,4 @@
-# carom_flags: what every target of the project is compiled with.
+# carom_flags: the compile options of every target of the project.
 #
 # -ffp-contract=off: a fused multiply-add happens only where the source says std::fma or an intrinsic, so that
 # gcc and clang, debug and release, and every instruction set give the same bits (design: numbers).
@@ -7,17 +7,17 @@ target_compile_features(carom_flags INTERFACE cxx_std_20)
 target_compile_options(carom_flags INTERFACE
   -ffp-contract=off
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
-# gcc 14.2 (Debian 13) at -O3 takes it for read nowhere what a function reads through a reference, and leaves out the store: a spotted ball
-# then lay on another one. Versions 12 and 13 do not.
+# At -O3, gcc 14.2 (Debian 13) removes stores that a function reads through a reference: a spotted ball then
+# lay on another one. Versions 12 and 13 do not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 14)
   target_compile_options(carom_flags INTERFACE -fno-ipa-modref)
 endif()
-# clang's libFuzzer comes with the address sanitizer: the tests and the fuzz targets share one build.
+# clang's libFuzzer is part of the address sanitizer, so the tests and the fuzz targets share one build.
 set(carom_fuzz OFF)
 if(CAROM_SANITIZE STREQUAL "address")
   set(carom_sanitizers address,undefined)
-  # Checks at every single access cost a quarter of the time to compile. What they would find, the address sanitizer and the processor
-  # stop at in most cases.
+  # These checks cost a quarter of the compile time. The address sanitizer or the processor stops at most of
+  # what they would find.
   set(carom_not_looked_for -fno-sanitize=null,alignment,object-size,pointer-overflow,vptr)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     set(carom_fuzz ON)
@@ -28,41 +28,43 @@ elseif(CAROM_SANITIZE)
   message(FATAL_ERROR "CAROM_SANITIZE=${CAROM_SANITIZE}: expected OFF, address or thread")
 endif()
 if(carom_sanitizers)
-  # A test's own code is watched for what it does with memory and threads; undefined behaviour is looked for in what is tested.
-  # Tests compile in three quarters of the time this way.
+  # Tests themselves are checked for memory and threads only, the code under test also for undefined
+  # behaviour. This saves a quarter of the tests' compile time.
   string(REPLACE ",undefined" "" carom_test_sanitizers ${carom_sanitizers})
   set(of_a_test $<BOOL:$<TARGET_PROPERTY:carom_is_a_test>>)
   target_compile_options(carom_flags INTERFACE
     $<$<NOT:${of_a_test}>:-fsanitize=${carom_sanitizers}> $<${of_a_test}:-fsanitize=${carom_test_sanitizers}>
     ${carom_not_looked_for} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(carom_flags INTERFACE -fsanitize=${carom_sanitizers})
-  # For tests of what a sanitizer changes: memory, mostly.
+  # For tests of what a sanitizer changes, mostly memory.
   target_compile_definitions(carom_flags INTERFACE CAROM_SANITIZED)
 endif()
 
 if(CAROM_HARDENED)
-  # Level 3 is 2 where compiler or C library know no more. It needs an optimising compiler.
+  # Older compilers and C libraries treat level 3 as 2. It needs an optimising compiler.
   target_compile_options(carom_flags INTERFACE
-    $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3> -fstack-protector-strong)
+    $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=3>
+    -fstack-protector-strong)
   target_link_options(carom_flags INTERFACE LINKER:-z,relro,-z,now)
 endif()
 
-# Sources that read no input stay without stack protectors: in the loop these cost 2 to 4 % of its instructions.
+# Leaves out stack protectors in sources that read no input: in the loop they cost 2 to 4 % of its
+# instructions.
 function(carom_without_stack_protector)
   if(CAROM_HARDENED)
     set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -fno-stack-protector)
   endif()
 endfunction()
 
-# Parses the headers that most sources of TARGET include once. Sources of hardened builds have options of their own, which a
-# precompiled header would not fit.
+# Precompiles the headers that most sources of TARGET include. Sources of hardened builds have their own
+# options, which a precompiled header would not match.
 function(carom_precompile target)
   if(NOT CAROM_HARDENED)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
 endfunction()
 
-# What fuzz targets run: libFuzzer has to see which branches of TARGET an input takes.
+# For targets that fuzz targets run: libFuzzer must see which branches of TARGET an input takes.
 function(carom_fuzzed target)
   if(carom_fuzz)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
@@ -73,7 +75,8 @@ endfunction()
 if(CAROM_COVERAGE AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   message(FATAL_ERROR "CAROM_COVERAGE=ON needs clang: cmake --preset asan, or -DCMAKE_CXX_COMPILER=clang++")
 endif()
-# Counts which lines of TARGET's own sources run, where CAROM_COVERAGE is on; all runs of one program add to one file (%m).
+# With CAROM_COVERAGE, counts the executed lines of TARGET's own sources; all runs of a program add to one
+# file (%m).
 function(carom_count_lines target)
   if(CAROM_COVERAGE)
     set(counting -fprofile-instr-generate=${PROJECT_BINARY_DIR}/counts/%2m.profraw)
@@ -82,15 +85,15 @@ function(carom_count_lines target)
   endif()
 endfunction()
 
-# Plain C++ for any processor, and on x86-64 its two higher levels.
+# Plain C++ for any processor, and on x86-64 two higher levels.
 set(carom_instruction_sets scalar)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   list(APPEND carom_instruction_sets v3 v4)
 endif()
-# Compiles the sources behind TARGET once for every instruction set, with the options of TARGET and in the namespace that
-# CAROM_ISA_NAMESPACE names (scalar is what the compiler builds by default), and adds the objects to TARGET. Such sources include no Eigen and no
-# std templates with code: a weak symbol built for a higher instruction set could win at link time and stop the program on
-# an older processor.
+# Compiles the given sources once for every instruction set, with the options of TARGET and in the namespace
+# CAROM_ISA_NAMESPACE (scalar is the compiler's default), and adds the objects to TARGET. Such sources include
+# no Eigen and no std templates with code: the linker could choose a weak symbol built for a higher
+# instruction set, which would crash the program on an older processor.
 function(carom_per_instruction_set target)
   foreach(isa ${carom_instruction_sets})
     set(objects ${target}_${isa})
@@ -99,16 +102,18 @@ function(carom_per_instruction_set target)
       POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
     target_compile_definitions(${objects} PRIVATE CAROM_ISA_NAMESPACE=${isa})
     target_include_directories(${objects} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-    # Vectors wider than a register are halved, and none crosses a call: warnings about the ABI of wide vectors are idle.
+    # Vectors wider than a register are split and never cross a call, so warnings about their ABI do not
+    # apply.
     target_compile_options(${objects} PRIVATE
-      $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> -Wno-psabi $<$<NOT:$<STREQUAL:${isa},scalar>>:-march=x86-64-${isa}>)
+      $<TARGET_PROPERTY:${target},COMPILE_OPTIONS> -Wno-psabi
+      $<$<NOT:$<STREQUAL:${isa},scalar>>:-march=x86-64-${isa}>)
     target_link_libraries(${objects} PRIVATE carom_flags)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
   endforeach()
 endfunction()
 
-# What every library of the project is: hidden symbols, so that a program that embeds it shows none of ours, and headers
-# that are installed. TARGET carom_NAME has its headers in include/.
+# Common settings of the libraries: hidden symbols, so that a program that embeds carom exports none of them,
+# and installed headers. TARGET is carom_NAME, with its headers in include/.
 function(carom_library target)
   set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   carom_count_lines(${target})

@@ -1,4 +1,5 @@
-# cmake --install: libraries, headers, the CMake package and the pkg-config files. docs/guide/embedding.md shows their use.
+# cmake --install: libraries, headers, the CMake package and the pkg-config files. See
+# docs/guide/embedding.md.
 include(CMakePackageConfigHelpers)
 
 set(carom_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/carom)
@@ -9,19 +10,21 @@ if(CAROM_BUILD_C_LIBRARY)
   install(TARGETS carom_c EXPORT carom LIBRARY)
 endif()
 install(EXPORT carom NAMESPACE carom:: FILE carom-targets.cmake DESTINATION ${carom_package_dir})
-# The renderer asks for more of who uses it, so it is a component of its own.
+# The renderer has more dependencies, so it is a separate component.
 if(CAROM_BUILD_RENDER)
   install(TARGETS carom_render EXPORT carom_render ARCHIVE)
-  install(EXPORT carom_render NAMESPACE carom:: FILE carom-render-targets.cmake DESTINATION ${carom_package_dir})
+  install(EXPORT carom_render NAMESPACE carom:: FILE carom-render-targets.cmake
+    DESTINATION ${carom_package_dir})
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/caromConfig.cmake.in
   ${PROJECT_BINARY_DIR}/caromConfig.cmake INSTALL_DESTINATION ${carom_package_dir})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/caromConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/caromConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/caromConfig.cmake ${PROJECT_BINARY_DIR}/caromConfigVersion.cmake
   DESTINATION ${carom_package_dir})
 
-# Relative to where the .pc file lies: the whole installation may be moved.
+# Relative to the .pc file, so that the whole installation can be moved.
 file(RELATIVE_PATH carom_pc_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 set(carom_pc_files carom-engine)
 if(CAROM_BUILD_C_LIBRARY)

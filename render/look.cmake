@@ -1,5 +1,5 @@
-# The constants of carom/render/look.h for another language, a line each.
-# carom_look(OUT COLOR NUMBER): what a colour and a number become; \1 is the name and \2 the value.
+# The constants of carom/render/look.h in another language, one per line.
+# carom_look(OUT COLOR NUMBER): the forms of a colour and of a number; \1 is the name and \2 the value.
 set(carom_look_header ${CMAKE_CURRENT_LIST_DIR}/include/carom/render/look.h)
 function(carom_look out color number)
   file(READ ${carom_look_header} text)
@@ -17,7 +17,7 @@ function(carom_look_glsl out)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-# As a script it prints them for GLSL.
+# As a script, it prints them for GLSL.
 if(CMAKE_SCRIPT_MODE_FILE STREQUAL CMAKE_CURRENT_LIST_FILE)
   carom_look_glsl(text)
   message("${text}")

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Says where a source uses a name of the standard library without including its header; called by tools/lint.
+"""Finds uses of standard library names without their headers; called by tools/lint.
 
     tools/includes.py [--fix] FILE ...      --fix adds the includes (clang-format sorts them)
 
-What one library's headers include of each other another's may not: g++ 14 leaves out what g++ 12 brings along. A source may rely on the
-header of its own name (roots.cpp on roots.h). The list below is what this project uses. Exit status 1: there are findings.
+A header of one standard library may include another header that other libraries do not: g++ 14 drops some
+that g++ 12 includes. A source may rely on the header of its own name (roots.cpp on roots.h). The list below
+covers what this project uses. Exit status 1: there are findings.
 """
 import argparse
 import pathlib
@@ -12,17 +13,18 @@ import re
 import sys
 
 HEADERS = {
-    "algorithm": r"std::(max|min|minmax|clamp|sort|stable_sort|nth_element|find|find_if|any_of|all_of|none_of|copy|copy_n|fill|fill_n|"
-                 r"reverse|lower_bound|upper_bound|transform|count|count_if|max_element|min_element|minmax_element|remove_if|unique|"
-                 r"rotate|equal|mismatch|search|binary_search|adjacent_find|is_sorted|replace|ranges::\w+)\s*\(",
+    "algorithm": r"std::(max|min|minmax|clamp|sort|stable_sort|nth_element|find|find_if|any_of|all_of|"
+                 r"none_of|copy|copy_n|fill|fill_n|reverse|lower_bound|upper_bound|transform|count|count_if|"
+                 r"max_element|min_element|minmax_element|remove_if|unique|rotate|equal|mismatch|search|"
+                 r"binary_search|adjacent_find|is_sorted|replace|ranges::\w+)\s*\(",
     "array": r"std::array<",
     "atomic": r"std::atomic\b",
     "bit": r"std::(bit_cast|countr_zero|countl_zero|popcount|bit_width)\b",
     "cerrno": r"\berrno\b",
     "charconv": r"std::(from_chars|to_chars)\b",
     "chrono": r"std::chrono\b",
-    "cmath": r"std::(abs|sqrt|sin|cos|tan|atan2|acos|pow|exp|log|log10|log2|floor|ceil|round|lround|isfinite|isnan|isinf|hypot|fma|"
-             r"nextafter|copysign|ldexp|frexp|trunc|fmod|signbit)\(",
+    "cmath": r"std::(abs|sqrt|sin|cos|tan|atan2|acos|pow|exp|log|log10|log2|floor|ceil|round|lround|isfinite|"
+             r"isnan|isinf|hypot|fma|nextafter|copysign|ldexp|frexp|trunc|fmod|signbit)\(",
     "condition_variable": r"std::condition_variable\b",
     "cstdint": r"std::u?int(8|16|32|64)_t\b",
     "cstdio": r"std::(printf|fprintf|puts|fputs|snprintf|FILE|fopen|fflush|fwrite)\b|\bstderr\b|\bstdout\b",
@@ -54,17 +56,19 @@ HEADERS = {
     "utility": r"std::(pair|move|swap|exchange|forward|as_const)\b",
     "vector": r"std::vector<",
 }
-# The standard itself says that the second brings the first.
-BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"}, "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
+# The standard guarantees that each of the headers on the right includes the one on the left.
+BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"},
+           "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include", "kernel", "kernel/src", "lab", "lab/carom",
+FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include",
+                                        "kernel", "kernel/src", "lab", "lab/carom",
                                         "engine/src", "render/src", "capi/src", "tools/carom", "tests")]
 INCLUDE = re.compile(r'^#include [<"]([^>"]+)[>"]', re.MULTILINE)
 NO_CODE = re.compile(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"')
 
 
 def includes_of(path, text):
-    """Headers of the standard library that a source includes, or its own header does."""
+    """Standard headers that a source or its own header includes."""
     found = set(INCLUDE.findall(text))
     if path.suffix == ".cpp":
         own = [name for name in found if pathlib.PurePath(name).stem == path.stem]
@@ -96,7 +100,8 @@ def add(text, headers):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--fix", action="store_true")
     parser.add_argument("files", type=pathlib.Path, nargs="+")
     arguments = parser.parse_args()

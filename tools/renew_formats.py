@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what the program prints of its file formats and command line into docs/reference.
+"""Writes the program's descriptions of its file formats and command line into docs/reference.
 
-The program has scene_format.md as it was built, and puts its tables in; so build it behind every change of that page.
+The program contains scene_format.md as of its build, and adds its tables; so build it after every change of
+that page.
 
     cmake --build --preset release --target carom_program
     tools/renew_formats.py [BUILD_FOLDER]
@@ -12,15 +13,16 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
-PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json", "record-schema": "record.schema.json",
-         "scene-format": "scene_format.md"}
+PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
+         "record-schema": "record.schema.json", "scene-format": "scene_format.md"}
 
 for what, name in PAGES.items():
     path = ROOT / "docs/reference" / name
     printed = subprocess.run([PROGRAM, "describe", what], check=True, capture_output=True, text=True).stdout
     if printed == path.read_text():
         continue
-    # A change that the program does not know yet would be lost.
+    # Otherwise a change that is not built in yet would be lost.
     if name == "scene_format.md" and path.stat().st_mtime > PROGRAM.stat().st_mtime:
-        sys.exit(f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
+        sys.exit(
+            f"renew_formats: {path.relative_to(ROOT)} is newer than {PROGRAM}; build carom_program first")
     path.write_text(printed)

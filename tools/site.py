@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""The parts of tools/docs that are no shell: site.py configure FILE writes the configuration of MkDocs; site.py interface FILE writes a page of
-the C interface from its header; site.py check FOLDER follows every link of the built site, to headings as well. Exit status 1: a link is dead.
+"""The parts of tools/docs that are not shell:
 
-The order of the pages in the navigation is that of docs/README.md, which names every page.
+    site.py configure FILE      writes the configuration of MkDocs
+    site.py interface FILE      writes a page of the C interface from its header
+    site.py check FOLDER        follows every link of the built site, also to headings; status 1: a dead link
+
+The pages are in the order of docs/README.md, which names every page.
 """
 import html.parser
 import json
@@ -20,30 +23,37 @@ def navigation():
     index = (ROOT / "docs/README.md").read_text()
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
     paths.append(C_INTERFACE)
-    notes = [f"lab/{path}" for path in re.findall(r"\]\((notes/[a-z0-9_-]+\.md)\)", (ROOT / "lab/README.md").read_text())]
-    sections = [{name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]} for name in SECTIONS]
+    notes = [
+        f"lab/{path}"
+        for path in re.findall(r"\]\((notes/[a-z0-9_-]+\.md)\)", (ROOT / "lab/README.md").read_text())]
+    sections = [
+        {name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]}
+        for name in SECTIONS]
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
-            {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"}, {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
+            {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"},
+            {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
 
 
 def configure(path):
-    # JSON is YAML. No fonts and no icons from elsewhere: the site works without a network.
+    # JSON is valid YAML. Without fonts and icons from elsewhere, the site works offline.
     pathlib.Path(path).write_text(json.dumps({
         "site_name": "carom",
         "docs_dir": "pages",
         "nav": navigation(),
         "use_directory_urls": False,
-        "theme": {"name": "material", "font": False, "features": ["navigation.sections", "navigation.top", "search.highlight"]},
+        "theme": {"name": "material", "font": False,
+                  "features": ["navigation.sections", "navigation.top", "search.highlight"]},
         "plugins": ["search"],
         "markdown_extensions": ["tables", "fenced_code", "sane_lists", {"toc": {"permalink": True}}],
     }, indent=1))
 
 
 def interface(path):
-    """A heading for each part of the header, and below it the header's own words."""
+    """One heading for each part of the header, followed by the header's text."""
     header = (ROOT / "capi/include/carom/carom.h").read_text()
     parts = re.split(r"/\* ---- (.*?) ---- \*/\n", header)
-    text = "# The C interface\n\nThe header `carom/carom.h`, part by part. [carom in your program](../guide/embedding.md) begins gently.\n"
+    text = ("# The C interface\n\nThe header `carom/carom.h`, part by part. "
+            "For an introduction, read [carom in your program](../guide/embedding.md).\n")
     for title, body in zip(["First"] + parts[1::2], parts[0::2]):
         text += f"\n## {title}\n\n```c\n{body.strip()}\n```\n"
     pathlib.Path(path).write_text(text)
@@ -75,11 +85,14 @@ def check(folder):
             target = (path.parent / urllib.parse.unquote(url.path)).resolve() if url.path else path
             if target.is_dir():
                 target /= "index.html"
-            if not target.is_file() or (url.fragment and target in pages and url.fragment not in pages[target].anchors):
+            if not target.is_file() or (
+                url.fragment and target in pages and url.fragment not in pages[target].anchors
+            ):
                 dead.add(f"{path.relative_to(root)}: {link}")
     for line in sorted(dead):
-        print(f"site: a dead link in {line}", file=sys.stderr)
-    print(f"site: {len(pages)} pages, {sum(len(page.links) for page in pages.values())} links: {folder}/index.html")
+        print(f"site: dead link in {line}", file=sys.stderr)
+    links = sum(len(page.links) for page in pages.values())
+    print(f"site: {len(pages)} pages, {links} links: {folder}/index.html")
     return 1 if dead else 0
 
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy with the list of .clang-tidy; called by tools/lint.
+"""Runs clang-tidy with the checks of .clang-tidy; called by tools/lint.
 
-    tools/tidy.py BUILD FILE.cpp ...     BUILD: a configured build folder with compile_commands.json; it need not be built
+    tools/tidy.py BUILD FILE.cpp ...     BUILD: a configured build folder; it need not be built
 
-Nine tenths of clang-tidy's time go into the standard library and the libraries in use, which it walks through again with every
-source. So sources that are compiled alike are checked together, as one file that includes them. Where names of two such
-sources clash, they are taken apart and checked again, which is only slower.
+Nine tenths of clang-tidy's time go into the standard library and other libraries, which it parses again for
+every source. So sources that are compiled alike are checked together, as one file that includes them. If
+names of two such sources clash, the sources are checked again one by one, which is only slower.
 
-Exit status 1: there are findings, or clang-tidy failed; both are printed. 2: a file that cannot be checked.
+Exit status 1: there are findings, or clang-tidy failed; both are printed. 2: a file cannot be checked.
 """
 import argparse
 import collections
@@ -24,11 +24,11 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 GROUP_SIZE = 30
-# A test may copy a string too many, and compares doubles bit by bit.
+# In tests, an extra string copy is harmless, and doubles are compared bit by bit.
 LEFT_OUT_IN_TESTS = "-performance-*,-bugprone-suspicious-memory-comparison"
-# A program or a fuzz target.
+# Sources with an entry point: a program or a fuzz target.
 ENTRY = re.compile(r"^int main\(|LLVMFuzzerTestOneInput", re.MULTILINE)
-# A message of clang-tidy begins FILE:LINE:COLUMN: KIND: and goes on in indented lines and notes.
+# A message of clang-tidy begins FILE:LINE:COLUMN: KIND: and continues in indented lines and notes.
 FINDING = re.compile(r"^(?P<file>/[^:\n]+):\d+:\d+: (?:warning|error): ")
 BROKEN = re.compile(r"^(?P<file>[^:\n]+):\d+:\d+: error: .*\[clang-diagnostic-error")
 CHATTER = re.compile(r"^\d+ (warning|error)s?( and \d+ errors?)? (generated|treated as errors?)\.?$")
@@ -38,7 +38,8 @@ Group = collections.namedtuple("Group", "flags files")
 
 
 def flags_of(command):
-    """What of a compile command changes what a source means; optimisation, sanitizers and warnings do not."""
+    """The flags in a compile command that change the meaning of a source, unlike optimisation, sanitizers and
+    warnings."""
     meaning, includes = [], []
     words = iter(shlex.split(command))
     for word in words:
@@ -52,7 +53,7 @@ def flags_of(command):
 
 
 def compiled_flags(build):
-    """Flags by source, of each target that compiles it."""
+    """The flags of each source, one set for every target that compiles it."""
     flags = collections.defaultdict(list)
     for entry in json.loads((build / "compile_commands.json").read_text()):
         flags[pathlib.Path(entry["file"]).resolve()].append(flags_of(entry["command"]))
@@ -60,7 +61,7 @@ def compiled_flags(build):
 
 
 def companies_of(files, flags):
-    """Files that can go together: they mean the same to the compiler, lie in one top folder, and one at most has an entry."""
+    """Files that can be checked together: equal flags, the same top folder, and at most one entry point."""
     companies, with_entry = collections.defaultdict(list), set()
     for file in files:
         company = flags[file][0].meaning, file.relative_to(ROOT).parts[0]
@@ -75,8 +76,11 @@ def companies_of(files, flags):
 
 
 def groups_of(files, flags):
-    """Groups of at most GROUP_SIZE files, of even size. A source of several targets is checked as the first of them compiles it.
-    Sources of the kernel are checked alone, because they include little and may clash, and once for every instruction set."""
+    """Groups of similar size, of at most GROUP_SIZE files.
+
+    A source of several targets is checked with the flags of the first. Sources of the kernel are checked
+    alone, once for every instruction set, because they include little and may clash.
+    """
     kernel = [file for file in files if file.is_relative_to(ROOT / "kernel")]
     groups = [Group(each, [file]) for file in kernel for each in flags[file]]
     for company in companies_of([file for file in files if file not in kernel], flags):
@@ -89,7 +93,7 @@ def groups_of(files, flags):
 
 
 class Tidy:
-    """Runs of clang-tidy, each in a folder of its own below FOLDER."""
+    """Runs of clang-tidy, each in its own folder below FOLDER."""
 
     def __init__(self, folder, total):
         self.folder, self.total = folder, total
@@ -103,9 +107,10 @@ class Tidy:
             folder = self.folder / str(self.runs)
         folder.mkdir(parents=True, exist_ok=True)
         source = folder / "sources.cpp"
-        source.write_text("".join(
-            f'#include "{file}"  // NOLINT(bugprone-suspicious-include): on purpose\n' for file in group.files))
-        arguments = ["clang++", *group.flags.meaning, *(word for include in group.flags.includes for word in include),
+        allowed = "// NOLINT(bugprone-suspicious-include): on purpose"
+        source.write_text("".join(f'#include "{file}"  {allowed}\n' for file in group.files))
+        arguments = ["clang++", *group.flags.meaning,
+                     *(word for include in group.flags.includes for word in include),
                      "-c", str(source)]
         database = [{"directory": str(folder), "file": str(source), "arguments": arguments}]
         (folder / "compile_commands.json").write_text(json.dumps(database, indent=1))
@@ -126,15 +131,16 @@ class Tidy:
             self.report(result)
             self.checked += len(group.files)
             seconds = time.monotonic() - self.start
-            print(f"lint: {self.checked} of {self.total} files through clang-tidy, {seconds:.0f} s", flush=True)
+            done = f"{self.checked} of {self.total}"
+            print(f"lint: clang-tidy has checked {done} files, {seconds:.0f} s", flush=True)
 
     def take_apart(self, group, blamed, output):
-        """Files in which a clash shows are checked one by one, the others together again."""
+        """Checks files with a clash one by one, and the others together again."""
         alone = [file for file in group.files if str(file) in blamed] or group.files
         first = next(line for line in output.splitlines() if BROKEN.match(line))
         with self.lock:
-            print(f"lint: {len(alone)} of {len(group.files)} files do not go together and are checked one by one; "
-                  f"another name would make that faster:\n    {first}", flush=True)
+            print(f"lint: {len(alone)} of {len(group.files)} files clash and are checked one by one; "
+                  f"rename this to make it faster:\n    {first}", flush=True)
         for file in alone:
             self.check(Group(group.flags, [file]))
         rest = [file for file in group.files if file not in alone]
@@ -142,7 +148,7 @@ class Tidy:
             self.check(Group(group.flags, rest))
 
     def report(self, result):
-        """Prints findings that are not printed yet: one in a header comes with every group that includes it."""
+        """Prints new findings: one in a header is found again in every group that includes it."""
         show = True
         for line in result.stdout.splitlines():
             if FINDING.match(line):
@@ -157,7 +163,8 @@ class Tidy:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("files", type=pathlib.Path, nargs="+")
     arguments = parser.parse_args()
@@ -165,18 +172,19 @@ def main():
     files = list(dict.fromkeys(file.resolve() for file in arguments.files))
     unknown = [str(file) for file in files if file not in flags]
     if unknown:
-        print("lint: no target compiles " + ", ".join(unknown) +
-              "; name .cpp files (headers are checked with the sources that include them)", file=sys.stderr)
+        print(f"lint: no target compiles {', '.join(unknown)}; name .cpp files, not their headers",
+              file=sys.stderr)
         return 2
-    # The longest first, so that no processor is idle at the end: by size, which is near enough.
-    groups = sorted(groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
+    # The largest first, so that no processor is idle at the end; size is a good enough estimate of time.
+    groups = sorted(
+        groups_of(files, flags), key=lambda group: -sum(file.stat().st_size for file in group.files))
     count = sum(len(group.files) for group in groups)
     tidy = Tidy((arguments.build / "tidy").resolve(), count)
-    print(f"lint: clang-tidy; files: {count}, runs: {len(groups)}", flush=True)
+    print(f"lint: clang-tidy checks {count} files in {len(groups)} runs", flush=True)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         list(pool.map(tidy.check, groups))
     if tidy.failed:
-        print(f"lint: findings above: {len(tidy.printed)}", file=sys.stderr)
+        print(f"lint: {len(tidy.printed)} findings, printed above", file=sys.stderr)
     return 1 if tidy.failed else 0
 
 

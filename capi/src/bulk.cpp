@@ -46,7 +46,7 @@ const T* array_of(const carom_batch* batch, std::vector<T> carom::Batch::*list) 
     return batch != nullptr ? (batch->batch.*list).data() : nullptr;
 }
 
-// With the height and the speed of a fall, which a segment of the engine keeps apart.
+// With the height and the speed of a fall, which the engine's segment keeps separately.
 carom_segment segment_of(const carom::Segment& s, double gravity) {
     carom_segment out{};
     out.start = s.start;
@@ -77,13 +77,13 @@ carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t 
         if (key_count > 0) need({keys});
         if (key_count > 0 && shots > 0) need({values});
         if (std::isnan(until)) throw BadArgument("until is not a number");
-        if (threads < 0) throw BadArgument("threads is negative; 0 takes one for each core");
+        if (threads < 0) throw BadArgument("threads is negative; 0 uses one per core");
         carom::BatchOptions options;
         options.threads = threads;
         options.hash = hashes != 0;
         if (until >= 0.0) options.simulate.until = until;
         try {
-            carom::check_shots(shots);  // of which there may be no array
+            carom::check_shots(shots);  // the array may be missing
             std::vector<carom::BatchColumn> columns;
             for (size_t k = 0; k < key_count; ++k) {
                 need({keys[k]});

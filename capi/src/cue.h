@@ -10,7 +10,7 @@
 
 namespace carom::c {
 
-/// What both structs of a cue have.
+/// The members that both cue structs have.
 inline constexpr std::pair<double carom_cue::*, double carom::Cue::*> kCueNumbers[] = {
     {&carom_cue::speed, &carom::Cue::speed},
     {&carom_cue::aim_deg, &carom::Cue::aim_deg},
@@ -22,7 +22,7 @@ inline constexpr std::pair<double carom_cue::*, double carom::Cue::*> kCueNumber
     {&carom_cue::restitution, &carom::Cue::restitution}};
 static_assert(sizeof(carom_cue) == std::size(kCueNumbers) * sizeof(double));
 
-/// What the caller's cue comes to, striking this ball.
+/// The engine's cue for the caller's, striking this ball.
 inline Cue cue_of(const std::string& id, const carom_cue& cue) {
     Cue c;
     c.ball = id;

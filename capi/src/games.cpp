@@ -31,7 +31,7 @@ template <class E>
 E value_of(const char* what, int32_t value) {
     const auto count = static_cast<int32_t>(carom::games::names_of(E{}).size());
     if (value < 0 || value >= count)
-        throw BadArgument(std::string(what) + " is " + std::to_string(value) + "; it is 0 to " +
+        throw BadArgument(std::string(what) + " is " + std::to_string(value) + "; expected 0 to " +
                           std::to_string(count - 1));
     return static_cast<E>(value);
 }
@@ -74,7 +74,7 @@ carom_game_state state_of(const games::State& s) {
     return state;
 }
 
-/// The library's refusals of arguments are the caller's bad arguments.
+/// Turns an argument that the library refuses into a bad argument of the caller.
 template <class Work>
 auto asked(Work&& work) {
     try {
@@ -197,7 +197,7 @@ carom_status carom_next_shot(const carom_record* record, const carom_verdict* ve
         need({record, cue});
         const games::Option& of = option_of(verdict, option);
         if (verdict->record != record->record.hash())
-            throw BadArgument("the verdict is of another record; give the record that was judged");
+            throw BadArgument("the verdict belongs to another record; give the record that was judged");
         std::optional<carom::Vec2> put;
         if (place != nullptr) put = carom::Vec2(place[0], place[1]);
         const carom::Cue strike = carom::c::cue_of(games::cue_ball(of.state), *cue);

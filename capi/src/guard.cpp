@@ -48,12 +48,12 @@ carom_status keep_error() noexcept {
 
 void need(std::initializer_list<const void*> pointers) {
     for (const void* pointer : pointers)
-        if (pointer == nullptr) throw BadArgument("a pointer is NULL that must not be");
+        if (pointer == nullptr) throw BadArgument("a required pointer is NULL");
 }
 
 void check_index(std::size_t index, std::size_t count, const char* what) {
     if (index < count) return;
-    throw BadArgument("there is no " + std::string(what) + " " + std::to_string(index) + "; there are " +
+    throw BadArgument(std::string(what) + " " + std::to_string(index) + " is out of range; there are " +
                       std::to_string(count));
 }
 

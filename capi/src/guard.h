@@ -11,7 +11,7 @@
 
 namespace carom::c {
 
-/// Becomes CAROM_BAD_ARGUMENT; what() tells which argument is invalid and why.
+/// Becomes CAROM_BAD_ARGUMENT; what() says which argument is invalid and why.
 class BadArgument : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -49,8 +49,8 @@ carom_status made(T** out, Make&& make) {
     });
 }
 
-/// The instruction set in CAROM_ISA, or for every kernel the fastest
-/// one. @throws BadArgument if CAROM_ISA cannot be used here
+/// The instruction set in CAROM_ISA, else the fastest one for every kernel. @throws BadArgument if CAROM_ISA
+/// cannot be used here
 kernel::Isa chosen_isa();
 
 }  // namespace carom::c

@@ -1,4 +1,4 @@
-// What the opaque handles of the C interface hold.
+// The contents of the C interface's opaque handles.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ using carom::c::chosen_isa;
 using carom::c::guarded;
 using carom::c::need;
 
-/// [-] Number of impacts that are transposed and solved together; their data fit into the first-level cache.
+/// [-] Impacts that are transposed and solved together; their data fit into the first-level cache.
 constexpr std::size_t kBlock = 64;
 
 void check_tolerance(double tolerance) {

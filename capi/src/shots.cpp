@@ -26,7 +26,7 @@ using carom::c::guarded;
 using carom::c::made;
 using carom::c::need;
 
-/// The row of a number of the balls.
+/// The field of a ball parameter.
 const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
     std::string known;
     for (const auto& f : carom::kBallFields) {
@@ -34,7 +34,7 @@ const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
         if (name == f.key) return f;
         known += (known.empty() ? "" : ", ") + std::string(f.key);
     }
-    throw BadArgument("there is no ball parameter \"" + std::string(name) + "\"; use " +
+    throw BadArgument("unknown ball parameter \"" + std::string(name) + "\"; use " +
                       known.replace(known.rfind(", "), 2, " or "));
 }
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Trains an agent to pot a ball, by PPO of stable-baselines3, and counts how often it and a random one pot.
+"""Trains an agent to pot a ball, with PPO from stable-baselines3, and compares its pots with a random
+player's.
 
     pip install stable-baselines3
-    python examples/learning/pot.py [--steps 400000] [--seed 1] [--shots 4000] [--model pot_model] [--report pot.json] [--picture pot.png]
+    python examples/learning/pot.py [--steps 400000] [--seed 1] [--shots 4000] [--model pot_model]
+                                    [--report pot.json] [--picture pot.png]
 
-A minute on one core. docs/guide/learning.md goes through it.
+It takes a minute on one core. docs/guide/learning.md explains it.
 """
 
 from __future__ import annotations
@@ -27,12 +29,14 @@ except ImportError as missing:
     raise SystemExit(f"{missing}: pip install stable-baselines3") from missing
 
 Actions = NDArray[np.float32]
-#: How actions are strikes: at the ball, with its thickness as what is to be learned; no faster than a pot needs.
+#: How actions become strikes: aimed at the ball, so that the agent learns how full to hit it, and at moderate
+#: speed.
 OPTIONS: dict[str, Any] = {"aim": "ball", "speed": (1.0, 4.0)}
 
 
 class Tables(VecEnv):  # type: ignore[misc, unused-ignore]  # without stable-baselines3 it has no type
-    """A batch of tables in the form that stable-baselines3 wants, which does not take Gymnasium's vectors."""
+    """A batch of tables in the form that stable-baselines3 needs, which does not accept Gymnasium's
+    vectors."""
 
     def __init__(self, tables: int, seed: int) -> None:
         self.env = carom.gym.make_vector_env("Pot", tables, autoreset_mode="SameStep", **OPTIONS)
@@ -48,12 +52,15 @@ class Tables(VecEnv):  # type: ignore[misc, unused-ignore]  # without stable-bas
     def step_async(self, actions: Actions) -> None:
         self.actions = actions
 
-    def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], list[dict[str, Any]]]:
+    def step_wait(
+        self
+    ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], list[dict[str, Any]]]:
         observations, rewards, terminated, truncated, infos = self.env.step(self.actions)
         over = terminated | truncated
         rows: list[dict[str, Any]] = [{} for _ in over]
         for row in np.flatnonzero(over).tolist():
-            rows[row] = {"terminal_observation": infos["final_obs"][row], "TimeLimit.truncated": bool(truncated[row])}
+            rows[row] = {
+                "terminal_observation": infos["final_obs"][row], "TimeLimit.truncated": bool(truncated[row])}
         return observations, rewards, over, rows
 
     def close(self) -> None:
@@ -73,18 +80,19 @@ class Tables(VecEnv):  # type: ignore[misc, unused-ignore]  # without stable-bas
 
 
 def score(act: Callable[[NDArray[np.float32]], Actions], shots: int, seed: int) -> dict[str, float]:
-    """The part of `shots` layouts that a player pots, and where that part lies with a probability of 95 % (Wilson)."""
+    """The fraction of `shots` layouts that a player pots, and its 95 % confidence interval (Wilson)."""
     env = carom.gym.make_vector_env("Pot", shots, autoreset_mode="Disabled", **OPTIONS)
     observations, _ = env.reset(seed=seed)
     _, rewards, *_ = env.step(act(observations))
     part, z = float((rewards > 0).mean()), 1.96
     middle = (part + z * z / (2 * shots)) / (1 + z * z / shots)
     wide = z * math.sqrt(part * (1 - part) / shots + z * z / (4 * shots * shots)) / (1 + z * z / shots)
-    return {"potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()), "shots": shots}
+    return {"potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()),
+            "shots": shots}
 
 
 def train(steps: int, seed: int) -> Any:
-    """The model. One shot is an episode, so nothing is discounted."""
+    """The model. An episode is one shot, so nothing is discounted."""
     torch.set_num_threads(1)
     model = PPO(
         "MlpPolicy",
@@ -103,7 +111,7 @@ def train(steps: int, seed: int) -> Any:
 
 
 def picture(model: Any, path: str) -> None:
-    """Nine layouts that the agent has not seen, one after the other, and what it plays on them."""
+    """Draws nine new layouts, one after the other, and the agent's shots on them."""
     import carom.plot
     import matplotlib
 
@@ -123,17 +131,20 @@ def picture(model: Any, path: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=400_000, help="shots to learn from")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--shots", type=int, default=4000, help="shots to count pots in, on layouts that were not learned from")
-    parser.add_argument("--model", help="where the model goes, as .zip")
-    parser.add_argument("--report", help="where the figures go, as .json")
-    parser.add_argument("--picture", help="where a picture of nine shots goes; needs matplotlib")
+    parser.add_argument("--shots", type=int, default=4000,
+                        help="shots to count pots in, on layouts not used for learning")
+    parser.add_argument("--model", help="write the model to this .zip file")
+    parser.add_argument("--report", help="write the figures to this .json file")
+    parser.add_argument("--picture", help="draw nine shots to this file; needs matplotlib")
     asked = parser.parse_args(arguments)
     random = np.random.default_rng(asked.seed)
     unseen = 2**31 + asked.seed
-    by_chance = score(lambda seen: random.uniform(-1, 1, (len(seen), 5)).astype(np.float32), asked.shots, unseen)
+    by_chance = score(
+        lambda seen: random.uniform(-1, 1, (len(seen), 5)).astype(np.float32), asked.shots, unseen)
     print(f"random:  {by_chance['potted']:.3f} potted", flush=True)
     model = train(asked.steps, asked.seed)
     trained = score(lambda seen: np.asarray(model.predict(seen, deterministic=True)[0]), asked.shots, unseen)

@@ -1,4 +1,4 @@
-"""A cut shot built in code, without a scene file: plays it, prints its events, and looks for a better aim.
+"""A cut shot built in code, without a scene file: plays it, prints its events, and searches for a better aim.
 
 python3 shot.py      # needs the package: pip install carom-billiards, or pip install . in a clone
 """
@@ -19,7 +19,7 @@ def cut_shot() -> carom.Scene:
 
 
 def best_aim(scene: carom.Scene, ball: str) -> tuple[float, float]:
-    """The aim [degrees] in the middle of the widest range that pots the ball, and how wide that is."""
+    """The aim [degrees] in the middle of the widest range that pots the ball, and the width of that range."""
     aims = np.linspace(80.0, 100.0, 20_001)
     shots = carom.simulate_many(scene, params={"cue.aim_deg": aims}, threads=0)
     potted = shots.pocket[:, scene.ids.index(ball)] >= 0
@@ -28,7 +28,8 @@ def best_aim(scene: carom.Scene, ball: str) -> tuple[float, float]:
         raise ValueError(f"no aim pots ball {ball}")
     starts, ends = edges[::2], edges[1::2] - 1
     widest = int(np.argmax(ends - starts))
-    return float(aims[starts[widest]] + aims[ends[widest]]) / 2, float(aims[ends[widest]] - aims[starts[widest]])
+    low, high = float(aims[starts[widest]]), float(aims[ends[widest]])
+    return (low + high) / 2, high - low
 
 
 def main() -> int:

@@ -1,17 +1,18 @@
 # %% [markdown]
 # # Throw
 #
-# Balls rub against each other. A ball that is cut does not leave along the line of centres: it is thrown a little in the direction in
-# which the cue ball's surface moves across it. We expect
+# Balls rub against each other. An object ball does not leave a cut along the line of centres: it is thrown a
+# little in the direction in which the cue ball's surface moves across it. We expect
 #
-# * more throw for slow shots than for fast ones, because the friction falls with the speed of the rubbing;
-# * none at all with *gearing* outside english, R w_z = v sin(phi), where the surfaces do not rub;
+# * more throw for slow shots than for fast ones, because friction falls with the sliding speed;
+# * no throw with *gearing* outside english, R w_z = v sin(phi), where the surfaces do not slide;
 # * the formula of D. Alciatore's Technical Proof A.14 (billiards.colostate.edu) for balls that touch freely:
 #
 #   tan(throw) = min(mu, (1/7) 2/(1+e) u / (v cos(phi))) * (slip along the cloth) / u
 #
-# Here u is the slip of the two surfaces, of which only the part along the cloth throws. The first value in min() is sliding friction,
-# the second is what stops the slip. With e = 1 it is the proof's 1/7 u / (v cos(phi)).
+# Here u is the slip between the two surfaces; only its component along the cloth throws the ball. The first
+# value in min() is sliding friction, the second is the friction that just stops the slip. With e = 1 it is
+# the proof's 1/7 u / (v cos(phi)).
 
 # %%
 import carom
@@ -29,7 +30,11 @@ def friction(slip: Numbers) -> Numbers:
 
 
 def slips(v: float, cut: Numbers, roll: float, side: Numbers) -> tuple[Numbers, Numbers]:
-    """Of the surfaces along the cloth and upwards [m/s]. roll: R times the topspin over v; side: R w_z over v sin(phi)."""
+    """The slip of the surfaces along the cloth and upwards [m/s].
+
+    roll: R times the topspin over v
+    side: R w_z over v sin(phi)
+    """
     return v * np.sin(cut) * (1 - side), -v * roll * np.cos(cut)
 
 
@@ -37,11 +42,13 @@ def formula(v: float, cut: Numbers, roll: float, side: Numbers) -> Numbers:
     """Throw [degrees]."""
     along, upward = slips(v, cut, roll, side)
     u = np.maximum(np.hypot(along, upward), 1e-12)
-    return np.degrees(np.arctan(np.minimum(friction(u), 2 / (1 + E_B) / 7 * u / (v * np.cos(cut))) * along / u))
+    limit = 2 / (1 + E_B) / 7 * u / (v * np.cos(cut))
+    return np.degrees(np.arctan(np.minimum(friction(u), limit) * along / u))
 
 
 def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Numbers:
-    """Throw [degrees] of the ball that is hit; the cue ball comes along +y, the line of centres is turned by the cut to the right."""
+    """Throw [degrees] of the object ball. The cue ball comes along +y; the cut turns the line of centres
+    right."""
     cut, side = np.broadcast_arrays(np.atleast_1d(cut), side)
     line = np.stack([np.sin(cut), np.cos(cut)], axis=-1)
     states = np.zeros((len(cut), 2, 3, 3))
@@ -50,18 +57,20 @@ def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Nu
     states[:, 0, 2, 0] = -roll * v / R
     states[:, 0, 2, 2] = -side * v * np.sin(cut) / R  # outside english turns clockwise here
     slip = np.hypot(*slips(v, cut, roll, side))
-    after = carom.kernel.ball_ball(states, model=model, mu_b=friction(slip), e_b=E_B, mu_s=0.2, tolerance=1e-9)
+    after = carom.kernel.ball_ball(
+        states, model=model, mu_b=friction(slip), e_b=E_B, mu_s=0.2, tolerance=1e-9)
     x, y = after[:, 1, 1, 0], after[:, 1, 1, 1]
     return np.degrees(np.arctan2(line[:, 0] * y - line[:, 1] * x, line[:, 0] * x + line[:, 1] * y))
 
 
 # %% [markdown]
-# ## Throw by the cut and by the english
-# Lines are the formula; dots are the impact solved as a differential equation, with the cloth under the balls (`mathavan`), which is
-# what a simulation does by default.
+# ## Throw by cut angle and by english
+# Lines are the formula. Dots are the impact solved as a differential equation, with the cloth under the balls
+# (`mathavan`), as a simulation does by default.
 #
-# On the left stun shots: the cue ball has no spin when it hits. On the right a cut of 30 degrees: inside english (left half) rubs more,
-# outside english less; at 1 the balls are geared, and beyond it they throw the other way.
+# On the left are stun shots: the cue ball has no spin when it hits. On the right is a cut of 30 degrees.
+# Inside english (left half) increases the sliding, outside english reduces it. At 1 the balls are geared, and
+# beyond that the throw is reversed.
 
 # %%
 cut = np.radians(np.linspace(1, 80, 80))
@@ -85,7 +94,7 @@ right.set_title("Cut of 30 degrees")
 plt.show()
 
 # %% [markdown]
-# ## What was expected
+# ## Checking the expectations
 
 # %%
 for v in (0.5, 1.5, 4.0):
@@ -100,7 +109,8 @@ print("most throw of a stun shot:", ", ".join(f"{throw:.1f} degrees" for throw i
 
 # %% [markdown]
 # ## On the table
-# The same in a whole shot. The cue ball is aimed so that the centres point at the middle of the corner pocket; the ball still goes wide.
+# The same in a whole shot. The cue ball is aimed so that the line of centres points at the middle of the
+# corner pocket, but the ball goes wide.
 
 # %%
 pocket = np.array([1.27, 2.54])
@@ -120,11 +130,11 @@ went = after[1, 1, :2]
 throw = np.degrees(np.arctan2(line[0] * went[1] - line[1] * went[0], line @ went))
 axes = carom.plot.table(record)
 axes.plot([target[1], pocket[1]], [target[0], pocket[0]], "k:", lw=1)
-axes.set_title(f"Dotted: the line of centres. The ball leaves {abs(throw):.1f} degrees beside it")
+axes.set_title(f"Dotted: the line of centres. The ball leaves at {abs(throw):.1f} degrees to it")
 plt.show()
 v = float(np.linalg.norm(before[0, 1]))
 phi = float(np.arccos(line @ before[0, 1, :2] / v))
 roll = float(-before[0, 2] @ np.array([before[0, 1, 1], -before[0, 1, 0], 0]) * R / v**2)
 expected = float(formula(v, np.array([phi]), roll, none)[0])
 assert abs(abs(throw) - expected) < 1
-print(f"thrown by {abs(throw):.2f} degrees; the formula of the free impact says {expected:.2f}")
+print(f"thrown by {abs(throw):.2f} degrees; the formula for a free impact gives {expected:.2f}")

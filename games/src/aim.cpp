@@ -1,4 +1,4 @@
-// Aim by geometry.
+// Aiming by geometry.
 #include "carom/games/aim.h"
 
 #include <algorithm>
@@ -22,15 +22,14 @@ namespace {
 using detail::cross;
 using detail::kDegrees;
 
-/// [-] Directions that are tried over the width of a pocket,
-/// before the ends of the widest run are looked for.
+/// [-] Directions tried across the width of a pocket, before the ends of the widest run are refined.
 constexpr int kDirections = 144;
-/// [-] Halvings of the gap between a direction that enters and one that does not: to 1e-11 of it.
+/// [-] Bisections between a direction that enters and one that does not: to 1e-11 of the gap.
 constexpr int kHalvings = 36;
-/// [-] Cosine of the angle between a way and the middle of a pocket's mouth, beyond which a ball that rubs a
-/// facing is not expected to fall: 50 degrees. Along a rail into the corner it is 45.
+/// [-] Cosine of the largest angle between a path and the axis of a pocket's mouth at which a ball that rubs
+/// a facing is expected to fall: 50 degrees. Along a rail into the corner it is 45.
 constexpr double kSteepest = 0.643;
-/// [ball radii] A ball that lies against a cushion may run along it: the rounding of places.
+/// [ball radii] Rounding of positions: a ball against a cushion may run along it.
 constexpr double kAlongCushion = 1e-9;
 
 /// Distance of a point from a segment.
@@ -48,7 +47,7 @@ double between_segments(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2&
     return std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
 }
 
-/// Way to the edge of a pocket's circle; infinite where the line passes it.
+/// Distance to the edge of a pocket's circle; infinite if the line misses it.
 double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards) {
     const Vec2 to = pocket.center - from;
     const double along = dot(to, towards), aside = cross(towards, to);
@@ -56,8 +55,7 @@ double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards
     return std::max(0.0, along - std::sqrt(pocket.radius * pocket.radius - aside * aside));
 }
 
-/// The mouth of a pocket, from one jaw to the other: the two
-/// that are nearest to it. Nothing where there are none.
+/// The mouth of a pocket, between the two jaws nearest to it; empty if there are none.
 std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& pocket) {
     if (table.jaws.size() < 2) return std::nullopt;
     std::vector<Vec2> jaws;
@@ -68,8 +66,8 @@ std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& 
     return std::pair(jaws[0], jaws[1]);
 }
 
-/// Way through the mouth of a pocket to the circle's edge or beside it;
-/// infinite where the line passes the mouth, or is too flat to it.
+/// Distance through a pocket's mouth to the circle's edge, or beside it; infinite if the line misses the
+/// mouth, or is too flat to it.
 double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& from, const Vec2& towards) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const auto mouth = mouth_of(table, pocket);
@@ -81,7 +79,7 @@ double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& f
     return way > 0.0 && share > 0.0 && share < 1.0 ? way : kNever;
 }
 
-/// Where a line into a pocket is looked for: in its circle, or, by way of a facing, in its mouth.
+/// Where a line into a pocket must lead: into its circle or, off a facing, into its mouth.
 enum class Goal : std::uint8_t { kCircle, kMouth };
 
 double way_into(const Table& table, const Pocket& pocket, Goal goal, const Vec2& from, const Vec2& towards) {
@@ -89,8 +87,8 @@ double way_into(const Table& table, const Pocket& pocket, Goal goal, const Vec2&
                                  : way_through_mouth(table, pocket, from, towards);
 }
 
-/// Whether a cushion is the facing of a pocket: an end of
-/// it lies behind the noses. What rubs there still falls.
+/// Whether a cushion is the facing of a pocket: one end lies behind the noses. A ball that rubs there still
+/// falls.
 bool is_facing(const Table& table, const Cushion& cushion) {
     const auto behind = [&](const Vec2& end) {
         const Vec2 in = end - table.corner;
@@ -99,7 +97,7 @@ bool is_facing(const Table& table, const Cushion& cushion) {
     return behind(cushion.from) || behind(cushion.to);
 }
 
-/// Whether a ball reaches this pocket and touches neither noses nor jaws on its way.
+/// Whether a ball reaches this pocket without touching noses or jaws.
 bool enters(const Table& table, const Pocket& pocket, Goal goal, const Vec2& from, const Vec2& towards,
             double R) {
     const double way = way_into(table, pocket, goal, from, towards);
@@ -123,7 +121,7 @@ Vec2 turned(const Vec2& direction, double deg) {
     return {cos * direction.x() - sin * direction.y(), sin * direction.x() + cos * direction.y()};
 }
 
-/// The end of the directions that enter, between one that does and one that does not [degrees].
+/// The last direction that enters, between one that does and one that does not [degrees].
 template <class Enters>
 double edge(double in, double out, const Enters& enters_at) {
     for (int k = 0; k < kHalvings; ++k) {
@@ -138,8 +136,8 @@ double edge(double in, double out, const Enters& enters_at) {
 double direction_deg(const Vec2& direction) {
     const double size = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
     if (!(size > 0.0)) return size;
-    // Of the cosine and the sine the smaller one says the angle: there the arc cosine is as exact as its
-    // argument. Below 1e-154 squares lose digits, and a quotient may pass 1.
+    // The smaller one of cosine and sine determines the angle: there the arc cosine is as exact as its
+    // argument. Below 1e-154 squares lose digits, and a quotient may exceed 1.
     const double cosine = std::clamp(direction.x() / size, -1.0, 1.0),
                  sine = std::clamp(direction.y() / size, -1.0, 1.0);
     if (std::abs(direction.x()) <= std::abs(direction.y()))

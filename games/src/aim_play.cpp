@@ -1,4 +1,4 @@
-// Aim by playing the shot.
+// Aiming by playing the shot.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,23 +23,22 @@ namespace {
 using detail::cross;
 using detail::kDegrees;
 
-/// [-] Steps that double, to put the wanted aim between two others; and then steps that narrow it down.
+/// [-] Doubling steps that bracket the wanted aim, and steps that then narrow it down.
 constexpr int kBrackets = 14, kNarrow = 40;
 /// [-] Corrections of a strike that misses the ball.
 constexpr int kCorrections = 3;
-/// [-] Of the width of the ways: an aim that keeps the ball this near to their middle is found.
+/// [-] Fraction of the paths' width: an aim that keeps the ball this near to their middle is accepted.
 constexpr double kNearMiddle = 1e-3;
-/// [-] Aims over which banks are looked for, from one edge of the ball to the other.
+/// [-] Aims tried for banks, from one edge of the ball to the other.
 constexpr int kBankAims = 240;
 
-/// What one strike does to the ball that is to fall.
+/// What one strike does to the ball to be potted.
 struct Played {
-    /// Sine of the angle by which it leaves the wanted direction,
-    /// to the left is positive; nothing where the strike misses
+    /// Sine of its angle to the wanted direction, positive to the left; empty if the strike misses
     std::optional<double> off;
     bool potted = false;  ///< in the wanted pocket
-    int cushion = -1;     ///< the only cushion that it met before, or -1
-    std::string why;      ///< why `off` is nothing
+    int cushion = -1;     ///< the only cushion that it hit before, or -1
+    std::string why;      ///< why `off` is empty
 };
 
 /// A strike at one ball for one pocket, with any aim.
@@ -85,7 +84,7 @@ class Player {
     double R_ = 0.0, both_ = 0.0;
 };
 
-/// Why the cue ball does not meet this ball first; "" where it does.
+/// Why the cue ball does not hit this ball first, or "".
 std::string missed(const Record& record, const Shot& shot, int ball) {
     if (shot.first_hits.empty()) return "the cue ball meets no ball";
     if (shot.first_hits.size() > 1) return "the cue ball meets two balls at once";
@@ -98,8 +97,7 @@ std::string missed(const Record& record, const Shot& shot, int ball) {
     return "";
 }
 
-/// The first thing that stops a ball from running straight on
-/// after `time`: a cushion, a ball, a pocket, or its rest.
+/// The first thing after `time` that ends a ball's straight run: a cushion, a ball, a pocket, or rest.
 const Event* next_stop(const Record& record, int ball, double time) {
     for (const Event& e : record.events) {
         const EventKind& of = kind(e.type);
@@ -119,7 +117,7 @@ bool fell_into(const Shot& shot, int ball, int pocket) {
            shot.pocketed.end();
 }
 
-/// How a ball leaves the direction `towards` between two events.
+/// How far a ball deviates from the direction `towards` between two events.
 std::optional<double> off_line(const Record& record, int ball, double from, const Event* stop,
                                const Vec2& towards) {
     const Vec2 way =
@@ -129,7 +127,7 @@ std::optional<double> off_line(const Record& record, int ball, double from, cons
     return cross(towards, way) / size;
 }
 
-/// One strike for a direct pot: the ball is to run along `towards`.
+/// One strike for a direct pot: the ball should run along `towards`.
 Played play_direct(Player& player, double aim_deg, const Vec2& towards) {
     const Record record = player.play(aim_deg);
     const Shot shot = shot_of(record);
@@ -143,7 +141,7 @@ Played play_direct(Player& player, double aim_deg, const Vec2& towards) {
     return played;
 }
 
-/// One strike for a bank: the ball is to run into the pocket after its first cushion.
+/// One strike for a bank: the ball should run into the pocket after its first cushion.
 Played play_bank(Player& player, double aim_deg) {
     const Record record = player.play(aim_deg);
     const Shot shot = shot_of(record);
@@ -163,13 +161,13 @@ Played play_bank(Player& player, double aim_deg) {
     return played;
 }
 
-/// An aim and how the ball then runs.
+/// An aim, and how the ball then runs.
 struct Tried {
     double aim_deg = 0.0;
     double off = 0.0;
 };
 
-/// Narrows two aims with different signs down to one that is near enough (regula falsi, Illinois).
+/// Narrows two aims of opposite sign down to one that is near enough (regula falsi, Illinois).
 template <class Play>
 Tried narrowed(Tried a, Tried b, double near, const Play& play) {
     Tried best = std::abs(a.off) < std::abs(b.off) ? a : b;
@@ -193,20 +191,20 @@ Tried narrowed(Tried a, Tried b, double near, const Play& play) {
     return best;
 }
 
-/// Half of the angle under which the cue ball sees the ball that it is to meet [degrees].
+/// Half of the angle under which the cue ball sees the ball that it should hit [degrees].
 double half_view_deg(const Player& player) {
     const double distance = length(player.place() - player.cue_place());
     return 90.0 - arc_cos(std::min(1.0, player.both() / distance)) * kDegrees;
 }
 
-/// By how much a cue ball that misses leaves its way to the ghost
-/// ball, by squirt and swerve [degrees], left is positive.
+/// How far a cue ball that misses strays from its path to the ghost ball, by squirt and swerve [degrees];
+/// positive to the left.
 double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
     const Vec2 way = ghost - player.cue_place();
     const int cue_ball = shot_of(record).struck;
     const Event* stop = next_stop(record, cue_ball, 0.0);
     double late = stop != nullptr ? stop->time : record.duration, early = 0.0;
-    // Where it is as far away as the ghost ball, or as far as it comes.
+    // At the distance of the ghost ball, or as far as it gets.
     for (int k = 0; k < kNarrow; ++k) {
         const double middle = 0.5 * (early + late);
         (length(place_at(record, cue_ball, middle) - player.cue_place()) < length(way) ? early : late) =
@@ -216,10 +214,10 @@ double strays_deg(const Player& player, const Record& record, const Vec2& ghost)
     return direction_deg({dot(way, went), cross(way, went)});
 }
 
-/// Why geometry already says no; "" where it does not.
+/// Why geometry already rules the aim out, or "".
 std::string refused(const Player& player, const PocketLine& line, double cut_deg) {
     const std::string& id = player.ball_id();
-    if (line.width_deg == 0.0) return "no straight way of ball " + id + " into the pocket passes the jaws";
+    if (line.width_deg == 0.0) return "no straight path of ball " + id + " into the pocket clears the jaws";
     if (!line.in_the_way.empty()) return "ball " + line.in_the_way + " is in the way of ball " + id;
     if (!(cut_deg < 90.0)) return "the cut would be 90 degrees or more";
     return "";
@@ -242,21 +240,21 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         aim.why = played.why;
         return played.off;
     };
-    // Squirt and swerve may lead the cue ball past the ball
-    // altogether: by as much as it strays the aim goes the other way.
+    // Squirt and swerve may carry the cue ball past the ball altogether; the aim moves the other way by as
+    // much as it strays.
     Tried start = {aim.geometric_deg, 0.0};
     std::optional<double> first = play(start.aim_deg);
     for (int k = 0; k < kCorrections && !first; ++k) {
         start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
         first = play(start.aim_deg);
     }
-    // A ball that runs too far to the left is met too far on
-    // its right: the aim goes left, in steps that double.
+    // A ball that runs too far to the left is hit too far on its right: the aim moves left, in doubling
+    // steps.
     if (first) {
         start.off = *first;
         Tried a = start, b = a;
         double step = 0.02 * half_view_deg(player) * (a.off > 0.0 ? 1.0 : -1.0);
-        std::optional<double> miss;  // an aim that passes the ball: what is wanted lies before it
+        std::optional<double> miss;  // an aim that misses the ball: the wanted one is before it
         for (int k = 0; k < kBrackets && (a.off > 0.0) == (b.off > 0.0) && std::abs(b.off) > near; ++k) {
             const double next = miss ? 0.5 * (b.aim_deg + *miss) : b.aim_deg + step;
             const std::optional<double> off = play(next);
@@ -276,7 +274,7 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
             aim.cue = player.cue();
         else if (aim.why.empty())
             aim.why = std::abs(best.off) > near ? "no aim sends the ball there"
-                                                : "the ball runs towards the pocket and does not fall";
+                                                : "the ball runs towards the pocket but does not fall";
     }
     if (aim.cue) aim.why.clear();
     aim.shots = player.shots;

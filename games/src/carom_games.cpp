@@ -13,14 +13,14 @@ namespace {
 constexpr int kCushions = 3;
 const std::string kRed = "red";
 
-/// Where a ball of three-cushion comes back for the player who shoots next: the red
-/// on the foot spot, the cue ball on the head spot, the other one in the middle.
+/// Where a ball of three-cushion is respotted for the next player: the red on the foot spot, the cue ball on
+/// the head spot, the other one in the centre.
 Vec2 own_spot(const Table& table, const std::string& ball, int shooter) {
     if (ball == kRed) return foot_spot(table);
     return ball == own_ball(shooter) ? head_spot(table) : center_spot(table);
 }
 
-/// A ball whose spot is taken goes to the spot of the ball that is in the way.
+/// A ball whose spot is taken goes to the spot of the ball in the way.
 std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& balls, int shooter) {
     if (balls.empty()) return {};
     std::vector<Respot> respots;
@@ -49,7 +49,7 @@ std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& 
     return respots;
 }
 
-/// The cue ball of a player and what lies against it; empty where nothing does.
+/// A player's cue ball and the balls touching it; empty if none does.
 std::vector<std::string> touching(const Facts& facts, int shooter) {
     const int own = index_of(facts.record, own_ball(shooter));
     const auto place = [&](int ball) {
@@ -64,7 +64,7 @@ std::vector<std::string> touching(const Facts& facts, int shooter) {
     return list;
 }
 
-/// Whether the cue ball met both others, the second one after three cushions.
+/// Whether the cue ball hit both others, the second one after three cushions.
 bool made_three_cushions(const Facts& facts) {
     int cushions = 0;
     std::vector<int> met;
@@ -138,8 +138,8 @@ Verdict judge_sum_to_three(const Facts& facts) {
     std::vector<Foul> fouls;
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
     const bool point = fouls.empty() && !facts.shot.first_hits.empty() && cushions == kCushions;
-    // The game says nothing of balls that are gone: the cue ball comes
-    // back behind the head spot, the other one behind the foot spot.
+    // The game has no rule for lost balls: the cue ball returns behind the head spot, the other one behind
+    // the foot spot.
     Option next = {Decision::kPlayOn, after(facts.state, point), {}};
     for (int ball = 0; ball < static_cast<int>(facts.record.tracks.size()); ++ball) {
         if (!facts.shot.gone(ball)) continue;

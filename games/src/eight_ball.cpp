@@ -17,8 +17,8 @@ Group group_of(std::string_view ball) {
     return number >= 9 && number <= 15 ? Group::kStripes : Group::kOpen;
 }
 
-/// What a player shoots at: the own group, any ball but the eight
-/// while the table is open, and the eight when they are gone.
+/// A player's targets: their own group, any ball except the eight while the table is open, and the eight when
+/// the group is gone.
 std::vector<std::string> targets(const State& state, const std::vector<std::string>& balls) {
     const Group own = state.group[static_cast<std::size_t>(state.turn)];
     std::vector<std::string> list;
@@ -40,14 +40,14 @@ Option rerack(const State& state, Decision decision, int breaker) {
     return {decision, new_game(state.game, breaker, state.target), {}};
 }
 
-/// 3.3 (e) and (f): the eight is back, or the player who chooses breaks anew.
+/// 3.3 (e) and (f): the eight is respotted, or the player who chooses breaks again.
 void eight_on_the_break(const Facts& facts, const State& next, Verdict& verdict) {
     verdict.chooser = next.turn;
     verdict.options = {{Decision::kSpotEight, next, {eight_on_its_spot(facts)}},
                        rerack(facts.state, Decision::kRerack, next.turn)};
 }
 
-/// 3.3 (d), (g) and (h): what the other player may choose after a break that was illegal or foul.
+/// 3.3 (d), (g) and (h): the other player's options after an illegal or foul break.
 void bad_break(const Facts& facts, State next, bool illegal, Verdict& verdict) {
     std::vector<Respot> respots;
     if (facts.left(kEight)) respots = {eight_on_its_spot(facts)};
@@ -65,7 +65,7 @@ void bad_break(const Facts& facts, State next, bool illegal, Verdict& verdict) {
 
 Verdict judge_break(const Facts& facts) {
     Verdict verdict;
-    // 3.3 (b): any ball may be met first.
+    // 3.3 (b): any ball may be hit first.
     facts.add_pool_fouls(verdict.fouls, facts.ids(), true);
     const bool illegal = !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak;
     State next = facts.state;
@@ -127,7 +127,7 @@ Verdict judge_eight_ball(const Facts& facts) {
         return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, InHand::kAnywhere), {}});
     const bool made = !facts.call.safety && is_in(facts.call.ball, own) && facts.fell_as_called();
     if (!made) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
-    // 3.4: the first ball that is called and falls decides the groups.
+    // 3.4: the first called ball that falls decides the groups.
     const auto me = static_cast<std::size_t>(state.turn);
     if (state.group[me] == Group::kOpen) {
         next.group[me] = group_of(facts.call.ball);

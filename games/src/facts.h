@@ -24,22 +24,22 @@ class Facts {
     bool fell(std::string_view ball) const;
     bool left(std::string_view ball) const;
     bool gone(std::string_view ball) const { return fell(ball) || left(ball); }
-    bool any_object_fell() const;  ///< any ball but the struck one
-    int objects_off() const;       ///< balls but the struck one that left the table
-    int objects_driven() const;    ///< balls but the struck one that were driven to a cushion
+    bool any_object_fell() const;  ///< any ball except the struck one
+    int objects_off() const;       ///< balls that left the table, except the struck one
+    int objects_driven() const;    ///< balls driven to a cushion, except the struck one
     /// Whether the call names this ball and the pocket that holds it.
     bool fell_as_called() const;
     bool struck(std::string_view ball) const { return id(shot.struck) == ball; }
-    /// Whether one of the balls that are met first is in the list:
-    /// where two are met at once, the shooter has the benefit.
+    /// Whether one of the balls hit first is in the list: if two are hit at once, the shooter has the
+    /// benefit.
     bool first_is_one_of(const std::vector<std::string>& ids) const;
     std::vector<std::string> ids() const;  ///< of all balls that were on the table
-    /// The balls that lie on the table at the end, without `left_out`.
-    /// The cue ball keeps `cue_gap`, the others `gap` away.
+    /// The balls that lie on the table at the end, except `left_out`. The cue ball keeps `cue_gap`, the
+    /// others `gap` away.
     std::vector<Lying> lying(double cue_gap, double gap, const std::vector<std::string>& left_out = {}) const;
 
-    /// Adds the fouls that all pool games know: cue ball gone, wrong
-    /// ball first, nothing hit, no cushion, ball off, placement.
+    /// Adds the fouls that all pool games share: cue ball lost, wrong ball first, no ball hit, no cushion,
+    /// ball off the table, placement.
     void add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::string>& first,
                         bool need_cushion) const;
 
@@ -50,19 +50,19 @@ class Facts {
 bool is_in(std::string_view ball, const std::vector<std::string>& list);
 /// The number of a numbered ball, or 0.
 int number_of(std::string_view ball);
-/// [-] Object balls that a break has to drive to a cushion if nothing falls (WPA 2.3, 3.3).
+/// [-] Object balls that a break must drive to a cushion if nothing falls (WPA 2.3, 3.3).
 inline constexpr int kDrivenOnBreak = 4;
 
-/// Whose cue ball is whose in three-cushion: player 0 has the white one.
+/// A player's cue ball in three-cushion: player 0 has the white one.
 inline const char* own_ball(int player) {
     return player == 0 ? "white" : "yellow";
 }
 
-/// The state with the turn of the other player, and the cue ball where it says.
+/// The state for the other player's turn, with the cue ball in hand as given.
 State other_players(const State& state, InHand in_hand);
 /// Ends a game.
 State won_by(State state, int winner);
-/// The one way on.
+/// The verdict with a single option.
 Verdict one_way(std::vector<Foul> fouls, const Option& option);
 
 Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls);

@@ -12,7 +12,7 @@
 namespace carom::games {
 namespace {
 
-/// What a player would have called who knew what falls: the first ball of those that count.
+/// The call of a player who knows what will fall: the first of the balls that count.
 Call lucky_call(const State& state, const Record& record) {
     const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
     if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
@@ -28,21 +28,21 @@ Call lucky_call(const State& state, const Record& record) {
     return {};
 }
 
-/// Judges a shot into its row of the arrays. @param base  the scene with all balls; the shot may be without
-/// some of them
+/// Judges a shot into its row of the arrays. @param base the scene with all balls; the shot may lack some of
+/// them
 void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& outcome, const Record& record,
                const JudgedArrays& to) {
     const State before = state_of_turn(game, static_cast<Group>(to.group[row]));
     const Verdict verdict = judge(before, record, lucky_call(before, record));
     const State& next = verdict.next();
     to.foul[row] = verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front());
-    // A game of one player: a turn that passes is over, and the choices of the other player are nobody's.
+    // In a game of one player, a turn that passes is over, and nobody makes the other player's choices.
     to.goes_on[row] = !next.over && next.turn == 0;
     to.group[row] = static_cast<int>(next.group[0]);
     constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
     double* place = to.xy + row * base.ball.size() * 2;
     int fallen = 0;
-    std::size_t track = 0;  // those of the record are in the order of the scene
+    std::size_t track = 0;  // tracks of the record are in the order of the scene
     for (const BallStart& ball : base.ball) {
         double &x = *place++, &y = *place++;
         x = y = kNowhere;

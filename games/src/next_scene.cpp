@@ -19,17 +19,17 @@ bool is_back(const Option& option, const std::string& ball) {
                        [&](const Respot& r) { return r.ball == ball; });
 }
 
-/// The ball of an option. @throws std::invalid_argument
-/// where the record has none: the option is of another one
+/// The ball of an option. @throws std::invalid_argument if the record has none: the option belongs to another
+/// record
 int ball_of(const Record& record, const std::string& id) {
     const int index = index_of(record, id);
     if (index < 0)
         throw std::invalid_argument("the record has no ball " + in_quotes(id) +
-                                    "; give the record that the option was judged by");
+                                    "; give the record from which the option was judged");
     return index;
 }
 
-/// Puts a ball of the shot before back onto the cloth.
+/// Puts a ball of the previous shot back on the cloth.
 BallStart placed(const BallStart& before, double R, const Vec2& place) {
     BallStart ball = before;
     ball.position = {place.x(), place.y(), R};
@@ -71,13 +71,13 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place) {
     if (option.rerack())
-        throw std::invalid_argument("the balls are racked anew; take the scene of a new break");
+        throw std::invalid_argument("the balls are racked again; use the scene of a new break");
     if (option.state.over) throw std::invalid_argument("the game is over; there is no next shot");
     const std::string cue = cue_ball(option.state);
     const int index = ball_of(record, cue);
     for (const Respot& back : option.respots) ball_of(record, back.ball);
     if (!place && !is_back(option, cue) && is_gone(record.state_at(index, record.duration).state))
-        throw std::invalid_argument("the cue ball is in hand; say where it is placed");
+        throw std::invalid_argument("the cue ball is in hand; give its place");
     if (place && !may_place(record, option, *place))
         throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +
                                     name(option.state.in_hand) + "), or the place is not free");

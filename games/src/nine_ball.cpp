@@ -10,10 +10,10 @@ namespace carom::games::detail {
 namespace {
 
 const std::string kNine = "9";
-/// Fouls in a row that lose the rack (6.14).
+/// Consecutive fouls that lose the rack (6.14).
 constexpr int kFoulsThatLose = 3;
 
-/// The ball of the lowest number; none on an empty table.
+/// The ball with the lowest number; none on an empty table.
 std::vector<std::string> lowest(const std::vector<std::string>& balls) {
     std::vector<std::string> numbered;
     for (const std::string& ball : balls)
@@ -25,7 +25,7 @@ std::vector<std::string> lowest(const std::vector<std::string>& balls) {
     return {*least};
 }
 
-/// 2.6: the nine comes back to its spot; no other ball does.
+/// 2.6: the nine is respotted; no other ball is.
 std::vector<Respot> nine_back(const Facts& facts) {
     if (!facts.gone(kNine)) return {};
     const double R = facts.record.size(index_of(facts.record, kNine)).R;
@@ -57,7 +57,7 @@ Verdict judge_nine_ball(const Facts& facts) {
     const State& state = facts.state;
     const bool push = facts.call.push_out && state.may_push_out;
     std::vector<Foul> fouls;
-    // 2.4: of a push out, what is hit first and what meets a cushion is not asked.
+    // 2.4: a push out may hit any ball first, and needs no cushion.
     facts.add_pool_fouls(fouls, push ? facts.ids() : lowest(facts.ids()), !push && !facts.any_object_fell());
     if (state.opening && !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak)
         fouls.push_back(Foul::kFewCushionsOnBreak);

@@ -12,12 +12,12 @@ namespace carom::games {
 
 Noise noise_by_name(std::string_view name, double R) {
     if (!(R > 0.0) || !std::isfinite(R))
-        throw std::invalid_argument("the radius of the ball is not more than 0");
+        throw std::invalid_argument("the ball's radius must be greater than 0");
     if (name == "none") return {};
     if (name == "fastfiz") return {0.075, 0.125, 0.1, 0.5e-3 / R, 0.5e-3 / R};
     if (name == "ai3603") return {0.1, 0.1, 0.1, 0.003, 0.003};
-    throw std::invalid_argument("there is no noise \"" + std::string(name) +
-                                "\"; use none, fastfiz, ai3603 or standard deviations of your own");
+    throw std::invalid_argument("unknown noise \"" + std::string(name) +
+                                "\"; use none, fastfiz, ai3603 or your own standard deviations");
 }
 
 Cue with_noise(const Cue& cue, const Noise& sd, std::uint64_t seed, std::uint64_t index) {

@@ -20,8 +20,8 @@ namespace {
 struct GameRules {
     Legal (*legal)(const State& state, const std::vector<std::string>& balls);
     Verdict (*judge)(const detail::Facts& facts);
-    InHand start;                         ///< where the cue ball begins
-    std::vector<std::string_view> balls;  ///< without which there is no such game
+    InHand start;                         ///< where the cue ball starts
+    std::vector<std::string_view> balls;  ///< that the game needs
 };
 
 const GameRules& rules_of(Game game) {
@@ -57,7 +57,7 @@ constexpr FoulRules kFoulRules[] = {
 };
 
 void check(const State& state) {
-    if (state.turn != 0 && state.turn != 1) throw std::invalid_argument("turn is a player, 0 or 1");
+    if (state.turn != 0 && state.turn != 1) throw std::invalid_argument("turn must be 0 or 1");
     const std::pair<const char*, int> numbers[] = {{"points", state.points[0]},
                                                    {"points", state.points[1]},
                                                    {"fouls", state.fouls[0]},
@@ -92,8 +92,7 @@ const char* rule_of(Game game, Foul foul) {
 Legal legal(const State& state, std::span<const std::string> balls) {
     check(state);
     Legal legal = rules_of(state.game).legal(state, {balls.begin(), balls.end()});
-    if (legal.first.empty())
-        throw std::invalid_argument("there is no ball that the game allows to be played at");
+    if (legal.first.empty()) throw std::invalid_argument("no ball is left to play at");
     legal.in_hand = state.in_hand;
     return legal;
 }

@@ -13,7 +13,7 @@
 namespace carom::games {
 namespace {
 
-/// The balls that `ball` meets in an event of balls: those nearest to it.
+/// The balls that `ball` hits in an event of balls: those nearest to it.
 std::vector<int> met_in(const Record& record, const Event& event, int ball) {
     if (event.a == ball) return {event.b};
     if (event.b == ball) return {event.a};
@@ -32,7 +32,7 @@ std::vector<int> met_in(const Record& record, const Event& event, int ball) {
     return {best};
 }
 
-/// The members of a cluster that `ball` touches when it begins, beside the one that is first.
+/// The members of a cluster that `ball` touches when it begins, besides the first one.
 void add_simultaneous(const Record& record, const Event& event, int ball, std::vector<int>& met) {
     if (event.type != EventType::kBallCluster || met.empty()) return;
     const Vec3 here = record.state_at(ball, event.time).position;

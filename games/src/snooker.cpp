@@ -1,5 +1,5 @@
-// Snooker by the World Professional Billiards and Snooker
-// Association, section 3. Misses, which a referee judges, are not.
+// Snooker by the World Professional Billiards and Snooker Association, section 3, except misses, which a
+// referee judges.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -25,7 +25,7 @@ bool is_colour(std::string_view ball) {
     return points_of(ball) > kRedPoints;
 }
 
-/// The balls that are on without a free ball.
+/// The balls that are on, ignoring a free ball.
 std::vector<std::string> balls_on(BallOn on, const std::vector<std::string>& balls) {
     std::vector<std::string> list;
     for (const std::string& ball : balls) {
@@ -36,7 +36,7 @@ std::vector<std::string> balls_on(BallOn on, const std::vector<std::string>& bal
     return list;
 }
 
-/// What is on after a miss or a foul, or behind the colour that follows the last red.
+/// What is on after a miss or a foul, or after the colour that follows the last red.
 BallOn lowest_on(const std::vector<std::string>& balls) {
     int least = static_cast<int>(BallOn::kBlack);
     for (const std::string& ball : balls)
@@ -44,7 +44,7 @@ BallOn lowest_on(const std::vector<std::string>& balls) {
     return static_cast<BallOn>(least);
 }
 
-/// Whether from this place no ball on can be hit at both of its edges.
+/// Whether no ball on can be hit on both of its edges from this place.
 bool snookered_at(const Vec2& from, double R, std::span<const Lying> on, std::span<const Lying> not_on) {
     return std::none_of(on.begin(), on.end(), [&](const Lying& ball) {
         const Vec2 to = ball.place - from;
@@ -60,7 +60,7 @@ bool snookered_at(const Vec2& from, double R, std::span<const Lying> on, std::sp
     });
 }
 
-/// How a stroke stands: what was on, what was nominated, what fell.
+/// A stroke: what was on, what was nominated, what fell.
 class Stroke {
   public:
     explicit Stroke(const Facts& facts);
@@ -144,8 +144,8 @@ int Stroke::points() const {
     return points;
 }
 
-/// Colours come back, but for the one that is on in its turn and falls
-/// fairly. Those whose own spots are free first, then the highest.
+/// Colours are respotted, except the one that is on in its turn and falls fairly: first those whose own spots
+/// are free, then the highest.
 std::vector<Respot> Stroke::respots() const {
     const BallOn on = facts_.state.on;
     std::vector<std::string> back;
@@ -173,8 +173,8 @@ BallOn Stroke::next_on(const std::vector<std::string>& on_table) const {
     return facts_.state.on == BallOn::kRed && points() > 0 ? BallOn::kColour : lowest_on(on_table);
 }
 
-/// Whether the cue ball is snookered at the end: no ball on can be
-/// hit at both edges. In hand: from no place of a lattice in the D.
+/// Whether the cue ball ends snookered: no ball on can be hit on both edges. If it is in hand: from no place
+/// of a lattice in the D.
 bool is_snookered(const Facts& facts, const State& next, const std::vector<Respot>& respots,
                   const std::vector<std::string>& on_table) {
     const std::vector<std::string> on_ids = balls_on(next.on, on_table);
@@ -197,7 +197,7 @@ bool is_snookered(const Facts& facts, const State& next, const std::vector<Respo
         const Vec2 cue = planar(facts.record.state_at(facts.shot.struck, facts.record.duration).position);
         return snookered_at(cue, R, on, not_on);
     }
-    constexpr int kAcross = 12;  // of the lattice, from the middle of the D to its edge
+    constexpr int kAcross = 12;  // lattice steps from the middle of the D to its edge
     const Table& table = facts.record.table;
     const double step = radius_of_d(table) / kAcross;
     for (int i = -kAcross; i <= kAcross; ++i)
@@ -210,8 +210,8 @@ bool is_snookered(const Facts& facts, const State& next, const std::vector<Respo
     return true;
 }
 
-/// The frame ends with the first score or foul when only the black is left;
-/// with equal points the black comes back, and lots decide who plays it.
+/// With only the black left, the first score or foul ends the frame. If the points are equal, the black is
+/// respotted, and lots decide who plays it.
 Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
     Verdict verdict;
     verdict.fouls = stroke.fouls;

@@ -12,7 +12,7 @@
 namespace carom::games {
 namespace {
 
-// Of the rules of the WPBSA, section 1, for a playing area of 3.569 m; other tables are scaled.
+// From the rules of the WPBSA, section 1, for a playing area of 3.569 m; other tables are scaled.
 constexpr double kFullLength = 3.569, kBaulk = 0.737, kRadiusOfD = 0.292, kBlackFromTop = 0.324;
 
 Vec2 on_axis(const Table& table, double y) {
@@ -38,7 +38,7 @@ Vec2 snooker_spot(const Table& table, std::string_view colour) {
     if (colour == "blue") return center_spot(table);
     if (colour == "pink") return foot_spot(table);
     if (colour == "black") return on_axis(table, table.length - kBlackFromTop * scale);
-    throw std::invalid_argument("\"" + std::string(colour) + "\" is no colour of snooker");
+    throw std::invalid_argument("\"" + std::string(colour) + "\" is not a snooker colour");
 }
 
 double radius_of_d(const Table& table) {
@@ -79,13 +79,13 @@ std::optional<Vec2> nearest_free(const Vec2& from, const Vec2& direction, double
     if (is_free(from, R, others)) return from;
     double best = std::numeric_limits<double>::infinity();
     for (const Lying& other : others) {
-        // Where the line leaves the disc that this ball keeps free of centres.
+        // Where the line leaves the disc that this ball keeps free of other centres.
         const double least = R + other.R + other.gap;
         const Vec2 to = other.place - from;
         const double along = dot(to, direction), aside2 = to.squaredNorm() - along * along;
         if (aside2 >= least * least) continue;
         double s = along + std::sqrt(least * least - aside2);
-        // Rounding may leave it inside by some ulp.
+        // Rounding may leave it inside by a few ulp.
         double step = 0x1p-52 * (std::abs(s) + least + length(from));
         while (!is_free(from + s * direction, R, std::span(&other, 1))) {
             s += step;

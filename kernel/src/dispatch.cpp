@@ -1,4 +1,4 @@
-// The choice of the instruction set at run time, and the texts of what a kernel reports.
+// The choice of the instruction set at run time, and the texts for the results of kernels.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,8 +25,8 @@ const Entry kEntries[] = {{"scalar", &scalar::kKernels}, {"v3", nullptr}, {"v4",
 #endif
 
 #if defined(__x86_64__)
-// By feature, because clang 14 does not know the names of the levels.
-// What is not asked for here comes with these on every processor.
+// Tested by feature, because clang 14 does not know the names of the levels. Every processor with these
+// features has the others too.
 bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");
@@ -59,8 +59,8 @@ bool has_v4() {
 }
 #endif
 
-// What was measured (lab/notes/2026-11-ladder.md): on this kind of processor,
-// the fastest instruction set for each kernel, in the order of KernelKind.
+// Measurements (lab/notes/2026-11-ladder.md): the fastest instruction set for each kernel on this kind of
+// processor, in the order of KernelKind.
 struct Measured {
     const char* processor;
     bool (*is_this)();
@@ -161,9 +161,9 @@ ContactPhaseFunction contact_phase_function(Isa isa) noexcept {
 
 const char* describe(ImpactStatus status) noexcept {
     constexpr const char* kTexts[] = {
-        "", "", "a state is not finite, or the centres coincide or are not at one height",
+        "", "", "a state is not finite, or the centres coincide or differ in height",
         "a parameter is out of range: R, m > 0, frictions >= 0, 0 <= e_b <= 1, substeps >= 1",
-        "the march did not end within its bound on steps"};
+        "the integration reached its limit of steps"};
     return kTexts[static_cast<int>(status)];
 }
 

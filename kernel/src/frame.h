@@ -1,4 +1,4 @@
-// The contact frame of an impact, which all kernels share: validation, projection, back-projection.
+// The contact frame of an impact, for all kernels: validation, projection, back-projection.
 #pragma once
 
 #include "carom/kernel/impact.h"
@@ -18,10 +18,10 @@ struct Frame {
     double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
 };
 
-// Largest difference of the heights of the centres, as a share of their distance: the impact is planar. It
-// leaves room for the rounding of heights that are meant to be equal.
+// Largest difference in height of the centres, as a share of their distance: the impact is planar. It leaves
+// room for the rounding of heights that are meant to be equal.
 constexpr double kHeightTolerance = 1e-9;
-// Smallest approach speed [m/s], and smallest share of the sum of all speeds: below it the square of the
+// Smallest approach speed [m/s], and smallest share of the sum of all speeds. Below it the square of the
 // approach speed underflows in the work integral, and the balls count as not approaching (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
 
@@ -29,7 +29,7 @@ inline bool finite(const double (&a)[3]) {
     return finite(a[0]) && finite(a[1]) && finite(a[2]);
 }
 
-// In one question for both balls: a difference is 0, or a NaN where a number is not finite.
+// Tests both balls at once: a difference is 0, or NaN if a number is not finite.
 inline bool finite(const Ball& a, const Ball& b) {
     double wrong[3];
     for (int k = 0; k < 3; ++k)
@@ -38,10 +38,10 @@ inline bool finite(const Ball& a, const Ball& b) {
     return wrong[0] + wrong[1] + wrong[2] == 0.0;
 }
 
-// A cloth slip [m/s] up to this floor is rounding noise of the v and R w of a rolling ball. It has no
-// direction, and the step takes no cloth friction, as at a slip of exactly zero. The floor exists for the
-// consistent sign only: there rolling balls meet u = 0 as a rule, and two correct marches would otherwise
-// differ by the friction of a whole step. The published code has no such floor.
+// A cloth slip [m/s] up to this floor is rounding of the v and R w of a rolling ball. It has no direction,
+// and the step has no cloth friction, as for a slip of exactly zero. The floor is used for the consistent
+// sign only: there rolling balls usually have u = 0, and two correct integrations would otherwise differ by
+// the friction of a whole step. The published code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
@@ -49,7 +49,7 @@ inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     return 8.0 * 0x1p-52 * (v + R * w);
 }
 
-// [m/s] The absolute values of all components of v and R w, added.
+// [m/s] The sum of the absolute values of all components of v and R w.
 template <bool kMagnitude = false>
 inline double sum_of_speeds(const FrameState& s, double R) {
     const auto size = [](double x) { return kMagnitude ? magnitude(x) : absolute(x); };
@@ -57,7 +57,7 @@ inline double sum_of_speeds(const FrameState& s, double R) {
            R * (size(s.w1x) + size(s.w1y) + size(s.w1z) + size(s.w2x) + size(s.w2y) + size(s.w2z));
 }
 
-// The result where nothing is computed: the velocities before the impact.
+// The result if nothing is computed: the velocities before the impact.
 inline void copy_input(const Ball& b1, const Ball& b2, ImpactStatus status, ImpactResult& out) {
     for (int k = 0; k < 3; ++k) {
         out.v1[k] = b1.v[k];
@@ -77,8 +77,8 @@ inline bool in_range(const ImpactParams& p) {
            p.e_b <= 1.0 && (kAnyMasses || (p.mass_ratio == 1.0 && p.radius_ratio == 1.0));
 }
 
-// Checks the input and projects it into the contact frame. Any status but
-// kOk means that there is nothing to compute; `out` then holds the input.
+// Checks the input and projects it into the contact frame. Any status except kOk means that there is nothing
+// to compute; `out` then has the input.
 template <bool kAnyMasses = false>
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {
@@ -91,7 +91,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
         if (!(d > 0.0) || !finite(d) || absolute(dz) > kHeightTolerance * d) {
             status = ImpactStatus::kBadState;
         } else if constexpr (kAnyMasses) {
-            // The division does not wait for the root. The march keeps its bits.
+            // Here the division does not wait for the root. The published integration keeps its bits.
             const double by_d = d * (1.0 / d2);
             f.yx = dx * by_d;
             f.yy = dy * by_d;
@@ -116,7 +116,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     s.w2z = b2.w[2];
     const double approach = s.v1y - s.v2y;
     const double scale = sum_of_speeds<kAnyMasses>(s, p.R);
-    // Speeds whose squares overflow are a bad state, as a NaN is.
+    // Speeds whose squares overflow are a bad state, like NaN.
     if (!finite(scale) || !finite(scale * scale))
         status = ImpactStatus::kBadState;
     else if (!(approach > 0.0) || approach < kSlowestApproach || approach < kSlowestApproach * scale)
@@ -125,7 +125,7 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
     return status;
 }
 
-// Projects back to table coordinates. Vertical velocities stay as they were.
+// Projects back to table coordinates. Vertical velocities do not change.
 inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const FrameState& s, long steps,
                         ImpactResult& out) {
     out.v1[0] = s.v1x * f.yy + s.v1y * f.yx;

@@ -1,7 +1,7 @@
-// One kernel of every kind, as built for one instruction set.
+// One kernel of every kind, built for one instruction set.
 //
-// The sources in march/, tolerance/ and contact_phase/ are compiled once for every instruction set. The build
-// defines CAROM_ISA_NAMESPACE as scalar, v3 or v4; what a source exports lies in that namespace.
+// The sources in march/, tolerance/ and contact_phase/ are compiled once per instruction set. The build
+// defines CAROM_ISA_NAMESPACE as scalar, v3 or v4, the namespace of what a source exports.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"

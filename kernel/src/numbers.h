@@ -1,5 +1,5 @@
-// The few functions of one number that the kernels need. Files that are built for one instruction set include
-// no std templates (simd.h says why); everything here is inline and in an anonymous namespace.
+// The few functions of one number that the kernels need. Files built for one instruction set include no std
+// templates (simd.h says why), so everything here is inline and in an anonymous namespace.
 #pragma once
 
 namespace carom::kernel {
@@ -17,7 +17,8 @@ inline double absolute(double x) {
     return x < 0.0 ? -x : x;
 }
 
-// As absolute(), in one instruction. The march keeps the other: it is the baseline of all that was measured.
+// As absolute(), in one instruction. The published integration keeps the other: it is the baseline of all
+// measurements.
 inline double magnitude(double x) {
     return __builtin_fabs(x);
 }

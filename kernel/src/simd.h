@@ -1,17 +1,17 @@
-// Vectors of doubles: Pack<N> holds N of them, Mask<N> one truth value for each (all bits or none).
+// Vectors of doubles: Pack<N> has N of them, Mask<N> one truth value for each (all bits or none).
 //
-// Every operation acts on each lane by itself and is + - * / or a square root, each correctly rounded; a sum
-// over lanes has one written order. Therefore all instruction sets, compilers and optimisation levels give
-// the same bits. There is no fused multiply-add: plain x86-64 would have to emulate it in software, and it
-// would save little, because square roots and divisions dominate.
+// Every operation acts on each lane separately and is + - * / or a square root, each correctly rounded; a sum
+// over lanes has one fixed order. Therefore all instruction sets, compilers and optimisation levels give the
+// same bits. There is no fused multiply-add: plain x86-64 would have to emulate it in software, and it would
+// save little, because square roots and divisions dominate.
 //
-// A pack that fits into a register of the instruction set is the compiler's own
-// vector type. A wider one is two halves, because gcc 12 moves its own wide vectors
-// through memory and takes them apart lane by lane in shuffles and comparisons.
+// A pack that fits into a register of the instruction set is the compiler's own vector type. A wider one is
+// two halves, because gcc 12 moves its own wide vectors through memory and splits them lane by lane in
+// shuffles and comparisons.
 //
 // This header is included by files that are built once per instruction set: everything is inline and in an
 // anonymous namespace, and there are no std templates, because a weak symbol built for a higher instruction
-// set could win at link time and stop the program on an older processor.
+// set could win at link time and crash the program on an older processor.
 #pragma once
 
 #if defined(__x86_64__)
@@ -34,7 +34,7 @@ constexpr int kRegisterLanes = 4;
 constexpr int kRegisterLanes = 2;
 #endif
 
-// Two packs, or two masks, that are used as one: `lo` holds the lanes of lower number.
+// Two packs, or two masks, used as one: `lo` has the lower lanes.
 template <class Half>
 struct Halves {
     Half lo, hi;
@@ -64,7 +64,7 @@ struct PackType<8> {
 template <int N>
 using Pack = typename PackType<N>::Type;
 
-// Operators of halves. Those of packs that fit a register are the compiler's.
+// Operators of halves. Those of packs that fit into a register are the compiler's.
 #define CAROM_BINARY(op)                                                   \
     template <class Half>                                                  \
     CAROM_INLINE auto operator op(Halves<Half> a, Halves<Half> b) {        \
@@ -120,7 +120,7 @@ using Mask = decltype(Pack<N>{} < Pack<N>{});
 // The same number in all lanes.
 template <int N>
 CAROM_INLINE Pack<N> broadcast(double x) {
-    // not a sum, in which -0 would become +0
+    // not a sum, which would turn -0 into +0
     if constexpr (N <= kRegisterLanes)
         return x - Pack<N>{};
     else
@@ -150,7 +150,7 @@ CAROM_INLINE void store(double* to, Halves<Half> v) {
     store(to + sizeof v.lo / sizeof *to, v.hi);
 }
 
-// One lane of a pack or of a mask; of a mask it is -1 or 0.
+// One lane of a pack or of a mask (-1 or 0).
 template <class Register>
 CAROM_INLINE auto lane(const Register& v, int i) {
     return v[i];
@@ -176,7 +176,7 @@ CAROM_INLINE void set_lane(Halves<Half>& v, int i, Number x) {
         set_lane(v.hi, i - kHalf, x);
 }
 
-// In each lane `yes` where the mask is set, else `no`.
+// Per lane: `yes` if the mask is set, otherwise `no`.
 template <class M, class Register>
 CAROM_INLINE Register select(M mask, Register yes, Register no) {
     return mask ? yes : no;
@@ -187,7 +187,7 @@ CAROM_INLINE Halves<Half> select(Halves<M> mask, Halves<Half> yes, Halves<Half> 
     return {select(mask.lo, yes.lo, no.lo), select(mask.hi, yes.hi, no.hi)};
 }
 
-// In each lane a where it is above b, else b; a where it is below b, else b.
+// Per lane: the larger of a and b, and the smaller; b if they are equal or one is NaN.
 template <class Register>
 CAROM_INLINE Register larger(Register a, Register b) {
     return select(a > b, a, b);
@@ -238,7 +238,7 @@ CAROM_INLINE int bits(Mask<2> mask) {
 }
 #endif
 
-// Bit i says whether a < b in lane i.
+// Bit i: whether a < b in lane i.
 CAROM_INLINE int bits_less(Pack<2> a, Pack<2> b) {
     return bits(a < b);
 }
@@ -299,7 +299,7 @@ CAROM_INLINE bool all_below(P v, double bound) {
     return bits_less(v, broadcast<kLanes>(bound)) == (1 << kLanes) - 1;
 }
 
-// The two halves of a pack are added until one number is left: of four lanes (v0 + v2) + (v1 + v3).
+// Adds the two halves of a pack until one number is left: of four lanes (v0 + v2) + (v1 + v3).
 CAROM_INLINE double sum(Pack<2> v) {
     return v[0] + v[1];
 }
@@ -321,7 +321,7 @@ CAROM_INLINE double sum(Halves<Half> v) {
     return sum(v.lo + v.hi);
 }
 
-// What only packs of four can do.
+// Operations for packs of four only.
 #if defined(__AVX__)
 
 CAROM_INLINE Pack<4> pack(double a, double b, double c, double d) {

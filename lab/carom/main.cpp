@@ -9,10 +9,10 @@
 
 namespace carom::tools {
 
-/// The scripts of pages that only reports use, which the build puts into the program.
+/// The scripts of pages that only reports use, embedded in the program by the build.
 const std::vector<PageFile>& lab_page_files();
 
-// Each command is a folder, which adds itself to the table of options.
+// Each command is a folder, and adds itself to the table of options.
 void add_bench_kernel(Options& bench);
 void add_bench_render(Options& bench);
 void add_bench_shot(Options& bench);
@@ -29,9 +29,9 @@ int run(int argc, char** argv) {
     program.option("-V,--version", {}, "", "Display program version information and exit");
     program.footer =
         "lab/README.md names the command behind every figure.\n"
-        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: for each "
-        "kernel the fastest one).\n"
-        "Exit status: 0, 1 failed while running, 2 bad usage or bad scene, 130 or 143 interrupted.";
+        "CAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: the fastest one for "
+        "each kernel).\n"
+        "Exit status: 0 success, 1 failed while running, 2 bad usage or bad scene, 130 or 143 interrupted.";
     Options& bench = program.command("bench", "Ratios measured side by side in one run");
     add_bench_kernel(bench);
     add_bench_render(bench);

@@ -1,5 +1,4 @@
-// One impact of a batch on its way: from the arrays into
-// the contact frame, and its result back into the arrays.
+// One impact of a batch: from the arrays into the contact frame, and its result back into the arrays.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -50,7 +49,7 @@ inline bool enter_impact(const ImpactBatch& batch, long i, int n, BatchImpact& i
     return false;
 }
 
-// Stores the result after this number of steps; -1: the march did not end within its bound on steps.
+// Stores the result after this number of steps; -1: the march reached its limit of steps.
 inline void leave_impact(const BatchImpact& in, long steps, const ImpactBatchResult& out) {
     ImpactResult result;
     if (steps < 0)

@@ -1,6 +1,6 @@
-// Marches a batch in lanes: W * U lanes are filled and marched without a stop test as long as none of them
-// can end, then step by step, and each lane is taken out when it ends. Lanes that take far longer than the
-// others finish alone, so that one long impact does not delay the rest.
+// Marches a batch in lanes. W * U lanes are filled and marched without a stop test as long as none of them
+// can end, then step by step; each lane is removed when it ends. Lanes that take far longer than the others
+// finish alone, so that one long impact does not delay the rest.
 #pragma once
 
 #include "ladder/lanes.h"
@@ -32,8 +32,8 @@ class BatchMarch {
     const ImpactBatch& batch;
     const int n;
     const ImpactBatchResult& result;
-    // Impacts that will stick, or nearly stick, need the slow path of the roots
-    // from there on. They share vectors with each other and not with other impacts.
+    // Impacts that stick, or nearly stick, need the slow path of the roots from there on. They share vectors
+    // with each other, not with other impacts.
     Group groups[2] = {};
 
     static Lanes<W>& lanes_of(Group& g, int i) { return g.lanes[i / W]; }
@@ -122,8 +122,7 @@ class BatchMarch {
         for (int u = 0; u < U; ++u) g.lanes[u] = s[u];
     }
 
-    // The published stop test on lane i after a step. Returns
-    // true if the lane has ended and has been taken out.
+    // The published stop test on lane i after a step. Returns true if the lane has ended and was removed.
     bool ends(Group& g, int i, double sum_before, double v_before, long done) {
         LaneRecord& r = g.records[i];
         const double v = lanes_of(g, i).v_n[i % W];

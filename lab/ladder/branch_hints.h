@@ -1,5 +1,5 @@
-// Section 3.3: the branches of the baseline with hints. Slip is the
-// rule; no slip, and a cloth slip of zero, are the exceptions.
+// Section 3.3: the baseline's branches with hints. Slip is the normal case; no slip, and zero cloth slip, are
+// exceptions.
 #pragma once
 
 #include "ladder/step_loops.h"

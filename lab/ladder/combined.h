@@ -1,5 +1,5 @@
-// The best combination of the paper: rsqrt with Newton steps, roots
-// that wait for no branch, two stages, precomputed constants.
+// The paper's best combination: rsqrt with Newton steps, roots that wait for no branch, two stages,
+// precomputed constants.
 #pragma once
 
 #include "ladder/precomputed.h"

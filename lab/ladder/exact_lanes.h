@@ -1,5 +1,5 @@
 // The published march on eight impacts at once, expression by expression: each lane has the bits of the
-// baseline. It is meant for impacts whose result is decided by the rounding of the baseline.
+// baseline. It is for impacts whose result depends on the rounding of the baseline.
 #pragma once
 
 #include "march/loop.h"
@@ -13,8 +13,8 @@ using EightMask = Mask<8>;
 
 class ExactLanes {
   public:
-    // Marches `count` states, at most eight. steps[i] is as of march_loop(),
-    // which finishes a lane that takes far longer than the others.
+    // Marches `count` states, at most eight. steps[i] is that of march_loop(), which finishes a lane that
+    // takes far longer than the others.
     template <int kSign>
     static void march(FrameState* const* states, const ImpactParams* params, int count, int n, long* steps) {
         // Idle lanes repeat the last state.

@@ -1,5 +1,5 @@
 // The ladder: every kernel variant of the march that the paper built, kept working and correct, and variants
-// past it. It is for the benchmark and the tests; simulations use march.h and tolerance.h.
+// beyond it. It serves the benchmark and the tests; simulations use march.h and tolerance.h.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace carom::kernel {
 
-/// The march with n substeps on every impact of a batch, as MarchFunction for one.
+/// Marches every impact of a batch with n substeps, as MarchFunction does for one.
 using BatchFunction = void (*)(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept;
 
 /// One variant of the march for one instruction set. Exactly one of `march` and `batch` is set.
@@ -17,8 +17,8 @@ struct Rung {
     const char* name;
     const char* section;  ///< of the paper, or "past it"
     Isa isa;
-    MarchFunction march;  ///< one impact a call
-    BatchFunction batch;  ///< many impacts a call
+    MarchFunction march;  ///< one impact per call
+    BatchFunction batch;  ///< many impacts per call
     bool portable_bits;   ///< the same bits on scalar, v3 and v4, with gcc and with clang
     /// Largest difference from the baseline at N = 1000, relative to the approach
     /// speed, where the step counts agree: on the five states of the paper, and
@@ -27,8 +27,8 @@ struct Rung {
     const char* idea;
 };
 
-/// All variants, the baseline first, in the order of the paper, and of each
-/// variant all instruction sets, also those that this processor lacks.
+/// All variants, the baseline first, in the order of the paper; each with all instruction sets, including
+/// those that this processor lacks.
 std::span<const Rung> ladder() noexcept;
 
 }  // namespace carom::kernel

@@ -1,7 +1,7 @@
-// Section 3.8 and past it: independent impacts in the lanes of a vector of W lanes, which fills a register. U
-// vectors are interleaved, so that the latency of one is hidden behind the others. The step is that of
-// reduced.h, with the slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip
-// changes its sign swaps them. Lanes share nothing: each result depends on its own impact alone.
+// Section 3.8 and beyond: independent impacts in the lanes of a vector of W lanes, which fills a register. U
+// vectors are interleaved, so that the latency of one hides behind the others. The step is that of reduced.h,
+// with the slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its
+// sign swaps them. Lanes share nothing: each result depends on its own impact alone.
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -49,12 +49,12 @@ struct FusedArithmetic {
 #endif
 };
 
-// W impacts on their way.
+// W impacts in progress.
 template <int W>
 struct Lanes {
     using V = Pack<W>;
     V x, size, a, b, c, d, v_n, sum_v;  // sum_v: the sum of v_n over the steps, for the work
-    V h, h2, mu_h, floor2;              // h2 = 2 h; a lane that has ended has zeros here: nothing moves
+    V h, h2, mu_h, floor2;              // h2 = 2 h; a lane that has ended has zeros here, so nothing moves
     V mu_hs, mu_other;                  // mu_b h times mu_s of the pressed and of the other ball
     Mask<W> pressed2;                   // all bits where ball 2 is pressed
     V c_root, c_before, c_first, u_root, u_before, u_first;  // reciprocal lengths of the last three steps
@@ -67,11 +67,11 @@ inline void lane_step(Lanes<W>& s) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
     const V zero{};
     const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
-    // Everything that needs no root comes first: then only
-    // two operations lie between the roots and the next step.
+    // Everything that needs no root comes first, which leaves only two operations between the roots and the
+    // next step.
     const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
     const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
-    V C, U;  // 1/c and 1/u; 0 where the slip has no direction: below the published cutoff, or below the floor
+    V C, U;  // 1/c and 1/u; 0 if the slip has no direction: below the published cutoff, or below the floor
     Roots::template take<W, A>(s, c2, u2, C, U);
     const V CU = C * U;
     s.sum_v += s.v_n;
@@ -155,7 +155,7 @@ struct LaneCarriedRoots {
     }
 };
 
-// What a lane needs beside its vectors.
+// What a lane needs besides its vectors.
 struct LaneRecord : BatchImpact {
     Reduced start;
     ReducedConstants k;

@@ -1,5 +1,5 @@
 // Section 3.5: fewer registers. The five components of both balls are pairs (ball 1, ball 2) in xmm
-// registers, in scoped blocks, so that fewer values are alive at once.
+// registers, in scoped blocks, so that fewer values are live at once.
 #pragma once
 
 #include <immintrin.h>

@@ -1,18 +1,16 @@
-// Past the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where
+// Beyond the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where
 // (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the
 // speed. They are computed
 //
-//   kExact      by square root and division
-//   kSeed       by linear extrapolation, and corrected by a series before they are used
-//   kOneAhead   by extrapolation from the last five; they are used at once, and the step is corrected late,
-//   by terms that
-//               are linear in the error e
-//   kTwoAhead   in the same way from values that are one step older, so that the extrapolation, too, is off
-//   the critical
-//               path
+//   kExact by square root and division
+//   kSeed by linear extrapolation, corrected by a series before they are used
+//   kOneAhead by extrapolation from the last five; they are used at once, and the step is corrected late,
+//               by terms that are linear in the error e
+//   kTwoAhead in the same way from values one step older, so that the extrapolation, too, is off the
+//               critical path
 //
-// A step whose e is too large for its form takes the series, or
-// square root and division (at the start, near u = 0 or c = 0).
+// A step whose e is too large for its form takes the series, or square root and division (at the start, near
+// u = 0 or c = 0).
 #pragma once
 
 #include "ladder/stretches.h"
@@ -36,7 +34,7 @@ inline bool all_within(__m256d e, double bound) {
 
 template <RootForm kForm>
 struct PackedMarch {
-    // 1/c and 1/u by square root and division; 0 where the slip has no direction.
+    // 1/c and 1/u by square root and division; 0 if the slip has no direction.
     static __m256d exact_roots(__m256d S, double u_floor) {
         const __m256d squares = _mm256_mul_pd(S, S), sum = _mm256_add_pd(squares, swapped_halves(squares));
         const double f = u_floor * u_floor, c = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52);
@@ -89,13 +87,13 @@ struct PackedMarch {
                     T = _mm256_fmadd_pd(_mm256_set1_pd(-40.0), R3, T);
                     T = _mm256_fmadd_pd(_mm256_set1_pd(15.0), R2, T);
                 }
-                // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a
-                // difference between them would not be corrected, and extrapolation
-                // would let it grow. Therefore the sum is symmetric in the halves.
+                // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a difference between them
+                // would not be corrected, and extrapolation would let it grow. Therefore the sum is symmetric
+                // in the halves.
                 const __m256d ST = _mm256_mul_pd(S, T), rest = _mm256_fnmadd_pd(ST, ST, half);
                 const __m256d e = _mm256_add_pd(rest, swapped_halves(rest));
                 if constexpr (kForm != RootForm::kSeed) {
-                    // The step with T in place of R, and then the change of it by R - T = T e / 2.
+                    // The step with T in place of R, and then its change by R - T = T e / 2.
                     const __m256d xxzz = _mm256_movedup_pd(ST), aabb = _mm256_permute_pd(ST, 0b1111);
                     const __m256d q =
                         _mm256_mul_pd(_mm256_mul_pd(mu, _mm256_permute4x64_pd(ST, 0b10101010)), aabb);
@@ -104,7 +102,7 @@ struct PackedMarch {
                                   e_both = _mm256_add_pd(e, _mm256_permute_pd(e, 0b0101));
                     next = _mm256_fmadd_pd(_mm256_mul_pd(half_friction, xxzz), e_c, next);
                     next = _mm256_fmadd_pd(_mm256_mul_pd(half_cloth, q), e_both,
-                                           next);  // last: e_both comes late
+                                           next);  // last, because e_both comes late
                     R = _mm256_fmadd_pd(_mm256_mul_pd(half, T), e, T);
                     late = all_within(e, kLateError);
                 }

@@ -1,12 +1,13 @@
-// Section 4: the compiler flags of the paper. The loop is built in a file of its own (paper_flags.cpp) with
-// -Ofast -march=znver3; validation and projection stay outside, because -Ofast assumes that there is no NaN.
+// Section 4: the compiler flags of the paper. The loop is built in a separate file (paper_flags.cpp) with
+// -Ofast -march=znver3; validation and projection stay outside, because -Ofast assumes that there are no
+// NaNs.
 #pragma once
 
 #include "ladder/step_loops.h"
 
 namespace carom::kernel {
 
-// state: v1x, v1y, w1x, w1y, w1z and the same of ball 2. Returns the steps, -1 at the bound.
+// state: v1x, v1y, w1x, w1y, w1z and the same of ball 2. Returns the number of steps, or -1 at the limit.
 long paper_flags_loop(int sign, double* state, const ImpactParams& params, int n) noexcept;
 
 namespace {

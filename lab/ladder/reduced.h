@@ -1,4 +1,4 @@
-// Past the paper: the reduced state of the kernel's summed march, step by step.
+// Beyond the paper: the reduced state of the kernel's summed march, step by step.
 #pragma once
 
 #include "march/reduced.h"

@@ -28,7 +28,7 @@ struct RawRoot {
     }
 };
 
-// Two Newton steps give 46 bits: 12 -> 23 -> 46. The published code takes one step, and its error is 1e-7.
+// Two Newton steps give 46 bits: 12 -> 23 -> 46. The published code takes one step and has an error of 1e-7.
 struct NewtonRoot {
     static double inverse(double square) {
         if (!fits_float(square)) return ExactRoot::inverse(square);

@@ -44,7 +44,7 @@ struct InverseStep {
     }
 };
 
-// the 12 bits as they come: their error is the reason for Newton steps
+// the unrefined 12 bits: their error is the reason for Newton steps
 using RsqrtRaw = WithStep<InverseStep<RawRoot>>;
 // The published variant gives NaN at zero slip; here a zero slip takes no root.
 using RsqrtNewton = WithStep<InverseStep<NewtonRoot>>;

@@ -1,6 +1,6 @@
-// Section 3.7: SIMD in the whole loop, with one register for each of the
-// vectors v1, w1, v2, w2 (x, y, z, -). Most lanes are idle and every dot
-// product needs shuffles, which is why this variant was slower in the paper.
+// Section 3.7: SIMD in the whole loop, with one register for each of the vectors v1, w1, v2, w2 (x, y, z, -).
+// Most lanes are idle and every dot product needs shuffles, which is why this variant was slower in the
+// paper.
 #pragma once
 
 #include <immintrin.h>

@@ -1,5 +1,5 @@
 // What the kernel variants of the ladder share: constants, and loops with the published stop test. A variant
-// holds only what differs: a step, or a loop of its own.
+// contains only what differs: a step, or its own loop.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -69,8 +69,8 @@ long single_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// Section 3.3: the same in two loops, one for compression and
-// one for restitution: neither asks which phase it is in.
+// Section 3.3: the same in two loops, one for compression and one for restitution, so that neither tests
+// which phase it is in.
 template <class Step, int kSign>
 long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     const Constants k = constants<kSign>(s, p, n);
@@ -94,7 +94,7 @@ long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// Variants of which only the step differs.
+// Variants that differ only in the step.
 template <class Step>
 struct WithStep {
     template <int kSign>

@@ -1,8 +1,8 @@
-// Past the paper: what the variants share that do every step of one impact in vectors. The march is divided
-// into stretches in which neither the pressed side nor the phase (compression, restitution) can change. There
-// only the slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched. The
+// Beyond the paper: shared by the variants that do every step of one impact in vectors. The march is divided
+// into stretches in which neither the pressed side nor the phase (compression, restitution) can change. Only
+// the slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched there. The
 // slip of the other ball, v_n and the work follow at the end of the stretch from linear invariants. A variant
-// holds only how it marches a stretch.
+// contains only the march of a stretch.
 #pragma once
 
 #include <immintrin.h>

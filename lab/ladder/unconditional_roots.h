@@ -1,6 +1,6 @@
-// Section 3.3, inverted branches with unconditional roots: both cloth slips
-// and all three roots are computed before the first branch, so that the roots
-// of the cloth slips do not wait for the decision which ball is pressed.
+// Section 3.3, inverted branches with unconditional roots: both cloth slips and all three roots are computed
+// before the first branch, so that the roots of the cloth slips do not wait for the decision which ball is
+// pressed.
 #pragma once
 
 #include "ladder/step_loops.h"

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Experiments E2 to E5 of lab/notes/2026-11-accuracy_experiments.md over seeded shots of four classes.
 
-    lab/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json] [--images FOLDER]
-    lab/measure/accuracy_experiments.py --from FILE.json        # the tables again, from measurements kept
+    lab/measure/accuracy_experiments.py [--count 100] [--program build/release/carom] [--data FILE.json]
+                                        [--images FOLDER]
+    lab/measure/accuracy_experiments.py --from FILE.json        # prints the tables from stored measurements
 
-Prints the tables as Markdown; --data keeps all measurements, --images draws the figures (python3-matplotlib).
+Prints the tables as Markdown. --data stores all measurements, --images draws the figures
+(python3-matplotlib).
 """
 import argparse
 import json
@@ -36,21 +38,22 @@ def progress(title, done, total):
 
 
 def measure_shots(program, folder, count):
-    """carom accuracy on every shot: what E2, E3 and E4 read."""
+    """Runs `carom accuracy` on every shot, for E2, E3 and E4."""
     shots = []
     for kind in CLASSES:
         for seed in range(1, count + 1):
             scene = folder / "shot.toml"
             scene.write_text(shot(kind, seed))
-            result = json.loads(run(program, "accuracy", str(scene), "--json", "--repeat", "3", "--target", str(TARGET),
-                                    "--march", ",".join(map(str, MARCH)), "--tolerance", ",".join(TOLERANCES)))
+            result = json.loads(run(program, "accuracy", str(scene), "--json", "--repeat", "3", "--target",
+                                    str(TARGET), "--march", ",".join(map(str, MARCH)), "--tolerance",
+                                    ",".join(TOLERANCES)))
             shots.append({"class": kind, "seed": seed, **result})
             progress(kind, seed, count)
     return shots
 
 
 def final(program, scene, text):
-    """Final (x, y) of every ball, or None where the text cannot be run."""
+    """The final (x, y) of every ball, or None if the scene cannot be run."""
     scene.write_text(text)
     result = json.loads(run(program, "simulate", str(scene), "--json", "--profile"))
     balls = {b["id"]: tuple(b["position"][:2]) for b in result["balls"]}
@@ -81,7 +84,7 @@ def balls(text, line):
     return text + f"[balls]\n{line}\n"
 
 
-# What may disturb a shot, and how. "tight" is the tolerance that everything is compared at.
+# What may disturb a shot, and how. Everything is compared with the result at the tolerance TIGHT.
 TIGHT = "tolerance = 1e-13"
 NOISE = (
     ("last bit of one coordinate", lambda t: physics(moved(t, 1.2e-16), TIGHT)),
@@ -94,7 +97,8 @@ NOISE = (
     ("march N=10000", lambda t: physics(t, "substeps = 10000")),
     ("march N=1000", lambda t: physics(t, "substeps = 1000")),
     ("cue ball 1e-4 m off (a very good camera)", lambda t: physics(moved(t, 1e-4), TIGHT)),
-    ("ball-ball friction a tenth more", lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
+    ("ball-ball friction a tenth more",
+     lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
     ("restitution 0.95 -> 0.94", lambda t: physics(balls(t, "e_b = 0.94"), TIGHT)),
     ("model inelastic (closed form)", lambda t: physics(t, 'ball_ball = "inelastic"')),
 )
@@ -102,7 +106,8 @@ CLUSTERS = ("compliant", "sequential", "rigid")
 
 
 def measure_noise(program, folder, count):
-    """E5: final distance that each disturbance makes of a cut and of a break; and the cluster models side by side."""
+    """E5: the final distance that each disturbance causes in a cut and in a break; also compares the cluster
+    models."""
     scene = folder / "noise.toml"
     rows, clusters = [], []
     for kind in ("cut", "break"):
@@ -116,10 +121,12 @@ def measure_noise(program, folder, count):
             if kind != "break":
                 continue
             for model in CLUSTERS:
-                best = min((final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)), key=lambda r: r[1])
+                best = min((final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)),
+                           key=lambda r: r[1])
                 near = final(program, scene, physics(moved(text, 1e-9), f'clusters = "{model}"'))[0]
-                clusters.append({"seed": seed, "model": model, "ns": best[1], "cluster_ns": best[2], "events": best[3],
-                                 "apart": apart(reference, best[0]), "twin": apart(best[0], near) / 1e-9})
+                clusters.append({"seed": seed, "model": model, "ns": best[1], "cluster_ns": best[2],
+                                 "events": best[3], "apart": apart(reference, best[0]),
+                                 "twin": apart(best[0], near) / 1e-9})
     return rows, clusters
 
 
@@ -143,16 +150,19 @@ def same(row):
 
 def e2(shots):
     print("\n### E2: cost and outcome by class\n")
-    print("| class | setting | us a shot | outcome the same | median final error (m) | worst (m) |\n|---|---|---|---|---|---|")
+    print("| class | setting | us a shot | outcome the same | median final error (m) | "
+          "worst (m) |\n|---|---|---|---|---|---|")
     for kind in CLASSES:
         judged = [s for s in shots if s["class"] == kind and s["converged"]]
         for setting in settings(judged):
             rows = [r for r in rows_of(judged, setting) if "failed" not in r]
             print(f"| {kind} | {' '.join(setting)} | {median(r['ns'] for r in rows) / 1e3:.1f} | "
-                  f"{100 * sum(map(same, rows)) / len(rows):.0f} % | {median(r['error_max'] for r in rows):.1e} | "
+                  f"{100 * sum(map(same, rows)) / len(rows):.0f} % | "
+                  f"{median(r['error_max'] for r in rows):.1e} | "
                   f"{max(r['error_max'] for r in rows):.1e} |")
     lost = sum(not s["converged"] for s in shots)
-    print(f"\n{len(shots)} shots; on {lost} of them the two converged methods do not agree, and nothing is said about those.")
+    print(f"\n{len(shots)} shots; on {lost} of them the two converged methods do not agree, "
+          "and nothing is said about those.")
 
 
 def line_fit(x, y):
@@ -162,7 +172,7 @@ def line_fit(x, y):
 
 
 def amplifying(shots):
-    """Without those that end in the pockets whatever happens: their gain is 0."""
+    """The shots with a gain above 0; the others end in the pockets whatever happens."""
     return [s for s in shots if s["gain"] > 0]
 
 
@@ -172,13 +182,15 @@ def fit_of_gain(shots):
 
 
 def collapse(shots):
-    """(gain, tolerance, error / (gain x tolerance x 1 m)) wherever the error is resolved."""
+    """(gain, tolerance, error / (gain x tolerance x 1 m)) for every error that is resolved."""
     points = []
     for s in amplifying(shots):
         for r in s["rows"]:
-            if not s["converged"] or r["method"] != "tolerance" or r["error_max"] <= 10 * s["agreement"] or not r["error_max"]:
+            judged = s["converged"] and r["method"] == "tolerance"
+            if not judged or r["error_max"] <= 10 * s["agreement"] or not r["error_max"]:
                 continue
-            points.append((s["gain"], float(r["setting"]), r["error_max"] / (s["gain"] * float(r["setting"]))))
+            points.append(
+                (s["gain"], float(r["setting"]), r["error_max"] / (s["gain"] * float(r["setting"]))))
     return points
 
 
@@ -186,11 +198,14 @@ def e3(shots):
     print("\n### E3: gain\n\n| class | median gain | largest | median hits |\n|---|---|---|---|")
     for kind in CLASSES:
         own = [s for s in shots if s["class"] == kind]
-        print(f"| {kind} | {median(s['gain'] for s in own):.1e} | {max(s['gain'] for s in own):.1e} | {median(s['ball_hits'] for s in own):.0f} |")
+        print(f"| {kind} | {median(s['gain'] for s in own):.1e} | {max(s['gain'] for s in own):.1e} | "
+              f"{median(s['ball_hits'] for s in own):.0f} |")
     slope, start = fit_of_gain(shots)
     ratios = sorted(p[2] for p in collapse(shots))
-    print(f"\nlog10 gain = {start:.2f} + {slope:.3f} x hits. error / (gain x tolerance x 1 m): median {median(ratios):.1e}, "
-          f"90 % between {ratios[len(ratios) // 20]:.1e} and {ratios[-len(ratios) // 20]:.1e}, largest {ratios[-1]:.1e}.")
+    print(f"\nlog10 gain = {start:.2f} + {slope:.3f} x hits. "
+          f"error / (gain x tolerance x 1 m): median {median(ratios):.1e}, "
+          f"90 % between {ratios[len(ratios) // 20]:.1e} and {ratios[-len(ratios) // 20]:.1e}, "
+          f"largest {ratios[-1]:.1e}.")
 
 
 def adaptive_rows(shots):
@@ -208,31 +223,41 @@ def e4(shots):
     print("| setting | mean us | within 1 mm | worst (m) |\n|---|---|---|---|")
     pairs = adaptive_rows(shots)
     judged = [s for s, _ in pairs]
-    fixed = [(" ".join(k), rows_of(judged, k)) for k in (("march", "N=1000"), ("march", "N=10000"), ("tolerance", "0.001"),
+    fixed = [(" ".join(k), rows_of(judged, k)) for k in (("march", "N=1000"), ("march", "N=10000"),
+                                                        ("tolerance", "0.001"),
                                                         ("tolerance", "1e-06"), ("tolerance", "1e-12"))]
     for title, rows in fixed + [("tolerance by gain", [r for _, r in pairs])]:
         print(f"| {title} | {statistics.mean(r['ns'] for r in rows) / 1e3:.1f} | "
-              f"{100 * sum(r['error_max'] <= TARGET for r in rows) / len(rows):.1f} % | {max(r['error_max'] for r in rows):.1e} |")
-    print(f"\n{len(judged)} of {len(shots)} shots; the others do not allow 1 mm in double precision. Finding the gain takes three runs "
-          "of the shot more.\n\n| class | shots | allow 1 mm | met by the recommended tolerance |\n|---|---|---|---|")
+              f"{100 * sum(r['error_max'] <= TARGET for r in rows) / len(rows):.1f} % | "
+              f"{max(r['error_max'] for r in rows):.1e} |")
+    print(f"\n{len(judged)} of {len(shots)} shots; the others do not allow 1 mm in double precision. "
+          "Finding the gain takes three runs "
+          "of the shot more.\n\n| class | shots | allow 1 mm | "
+          "met by the recommended tolerance |\n|---|---|---|---|")
     for kind in CLASSES:
         own = [(s, r) for s, r in pairs if s["class"] == kind]
-        print(f"| {kind} | {sum(s['class'] == kind for s in shots)} | {len(own)} | {sum(r['error_max'] <= TARGET for _, r in own)} |")
+        print(f"| {kind} | {sum(s['class'] == kind for s in shots)} | {len(own)} | "
+              f"{sum(r['error_max'] <= TARGET for _, r in own)} |")
 
 
 def e5(noise, clusters):
     print("\n### E5: what disturbs a shot, by its final distance (median, largest; m)\n")
     print("| disturbance | cut | break |\n|---|---|---|")
-    cells = {title: {k: [r["apart"] for r in noise if r["class"] == k and r["noise"] == title] for k in ("cut", "break")}
+    cells = {title: {
+        k: [r["apart"] for r in noise if r["class"] == k and r["noise"] == title] for k in ("cut", "break")}
              for title, _ in NOISE}
     for title in sorted(cells, key=lambda t: median(cells[t]["break"])):
-        print(f"| {title} | " + " | ".join(f"{median(v):.1e}, {max(v):.1e}" for v in cells[title].values()) + " |")
+        print(f"| {title} | " + " | ".join(
+            f"{median(v):.1e}, {max(v):.1e}" for v in cells[title].values()) + " |")
     print("\n### The cluster models on the same breaks\n")
-    print("| model | us a break | of it in the map | events | final distance from compliant (m) | gain |\n|---|---|---|---|---|---|")
+    print("| model | us a break | of it in the map | events | final distance from compliant (m) | "
+          "gain |\n|---|---|---|---|---|---|")
     for model in CLUSTERS:
         own = [c for c in clusters if c["model"] == model]
-        print(f"| {model} | {median(c['ns'] for c in own) / 1e3:.0f} | {median(c['cluster_ns'] for c in own) / 1e3:.0f} | "
-              f"{median(c['events'] for c in own):.0f} | {median(c['apart'] for c in own):.2g} | {median(c['twin'] for c in own):.1e} |")
+        print(f"| {model} | {median(c['ns'] for c in own) / 1e3:.0f} | "
+              f"{median(c['cluster_ns'] for c in own) / 1e3:.0f} | "
+              f"{median(c['events'] for c in own):.0f} | {median(c['apart'] for c in own):.2g} | "
+              f"{median(c['twin'] for c in own):.1e} |")
 
 
 def draw_pareto(plt, shots, folder):
@@ -244,7 +269,8 @@ def draw_pareto(plt, shots, folder):
             for setting in settings(judged):
                 if setting[0] == method:
                     rows = rows_of(judged, setting)
-                    points.append((median(r["ns"] for r in rows) / 1e3, 100 * sum(map(same, rows)) / len(rows),
+                    points.append((median(r["ns"] for r in rows) / 1e3,
+                                   100 * sum(map(same, rows)) / len(rows),
                                    max(median(r["error_max"] for r in rows), 1e-16)))
             x = [p[0] for p in points]
             axes[0][column].plot(x, [p[1] for p in points], "o-", color=colour, label=method)
@@ -268,7 +294,8 @@ def draw_gain(plt, shots, folder):
         own = [s for s in shots if s["class"] == kind]
         left.plot([s["ball_hits"] for s in own], [s["gain"] for s in own], ".", color=colour, label=kind)
         points = collapse(own)
-        right.plot([p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3, color=colour)
+        right.plot([p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3,
+                   color=colour)
     slope, start = fit_of_gain(shots)
     most = max(s["ball_hits"] for s in shots)
     left.plot([0, most], [10 ** start, 10 ** (start + slope * most)], "k--", linewidth=0.8)
@@ -288,10 +315,13 @@ def draw_gain(plt, shots, folder):
 
 def draw_noise(plt, noise, folder):
     figure, axes = plt.subplots(figsize=(9, 5))
-    title_of = sorted({r["noise"] for r in noise}, key=lambda t: median(r["apart"] for r in noise if r["noise"] == t and r["class"] == "break"))
+    title_of = sorted(
+        {r["noise"] for r in noise},
+        key=lambda t: median(r["apart"] for r in noise if r["noise"] == t and r["class"] == "break"))
     for kind, colour, shift in (("cut", COLOURS[1], -0.15), ("break", COLOURS[0], 0.15)):
         for i, title in enumerate(title_of):
-            values = sorted(max(r["apart"], 1e-17) for r in noise if r["noise"] == title and r["class"] == kind)
+            values = sorted(
+                max(r["apart"], 1e-17) for r in noise if r["noise"] == title and r["class"] == kind)
             axes.plot([values[0], values[-1]], [i + shift] * 2, color=colour, linewidth=1)
             axes.plot(median(values), i + shift, "o", color=colour, label=kind if i == 0 else None)
     axes.set_yticks(range(len(title_of)))
@@ -312,7 +342,8 @@ def save(plt, figure, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100, help="shots of each class (default: 100)")
     parser.add_argument("--noise-count", type=int, default=25, help="shots of E5 (default: 25)")
     parser.add_argument("--program", default="build/release/carom")

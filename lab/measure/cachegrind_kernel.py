@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Instructions, loads, stores, cache and branch misses a step, by cachegrind, for the rungs that take one impact a call.
+"""Instructions, loads, stores, cache and branch misses per step, by cachegrind, for rungs with one impact per
+call.
 
-Valgrind knows AVX2 and not AVX-512: scalar and v3. Two runs of different length are subtracted, so that start-up does not
-count. Where a machine gives perf its hardware counters, --perf adds those.
+Valgrind supports AVX2 but not AVX-512, so the levels are scalar and v3. Subtracting two runs of different
+length removes the cost of start-up. --perf adds the hardware counters if perf can read them.
 
-    lab/measure/cachegrind_kernel.py --one-rung build/release/lab/measure/carom_one_rung [--json FILE] [--perf]
+    lab/measure/cachegrind_kernel.py --one-rung build/release/lab/measure/carom_one_rung [--json FILE]
+                                     [--perf]
 """
 import argparse
 import json
@@ -13,9 +15,9 @@ import re
 import subprocess
 import tempfile
 
-RUNGS = ["baseline", "fewer square roots", "rsqrt newton", "branch hints", "branch order", "unconditional roots", "masks",
-         "two stages", "precomputed", "fma", "packed blocks", "simd loop", "simd ssa", "combined", "reduced state", "packed",
-         "carried roots", "decoupled roots", "summed"]
+RUNGS = ["baseline", "fewer square roots", "rsqrt newton", "branch hints", "branch order",
+         "unconditional roots", "masks", "two stages", "precomputed", "fma", "packed blocks", "simd loop",
+         "simd ssa", "combined", "reduced state", "packed", "carried roots", "decoupled roots", "summed"]
 
 
 def cachegrind(program, rung, isa, calls):
@@ -44,13 +46,15 @@ def perf(program, rung, isa, calls):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--one-rung", required=True)
     parser.add_argument("--json")
     parser.add_argument("--perf", action="store_true")
     args = parser.parse_args()
     rows = []
-    print(f"{'a step':<22}{'isa':<8}{'instr':>8}{'loads':>8}{'stores':>8}{'L1 miss':>9}{'branches':>9}{'mispred':>9}")
+    print(f"{'a step':<22}{'isa':<8}{'instr':>8}{'loads':>8}{'stores':>8}{'L1 miss':>9}"
+          f"{'branches':>9}{'mispred':>9}")
     for rung in RUNGS:
         for isa in ("scalar", "v3"):
             few, many = cachegrind(args.one_rung, rung, isa, 2), cachegrind(args.one_rung, rung, isa, 12)
@@ -58,9 +62,10 @@ def main():
                 continue
             steps = many[0] - few[0]
             per = {k: (many[1][k] - few[1][k]) / steps for k in many[1]}
-            row = {"name": rung, "isa": isa, "instructions": per["Ir"], "loads": per["Dr"], "stores": per["Dw"],
-                   "l1_misses": per["D1mr"] + per["D1mw"], "last_level_misses": per["DLmr"] + per["DLmw"],
-                   "branches": per["Bc"] + per["Bi"], "mispredicted": per["Bcm"] + per["Bim"]}
+            row = {"name": rung, "isa": isa, "instructions": per["Ir"], "loads": per["Dr"],
+                   "stores": per["Dw"], "l1_misses": per["D1mr"] + per["D1mw"],
+                   "last_level_misses": per["DLmr"] + per["DLmw"], "branches": per["Bc"] + per["Bi"],
+                   "mispredicted": per["Bcm"] + per["Bim"]}
             if args.perf:
                 row["perf"] = perf(args.one_rung, rung, isa, 2000)
             rows.append(row)

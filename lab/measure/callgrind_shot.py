@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Instructions per event of a shot, by kind of event and by part of the loop, counted by callgrind.
 
-Callgrind writes out its counters at the start of every round of the event loop, so that each round stands alone; counts
-are the same on every machine that runs the same build. Valgrind knows AVX2 and not AVX-512: CAROM_ISA is v3 or scalar.
-Needs valgrind; builds the target carom_shot_probe where --build names a build folder (default build/release).
+Callgrind dumps its counters at the start of every round of the event loop, so every round is counted
+separately. The counts are the same on every machine with the same build. Valgrind supports AVX2 but not
+AVX-512: set CAROM_ISA to v3 or scalar. Needs valgrind. Builds the target carom_shot_probe in the folder
+--build (default build/release).
 
-    lab/measure/callgrind_shot.py                              the eight-ball break, pair by pair
+    lab/measure/callgrind_shot.py                              the eight-ball break, with sequential clusters
     lab/measure/callgrind_shot.py two_ball_shot --seed 3 --functions 20
     lab/measure/callgrind_shot.py gas --balls 100 --events 500
-    lab/measure/callgrind_shot.py --branches --functions 10    branches that callgrind's simple predictor misses, in place of instructions
+    lab/measure/callgrind_shot.py --branches --functions 10    mispredicted branches instead of instructions
 """
 import argparse
 import collections
@@ -21,15 +22,15 @@ import subprocess
 import sys
 import tempfile
 
-# First match counts.
+# The first match counts.
 PARTS = [
     ("cluster", r"carom::Cluster(s|Map)::"),
     ("kernel", r"carom::kernel::"),
     ("queue", r"EventQueue|Detector::(next|before|closing|place|requeue|first_of)"),
-    ("detect", r"Detector::|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|closing_speed|refine|"
-               r"along_line|brought_near|first_touch|Descent|unit_roots"),
-    ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|unlink_chunk|"
-               r"_int_realloc|sysmalloc|memcpy|memset|__mem)|_M_realloc"),
+    ("detect", r"Detector::|BoxSearch|b2|time_to_|time_along|stays_|first_descent|bracketed_root|"
+               r"closing_speed|refine|along_line|brought_near|first_touch|Descent|unit_roots"),
+    ("memory", r"^(_int_malloc|_int_free|malloc|free|operator new|operator delete|malloc_consolidate|"
+               r"unlink_chunk|_int_realloc|sysmalloc|memcpy|memset|__mem)|_M_realloc"),
     ("resolve", r""),
 ]
 
@@ -39,7 +40,7 @@ def part_of(function):
 
 
 def self_costs(path, counted):
-    """Own counts of every function in one callgrind file: the sum of these of its events."""
+    """The self cost of every function in one callgrind file, summed over the counted events."""
     costs, names, function, called, columns = collections.Counter(), {}, None, False, []
     for line in path.read_text().splitlines():
         if line.startswith("events:"):
@@ -59,7 +60,7 @@ def self_costs(path, counted):
             called = True
         elif function and re.match(r"[+\-*\d]", line):
             if called:
-                called = False  # inclusive cost of the call
+                called = False  # this line is the inclusive cost of the call
             else:
                 fields = line.split()
                 costs[function] += sum(int(fields[c]) for c in columns if c < len(fields))
@@ -67,41 +68,51 @@ def self_costs(path, counted):
 
 
 def measure(probe, args, folder):
-    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*", "--dump-before=*carom::Resolver::resolve(*",
-               "--compress-strings=no", f"--branch-sim={'yes' if args.branches else 'no'}", f"--callgrind-out-file={folder}/out", str(probe)]
-    command += ["gas", str(args.balls), str(args.events)] if args.shot in ("gas", "gas compliant") else [args.shot, str(args.seed)]
+    command = ["valgrind", "--tool=callgrind", "--toggle-collect=carom::simulate(*",
+               "--dump-before=*carom::Resolver::resolve(*", "--compress-strings=no",
+               f"--branch-sim={'yes' if args.branches else 'no'}", f"--callgrind-out-file={folder}/out",
+               str(probe)]
+    gas = args.shot in ("gas", "gas compliant")
+    command += ["gas", str(args.balls), str(args.events)] if gas else [args.shot, str(args.seed)]
     env = dict(os.environ)
     env.setdefault("CAROM_ISA", "v3")
     run = subprocess.run(command, capture_output=True, text=True, env=env)
     if run.returncode != 0:
         sys.exit(f"callgrind_shot.py: {' '.join(command)} failed:\n{run.stderr[-2000:]}")
     files = sorted(folder.glob("out*"), key=lambda f: int(f.suffix[1:] or 0) if f.suffix else 1 << 30)
-    return run.stdout.split("\n")[:-1], [self_costs(f, ["Bcm", "Bim"] if args.branches else ["Ir"]) for f in files]
+    return run.stdout.split("\n")[:-1], [
+        self_costs(f, ["Bcm", "Bim"] if args.branches else ["Ir"]) for f in files]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("shot", nargs="?", default="eight_ball_break",
-                        help="a name of carom-lab bench shot, or gas (default: eight_ball_break)")
-    parser.add_argument("--seed", type=int, default=0, help="of the shot (default: 0, the one of scenes/)")
-    parser.add_argument("--balls", type=int, default=16, help="of the gas (default: 16)")
-    parser.add_argument("--events", type=int, default=300, help="of the gas (default: 300)")
-    parser.add_argument("--functions", type=int, default=0, metavar="N", help="print the N dearest functions too")
-    parser.add_argument("--branches", action="store_true", help="count mispredicted branches (default: instructions)")
+                        help="a shot of carom-lab bench shot, or gas (default: eight_ball_break)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the shot (default: 0, as in scenes/)")
+    parser.add_argument("--balls", type=int, default=16, help="balls of the gas (default: 16)")
+    parser.add_argument("--events", type=int, default=300, help="events of the gas (default: 300)")
+    parser.add_argument(
+        "--functions", type=int, default=0, metavar="N", help="also print the N most costly functions")
+    parser.add_argument(
+        "--branches", action="store_true", help="count mispredicted branches (default: instructions)")
     parser.add_argument("--build", default="build/release", help="build folder (default: build/release)")
     parser.add_argument("--json", metavar="FILE", help="write the counts")
     args = parser.parse_args()
     if shutil.which("valgrind") is None:
-        sys.exit("callgrind_shot.py: valgrind is not installed (apt-get install valgrind)")
+        sys.exit("callgrind_shot.py: valgrind is not installed; run apt-get install valgrind")
     build = pathlib.Path(args.build)
     if not (build / "CMakeCache.txt").exists():
-        sys.exit(f"callgrind_shot.py: {build} is no build folder; run cmake --preset release first")
-    subprocess.run(["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True, stdout=subprocess.DEVNULL)
+        sys.exit(f"callgrind_shot.py: {build} is not a build folder; run cmake --preset release first")
+    subprocess.run(["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True,
+                   stdout=subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
         kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
-    # One dump before the first round (set-up, first detection), then one a round; the last one holds the end of the run.
+    # One dump is before the first round (set-up, first detection), then one per round; the last has the end
+    # of the run.
     if len(dumps) < len(kinds) + 1:
-        sys.exit(f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")
+        sys.exit(
+            f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")
     dumps = [d for d in dumps if sum(d.values())]
     rows = collections.defaultdict(lambda: [0, collections.Counter()])
     total = collections.Counter()
@@ -120,7 +131,8 @@ def main():
     if args.functions:
         print(f"\n{'count':>12}  share  part      function")
         for function, cost in total.most_common(args.functions):
-            print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} {function[:110]}")
+            print(f"{cost:>12}{100 * cost / sum(total.values()):>6.1f}%  {part_of(function):<9} "
+                  f"{function[:110]}")
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps({
             "shot": args.shot, "seed": args.seed, "total": sum(total.values()),

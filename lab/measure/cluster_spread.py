@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""What the model of several contacts at once costs, and how far it decides a break: compliant, rigid, sequential.
+"""The cost of the models for several simultaneous contacts, and how much they change a break: compliant,
+rigid, sequential.
 
     lab/measure/cluster_spread.py build/release/carom -o lab/notes/images/cluster_spread.png
 
-Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each model, and stops
-them before the balls reach a cushion. Compares the places of the balls there: under one model against its touching
-rack, and under two models. Costs are `carom simulate --profile` of the touching rack to rest, the models in turn.
-Needs python3-matplotlib.
+Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each
+model, and stops them before the balls reach a cushion. Compares the balls' positions then: with the touching
+rack under the same model, and with another model. The costs are those of `carom simulate --profile` for the
+touching rack to rest, alternating the models. Needs python3-matplotlib.
 """
 
 import argparse
@@ -61,10 +62,10 @@ def write_scene(folder, model, gap, stop):
 
 
 def places(carom, folder, model, gap, count):
-    """Per shot the list of (x, y) of all balls at STOP."""
+    """For every shot the (x, y) of all balls at STOP."""
     table = folder / f"{model}_{gap}.csv"
-    run([carom, "sweep", write_scene(folder, model, gap, True), "--vary", "cue.aim_deg=uniform(89.8,90.2)", "--vary",
-         "cue.speed=uniform(8,10)", "--seed", "1", "--count", str(count), "-o", table])
+    run([carom, "sweep", write_scene(folder, model, gap, True), "--vary", "cue.aim_deg=uniform(89.8,90.2)",
+         "--vary", "cue.speed=uniform(8,10)", "--seed", "1", "--count", str(count), "-o", table])
     with open(table, newline="") as stream:
         rows = list(csv.DictReader(stream))
     balls = [name[:-2] for name in rows[0] if name.endswith(".x") and not name.startswith(("cue.", "rack."))]
@@ -74,7 +75,8 @@ def places(carom, folder, model, gap, count):
 
 def farthest(one, two):
     """Per shot the largest distance of a ball between two tables [m]."""
-    return [max(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a, b in zip(p, q)) for p, q in zip(one, two)]
+    return [
+        max(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2) ** 0.5 for a, b in zip(p, q)) for p, q in zip(one, two)]
 
 
 def costs(carom, folder, repeats):
@@ -94,10 +96,13 @@ def draw(plt, results, output):
         middle = [1e3 * statistics.median(d) for d in moved]
         axes.plot(GAPS[1:], [max(m, 1e-12) for m in middle], "o-", color=COLOURS[model],
                   label=f"{model}: against its own touching rack")
-        axes.fill_between(GAPS[1:], [max(1e3 * min(d), 1e-12) for d in moved], [max(1e3 * max(d), 1e-12) for d in moved],
-                          color=COLOURS[model], alpha=0.2, linewidth=0)
+        axes.fill_between(GAPS[1:], [max(1e3 * min(d), 1e-12) for d in moved],
+                          [max(1e3 * max(d), 1e-12) for d in moved], color=COLOURS[model], alpha=0.2,
+                          linewidth=0)
     for other in MODELS[1:]:
-        apart = [1e3 * statistics.median(farthest(results["compliant"][gap], results[other][gap])) for gap in GAPS[1:]]
+        apart = [
+            1e3 * statistics.median(farthest(results["compliant"][gap], results[other][gap]))
+            for gap in GAPS[1:]]
         axes.plot(GAPS[1:], apart, "--", color=COLOURS[other], label=f"{other} against compliant, same gap")
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -110,7 +115,8 @@ def draw(plt, results, output):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("carom", help="the program")
     parser.add_argument("-o", "--output", required=True, help="the figure, a PNG")
     parser.add_argument("--count", type=int, default=40, help="breaks per model and gap (default 40)")
@@ -125,17 +131,22 @@ def main():
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        results = {model: {gap: places(args.carom, folder, model, gap, args.count) for gap in GAPS} for model in MODELS}
+        results = {
+            model: {gap: places(args.carom, folder, model, gap, args.count) for gap in GAPS}
+            for model in MODELS}
         times = costs(args.carom, folder, args.repeats)
     base = min(times["sequential"])
     for model in MODELS:
-        print(f"{model:<11} break to rest: {min(times[model]):.3f} ms at least, median {statistics.median(times[model]):.3f} ms, "
+        print(f"{model:<11} break to rest: {min(times[model]):.3f} ms at least, "
+              f"median {statistics.median(times[model]):.3f} ms, "
               f"{min(times[model]) / base:.2f} x sequential")
     for gap in GAPS[1:]:
-        moved = "  ".join(f"{model} {1e3 * statistics.median(farthest(results[model][gap], results[model][0.0])):.2e}"
-                          for model in MODELS)
-        apart = "  ".join(f"{other} {1e3 * statistics.median(farthest(results['compliant'][gap], results[other][gap])):.1f}"
-                          for other in MODELS[1:])
+        own = {model: statistics.median(farthest(results[model][gap], results[model][0.0]))
+               for model in MODELS}
+        moved = "  ".join(f"{model} {1e3 * own[model]:.2e}" for model in MODELS)
+        other = {model: statistics.median(farthest(results["compliant"][gap], results[model][gap]))
+                 for model in MODELS[1:]}
+        apart = "  ".join(f"{model} {1e3 * other[model]:.1f}" for model in MODELS[1:])
         print(f"gap {gap:.0e} m: moved by (mm) {moved}; from compliant (mm) {apart}")
     draw(plt, results, args.output)
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""What the contact phase of a rack costs: baseline impacts, steps, instructions by part, and the error of fewer steps.
+"""What the contact phase of a rack costs: baseline impacts, steps, instructions by part, and the error of
+fewer steps.
 
-A cue ball meets a touching rack of 15 head-on at 8 m/s (pool balls, the engine's defaults). The kernel is compiled anew for
-each row: with other constants of its step rule, or for callgrind, where needed. A baseline impact is the published march with
-N = 1000 on the first of the five states, timed in the same run. The error is the largest difference of a velocity or R w from steps of
-at most 1/1280 with an error of 1e-8 [V], over 20 racks (gaps to 0.2 mm, off-axis, spin). Needs g++, and valgrind for --parts.
+A cue ball meets a touching rack of 15 head-on at 8 m/s (pool balls, the engine's defaults). The kernel is
+compiled again for each row, with other constants in its step rule or for callgrind. The baseline impact is
+the published march with N = 1000 on the first of the five states, timed in the same run. The error is the
+largest difference in a velocity or R w from steps of at most 1/1280 with an error of 1e-8 [V], over 20 racks
+(gaps to 0.2 mm, off-axis, spin). Needs g++, and valgrind for --parts.
 
     lab/measure/contact_phase.py [--parts] [--isa v3] [--rounds 200]
 """
@@ -45,8 +47,10 @@ Rack rack(reference::Generator& rng, double gap, double aside, double spin) {
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = i + 1; j < x.size(); ++j) {
             const double d = std::hypot(x[j] - x[i], y[j] - y[i]);
-            if (d < 2.001)
-                r.contacts.push_back({int(i), int(j), (x[j] - x[i]) / d, (y[j] - y[i]) / d, i == 0 ? 0.0 : -rng.uniform(0.0, gap) / kL});
+            if (d < 2.001) {
+                const double apart = i == 0 ? 0.0 : -rng.uniform(0.0, gap) / kL;
+                r.contacts.push_back({int(i), int(j), (x[j] - x[i]) / d, (y[j] - y[i]) / d, apart});
+            }
         }
     r.motion.assign(5 * x.size(), 0.0);
     r.motion[0] = 1.0;
@@ -61,8 +65,9 @@ long solve(Rack& r, double longest) {
     places.resize(kernel::contact_phase_places(contacts));
     double* at = numbers.data() + (64 - reinterpret_cast<std::size_t>(numbers.data()) % 64) % 64 / 8;
     const double b = (1.0 - 0.95 * 0.95) * 0.4 / (0.4 - 1.0 / 3.5);
-    return isa::contact_phase({balls, contacts, r.motion.data(), r.contacts.data(), at, places.data(), kL / (2.0 * kR)},
-                              {1.0 - b, b, 1, 0.05, 0.2, 1.3e-3, false}, longest, 2.0, 200.0);
+    return isa::contact_phase(
+        {balls, contacts, r.motion.data(), r.contacts.data(), at, places.data(), kL / (2.0 * kR)},
+        {1.0 - b, b, 1, 0.05, 0.2, 1.3e-3, false}, longest, 2.0, 200.0);
 }
 int main(int argc, char** argv) {
     reference::Generator rng(5);
@@ -89,7 +94,8 @@ int main(int argc, char** argv) {
         std::sort(map.begin(), map.end()), std::sort(impact.begin(), impact.end());
         Rack r = head_on;
         const std::size_t half = map.size() / 2;
-        std::printf("%ld %.2f %.2f %.0f\n", solve(r, longest), map[0] / impact[0], map[half] / impact[half], map[0]);
+        const double least = map[0] / impact[0], median = map[half] / impact[half];
+        std::printf("%ld %.2f %.2f %.0f\n", solve(r, longest), least, median, map[0]);
     } else {  // velocities after the racks
         for (int k = 0; k < 20; ++k) {
             Rack r = rack(rng, k % 4 == 0 ? 0.0 : 2e-4, rng.uniform(-0.3, 0.3), k % 2 == 0 ? 0.0 : 200.0);
@@ -102,7 +108,7 @@ int main(int argc, char** argv) {
 }
 """
 SOURCES = ["contact_phase/contact_phase.cpp", "march/march.cpp"]
-# What a line of the kernel belongs to; the functions are inlined into one.
+# Functions of the kernel that only move numbers; all functions are inlined into one.
 GATHER = {"load", "store", "pack", "transpose", "broadcast", "subtract_add"}
 
 
@@ -118,9 +124,11 @@ def build(folder, isa, step_error, stable, debug=False):
     law.write_text(text)
     (folder / "probe.cpp").write_text(PROBE)
     program = folder / "probe"
-    subprocess.run(["g++", "-std=c++20", "-O3", "-w", *(["-g"] if debug else []), *([f"-march=x86-64-{isa}"] if isa != "scalar" else []),
-                    f"-DCAROM_ISA_NAMESPACE={isa}", "-ffp-contract=off", "-fno-math-errno", f"-I{ROOT}/kernel/include", f"-I{src}",
-                    f"-I{ROOT}/kernel", f"-I{ROOT}/tools/carom", "-o", str(program), str(folder / "probe.cpp"),
+    subprocess.run(["g++", "-std=c++20", "-O3", "-w", *(["-g"] if debug else []),
+                    *([f"-march=x86-64-{isa}"] if isa != "scalar" else []),
+                    f"-DCAROM_ISA_NAMESPACE={isa}", "-ffp-contract=off", "-fno-math-errno",
+                    f"-I{ROOT}/kernel/include", f"-I{src}", f"-I{ROOT}/kernel", f"-I{ROOT}/tools/carom", "-o",
+                    str(program), str(folder / "probe.cpp"),
                     *[str(src / s) for s in SOURCES]], check=True)
     return program
 
@@ -135,7 +143,7 @@ def racks(program, longest):
 
 
 def functions(path):
-    """Which function each line of a file belongs to: the last whose head stands above it."""
+    """The function of every line in a file: the last one whose head is above it."""
     names, name = {}, "other"
     for number, line in enumerate(path.read_text().splitlines(), 1):
         head = re.match(r"(?:CAROM_INLINE|inline|template|long|void|double)\b.*?(\w+)\(", line)
@@ -150,8 +158,9 @@ def parts(folder, isa, longest):
     counts, steps = [], []
     for maps in (10, 20):
         out = folder / "callgrind"
-        run_ = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, "maps", str(longest), str(maps)],
-                              check=True, capture_output=True, text=True)
+        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, "maps",
+                   str(longest), str(maps)]
+        run_ = subprocess.run(command, check=True, capture_output=True, text=True)
         steps.append(int(run_.stdout))
         costs, file, names = collections.Counter(), None, {}
         known, calls = {}, False
@@ -160,7 +169,7 @@ def parts(folder, isa, longest):
             if tag:
                 if tag[3]:
                     known[tag[2]] = tag[3]
-                if not tag[1]:  # else: the file of a function that is called
+                if not tag[1]:  # otherwise it is the file of a called function
                     file = pathlib.Path(known[tag[2]])
             elif line.startswith("calls="):
                 calls = True
@@ -177,31 +186,37 @@ def parts(folder, isa, longest):
     total, per_step = sum(per.values()), (steps[1] - steps[0]) / 10
     print(f"\ninstructions of one map: {total:.0f}, {total / per_step:.0f} a step")
     moved = sum(v for k, v in per.items() if k in GATHER)
-    print(f"moving numbers (loads, stores, shuffles: {', '.join(sorted(GATHER))}): {100 * moved / total:.0f} %")
+    kinds = ", ".join(sorted(GATHER))
+    print(f"moving numbers (loads, stores, shuffles: {kinds}): {100 * moved / total:.0f} %")
     for name, cost in sorted(per.items(), key=lambda x: -x[1]):
         if cost > 0.01 * total:
             print(f"  {name:<20}{cost / per_step:8.0f} a step {100 * cost / total:5.1f} %")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--isa", default="v3", choices=["scalar", "v3", "v4"])
-    parser.add_argument("--rounds", type=int, default=200, help="maps that are timed, each beside one baseline impact")
-    parser.add_argument("--parts", action="store_true", help="count instructions by part (valgrind; not for v4)")
+    parser.add_argument(
+        "--rounds", type=int, default=200, help="maps to time, each beside one baseline impact")
+    parser.add_argument(
+        "--parts", action="store_true", help="count instructions by part (valgrind; not for v4)")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         _, truth = racks(build(folder, args.isa, "1e-8", "4.8"), 1 / 1280)
-        print(f"{'step error [V]':>14}{'longest':>9}{'stable to':>10}{'steps':>7}{'impacts':>9}{'median':>8}{'us':>6}"
-              f"{'racks: steps':>14}{'error, median':>15}{'largest':>10}")
-        for step_error, longest, stable in [("1e-4", 12, "4.8"), ("1e-4", 8, "4.8"), ("1e-4", 4, "4.8"), ("1e-3", 12, "4.8"),
-                                            ("1e-3", 4, "4.8"), ("1e-2", 4, "4.8"), ("1e-4", 12, "7.0"), ("1e-2", 4, "7.0")]:
+        print(f"{'step error [V]':>14}{'longest':>9}{'stable to':>10}{'steps':>7}{'impacts':>9}{'median':>8}"
+              f"{'us':>6}{'racks: steps':>14}{'error, median':>15}{'largest':>10}")
+        for step_error, longest, stable in [("1e-4", 12, "4.8"), ("1e-4", 8, "4.8"), ("1e-4", 4, "4.8"),
+                                            ("1e-3", 12, "4.8"), ("1e-3", 4, "4.8"), ("1e-2", 4, "4.8"),
+                                            ("1e-4", 12, "7.0"), ("1e-2", 4, "7.0")]:
             program = build(folder, args.isa, step_error, stable)
             steps, ratio, median, ns = run(program, "time", 1 / longest, args.rounds).split()
             many, motion = racks(program, 1 / longest)
             errors = sorted(max(abs(a - b) for a, b in zip(x, y)) for x, y in zip(motion, truth))
-            print(f"{step_error:>14}{f'1/{longest}':>9}{stable:>10}{steps:>7}{ratio:>9}{median:>8}{float(ns) / 1e3:>6.0f}"
-                  f"{sum(many) / len(many):>14.0f}{errors[len(errors) // 2]:>15.1e}{errors[-1]:>10.1e}")
+            print(f"{step_error:>14}{f'1/{longest}':>9}{stable:>10}{steps:>7}{ratio:>9}{median:>8}"
+                  f"{float(ns) / 1e3:>6.0f}{sum(many) / len(many):>14.0f}"
+                  f"{errors[len(errors) // 2]:>15.1e}{errors[-1]:>10.1e}")
         if args.parts:
             parts(folder, args.isa, 1 / 12)
 

@@ -1,6 +1,6 @@
-// Counts the operations per step of the kernel variants: compiles their source
-// with a number type that counts. It is a separate program that does not link
-// the library, because here every `double` of the kernel is such a number.
+// Counts the operations per step of the kernel variants by compiling their source with a counting number
+// type. It is a separate program that does not link the library, because here every `double` of the kernel is
+// such a number.
 #include <immintrin.h>
 
 #include <cstdio>
@@ -113,7 +113,7 @@ using March = void (*)(const Ball&, const Ball&, const ImpactParams&, int, Impac
 
 void report(const char* name, March march) {
     static bool first = true;
-    // The difference between two values of N, so that only the operations of the loop remain.
+    // The difference between two values of N, which leaves only the operations of the loop.
     double per_step[7] = {};
     long steps = 0;
     for (int n : {1000, 2000}) {

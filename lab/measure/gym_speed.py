@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Steps of the environments per CPU second, beside the plain batch of the same shots, in one process, in turns.
+"""Steps of the environments per CPU second beside plain batches of the same shots, in one process,
+alternating.
 
-A step of a vector with the autoreset mode SameStep plays a shot on every table, judges it, and draws and observes a new layout. The plain batch
-is `simulate_many` with the arrays of the same strikes and places, and nothing else; the judged batch is the same with what the game makes of its shots.
-CPU time of the thread, one thread; the least of the rounds, and the medians of the ratios of a round: of the judged batch and of a step to the plain batch. With --pooltool also an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in
-a throw-away virtual environment (PyPI; side_by_side_shots.py knows what it needs). Neither the build nor a test needs this script.
+A step of a vector with the autoreset mode SameStep plays a shot on every table, judges it, and draws and
+observes a new layout. The plain batch is only `simulate_many` with arrays of the same strikes and positions.
+The judged batch adds the game's judgement. All are CPU times of one thread. The rates are from the fastest
+round. The ratios of the judged batch and of a step to the plain batch are medians over the rounds. --pooltool
+adds an environment over pooltool 0.6.0 with the same actions and layouts on its own table and models, in a
+temporary virtual environment (PyPI; see side_by_side_shots.py). Neither the build nor a test needs this
+script.
 
     lab/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
 
@@ -24,7 +28,7 @@ import side_by_side_shots
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STEPS = 8
-#: Shots of pooltool that are not counted.
+#: Shots of pooltool before the measurement.
 WARM = 300
 
 
@@ -35,7 +39,8 @@ def timed(work):
 
 
 def vector(game, tables, rounds):
-    """Per second: steps of the vector, shots of the plain and of the judged batch; the medians of the ratios of the judged batch and of the vector to the plain one."""
+    """Steps of the vector and shots of the plain and the judged batch, per second; then two median ratios to
+    the plain batch: the judged batch's and the vector's."""
     import carom
     import carom.gym
 
@@ -56,11 +61,12 @@ def vector(game, tables, rounds):
         rows.append((ours, plain, judged))
     count = tables * STEPS
     rates = [count / min(column) for column in zip(*rows)]
-    return *rates, statistics.median(plain / judged for _, plain, judged in rows), statistics.median(plain / ours for ours, plain, _ in rows)
+    of_judged = statistics.median(plain / judged for _, plain, judged in rows)
+    return *rates, of_judged, statistics.median(plain / ours for ours, plain, _ in rows)
 
 
 def single(game, rounds):
-    """Steps per second of one environment, each with the reset behind it."""
+    """Steps per second of one environment, each with the reset after it."""
     import carom.gym
 
     env = carom.gym.make_env(game)
@@ -78,7 +84,8 @@ def single(game, rounds):
 
 
 def over_pooltool(shots):
-    """Runs inside the environment: steps per second of an environment over pooltool that does what Pot does; the first ones, which compile, are not counted."""
+    """Runs inside the environment: prints steps per second of a pooltool environment that does what Pot does,
+    after a warm-up that compiles it."""
     import numpy as np
     import pooltool as pt
 
@@ -96,14 +103,15 @@ def over_pooltool(shots):
         balls = {name: pt.Ball.create(name, xy=tuple(place)) for name, place in zip(("cue", "1"), places)}
         system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
         side, height = 0.5 * action[3:] / np.sqrt(2)
-        system.cue.set_state(V0=3.15 + 2.85 * action[2], phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side, b=height)
+        system.cue.set_state(V0=3.15 + 2.85 * action[2],
+                             phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side, b=height)
         pt.simulate(system, inplace=True)
         fallen = [name for name, ball in system.balls.items() if ball.state.s == pt.constants.pocketed]
         reward = -1.0 if "cue" in fallen else float("1" in fallen)
         observed = np.array([ball.state.rvw[0, :2] for ball in system.balls.values()], np.float32)
         return observed, reward
 
-    for _ in range(WARM):  # what is rare, such as a ball in a pocket, is compiled when it first happens
+    for _ in range(WARM):  # rare events, such as a pocketed ball, are compiled when they first happen
         step(layout(), random.uniform(-1, 1, 5))
     cpu = timed(lambda: [step(layout(), random.uniform(-1, 1, 5)) for _ in range(shots)])
     print(json.dumps(shots / cpu))
@@ -111,32 +119,42 @@ def over_pooltool(shots):
 
 def pooltool_rate(shots):
     with side_by_side_shots.pooltool_environment() as python:
-        out = subprocess.run([python, __file__, "--inside", "--shots", str(shots)], check=True, capture_output=True, text=True).stdout
+        out = subprocess.run([python, __file__, "--inside", "--shots", str(shots)], check=True,
+                             capture_output=True, text=True).stdout
     return json.loads(out.strip().splitlines()[-1])
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
-    parser.add_argument("--games", nargs="*", help="some of them by name (default: all)")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
+    parser.add_argument("--games", nargs="*", help="names of games to measure (default: all)")
     parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--pooltool", action="store_true", help="also an environment over pooltool 0.6.0; downloads some hundred megabytes")
-    parser.add_argument("--shots", type=int, default=300, help="of pooltool (default: 300)")
+    parser.add_argument(
+        "--pooltool", action="store_true",
+        help="also measure an environment over pooltool 0.6.0; downloads some hundred megabytes")
+    parser.add_argument("--shots", type=int, default=300, help="shots of pooltool (default: 300)")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     args = parser.parse_args()
     if args.inside:
         over_pooltool(args.shots)
         return
     sys.path.insert(0, args.package)
-    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
-    print(f"{model}, Python {platform.python_version()}, CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
-    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}   medians of the ratios")
+    model = next(
+        (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
+        platform.machine())
+    print(f"{model}, Python {platform.python_version()}, "
+          f"CAROM_ISA={os.environ.get('CAROM_ISA', '(the widest)')}")
+    print(f"{'game':<16}{'tables':>7}{'steps/s':>12}{'plain batch':>14}{'judged batch':>14}"
+          "   medians of the ratios")
     import carom.gym
 
     for game in args.games or carom.gym.GAMES:
         for tables in (64, 256, 1024):
             ours, plain, judged, of_judged, of_step = vector(game, tables, args.rounds)
-            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s{judged:>12.0f}/s   {of_judged:.2f} {of_step:.2f}")
+            print(f"{game:<16}{tables:>7}{ours:>10.0f}/s{plain:>12.0f}/s{judged:>12.0f}/s"
+                  f"   {of_judged:.2f} {of_step:.2f}")
         print(f"{game:<16}{'one':>7}{single(game, args.rounds):>10.0f}/s")
     if args.pooltool:
         print(f"{'over pooltool':<16}{'one':>7}{pooltool_rate(args.shots):>10.0f}/s")

@@ -32,7 +32,7 @@ def save(figure, folder, name):
 
 
 def bars(folder, name, title, rows, label, log=False, line=None):
-    """rows: {group: {key: value}}, horizontal, one colour a key."""
+    """Horizontal bars of rows: {group: {key: value}}, one colour per key."""
     groups = list(rows)
     keys = []
     for values in rows.values():
@@ -88,22 +88,28 @@ def main():
     bars(folder, "flops", "Floating-point operations a cycle (an fma is two)", flops, "flops a cycle")
     grind = data["cachegrind"]["rows"]
     bars(folder, "memory", "Loads and stores a step (cachegrind, v3)",
-         {r["name"]: {"loads": r["loads"], "stores": r["stores"]} for r in grind if r["isa"] == "v3"}, "references")
-    bars(folder, "branches", "Mispredicted branches a step (cachegrind)", by(grind, "isa", "mispredicted"), "branches")
+         {r["name"]: {"loads": r["loads"], "stores": r["stores"]} for r in grind if r["isa"] == "v3"},
+         "references")
+    bars(folder, "branches", "Mispredicted branches a step (cachegrind)", by(grind, "isa", "mispredicted"),
+         "branches")
     bars(folder, "cache", "First-level cache misses in 1000 steps (cachegrind)",
          by(grind, "isa", lambda r: max(0.0, 1000 * r["l1_misses"])), "misses")
     mca = data["mca"]["rows"]
     bars(folder, "mca", "Cycles a step, llvm-mca for Zen 3",
-         by(mca, "compiler", lambda r: r["cycles"] / r["steps"], group="loop", want=lambda r: r["cpu"] == "znver3"), "cycles")
+         by(
+             mca, "compiler", lambda r: r["cycles"] / r["steps"], group="loop",
+             want=lambda r: r["cpu"] == "znver3"), "cycles")
     bars(folder, "registers", "Vector registers of 160 in use at most, llvm-mca for Zen 3",
-         by(mca, "compiler", "fp_registers_used", group="loop", want=lambda r: r["cpu"] == "znver3"), "registers")
-    bars(folder, "compilers", "gcc 12 against clang 14, v3", by(data["compilers"]["rows"], "compiler", "ns"), "ns an impact",
-         log=True)
+         by(mca, "compiler", "fp_registers_used", group="loop", want=lambda r: r["cpu"] == "znver3"),
+         "registers")
+    bars(folder, "compilers", "gcc 12 against clang 14, v3", by(data["compilers"]["rows"], "compiler", "ns"),
+         "ns an impact", log=True)
     figure, axes = plt.subplots(figsize=(8, 5))
-    wanted = ("march baseline", "march combined", "march decoupled roots", "march summed", "march summed batch",
-              "march 2x4 lanes")
+    wanted = ("march baseline", "march combined", "march decoupled roots", "march summed",
+              "march summed batch", "march 2x4 lanes")
     for name in wanted:
-        points = sorted((g["n"], g["ns_min"]) for g in data["bench"]["growth"] if g["name"] == name and g["isa"] == "v3")
+        points = sorted(
+            (g["n"], g["ns_min"]) for g in data["bench"]["growth"] if g["name"] == name and g["isa"] == "v3")
         axes.plot([p[0] for p in points], [p[1] for p in points], marker="o", label=short(name))
     axes.set_xscale("log")
     axes.set_yscale("log")

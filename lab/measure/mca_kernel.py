@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Cycles, bottleneck and register use of the kernel's loops by llvm-mca.
+"""Cycles, bottlenecks and register use of the kernel's loops by llvm-mca.
 
-Compiles one loop a file with gcc (and clang where given), cuts its body out of the assembly at the marks of
-kernel/src/loop_marks.h, and simulates it with the way back to its top. The fall-through path alone is taken: code
-that the compiler moved out of line (a step that falls back, a lane that flips) is not part of it. llvm-mca 14 knows
-znver1..3 and, for AArch64, apple-m1.
+Compiles one loop per file with gcc (and clang if it is given), cuts its body out of the assembly at the marks
+of kernel/src/loop_marks.h, and simulates it with the jump back to its start. Only the fall-through path is
+simulated: code that the compiler moved out of line (a step that falls back, a lane that flips) is left out.
+llvm-mca 14 supports znver1 to znver3 and, for AArch64, apple-m1.
 
     lab/measure/mca_kernel.py [--cxx g++] [--json FILE]
 """
@@ -41,7 +41,8 @@ void probe(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactRes
 """
 SWEEP = """#include "tolerance/single.h"
 namespace carom::kernel {{
-__attribute__((used)) static bool probe(const Model& m, State& s, Impulses& t, Stretch& stretch, double root_s) {{
+__attribute__((used)) static bool
+probe(const Model& m, State& s, Impulses& t, Stretch& stretch, double root_s) {{
     Stretch asked = stretch;
     asked.given = true;
     const bool ok = collocate<{nodes}, End::{end}>(m, s, t, asked, root_s, false);
@@ -49,8 +50,8 @@ __attribute__((used)) static bool probe(const Model& m, State& s, Impulses& t, S
     return ok;
 }} }}
 """
-SHORTEST = 15  # instructions; the shortest whole body, of the packed march, has 17
-# name, source, level, steps of one impact that one pass of the loop does
+SHORTEST = 15  # instructions; the shortest complete body, that of the packed march, has 17
+# name, source, level, and the steps of one impact that a pass of the loop takes
 LOOPS = [
     ("baseline", PLAIN, "v3", 1),
     ("packed", SINGLE.format(header="ladder/packed_march.h", loop="PackedExact"), "v3", 1),
@@ -71,8 +72,9 @@ LOOPS = [
 def assembly(cxx, source, level, folder):
     path = pathlib.Path(folder) / "probe.cpp"
     path.write_text(source)
-    command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS", "-w",
-               f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
+    command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS",
+               "-w", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-",
+               str(path)]
     if source != PLAIN:  # as lab/ladder/CMakeLists.txt builds it
         command.append("-fno-math-errno")
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
@@ -81,21 +83,25 @@ def assembly(cxx, source, level, folder):
 def arm_assembly(source, folder):
     path = pathlib.Path(folder) / "probe.cpp"
     path.write_text(source)
-    command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3", "-ffp-contract=off", "-w",
-               "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
+    command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3",
+               "-ffp-contract=off", "-w", "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include",
+               f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
     run = subprocess.run(command, capture_output=True, text=True)
     return [line.replace("//", "#") if "LLVM-MCA" in line else line for line in run.stdout.splitlines()]
 
 
 def instructions(lines):
-    """Without labels, marks, and what belongs to the assembler."""
+    """The lines without labels, marks and assembler directives."""
     return [line for line in lines if re.match(r"\s+[a-z]", line) and not re.match(r"\s+\.", line)]
 
 
 def way_back(lines, labels, at, begin, budget=80):
-    """What runs from line `at` to the mark at `begin`, jumps followed; None where no short way leads there. It has the loop's
-    test, and the register moves that carry a step's result into the next: without them simulated steps would not wait for
-    each other."""
+    """The instructions from line `at` to the mark at `begin`, following jumps; None if no short path leads
+    there.
+
+    They contain the loop's test, and the register moves that carry a step's result into the next. Without
+    these, simulated steps would not wait for each other.
+    """
     path = []
     while at != begin:
         if at >= len(lines) or len(path) > budget or re.match(r"\s+ret", lines[at]):
@@ -111,7 +117,7 @@ def way_back(lines, labels, at, begin, budget=80):
 
 
 def body(lines):
-    """The longest marked stretch, and what leads back from its end to its beginning."""
+    """The longest marked section, and the path back from its end to its start."""
     labels = {line.split(":")[0]: i for i, line in enumerate(lines) if re.match(r"\.?\w+:", line)}
     best, begin, back = [], None, []
     for i, line in enumerate(lines):
@@ -126,7 +132,8 @@ def body(lines):
 
 
 def simulate(code, cpu, triple="x86_64-linux-gnu"):
-    command = ["llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis", "-register-file-stats"]
+    command = ["llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis",
+               "-register-file-stats"]
     run = subprocess.run(command, input="\n".join(code) + "\n", capture_output=True, text=True)
     if run.returncode != 0:
         return None
@@ -142,24 +149,28 @@ def simulate(code, cpu, triple="x86_64-linux-gnu"):
         "throughput_bound": number(r"Block RThroughput:\s+([\d.]+)"),
         "resource_pressure": number(r"Resource Pressure\s+\[ ([\d.]+)%"),
         "data_dependencies": number(r"Data Dependencies:\s+\[ ([\d.]+)%"),
-        "fp_registers_used": number(r"JFPRegisterFile.*|Zn3FpPRF[\s\S]*?Max number of mappings used:\s+(\d+)"),
+        "fp_registers_used": number(
+            r"JFPRegisterFile.*|Zn3FpPRF[\s\S]*?Max number of mappings used:\s+(\d+)"),
     }
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cxx", nargs="+", default=["g++"])
     parser.add_argument("--cpu", nargs="+", default=["znver3"])
     parser.add_argument("--json")
     args = parser.parse_args()
     rows = []
-    print(f"{'loop':<22}{'compiler':<12}{'cpu':<9}{'instr':>6}{'cycles':>8}{'/step':>8}{'bound':>7}{'data dep':>9}{'fp regs':>8}")
+    print(f"{'loop':<22}{'compiler':<12}{'cpu':<9}{'instr':>6}{'cycles':>8}{'/step':>8}{'bound':>7}"
+          f"{'data dep':>9}{'fp regs':>8}")
     with tempfile.TemporaryDirectory() as folder:
         for cxx in args.cxx:
             for name, source, level, steps in LOOPS:
                 code = body(assembly(cxx, source, level, folder))
                 if len(code) < SHORTEST:
-                    print(f"{name:<22}{cxx:<12} the compiler moved most of the loop out of line: left out", file=sys.stderr)
+                    print(f"{name:<22}{cxx:<12} left out: the compiler moved most of the loop out of line",
+                          file=sys.stderr)
                     continue
                 for cpu in args.cpu:
                     r = simulate(code, cpu)
@@ -167,16 +178,17 @@ def main():
                         print(f"{name:<22}{cxx:<12}{cpu:<9} llvm-mca cannot simulate it", file=sys.stderr)
                         continue
                     rows.append({"loop": name, "compiler": cxx, "cpu": cpu, "steps": steps, **r})
-                    print(f"{name:<22}{cxx:<12}{cpu:<9}{r['instructions']:>6}{r['cycles']:>8.1f}{r['cycles'] / steps:>8.1f}"
-                          f"{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%{r['fp_registers_used']:>8.0f}")
+                    print(f"{name:<22}{cxx:<12}{cpu:<9}{r['instructions']:>6}{r['cycles']:>8.1f}"
+                          f"{r['cycles'] / steps:>8.1f}{r['throughput_bound']:>7.1f}"
+                          f"{r['data_dependencies']:>8.1f}%{r['fp_registers_used']:>8.0f}")
         code = body(arm_assembly(PLAIN, folder))
         r = simulate(code, "apple-m1", "aarch64-linux-gnu") if code else None
         if r is None:
-            print("baseline on apple-m1: clang++ or llvm-mca cannot do it", file=sys.stderr)
+            print("baseline on apple-m1: clang++ or llvm-mca does not support it", file=sys.stderr)
         else:
             rows.append({"loop": "baseline", "compiler": "clang++", "cpu": "apple-m1", "steps": 1, **r})
-            print(f"{'baseline':<22}{'clang++':<12}{'apple-m1':<9}{r['instructions']:>6}{r['cycles']:>8.1f}{r['cycles']:>8.1f}"
-                  f"{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%")
+            print(f"{'baseline':<22}{'clang++':<12}{'apple-m1':<9}{r['instructions']:>6}{r['cycles']:>8.1f}"
+                  f"{r['cycles']:>8.1f}{r['throughput_bound']:>7.1f}{r['data_dependencies']:>8.1f}%")
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps({"rows": rows}, indent=1) + "\n")
 

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""The study of a million breaks (lab/notes/2026-11-million_breaks.md): what falls, over aim and speed, as a map and as a table.
+"""The study of a million breaks (lab/notes/2026-11-million_breaks.md): the outcome by aim and speed, as a map
+and a table.
 
     lab/measure/million_breaks.py FOLDER -o map.png
 
-FOLDER holds the shards that python -m carom.sweep makes of lab/notes/2026-11-million_breaks.json. Needs duckdb and matplotlib from PyPI.
+FOLDER holds the shards that python -m carom.sweep makes from lab/notes/2026-11-million_breaks.json. Needs
+duckdb and matplotlib from PyPI.
 """
 
 import argparse
@@ -17,7 +19,7 @@ import numpy as np
 
 AIM, SPEED = (86.3, 90.9), (2.0, 11.0)
 COLUMNS, ROWS = 92, 45
-# A ball falls and the cue ball does not; the cue ball falls; how many balls fall beside it.
+# Whether a ball falls but not the cue ball, whether the cue ball falls, and how many other balls fall.
 BREAKS = """
 SELECT "cue.aim_deg" AS aim, "cue.speed" AS speed, events, duration,
        pocketed <> '' AND "cue.pocket" = '' AS success,
@@ -32,12 +34,13 @@ SELECT least(floor((aim - {a0}) / ({a1} - {a0}) * {columns}), {columns} - 1)::IN
 FROM breaks GROUP BY ALL
 """
 BANDS = """
-SELECT floor(speed)::INT AS speed, count(*) AS breaks, avg(success::INT) AS success, avg(scratch::INT) AS scratch, avg(balls) AS balls,
-       avg(duration) AS duration, avg(events) AS events
+SELECT floor(speed)::INT AS speed, count(*) AS breaks, avg(success::INT) AS success,
+       avg(scratch::INT) AS scratch, avg(balls) AS balls, avg(duration) AS duration, avg(events) AS events
 FROM breaks WHERE abs(aim - {middle}) < 0.25 GROUP BY 1 ORDER BY 1
 """
 BEST = """
-SELECT round(aim, 1) AS aim, count(*) AS breaks, avg(success::INT) AS success, avg(scratch::INT) AS scratch, avg(balls) AS balls
+SELECT round(aim, 1) AS aim, count(*) AS breaks, avg(success::INT) AS success,
+       avg(scratch::INT) AS scratch, avg(balls) AS balls
 FROM breaks WHERE speed BETWEEN 7 AND 9 GROUP BY 1 ORDER BY success DESC LIMIT 5
 """
 
@@ -56,18 +59,21 @@ def main():
         maps[:, j, i] = values
         fewest = n if fewest is None else min(fewest, n)
     print("cells:", COLUMNS * ROWS, "with at least", fewest, "breaks")
-    # The 1 stands at (0.635, 1.905), the cue ball at (0.60, 0.50).
+    # The 1 is at (0.635, 1.905), the cue ball at (0.60, 0.50).
     middle = float(np.degrees(np.arctan2(1.905 - 0.5, 0.635 - 0.6)))
     print(f"full at {middle:.2f} degrees")
     for query in BANDS.format(middle=middle), BEST:
         relation = base.sql(query)
         print("|", " | ".join(relation.columns), "|")
         for row in relation.fetchall():
-            print("|", " | ".join(f"{value:.3f}" if isinstance(value, float) else str(value) for value in row), "|")
+            print(
+                "|", " | ".join(f"{value:.3f}" if isinstance(value, float) else str(value) for value in row),
+                "|")
     titles = ["a ball falls, the cue ball stays", "the cue ball falls", "balls that fall"]
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.6), dpi=100, sharey=True, layout="constrained")
     for panel, values, title in zip(axes, maps, titles):
-        image = panel.imshow(values, origin="lower", extent=(*AIM, *SPEED), aspect="auto", cmap="viridis", vmin=0, interpolation="nearest")
+        image = panel.imshow(values, origin="lower", extent=(*AIM, *SPEED), aspect="auto", cmap="viridis",
+                             vmin=0, interpolation="nearest")
         panel.axvline(middle, color="white", linewidth=0.6, linestyle=":")
         panel.set_title(title, fontsize=10)
         panel.set_xlabel("aim [degrees]")

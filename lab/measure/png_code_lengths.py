@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
-"""The lengths of the Huffman codes that are built into the PNG writer (render/src/frames/png_code.cpp), from frames of several scenes
-and cameras. Also prints how large the frames become with them, and with codes of their own, beside zlib's level 1 without filters.
+"""Computes the lengths of the Huffman codes built into the PNG writer (render/src/frames/png_code.cpp) from
+frames of several scenes and cameras.
+
+Also prints the frame sizes with these codes and with codes made for each frame, relative to zlib's level 1
+without filters.
 
     cmake --build --preset release --target carom_program
     lab/measure/png_code_lengths.py [BUILD_FOLDER]
@@ -15,9 +18,10 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
 WIDTH, HEIGHT = 1920, 1080
-SEGMENT = 64  # pixels; no run leaves its segment
+SEGMENT = 64  # pixels; no run crosses a segment's end
 LONGEST = 12  # bits of a code
-FILTER, END, RUNS = 4, 256, 257  # the byte before every row (Paeth), the end of the data, the first code of a run
+# The byte before every row (Paeth), the end of the data, the first code of a run.
+FILTER, END, RUNS = 4, 256, 257
 BREAK = "eight_ball_break"
 FRAMES = {
     "top": [BREAK],
@@ -32,8 +36,10 @@ FRAMES = {
     "at the cloth": [BREAK, "--eye", "0.6,0.9,0.25", "--target", "0.63,1.9,0"],
 }
 
-# What deflate calls a length of 3 to 258: for each of its 29 codes the shortest length, and the bits that follow the code.
-BASE = [3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258]
+# Deflate's codes for lengths of 3 to 258: the shortest length of each of the 29 codes, and the number of
+# extra bits.
+BASE = [3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163,
+        195, 227, 258]
 EXTRA = [0] * 8 + [1] * 4 + [2] * 4 + [3] * 4 + [4] * 4 + [5] * 4 + [0]
 CODE_OF_RUN = np.array([0] + [max(i for i in range(29) if BASE[i] <= 3 * n) for n in range(1, SEGMENT + 1)])
 EXTRA_OF_RUN = np.array(EXTRA)[CODE_OF_RUN]
@@ -48,7 +54,7 @@ def frames_of(scene, *options):
 
 
 def residuals(image):
-    """What the filter Paeth leaves of an image."""
+    """The image after the Paeth filter."""
     x = image.astype(np.int16)
     left, up, corner = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
     left[:, 1:], up[1:], corner[1:, 1:] = x[:, :-1], x[:-1], x[:-1, :-1]
@@ -58,7 +64,8 @@ def residuals(image):
 
 
 class Counts:
-    """How often each byte stands alone, and the runs: rows of (pixels, bytes of one pixel, how often)."""
+    """How often each byte occurs outside a run, and the runs: rows of (pixels, bytes per pixel, how
+    often)."""
 
     def __init__(self, image):
         rest = residuals(image)
@@ -78,7 +85,8 @@ class Counts:
         self.bytes = [pixel & 255, pixel >> 8 & 255, pixel >> 16]
 
     def with_lengths(self, lengths):
-        """How often each code is used if every run takes the shorter of its two forms; the bits that follow the codes."""
+        """How often each code is used if every run takes the shorter of its two forms; the bits that follow
+        the codes."""
         as_bytes = self.length * sum(lengths[b] for b in self.bytes)
         as_run = lengths[RUNS + CODE_OF_RUN[self.length]] + EXTRA_OF_RUN[self.length] + 1
         written_out = as_bytes < as_run
@@ -113,7 +121,8 @@ def main():
     usable[: END + 1] = True
     usable[RUNS + CODE_OF_RUN[1:]] = True
     frames = [(name, image) for name, words in FRAMES.items() for image in frames_of(*words)]
-    level_1 = [len(zlib.compress(np.pad(i.reshape(HEIGHT, -1), ((0, 0), (1, 0))).tobytes(), 1)) for _, i in frames]
+    level_1 = [
+        len(zlib.compress(np.pad(i.reshape(HEIGHT, -1), ((0, 0), (1, 0))).tobytes(), 1)) for _, i in frames]
     counts = [Counts(image) for _, image in frames]
     lengths = np.full(CODES, 8)
     for _ in range(6):  # which form a run takes depends on the lengths, and they on it
@@ -122,7 +131,8 @@ def main():
         lengths = code_lengths(np.where(usable, np.maximum(1e6 * shares / shares.sum(), 1), 0), LONGEST)
     for (name, _), c, size in zip(frames, counts, level_1):
         own = code_lengths(np.where(usable, c.with_lengths(lengths)[0] + 0.01, 0), 15)
-        print(f"{name:14} zlib {size:7}  these codes {c.bits(lengths) / 8 / size:.3f}  own {c.bits(own) / 8 / size:.3f}")
+        print(f"{name:14} zlib {size:7}  these codes {c.bits(lengths) / 8 / size:.3f}  own "
+              f"{c.bits(own) / 8 / size:.3f}")
     # As the source has them: a length, and how many codes in a row have it.
     changes = [0, *(np.flatnonzero(np.diff(lengths)) + 1), CODES]
     print(", ".join(f"{{{lengths[i]}, {j - i}}}" for i, j in zip(changes, changes[1:])))

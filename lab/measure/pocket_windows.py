@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """How much room a pocket leaves: the tables of lab/notes/2026-11-pockets.md.
 
-A ball rolls at a corner from 0.6 m away, at several speeds and angles to the long rail; its line is shifted sideways until it no longer
-drops at that visit. The window is the width [mm] of the lines that drop. The second table has balls beside the rail: of 24
-(0 to 5 mm from it, 1 degree away from it to 2 degrees into it), how many drop.
+A ball rolls at a corner from 0.6 m away, at several speeds and angles to the long rail, and its line is
+shifted sideways until it no longer drops on that visit. The window is the width [mm] of the lines that drop.
+The second table is for balls along the rail: how many of 24 drop (0 to 5 mm from the rail, from 1 degree away
+from it to 2 degrees into it).
 
-    lab/measure/pocket_windows.py [--carom build/release/carom] [--table nine_foot] [--pocket fall] [--step 1.0]
+    lab/measure/pocket_windows.py [--carom build/release/carom] [--table nine_foot] [--pocket fall]
+                                  [--step 1.0]
 """
 import argparse
 import json
@@ -22,9 +24,11 @@ def scene(table, pocket, x, y, angle_deg, speed):
     R = RADIUS.get(table, 0.028575)
     vx, vy = -speed * math.sin(math.radians(angle_deg)), -speed * math.cos(math.radians(angle_deg))
     balls = "preset = \"snooker\"" if table == "snooker" else ""
-    # It is one visit: the run ends before the ball comes back from another rail.
-    return (f'[table]\npreset = "{table}"\n[balls]\n{balls}\n[[ball]]\nposition = [{x!r}, {y!r}]\nvelocity = [{vx!r}, {vy!r}]\n'
-            f'spin = [{-vy / R!r}, {vx / R!r}, 0.0]\n[physics]\npocket = "{pocket}"\n[stop]\ntime = {1.0 / speed + 0.4!r}\n')
+    # A single visit: the run ends before the ball comes back from another rail.
+    return (f'[table]\npreset = "{table}"\n[balls]\n{balls}\n[[ball]]\nposition = [{x!r}, {y!r}]\n'
+            f'velocity = [{vx!r}, {vy!r}]\n'
+            f'spin = [{-vy / R!r}, {vx / R!r}, 0.0]\n[physics]\npocket = "{pocket}"\n[stop]\n'
+            f'time = {1.0 / speed + 0.4!r}\n')
 
 
 def drops(carom, folder, text):
@@ -37,7 +41,7 @@ def drops(carom, folder, text):
 
 
 def window(args, folder, angle_deg, speed):
-    """[mm]"""
+    """The width of the window [mm]."""
     R = RADIUS.get(args.table, 0.028575)
     a = math.radians(angle_deg)
     count = 0
@@ -57,19 +61,24 @@ def beside_rail(args, folder, speed):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default="build/release/carom")
     parser.add_argument("--table", default="nine_foot")
     parser.add_argument("--pocket", default="fall", choices=["fall", "at_once"])
-    parser.add_argument("--step", type=float, default=1.0, help="[mm] between neighbouring lines (default: 1.0)")
+    parser.add_argument(
+        "--step", type=float, default=1.0, help="[mm] between neighbouring lines (default: 1.0)")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         print(f"{args.table}, pocket = \"{args.pocket}\": window in mm against the speed\n")
-        print("| to the long rail | " + " | ".join(f"{s} m/s" for s in SPEEDS) + " |\n|" + "---|" * (1 + len(SPEEDS)))
+        print("| to the long rail | " + " | ".join(
+            f"{s} m/s" for s in SPEEDS) + " |\n|" + "---|" * (1 + len(SPEEDS)))
         for angle in (45, 20, 10, 5):
-            print(f"| {angle} deg | " + " | ".join(f"{window(args, folder, angle, s):g}" for s in SPEEDS) + " |", flush=True)
-        print("| beside the rail, of 24 | " + " | ".join(str(beside_rail(args, folder, s)) for s in SPEEDS) + " |")
+            print(f"| {angle} deg | " + " | ".join(
+                f"{window(args, folder, angle, s):g}" for s in SPEEDS) + " |", flush=True)
+        print("| beside the rail, of 24 | " + " | ".join(
+            str(beside_rail(args, folder, s)) for s in SPEEDS) + " |")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Writes anew what docs/reference/validation.md shows of `carom-lab validate`: its table between the marks <!-- begin summary --> and
-<!-- end summary -->, and its figures in docs/images. The same on every machine.
+"""Rewrites what docs/reference/validation.md shows of `carom-lab validate`.
+
+That is its table between the marks <!-- begin summary --> and <!-- end summary -->, and its figures in
+docs/images. They are the same on every machine.
 
     cmake --build --preset release --target carom_lab_program
     lab/measure/renew_validation.py [--carom build/release/carom-lab] [--check]
 
---check writes nothing and fails where the page or a figure is not what the program prints.
+--check writes nothing, and fails if the page or a figure differs from what the program prints.
 """
 import argparse
 import json
@@ -21,7 +23,7 @@ FIGURES = ["V2", "V3", "V4", "V7", "V17", "V18", "B1", ""]  # "": all cases in o
 
 
 def validate(carom, folder, case):
-    """What --json and --plot give."""
+    """The output of --json and --plot."""
     figure = pathlib.Path(folder, "figure.svg")
     command = [carom, "validate", *([case] if case else []), "--json", "--plot", figure]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
@@ -31,34 +33,42 @@ def validate(carom, folder, case):
 def worst(group):
     row = max(group, key=lambda r: abs(r["difference"]))
     off, unit = row["computed"] - row["measured"], row["unit"]
-    by = f"{abs(off / row['measured']):.0%}".replace("%", " %") if row["measured"] and unit != "deg" else f"{abs(off):.2g} {unit}"
+    by = f"{abs(off):.2g} {unit}"
+    if row["measured"] and unit != "deg":
+        by = f"{abs(off / row['measured']):.0%}".replace("%", " %")
     side = "off" if not row["measured"] else "low" if off < 0 else "high"
     return f"{row['difference']:+.1f} ({by} {side})"
 
 
 def summary(all_rows):
-    """One line for the cases of one title and variant: V8 to V16 are nine shots of one kind. Under the table, what the variants are."""
+    """One line for the cases with the same title and variant (V8 to V16 are nine shots of one kind), then a
+    list of the variants."""
     groups, keys = {}, {}
     for row in all_rows:
         groups.setdefault((row["title"], row["variant"]), []).append(row)
         if row["keys"] and row["keys"] != row["variant"]:
             keys[(row["variant"], f"`{row['preset']}` with `{row['keys']}`")] = None
-    lines = ["| case | what | trust | variant | model | free | within | worst |", "|---|---|---|---|---|---|---|---|"]
+    lines = ["| case | what | trust | variant | model | free | within | worst |",
+             "|---|---|---|---|---|---|---|---|"]
     last = None
     for (title, variant), group in groups.items():
         ids = [group[0]["case"], group[-1]["case"]]
-        what = [ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}", title, group[0]["trust"]] if title != last else ["", "", ""]
+        same_id = ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}"
+        what = [same_id, title, group[0]["trust"]] if title != last else ["", "", ""]
         last = title
         free = "yes" if all(r["free_of_fit"] for r in group) else "no"
         within = f"{sum(r['within'] for r in group)} of {len(group)}"
-        lines.append("| " + " | ".join([*what, variant, group[0]["model"], free, within, worst(group)]) + " |")
+        lines.append(
+            "| " + " | ".join([*what, variant, group[0]["model"], free, within, worst(group)]) + " |")
     return "\n".join(lines) + "\n\n" + "".join(f"* {name}: {what}\n" for name, what in keys)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default=str(ROOT / "build/release/carom-lab"))
-    parser.add_argument("--check", action="store_true", help="write nothing, and fail where something is stale")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing, and fail where something is stale")
     args = parser.parse_args()
     new = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -66,12 +76,13 @@ def main():
             rows, figure = validate(args.carom, folder, case)
             new[f"docs/images/validation_{case or 'all'}.svg"] = figure
     # The last ones are all rows.
-    page, found = re.subn(r"(<!-- begin summary -->\n).*?(<!-- end summary -->)", lambda m: m[1] + summary(rows) + m[2],
-                          (ROOT / PAGE).read_text(), flags=re.S)
+    page, found = re.subn(r"(<!-- begin summary -->\n).*?(<!-- end summary -->)",
+                          lambda m: m[1] + summary(rows) + m[2], (ROOT / PAGE).read_text(), flags=re.S)
     if found != 1:
         sys.exit(f"renew_validation: {PAGE} has the marks of the table {found} times")
     new[PAGE] = page
-    stale = [name for name, text in new.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
+    stale = [
+        name for name, text in new.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
     if args.check and stale:
         sys.exit(f"stale: {', '.join(stale)}; run lab/measure/renew_validation.py")
     for name in stale:

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
                third = argc > 3 ? std::strtol(argv[3], nullptr, 10) : 1;
     const auto [isa, problem] = kernel::isa_from_environment();
     if (*problem != '\0') return 2;
-    if (name.rfind("many ", 0) == 0) {  // a batch of so many shots; prints the balls pocketed
+    if (name.rfind("many ", 0) == 0) {  // a batch with this number of shots; prints the balls pocketed
         tools::ManyShots many(name, isa);
         many.play(static_cast<std::size_t>(number));
         std::printf("%ld\n", many.pocketed());

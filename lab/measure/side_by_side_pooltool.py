@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Times the numba original beside ours, in one run.
+"""Times the original in numba beside carom's impact, in one run.
 
-Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its impact function
-imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the paper's five states,
-interleaved with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs this script.
+Makes a temporary virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its
+impact function imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the
+paper's five states, alternating with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs
+this script.
 
     lab/measure/side_by_side_pooltool.py [--carom build/release/carom-lab] [--rounds 3]
 """
@@ -26,8 +27,9 @@ def time_original():
     import time
     import types
 
-    # The package imports its graphical interface; the one module that is wanted needs none of it. So packages are entered
-    # without their __init__, and names that only classes around the function use stand for nothing.
+    # The package imports its graphical interface, which this one module does not need. So packages are
+    # imported without their __init__, and dummies stand for names that only the classes around the function
+    # use.
     class Name(type):
         def __getattr__(cls, name):
             if name.startswith("__"):
@@ -41,7 +43,9 @@ def time_original():
             return Name(name, (), {"__init__": lambda self, *args, **named: None})
 
     base = pathlib.Path(importlib.util.find_spec("pooltool").submodule_search_locations[0])
-    for package in ("pooltool", "pooltool.physics", "pooltool.physics.resolve", "pooltool.physics.resolve.ball_ball"):
+    for package in (
+        "pooltool", "pooltool.physics", "pooltool.physics.resolve", "pooltool.physics.resolve.ball_ball"
+    ):
         module = types.ModuleType(package)
         module.__path__ = [str(base.joinpath(*package.split(".")[1:]))]
         sys.modules[package] = module
@@ -57,7 +61,8 @@ def time_original():
     for case in cases:
         i, p = case["in"], case["params"]
         rvw1, rvw2 = (np.array([i[f"r{b}"], i[f"v{b}"], i[f"w{b}"]]) for b in (1, 2))
-        calls.append((rvw1, rvw2, p["R"], p["m"], p["u_s1"], p["u_s2"], p["u_b"], p["e_b"], case["out_N1000"]))
+        calls.append(
+            (rvw1, rvw2, p["R"], p["m"], p["u_s1"], p["u_s2"], p["u_b"], p["e_b"], case["out_N1000"]))
 
     def run(call):
         return original.collide_balls(*[a.copy() if hasattr(a, "copy") else a for a in call[:8]], None, 1000)
@@ -80,7 +85,8 @@ def time_original():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default=str(ROOT / "build" / "release" / "carom-lab"))
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
@@ -96,13 +102,16 @@ def main():
         subprocess.run(pip + NEEDED, check=True)
         theirs, ours = [], []
         for _ in range(args.rounds):
-            out = subprocess.run([python, __file__, "--inside"], check=True, capture_output=True, text=True).stdout
+            out = subprocess.run(
+                [python, __file__, "--inside"], check=True, capture_output=True, text=True).stdout
             theirs.append(json.loads(out.strip().splitlines()[-1]))
-            bench = subprocess.run([args.carom, "bench", "kernel", "--json", "--cloth-slip", "as_published", "--random", "50",
-                                    "--repeat", "3", "--no-growth"], check=True, capture_output=True, text=True).stdout
+            bench = subprocess.run([args.carom, "bench", "kernel", "--json", "--cloth-slip", "as_published",
+                                    "--random", "50", "--repeat", "3",
+                                    "--no-growth"], check=True, capture_output=True, text=True).stdout
             ours.append(json.loads(bench))
     original = min(t["ns"] for t in theirs)
-    print(f"numba original: {original:.0f} ns an impact; off the published results by {theirs[0]['difference']:.1e} m/s")
+    print(f"numba original: {original:.0f} ns an impact; "
+          f"off the published results by {theirs[0]['difference']:.1e} m/s")
     best = {}
     for bench in ours:
         for row in bench["rows"]:

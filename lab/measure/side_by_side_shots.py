@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Times whole shots beside pooltool 0.6.0, in one process, shot by shot in turns.
+"""Times whole shots beside pooltool 0.6.0, in one process, alternating shot by shot.
 
-Makes a throw-away virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that it asks for is not on
-PyPI) with what it imports, and plays breaks, random positions of two, 8, 12 and 16 balls with pooltool.simulate and, from the
-Python package in the build folder, with carom.simulate (plan and record each time) and carom.simulate_many (one thread). Both play the same
-positions, aims and speeds on the seven-foot table with the same coefficients and models: inelastic with Alciatore's friction, Stronge's
-cushion, pair by pair. CPU time of the thread. The first shots of pooltool, which compile it, are not counted. FastFiz is not
-on PyPI (sources: github.com/ekiefl/FastFiz); it is not compared. Needs PyPI; neither the build nor a test needs this script.
+Makes a temporary virtual environment and installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that
+it requires is not on PyPI) with what it imports. Plays breaks and random positions of two, 8, 12 and 16 balls
+with pooltool.simulate and, from the Python package in the build folder, with carom.simulate (plan and record
+each time) and carom.simulate_many (one thread). Both play the same positions, aims and speeds on the
+seven-foot table with the same coefficients and models: inelastic impacts with Alciatore's friction, Stronge's
+cushion, sequential clusters. CPU time of the thread. The first shots of pooltool, which compile it, are not
+counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared. Needs PyPI;
+neither the build nor a test needs this script.
 
     lab/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
@@ -23,8 +25,8 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-NEEDED = ["numba<0.63", "numpy", "scipy", "attrs", "cattrs", "msgpack", "msgpack-numpy", "pyyaml", "panda3d", "h5py", "pillow", "rich",
-          "click", "numpy-quaternion"]
+NEEDED = ["numba<0.63", "numpy", "scipy", "attrs", "cattrs", "msgpack", "msgpack-numpy", "pyyaml", "panda3d",
+          "h5py", "pillow", "rich", "click", "numpy-quaternion"]
 ALONE = ["pooltool-billiards==0.6.0", "panda3d-simplepbr", "panda3d-gltf", "h11"]
 SCENE = """[table]
 preset = "seven_foot"
@@ -58,7 +60,8 @@ def positions(count, rng, width, length):
 def scene_of(shot):
     import carom
 
-    balls = "".join(f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
+    balls = "".join(
+        f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
     return carom.Scene.loads(SCENE.format(**shot) + balls, "shot")
 
 
@@ -81,7 +84,8 @@ def many(shots):
 
     scene, best = scene_of(shots[0]), 1e9
     xy = np.tile([[place for place in s["balls"].values()] for s in shots], (40, 1, 1))
-    params = {key: np.tile([s[name] for s in shots], 40) for key, name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
+    params = {key: np.tile([s[name] for s in shots], 40) for key,
+              name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
     for _ in range(5):
         start = time.thread_time()
         batch = carom.simulate_many(scene, xy=xy, params=params)
@@ -99,13 +103,15 @@ def compare(count):
     rng = random.Random(1)
     kinds = {}
     for balls in (2, 8, 12, 16):
-        kinds[f"{balls} balls"] = [{"balls": positions(balls, rng, float(table.w), float(table.l)), "speed": rng.uniform(1, 6),
+        kinds[f"{balls} balls"] = [{"balls": positions(balls, rng, float(table.w), float(table.l)),
+                                    "speed": rng.uniform(1, 6),
                                     "aim": rng.uniform(0, 360)} for _ in range(count)]
     kinds["eight-ball break"] = []
     for _ in range(count):
         rack = pt.get_rack(pt.GameType.EIGHTBALL, table)
         balls = {name: (float(b.xyz[0]), float(b.xyz[1])) for name, b in rack.items()}
-        kinds["eight-ball break"].append({"balls": balls, "speed": rng.uniform(6, 8), "aim": 90.0 + rng.uniform(-0.5, 0.5)})
+        kinds["eight-ball break"].append(
+            {"balls": balls, "speed": rng.uniform(6, 8), "aim": 90.0 + rng.uniform(-0.5, 0.5)})
 
     def theirs(shot):
         balls = {name: pt.Ball.create(name, xy=xy) for name, xy in shot["balls"].items()}
@@ -141,8 +147,10 @@ def pooltool_environment():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument(
+        "--package", default=str(ROOT / "build" / "release" / "python"), help="folder of the built package")
     parser.add_argument("--shots", type=int, default=10, help="of each kind (default: 10)")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
     args = parser.parse_args()
@@ -151,10 +159,14 @@ def main():
         return
     with pooltool_environment() as python:
         out = subprocess.run([python, __file__, "--inside", "--shots", str(args.shots)], check=True,
-                             capture_output=True, text=True, env={**os.environ, "PYTHONPATH": args.package, "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
-    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, theirs and ours (medians)")
+                             capture_output=True, text=True, env={
+                                 **os.environ, "PYTHONPATH": args.package,
+                                 "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
+    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, "
+          "theirs and ours (medians)")
     for row in json.loads(out.strip().splitlines()[-1]):
-        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
+        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} "
+              f"ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
               f"   {row['theirs_events']:.0f}, {row['ours_events']:.0f}")
 
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""What sweeps in shards cost: CPU time beside the batch of the engine and beside `carom sweep`, bytes of a row, memory of the client.
+"""What sharded sweeps cost: CPU time beside the engine's batch and `carom sweep`, bytes per row, memory of
+the client.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 
-Everything on one thread, in turns; medians over the rounds. Needs numpy and pyarrow.
+Everything runs on one thread, alternating; medians over the rounds. Needs numpy and pyarrow.
 """
 
 import argparse
@@ -33,7 +34,7 @@ def children():
 
 
 def batch(plan, hashes):
-    """CPU seconds of the engine alone, draws included: the plain batch."""
+    """CPU seconds of the engine alone, the plain batch, including its random draws."""
     scene = sweep._plan.Scene.loads(plan.scene, plan.name)
     native = _carom.make_sweep(scene._native, list(plan.vary), plan.seed)
     shots = Shots.empty(plan.shots, len(scene.ids), hashes=hashes)
@@ -44,26 +45,29 @@ def batch(plan, hashes):
 
 
 def shards(plan):
-    """CPU seconds of a run with one thread, and the bytes of its files."""
+    """CPU seconds of a run with one thread, and the size of its files in bytes."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.process_time()
         sweep.run(plan, folder, threads=1)
         seconds = time.process_time() - start
-        return seconds, sum(entry.stat().st_size for entry in os.scandir(folder) if entry.name.endswith(".parquet"))
+        return seconds, sum(
+            entry.stat().st_size for entry in os.scandir(folder) if entry.name.endswith(".parquet"))
 
 
 def table(plan, path):
-    """CPU seconds of `carom sweep` with one thread, and the bytes of its table."""
+    """CPU seconds of `carom sweep` with one thread, and the size of its table in bytes."""
     with tempfile.TemporaryDirectory() as folder:
         csv = os.path.join(folder, "t.csv")
         words = [word for rule in plan.vary for word in ("--vary", rule)]
         before = children()
-        subprocess.run([PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv],
+                       check=True, stdout=subprocess.DEVNULL)
         return children() - before, os.path.getsize(csv)
 
 
 def rows(rounds):
-    print("| shots | plain batch, us a shot | with hashes | shards, no hashes | shards, digest | `carom sweep` | bytes a row: Parquet | CSV | ratio |")
+    print("| shots | plain batch, us a shot | with hashes | shards, no hashes | shards, digest | "
+          "`carom sweep` | bytes a row: Parquet | CSV | ratio |")
     print("|---|---|---|---|---|---|---|---|---|")
     for name, rules, shots in CASES:
         path = f"scenes/{name}.toml"
@@ -84,19 +88,20 @@ def rows(rounds):
 
         cost = statistics.median(seconds["batch"]) / shots * 1e6
         print(
-            f"| {name} | {cost:.2f} | {ratio('hashes'):.3f} | {ratio('plain'):.3f} | {ratio('digest'):.3f} | {ratio('csv'):.3f} | "
+            f"| {name} | {cost:.2f} | {ratio('hashes'):.3f} | {ratio('plain'):.3f} | {ratio('digest'):.3f} | "
+            f"{ratio('csv'):.3f} | "
             f"{parquet / shots:.1f} | {csv / shots:.1f} | {parquet / csv:.3f} |"
         )
 
 
 def memory():
-    """In a process of its own: what planning and looking after a large sweep takes."""
+    """Prints the cost of planning and supervising a large sweep, measured in its own process."""
     code = """
 import os, sys, tempfile, time
 from carom import sweep
 import pyarrow.parquet
 
-def peak():  # not ru_maxrss, which knows the process that began this one, too
+def peak():  # not ru_maxrss, which includes the parent process
     with open("/proc/self/status") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("VmHWM")) / 1024
 
@@ -116,7 +121,7 @@ with tempfile.TemporaryDirectory() as folder:
     size = os.path.getsize(os.path.join(folder, "plan.json"))
     for name in plan.files():
         os.unlink(os.path.join(folder, name))
-    # An executor that makes nothing: what is left is the client's own.
+    # An executor that makes nothing, so that only the client's own cost remains.
     class Done:
         def __init__(self, arguments): self.arguments = arguments
         def add_done_callback(self, call): call(self)
@@ -129,9 +134,12 @@ with tempfile.TemporaryDirectory() as folder:
     start = time.perf_counter()
     assert sweep.run(plan, folder, Executor()).rows == shots
     ran = time.perf_counter() - start
-print(f"| {shots:.0e} | {plan.shards} | {size} | {1e3 * planned:.1f} | {1e3 * seen:.0f} | {1e6 * ran / plan.shards:.0f} | {before:.0f} | {peak() - before:.1f} |")
+row = (f"{shots:.0e}", plan.shards, size, f"{1e3 * planned:.1f}", f"{1e3 * seen:.0f}",
+       f"{1e6 * ran / plan.shards:.0f}", f"{before:.0f}", f"{peak() - before:.1f}")
+print("|", " | ".join(map(str, row)), "|")
 """
-    print("\n| shots | shards | bytes of the plan | planning, ms | `status`, ms | client, us a shard | a Python with carom and pyarrow, MB | on top, MB |")
+    print("\n| shots | shards | bytes of the plan | planning, ms | `status`, ms | client, us a shard | "
+          "a Python with carom and pyarrow, MB | on top, MB |")
     print("|---|---|---|---|---|---|---|---|")
     for shots, shard in (10**6, 250_000), (10**9, 250_000), (10**9, 10_000), (2**53, 10**11):
         sys.stdout.flush()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A map of a sweep: how often a condition holds, over two of the values that were varied.
+"""A map of a sweep: how often a condition holds, over two of the varied values.
 
     lab/measure/sweep_map.py bank.csv cue.aim_deg cue.speed 1.pocket=p2 -o map.png
 
@@ -17,14 +17,16 @@ def read_rows(path, columns):
             reader = csv.DictReader(stream)
             for column in columns:
                 if column not in (reader.fieldnames or []):
-                    sys.exit(f"{path}: there is no column {column}; there are {', '.join(reader.fieldnames or [])}")
+                    sys.exit(f"{path}: there is no column {column}; "
+                             f"there are {', '.join(reader.fieldnames or [])}")
             return [[row[column] for column in columns] for row in reader]
     except OSError as error:
         sys.exit(f"{path}: {error.strerror}")
 
 
 def share_map(rows, wanted, bins):
-    """Limits of x and y, and the share of hits per cell (None where no shot fell), rows of y from below."""
+    """Limits of x and y, and the fraction of hits per cell, rows of y from below; None for a cell without
+    shots."""
     xs, ys = [float(row[0]) for row in rows], [float(row[1]) for row in rows]
     limits = [min(xs), max(xs), min(ys), max(ys)]
     shots = [[0] * bins for _ in range(bins)]

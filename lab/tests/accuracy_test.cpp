@@ -93,7 +93,7 @@ TEST(Box2d, HitsBouncesAndPockets) {
     add_ball(scene, "object", 0.5, 1.0);
     const Box2dOutcome hit = run_box2d(simulate(plan_of(scene)), 240.0);
     EXPECT_EQ(hit.first_contact, "object");
-    EXPECT_LT(hit.positions[0].y(), 1.0);  // what is left to the cue ball is (1 - e) / 2 of its speed
+    EXPECT_LT(hit.positions[0].y(), 1.0);  // the cue ball keeps (1 - e) / 2 of its speed
     EXPECT_GT(hit.positions[1].y(), 1.0);
     EXPECT_LT(hit.positions[1].y(), scene.table.length);
 

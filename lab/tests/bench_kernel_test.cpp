@@ -1,5 +1,4 @@
-// Which forms of the kernel carom-lab bench kernel times:
-// all, or those that are asked for. Nothing is timed here.
+// Which forms of the kernel carom-lab bench kernel times: all, or the requested ones. Nothing is timed here.
 #include "bench/kernel.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +20,7 @@ using Form = std::tuple<std::string, std::string, kernel::Isa>;  // name, kind, 
 
 class BenchKernel : public testing::Test {
   protected:
-    // The tests decide about the instruction set, not the shell they are started from.
+    // The tests choose the instruction set, not the shell that starts them.
     void SetUp() override { ::unsetenv("CAROM_ISA"); }
 };
 

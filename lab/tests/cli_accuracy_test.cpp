@@ -1,5 +1,4 @@
-// carom-lab accuracy: what it prints and writes. Times are
-// measured, and no test asserts one; errors are repeatable.
+// carom-lab accuracy: what it prints and writes. No test asserts a measured time; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -95,7 +94,7 @@ TEST(CliLabAccuracy, RefusesBadUsage) {
              {{"margin", "none.toml", "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
              {{"margin", "none.toml", "--sweep", "--trace", "t.json"}, "--trace is of one setting"},
              {{"margin", "none.toml", "--plot", "t.png"}, "a name that ends in .svg"},
-             {{"bench"}, "a command is missing: kernel, render or shot; see carom-lab bench --help"}}) {
+             {{"bench"}, "no command given: expected kernel, render or shot; see carom-lab bench --help"}}) {
         const ProcessResult result = carom_lab(arguments);
         EXPECT_EQ(result.status, 2) << message;
         EXPECT_NE(result.err.find(message), std::string::npos) << result.err;

@@ -1,5 +1,4 @@
-// carom-lab bench shot: what it prints. Times are measured,
-// and no test asserts one; events and bytes are counts.
+// carom-lab bench shot: what it prints. No test asserts a measured time; events and bytes are counts.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -25,7 +24,7 @@ TEST(CliBenchShot, RowsAreWhole) {
     for (const Json& row : json.at("rows")) {
         names.insert(row.at("name"));
         const auto value = [&row](const char* key) { return row.at(key).get<double>(); };
-        // What follows from what, however long it took; the median of two seeds is their mean.
+        // Relations that hold whatever the times; the median of two seeds is their mean.
         EXPECT_LE(value("cost_least"), value("cost_in_impacts"));
         EXPECT_LE(value("cost_in_impacts"), value("cost_most"));
         EXPECT_LE(value("ns_min"), value("ns_median"));
@@ -51,7 +50,7 @@ TEST(CliBenchShot, RowsAreWhole) {
                                             "eight_ball_break compliant", "two_ball_shot", "many two_ball",
                                             "many three_cushion", "many eight_ball_break"}));
     std::set<int> sizes, chosen, compliant;
-    std::map<std::string, double> first_ns;  // growth is against the smallest gas of the same model
+    std::map<std::string, double> first_ns;  // growth is relative to the smallest gas of the same model
     for (const Json& row : json.at("growth")) {
         const int n = row.at("n").get<int>();
         sizes.insert(n);

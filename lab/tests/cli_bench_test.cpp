@@ -1,5 +1,5 @@
-// carom-lab bench kernel: what it prints. Times are measured, and
-// no test asserts one; counts and differences are the kernel's.
+// carom-lab bench kernel: what it prints. No test asserts a measured time; counts and differences are the
+// kernel's.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Two forms; bench_kernel_test looks at the names of all.
+// Two forms; bench_kernel_test checks the names of all.
 TEST(CliBench, KernelRowsAreWhole) {
     const ProcessResult result =
         carom_lab_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "2", "--only",
@@ -32,14 +32,15 @@ TEST(CliBench, KernelRowsAreWhole) {
         const bool march = names.back().rfind("march", 0) == 0;
         EXPECT_EQ(row.at("isa"), "scalar");
         EXPECT_EQ(row.at("portable_bits"), true);
-        // What follows from what, however long it took.
+        // Relations that hold whatever the times.
         EXPECT_LE(value(row, "ns_min"), value(row, "ns_median"));
         EXPECT_NEAR(value(row, "ratio") * value(row, "ns_min"), baseline, 1e-9 * baseline);
         EXPECT_NEAR(value(row, "ratio_random") * value(row, "ns_random_min"),
                     value(json, "baseline_random_ns"), 1e-9 * value(json, "baseline_random_ns"));
         EXPECT_NEAR(value(row, "cycles_per_step") * value(row, "steps") * cycle, value(row, "ns_min"),
                     1e-9 * value(row, "ns_min"));
-        // The march is a step of the approach speed / N from the converged solution, plus what sticks.
+        // The march is a step of the approach speed / N from the converged solution, plus the effect of
+        // sticking.
         EXPECT_LT(value(row, "error_five"), march ? 2e-3 : 1e-6);
         EXPECT_LE(value(row, "error_random_median"), value(row, "error_random_max"));
         EXPECT_LE(value(row, "diff_random_p99"), value(row, "diff_random_max"));

@@ -62,7 +62,7 @@ TEST_F(CliLabMargin, SweepGoesThroughAccuracyAndFrameRate) {
     EXPECT_NE(read_file(folder_.file("s.svg")).find("1/fps"), std::string::npos);
 }
 
-// A model without settings has one row a frame rate; drawing costs every frame something.
+// A model without settings has one row per frame rate; drawing costs something in every frame.
 TEST_F(CliLabMargin, SweepOfAClosedFormWithDrawing) {
     const std::string scene = folder_.write(
         "i.toml", std::string(kSmallScene) + "[physics]\nball_ball = \"inelastic\"\n[stop]\ntime = 0.2\n");

@@ -1,4 +1,4 @@
-// Long measurements at a terminal: a line that moves, and Ctrl-C that ends them.
+// Long measurements at a terminal: a progress line that moves, and Ctrl-C that ends them.
 #include "tools/on_a_terminal.h"
 
 namespace carom::test {

@@ -43,7 +43,7 @@ TEST(CliValidate, JsonHasARowANumberAndVariant) {
     EXPECT_EQ(rows[1].at("model"), "han_2005");
 }
 
-// Where a number misses, that is a finding and no failure.
+// A number that misses is a finding, not a failure.
 TEST(CliValidate, ForPeople) {
     const ProcessResult result = carom_lab({"validate", "V2"});
     ASSERT_EQ(result.status, 0) << result.err;

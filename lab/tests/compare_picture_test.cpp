@@ -1,4 +1,4 @@
-// The picture of two shots, where its lines are known.
+// The picture of two shots with known lines.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -18,7 +18,7 @@ Record played(const std::string& text) {
     return simulate(make_plan(parse_scene(text, "a test"), kernel::Isa::kFastest));
 }
 
-/// The ways of some name in a plot, without the dots at their ends.
+/// The paths of some name in a plot, without the dots at their ends.
 std::vector<Series> ways(const Plot& plot, bool dashed) {
     std::vector<Series> found;
     for (const Series& series : plot.series)
@@ -26,7 +26,7 @@ std::vector<Series> ways(const Plot& plot, bool dashed) {
     return found;
 }
 
-// Up the table, then to the right: on the paper that is to the right, then down.
+// Up the table, then to the right: on paper that is to the right, then down.
 TEST(WaysPlot, IsTurnedNotMirroredAndToScale) {
     const std::string up = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0, 0.4]\n",
                       right = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0.4, 0]\n";
@@ -70,7 +70,7 @@ TEST(WaysPlot, ColoursGoByName) {
     EXPECT_NE(a[0].colour, a[1].colour);
     EXPECT_EQ(a[0].colour, b[1].colour);
     EXPECT_EQ(a[1].colour, b[0].colour);
-    // A ball that A does not have is grey, as the cushions are.
+    // A ball that A does not have is grey, like the cushions.
     EXPECT_EQ(ways(ways_plot(two("a", "b"), "", two("b", "c"), ""), true).size(), 1u);
 }
 

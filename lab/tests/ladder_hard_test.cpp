@@ -48,7 +48,7 @@ void check(const HardImpact& hard, const ImpactResult& out, const ImpactResult& 
             const double before = energy(in.ball1.v, in.ball1.w, in.ball2.v, in.ball2.w, in.params.R);
             const double after = energy(out.v1, out.w1, out.v2, out.w2, in.params.R);
             EXPECT_TRUE(std::isfinite(after));
-            // H24: a march gains energy by construction at small N, x4.7 at N = 1; 1e-6 for the lossy rung.
+            // H24: by construction a march gains energy at small N, x4.7 at N = 1; 1e-6 for the lossy rung.
             EXPECT_LE(after, before * (1.0 + 5.0 / hard.n + 1e-6));
             break;
         }
@@ -81,7 +81,7 @@ TEST_P(HardRung, SurvivesEveryHardInput) {
     }
 }
 
-/// Ball 1 spins so fast that friction presses ball 2 onto the cloth all through the impact. The cloth then
+/// Ball 1 spins so fast that friction presses ball 2 onto the cloth during the whole impact. The cloth then
 /// takes mu_s mu_b of the 2 by which a step drives the balls apart.
 Impact held_together(double mu_s) {
     Impact impact{};
@@ -91,7 +91,7 @@ Impact held_together(double mu_s) {
     return impact;
 }
 
-// A long impact outlasts what a batch does in step; one that never ends is stopped by the bound on steps.
+// A long impact outlasts what a batch does in step; one that never ends is stopped by the limit of steps.
 TEST_P(HardRung, ImpactsThatFrictionProlongsEndOrAreStopped) {
     const std::vector<Impact> impacts = {held_together(0.4), held_together(0.6)};
     constexpr int kN = 100;
@@ -105,7 +105,7 @@ TEST_P(HardRung, ImpactsThatFrictionProlongsEndOrAreStopped) {
     EXPECT_TRUE(is_input(impacts[1], got[1]));
 }
 
-// H29: a power of two on all speeds changes no bit but the exponent. (The rsqrt rungs round by range.)
+// H29: multiplying all speeds by a power of two changes only exponents. (The rsqrt rungs round by range.)
 TEST_P(HardRung, PowersOfTwoScale) {
     if (std::string(GetParam().name).find("rsqrt") != std::string::npos ||
         std::string(GetParam().name) == "combined")
@@ -126,12 +126,11 @@ TEST_P(HardRung, PowersOfTwoScale) {
         same += same_bits(one[i], back);
         EXPECT_LE(difference(one[i], back, impacts[i].params.R), 1e-9) << "impact " << i;
     }
-    // Impact 31 sticks; there a slip may pass through 1e-16 m/s, the published cutoff, which is absolute
-    // (H26).
+    // Impact 31 sticks; its slip may pass through 1e-16 m/s, the published cutoff, which is absolute (H26).
     EXPECT_GE(same, 39);
 }
 
-// A lane that cannot be computed is flagged and changes nothing in the others.
+// A lane that cannot be computed is flagged and does not affect the others.
 TEST_P(HardRung, BadLanesHoldUpNobody) {
     if (GetParam().batch == nullptr) return;
     const std::vector<Impact> good = reference::random_impacts(8, 40);

@@ -76,7 +76,7 @@ TEST_P(EveryRung, DoesTheBaselinesStepsOnRandomImpacts) {
             ASSERT_EQ(got[i].status, ImpactStatus::kOk);
             const double off = difference(got[i], expected[i], impacts[i].params.R) /
                                approach_speed(impacts[i].ball1, impacts[i].ball2);
-            // Where the last step is another one, the result is off by up to that step.
+            // If the last step differs, the result is off by up to that step.
             EXPECT_LE(off, got[i].steps == expected[i].steps ? GetParam().bound_random : 3e-3)
                 << "impact " << i;
             same += got[i].steps == expected[i].steps;
@@ -97,7 +97,7 @@ TEST_P(EveryRung, FollowsTheBaselineAtOtherN) {
             ++same;
             EXPECT_LE(
                 difference(got[i], expected[i], impacts[i].params.R),
-                // At small N a step is a large share of the slip, and what rounding decides weighs as much.
+                // At small N a step is a large share of the slip, and rounding decisions weigh as much.
                 (GetParam().bound_random + 1e-12 * n) * approach_speed(impacts[i].ball1, impacts[i].ball2))
                 << "impact " << i << ", N = " << n;
         }
@@ -144,7 +144,7 @@ void make_glancing(Impact& impact, double share) {
     for (int k = 0; k < 2; ++k) b1.v[k] += (share * fastest - approach) * n[k];
 }
 
-// In lanes or alone: the bits of the kernel's summed march, whose bound has tests of its own.
+// In lanes or alone: the bits of the kernel's summed march, whose bound is tested elsewhere.
 TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
     std::vector<Impact> impacts = random_impacts(21, 4000);
     Generator rng(22);
@@ -165,7 +165,7 @@ TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
     }
 }
 
-// Of other processors the table has what needs no instruction of x86-64.
+// On other processors the table has what needs no x86-64 instruction.
 #if defined(__x86_64__)
 TEST(Ladder, TheTableIsWhole) {
     std::set<std::pair<std::string, Isa>> seen;
@@ -190,7 +190,7 @@ TEST(Ladder, TheTableIsWhole) {
 }
 #endif
 
-// The one lossy rung says by how much: the difference is there, and within the bound of the table.
+// The one lossy rung states its loss: the difference exists, and is within the bound of the table.
 TEST(Ladder, RawRsqrtIsLossy) {
     for (const Rung& rung : ladder()) {
         if (std::string(rung.name) != "rsqrt" || !available(rung.isa)) continue;

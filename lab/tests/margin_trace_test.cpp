@@ -1,4 +1,4 @@
-// The frames of a run as a trace, on costs that are given.
+// The frames of a run as a trace, with given costs.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ TEST(MarginTrace, ALateFramePushesTheNextOne) {
     std::vector<double> starts;
     for (const auto& event : trace)
         if (event.at("cat") == "frame") starts.push_back(event.at("ts").get<double>());
-    // 23 ms for the first: the second begins then, and the third too late as well.
+    // The first takes 23 ms: the second begins then, and the third is late as well.
     EXPECT_EQ(starts, (std::vector<double>{0.0, 23000.0, 27000.0}));
 }
 

@@ -1,4 +1,4 @@
-// Plots: well-formed, the same bytes each time, nothing that is no number.
+// Plots: well-formed, the same bytes each time, and no values that are not numbers.
 #include "report/plot.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Plot, BarsAndMarksOfItsOwn) {
     const std::string svg = plot_svg(plot);
     for (const char* mark : {">first<", ">second<"}) EXPECT_EQ(count(svg, mark), 1) << mark;
     EXPECT_EQ(count(svg, ">1.5<"), 0);
-    EXPECT_EQ(count(svg, "stroke=\"#0072b2\""), 2) << "a bar that ends nowhere is not drawn";
+    EXPECT_EQ(count(svg, "stroke=\"#0072b2\""), 2) << "a bar without a finite end is not drawn";
 }
 
 TEST(Plot, NothingAndOnePointAreFine) {

@@ -1,4 +1,4 @@
-// Runs any rung of the ladder on a list of impacts, whether it takes one a call or many.
+// Runs any rung of the ladder on a list of impacts, whether it takes one per call or many.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ inline std::vector<kernel::ImpactResult> run_rung(const kernel::Rung& rung, std:
     return results;
 }
 
-/// The rows of the ladder that a test is about.
+/// The rows of the ladder that a test covers.
 template <class Wanted>
 std::vector<kernel::Rung> rungs_where(const Wanted& wanted) {
     std::vector<kernel::Rung> rungs;

@@ -1,5 +1,5 @@
-// Validation cases: their files, what is read in a record, and
-// that every number is as its case claims, a miss included.
+// Validation cases: their files, what is read from a record, and that every number is as its case claims,
+// misses included.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ CaseFile file_of(const std::string& name) {
     throw std::runtime_error(name);
 }
 
-/// All that is known of a row, to see what to write into its case where a claim no longer holds.
+/// Everything known about a row, to see what to write into its case if a claim no longer holds.
 std::string told(const ValidationRow& row) {
     return fmt::format("{}: {}, {} under {}: computed {:.4g}, measured {:.4g} +- {:.2g}, claimed {}",
                        row.of->file, row.shot->name, info(row.measured->quantity).name, row.variant->name,
@@ -43,8 +43,7 @@ std::string told(const ValidationRow& row) {
 
 class Validation : public testing::TestWithParam<std::string> {};
 
-// A model that gets better or worse has to say so in the
-// case: what is claimed is neither a wish nor out of date.
+// If a model gets better or worse, the case must say so: a claim is neither a wish nor out of date.
 TEST_P(Validation, IsAsClaimed) {
     const ValidationCase of = read_case(file_of(GetParam()));
     long runs = 0;
@@ -72,8 +71,7 @@ TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
     EXPECT_EQ(ids, expected);
 }
 
-// The game's preset, and the coefficients of before there
-// were measured ones, are beside each other in every case.
+// Every case has both the game's preset and the coefficients used before there were measured ones.
 TEST(ValidationCases, HaveThePresetOfTheGameAndTheClassicOne) {
     for (const ValidationCase& of : chosen_cases("")) {
         std::set<std::string> plain;
@@ -96,7 +94,7 @@ TEST(ValidationCases, AnUnknownOneIsNamedBesideTheKnown) {
     }
 }
 
-/// A case in which one text is replaced by another.
+/// A case with one text replaced by another.
 std::string edited(const std::string& from, const std::string& to) {
     std::string text = R"(id = "X"
 title = "t"
@@ -142,7 +140,7 @@ TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
         const std::string text = edited(c.from, c.to);
         try {
             read_case({"x.toml", text});
-            // Without its id the case is whole but for that.
+            // Without its id, the case is otherwise complete.
             ADD_FAILURE() << c.message;
         } catch (const SceneError& error) {
             if (std::string(c.message) == "title")
@@ -161,8 +159,8 @@ TEST(ValidationCases, ATemplateNeedsAValueForEveryName) {
     EXPECT_EQ(filled_in(of, shot, of.variants.front(), of.scene), "pool 2.5");
 }
 
-// Every quantity at every instant, on a shot whose numbers are known:
-// a ball slides, rolls, meets a smooth cushion, slides and rolls.
+// Every quantity at every instant, on a shot with known numbers: a ball slides, rolls, hits a smooth cushion,
+// slides and rolls.
 TEST(ValidationMeasure, ReadsWhatItSays) {
     const Record record = simulate(make_plan(
         parse_scene(
@@ -180,7 +178,7 @@ TEST(ValidationMeasure, ReadsWhatItSays) {
         return measure(record, m);
     };
     // Slides for 2 v/(7 mu_s g) = 0.2 s over 12 v^2/(49 mu_s g) = 0.24 m, rolls at 1 m/s and loses 2 mu_r g x
-    // on the way to the cushion; behind it half of the speed, and the spin of before.
+    // on the way to the cushion; after it, half of the speed and the earlier spin.
     const double in = std::sqrt(1.0 - 0.2 * 1.76), out = 0.5 * in, rolls = out - 2.0 / 7.0 * (out + in);
     EXPECT_NEAR(at(Quantity::kSpeed, Instant::kStart), 1.4, 1e-12);
     EXPECT_NEAR(at(Quantity::kVelocityX, Instant::kStart, 0.1), -1.2, 1e-12);
@@ -251,7 +249,7 @@ TEST_F(ValidationClaims, AMissIsAMissAndWhereItIsSaidToBe) {
     EXPECT_TRUE(holds(13.0, 13.4));
     EXPECT_FALSE(holds(13.0, 13.6));  // worse than claimed
     EXPECT_FALSE(holds(13.0, 12.4));  // better
-    EXPECT_FALSE(holds(12.1, 11.9));  // near the claim, but no miss
+    EXPECT_FALSE(holds(12.1, 11.9));  // near the claim, but not a miss
 }
 
 TEST_F(ValidationClaims, AShareHasTheSpreadOfItsShots) {

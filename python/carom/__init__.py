@@ -1,10 +1,12 @@
 """carom: event-based billiards.
 
-A `Scene` says what stands on the table and how it is struck, `simulate` plays it, and the `Record` says exactly what happened.
-`simulate_many` plays many shots that differ in numbers. SI units throughout: metres, seconds, radians per second; angles whose
-names end in `_deg` are degrees. The table's frame has x along the short side, y along the long side and z up from the cloth.
+A `Scene` describes the table, the balls and the strike, `simulate` plays it, and the `Record` says exactly
+what happened. `simulate_many` plays many shots that differ in numbers. Units are SI throughout: metres,
+seconds, radians per second; names that end in `_deg` are angles in degrees. In the table's frame x runs along
+the short side, y along the long side, and z up from the cloth.
 
-Long calls run without the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any number of threads.
+Long calls release the GIL, and Ctrl-C ends them. Results have the same bits on every machine and with any
+number of threads.
 """
 
 from carom import games, kernel, plot, sweep
@@ -17,7 +19,7 @@ from carom._render import render
 from carom._show import picture, shown
 from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
 
-# Notebooks show a record by these; a record itself knows nothing of plots.
+# Notebooks display a record through these methods; the record itself does not depend on plots.
 setattr(Record, "_repr_html_", shown)
 setattr(Record, "_repr_png_", picture)
 

@@ -1,4 +1,4 @@
-"""What callers may give: public functions say so in their annotations, and `checked` holds callers to that."""
+"""Checks of arguments: `checked` holds the callers of public functions to the annotations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _Public = TypeVar("_Public")
 
 
 class ArgumentError(TypeError, ValueError):
-    """An argument of the wrong type. It is a ValueError besides, since that is what callers have caught."""
+    """An argument of the wrong type. It is also a ValueError, which earlier versions raised."""
 
 
 class _Kind(NamedTuple):
@@ -47,38 +47,50 @@ _KINDS = {
     "Any": _ANY,
     "object": _ANY,
     "Observation": _ANY,
-    "bool": _Kind("a truth value", _is(bool, np.bool_)),
+    "bool": _Kind("a bool", _is(bool, np.bool_)),
     "int": _Kind("a whole number", _is(int, np.integer)),
     "float": _Kind("a number", _is(int, float, np.integer, np.floating)),
-    "str": _Kind("a text", _is(str)),
-    "Literal": _Kind("a text", _is(str)),
+    "str": _Kind("a string", _is(str)),
+    "Literal": _Kind("a string", _is(str)),
     "PathLike": _Kind("a path", _is(os.PathLike)),
     "Callable": _Kind("a function", callable),
     "Mapping": _Kind("a mapping", _is(Mapping)),
     "dict": _Kind("a dict", _is(dict)),
     "Sequence": _Kind("a list", _is_list),
     "tuple": _Kind("a list", _is_list),
-    "Iterable": _Kind("a list", lambda value: isinstance(value, Iterable) and not isinstance(value, (str, bytes, Mapping))),
+    "Iterable": _Kind("a list", lambda value: _is(Iterable)(value) and not _is(str, bytes, Mapping)(value)),
     "ArrayLike": _Kind("an array of numbers", _is_numbers),
-    "NDArray": _Kind("an array of numpy", _is(np.ndarray)),
+    "NDArray": _Kind("a numpy array", _is(np.ndarray)),
 }
 
 
 def _either(one: _Kind, other: _Kind) -> _Kind:
-    return _ANY if _ANY in (one, other) else _Kind(f"{one.words} or {other.words}", lambda value: one.takes(value) or other.takes(value))
+    if _ANY in (one, other):
+        return _ANY
+    return _Kind(f"{one.words} or {other.words}", lambda value: one.takes(value) or other.takes(value))
 
 
 def _named(name: str) -> _Kind:
-    """Of a class by its name: who imports it need not be imported here."""
-    return _Kind(f"{'an' if name[0] in 'AEIOU' else 'a'} {name}", lambda value: any(base.__name__ == name for base in type(value).__mro__))
+    """A class by its name, so that it need not be imported here."""
+    article = "an" if name[0] in "AEIOU" else "a"
+    return _Kind(f"{article} {name}", lambda value: name in (base.__name__ for base in type(value).__mro__))
+
+
+def _plural(words: str) -> str:
+    """Turns "a string or a list of numbers" into "strings or lists of numbers"."""
+    nouns = [word.removeprefix("an ").removeprefix("a ").partition(" of ") for word in words.split(" or ")]
+    return " or ".join(f"{noun}s{of}{items}" for noun, of, items in nouns)
 
 
 def _with_items(whole: _Kind, inner: _Kind, count: int | None) -> _Kind:
     def takes(value: Any) -> bool:
-        # What can be read only once is not read here.
-        return whole.takes(value) and count in (None, len(value)) and (isinstance(value, Iterator) or all(map(inner.takes, value)))
+        if not whole.takes(value) or count not in (None, len(value)):
+            return False
+        # An iterator can be read only once, and not here.
+        return isinstance(value, Iterator) or all(map(inner.takes, value))
 
-    return _Kind(f"{whole.words}{'' if count is None else f' of {count}'} with {inner.words} in each place", takes)
+    items = _plural(inner.words) if count is None else f"{count} {_plural(inner.words)}"
+    return _Kind(f"{whole.words} of {items}", takes)
 
 
 def _kind(annotation: ast.expr) -> _Kind:
@@ -99,7 +111,7 @@ def _kind(annotation: ast.expr) -> _Kind:
 
 
 def may_be(alias: str, annotation: str) -> None:
-    """From now on `alias` in annotations stands for another one."""
+    """Makes `alias` stand for another annotation."""
     _KINDS[alias] = _kind(ast.parse(annotation, mode="eval").body)
 
 
@@ -111,7 +123,8 @@ def _checked(function: Any) -> Callable[..., Any]:
 
     def read() -> None:
         nonlocal kinds, others
-        kinds = {name: _kind(ast.parse(text, mode="eval").body) for name, text in function.__annotations__.items() if name != "return"}
+        texts = {name: text for name, text in function.__annotations__.items() if name != "return"}
+        kinds = {name: _kind(ast.parse(text, mode="eval").body) for name, text in texts.items()}
         if code.co_flags & 0x08:
             others = kinds[code.co_varnames[code.co_argcount + code.co_kwonlyargcount]]
 
@@ -123,14 +136,16 @@ def _checked(function: Any) -> Callable[..., Any]:
             kind = kinds.get(name, _ANY if name == "self" else others)
             if not kind.takes(value):
                 words = kind.words.replace(" or ", ", ", kind.words.count(" or ") - 1)
-                raise ArgumentError(f"{name}: expected {words}, not {reprlib.repr(value)} ({type(value).__name__})")
+                got = f"{reprlib.repr(value)} ({type(value).__name__})"
+                raise ArgumentError(f"{name}: expected {words}, not {got}")
         return function(*arguments, **named)
 
     return call
 
 
 def checked(of: _Public) -> _Public:
-    """A public function, or a class with its public methods, that raises ArgumentError for an argument that its annotation does not have."""
+    """A public function, or a class with its public methods, that raises ArgumentError for a wrong argument
+    type."""
     if not isinstance(of, type):
         return _checked(of)  # type: ignore[return-value]
     for name, part in list(vars(of).items()):

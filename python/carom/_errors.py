@@ -1,11 +1,13 @@
-"""What goes wrong, in the words of the engine."""
+"""Errors with the engine's messages."""
 
 from __future__ import annotations
 
 
 class SceneError(ValueError):
-    """A scene, or a record's file, that is wrong. `str()` is "file:line:column: what is wrong and what to do"; the place is left
-    out where there is none, as in a scene that was built in code.
+    """A scene or a record file is wrong.
+
+    `str()` is "file:line:column: what is wrong and what to do", without the line and column if there are
+    none, as in a scene that was built in code.
 
     message: what is wrong and what to do, without the place
     file: the name of the file, or the name that was given to the text

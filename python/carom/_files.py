@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Files that appear complete or not at all."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from typing import BinaryIO
 
 
 @contextlib.contextmanager
-def whole_file(path: str, temporary: str = "", publish: Callable[[str, str], None] = os.replace) -> Iterator[BinaryIO]:
-    """A file to write, which has its name once it is complete, and stays after a power cut. Raises OSError.
+def whole_file(
+    path: str, temporary: str = "", publish: Callable[[str, str], None] = os.replace
+) -> Iterator[BinaryIO]:
+    """A file to write. It gets its name once it is complete, and then survives a power cut. Raises OSError.
 
-    temporary: the file until then
-    publish: gives it its name
+    temporary: the file's name until then
+    publish: gives the file its name
     """
     grows = temporary or f"{path}.{os.urandom(4).hex()}.tmp"
     try:

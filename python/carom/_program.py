@@ -1,4 +1,4 @@
-"""The program `carom`, which is part of the package: the command, and its reports as data."""
+"""The program `carom`, which comes with the package: the command, and its reports as data."""
 
 from __future__ import annotations
 
@@ -29,16 +29,14 @@ def _column(values: list[str]) -> Any:
 
 
 def _run(command: Sequence[str], folder: str) -> str:
-    """What the program prints, run in a folder whose name is left out of its messages."""
-    import subprocess  # as csv and tempfile: `import carom` is fast without them
+    """The program's output, run in a folder whose name is removed from its messages."""
+    import subprocess  # here, like csv and tempfile, so that `import carom` stays fast
 
-    done = subprocess.run(
-        [_PROGRAM, *command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False
-    )
+    done = subprocess.run([_PROGRAM, *command], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode == 2:
         raise ValueError(done.stderr.strip().replace(f"{folder}{os.sep}", ""))
     if done.returncode != 0:
-        raise RuntimeError(done.stderr.strip() or f"carom ended with the status {done.returncode}")
+        raise RuntimeError(done.stderr.strip() or f"carom ended with exit status {done.returncode}")
     return done.stdout
 
 
@@ -48,7 +46,7 @@ def _write(path: str, text: str) -> None:
 
 
 def _report(arguments: Sequence[str], scene: SceneLike, table: bool) -> dict[str, Any]:
-    """Runs a command with --json, and with --csv where `table` says so: then its columns stand under "table"."""
+    """Runs a command with --json, and if `table` is set with --csv, whose columns are then under "table"."""
     import csv
     import tempfile
 
@@ -69,17 +67,21 @@ def _report(arguments: Sequence[str], scene: SceneLike, table: bool) -> dict[str
 
 @checked
 def margin(
-    scene: SceneLike, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None, render: bool = True, backend: str = "auto"
+    scene: SceneLike, *, runs: int = 5, fps: float | None = None, size: tuple[int, int] | None = None,
+    render: bool = True, backend: str = "auto",
 ) -> dict[str, Any]:
-    """What every frame of a shot costs against 1/fps: the report of `carom margin` as data (docs/guide/margin.md).
+    """Compares the cost of every frame of a shot with 1/fps: the report of `carom margin` as data.
 
-    runs: every frame counts with its median over so many
-    fps, size: as [render] of the scene if they are left out
-    render: whether frames are drawn, read back, encoded and written, too
-    backend: "osmesa", "egl", or "auto": OSMesa where it is installed, else EGL
+    See docs/guide/margin.md.
 
-    Returns the keys of `carom margin --json`, times in ms, and "table": for every column an array with a number for each frame. Wall
-    times: another load on the machine is in them. Raises ValueError for bad input, RuntimeError where nothing can draw.
+    runs: every frame is measured this often; its median counts
+    fps, size: from the scene's [render] section if they are left out
+    render: also draw, read back, encode and write the frames
+    backend: "osmesa", "egl", or "auto": OSMesa if it is installed, else EGL
+
+    Returns the keys of `carom margin --json`, times in ms, and "table": for every column an array with one
+    number per frame. Times are wall-clock times, so other load on the machine is included. Raises ValueError
+    for bad input, and RuntimeError if nothing can draw.
     """
     options = ["margin", "--repeat", str(runs), "--gl", backend]
     if not render:
@@ -100,13 +102,13 @@ def accuracy(
     tolerances: Sequence[float] | None = None,
     runs: int = 5,
 ) -> dict[str, Any]:
-    """What accuracy costs a shot: the report of `carom accuracy` as data (docs/guide/accuracy.md).
+    """Measures what accuracy costs a shot: the report of `carom accuracy` as data (docs/guide/accuracy.md).
 
-    target: the error allowed at the end [m], which decides what is recommended
+    target: the error allowed at the end [m], on which the recommendation is based
     march, tolerances: the settings to compare
-    runs: interleaved rounds; minimum, median and maximum are over them
+    runs: interleaved rounds, over which minimum, median and maximum are taken
 
-    Returns the keys of `carom accuracy --json`: "rows" and more. Raises ValueError for bad input.
+    Returns the keys of `carom accuracy --json`, "rows" and more. Raises ValueError for bad input.
     """
     options = ["accuracy", "--repeat", str(runs)]
     if target is not None:

@@ -30,7 +30,7 @@ _NO_KINDS = np.empty(0, np.uint8)
 
 
 class Event(NamedTuple):
-    """One event, with names: its time [s], its type, the ball, and what the ball met ("" for nothing)."""
+    """One event with names: its time [s], its type, the ball, and what the ball met ("" for nothing)."""
 
     time: float
     type: str
@@ -39,13 +39,13 @@ class Event(NamedTuple):
 
 
 class TablePlan(NamedTuple):
-    """The table as a plan draws it; lengths in m."""
+    """The table as seen from above, for drawing; lengths in m."""
 
     preset: str
-    corner: tuple[float, float]  # of smallest x and y
+    corner: tuple[float, float]  # the smallest x and y
     width: float  # along x, between the nose lines
     length: float  # along y
-    cushions: list[tuple[str, float, float, float, float]]  # id, x and y of one end, of the other
+    cushions: list[tuple[str, float, float, float, float]]  # id, x and y of one end, x and y of the other
     jaws: list[tuple[str, float, float, float]]  # id, x and y of the centre, radius
     pockets: list[tuple[str, float, float, float]]
 
@@ -54,8 +54,8 @@ class TablePlan(NamedTuple):
 class Record:
     """What happened in a shot: motion segments in closed form, and events. Immutable.
 
-    Arrays that are views share the record's memory, are read-only, and keep it alive. Balls are in the order of `ids`. A record
-    pickles as what `save` writes, with its scene.
+    Arrays described as views share the record's memory, are read-only, and keep it alive. Balls are in the
+    order of `ids`. A pickled record holds what `save` writes, and its scene.
     """
 
     __slots__ = ("_native", "__weakref__")
@@ -82,7 +82,8 @@ class Record:
 
     @property
     def stopped(self) -> str:
-        """Why it ended: "at_rest", "time", "events", or "endless" (balls move for ever, and nothing more happens)."""
+        """Why it ended: "at_rest", "time", "events", or "endless" (balls move for ever, and nothing more
+        happens)."""
         return self._native.stopped
 
     @property
@@ -102,7 +103,7 @@ class Record:
 
     @property
     def colors(self) -> NDArray[np.float64]:
-        """The colour that pictures give every ball, sRGB from 0 to 1: (balls, 3)."""
+        """The colour of every ball in pictures, sRGB from 0 to 1: (balls, 3)."""
         return np.array([self._native.color(i) for i in range(self._native.balls)])
 
     @property
@@ -112,19 +113,21 @@ class Record:
 
     @property
     def fps(self) -> float:
-        """Frames per second that the scene asks for ([render])."""
+        """Frames per second from the scene's [render] section."""
         return self._native.fps
 
     @property
     def picture_size(self) -> tuple[int, int]:
-        """Width and height that the scene asks for [pixels]."""
+        """Width and height from the scene's [render] section [pixels]."""
         return self._native.picture_size
 
     @property
     def events(self) -> NDArray[np.void]:
-        """The events in order, a structured view without a copy: time [s], type (`EVENT_TYPES`), a (ball), b (the other ball, or
-        the number of the cushion, jaw or pocket; -1 for none), detail, slow (a slow contact in
-        the air). Columns: `events["time"]`."""
+        """The events in order, as a structured view without a copy; `events["time"]` is one column.
+
+        time [s]; type (`EVENT_TYPES`); a, a ball; b, the other ball or the number of the cushion, jaw or
+        pocket, -1 for none; detail; slow, true for a slow contact in the air.
+        """
         return _carom.events_of(self._native).view(_EVENT)
 
     def event_list(self) -> list[Event]:
@@ -133,24 +136,28 @@ class Record:
 
     @property
     def segments(self) -> tuple[NDArray[np.void], ...]:
-        """For every ball its motion segments in order, structured views without a copy: start [s]; r [m], v [m/s] and w [rad/s] at
-        the start; a [m/s^2] and dw [rad/s^2], both of x and y and constant; spin_decay [rad/s^2]; duration [s] until the ball's
-        own transition; state (`MOTIONS`); held (in a resting contact); ends (the transition comes). Of segments with the same
-        start the last one holds. While a ball falls, r_z is where that began, and v_z how fast it falls."""
+        """The motion segments of every ball in order, as structured views without a copy.
+
+        start [s]; r [m], v [m/s] and w [rad/s] at the start; a [m/s^2] and dw [rad/s^2], the constant x and y
+        components; spin_decay [rad/s^2]; duration [s] until the ball's own transition; state (`MOTIONS`);
+        held, in a resting contact; ends, whether the transition comes. If several segments have the same
+        start, the last one counts. For a falling ball, r_z is the height where the fall began, and v_z its
+        falling speed.
+        """
         return tuple(_carom.segments_of(self._native, i).view(_SEGMENT) for i in range(self._native.balls))
 
     @property
     def clusters(self) -> list[list[int]]:
-        """The balls of every "ball_cluster" event; `events["detail"]` is its place here."""
+        """The balls of every "ball_cluster" event; `events["detail"]` is the index into this list."""
         return self._native.clusters
 
     def states(self, t: ArrayLike, *, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Position [m], velocity [m/s] and spin [rad/s] of every ball, exact at any time.
 
-        t: times [s] of any shape; before 0 the start, after the end the end
+        t: times [s] of any shape; earlier than 0 gives the start, later than the end gives the end
         out: a contiguous array to fill, instead of a new one
 
-        Returns t.shape + (balls, 3, 3). Raises ValueError for a time that is not a number, or an `out` of another shape.
+        Returns t.shape + (balls, 3, 3). Raises ValueError if a time is NaN or `out` has another shape.
         """
         times, shape = self._times(t)
         states = _output(out, (*shape, self._native.balls, 3, 3))
@@ -158,39 +165,44 @@ class Record:
         return states
 
     def motion(self, t: ArrayLike) -> NDArray[np.uint8]:
-        """How every ball moves, a number of `MOTIONS`: t.shape + (balls,). Raises ValueError for a time that is not a number."""
+        """How every ball moves, as an index into `MOTIONS`: t.shape + (balls,). Raises ValueError if a time
+        is NaN."""
         times, shape = self._times(t)
         kinds = np.empty((*shape, self._native.balls), np.uint8)
         self._native.states(times, _NO_NUMBERS, kinds.reshape(-1))
         return kinds
 
     def orientations(self, t: ArrayLike) -> NDArray[np.float64]:
-        """How every ball is turned since the start, quaternions x, y, z, w from the ball to the table: t.shape + (balls, 4). Raises
-        ValueError for a time that is not a number."""
+        """How every ball has turned since the start: t.shape + (balls, 4).
+
+        Quaternions x, y, z, w from the ball's frame to the table's. Raises ValueError if a time is NaN.
+        """
         times, shape = self._times(t)
         turned = np.empty((*shape, self._native.balls, 4))
         self._native.orientations(times, turned.reshape(-1))
         return turned
 
     def final_scene(self, *, scene: SceneLike | None = None, cue: Any = None) -> Scene:
-        """The scene for the next shot: the balls where and as they are at the end, without those in pockets.
+        """The scene for the next shot: the balls as they are at the end, without those in pockets.
 
-        scene: the one that was played; needed for a record that was loaded from a file, which has no physics
-        cue: what strikes then, as for Scene; None for nothing
+        scene: the scene that was played; needed if the record was loaded from a file, which holds no physics
+        cue: the next strike, as for Scene; None for none
 
-        Raises ValueError without a scene, and SceneError where the result is none: no ball is left, or the one that is struck is gone
-        or still moves.
+        Raises ValueError if the scene is missing, and SceneError if no valid scene results: no ball is left,
+        or the struck ball is gone or still moves.
         """
         played = None if scene is None else as_scene(scene)._native
         return scene_with_cue(cue, lambda section: self._native.scene_after(played, section))
 
     def to_pandas(self, what: Literal["events", "segments"] = "events") -> pandas.DataFrame:
-        """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra [notebook]).
+        """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra
+        [notebook]).
 
         "events": time [s], type, a and b (ids; "" for nothing), detail, slow
-        "segments": ball, and what `segments` has, vectors as columns: rx, ry, rz, vx, ..., ax, ay, dwx, dwy
+        "segments": ball and the columns of `segments`, with vectors split: rx, ry, rz, vx, ..., ax, ay, dwx,
+            dwy
 
-        Raises ValueError for anything else.
+        Raises ValueError for any other `what`.
         """
         if what not in ("events", "segments"):
             raise ValueError(f"what={what!r}: expected events or segments")
@@ -208,30 +220,38 @@ class Record:
             columns |= {"a": [event.a for event in listed], "b": [event.b for event in listed]}
             return pandas.DataFrame(columns | {name: view[name] for name in ("detail", "slow")})
         segments = np.concatenate(self.segments)
-        columns = {"ball": np.repeat(np.array(self.ids, dtype=object), [len(of_ball) for of_ball in self.segments])}
+        balls = np.array(self.ids, dtype=object)
+        columns = {"ball": np.repeat(balls, [len(of_ball) for of_ball in self.segments])}
         for name in _SEGMENT.names or ():
             values = segments[name]
             if name == "state":
                 columns[name] = named(values, self.MOTIONS)
+            elif values.ndim == 1:
+                columns[name] = values
             else:
-                columns |= {name: values} if values.ndim == 1 else dict(zip((name + axis for axis in "xyz"), values.T))
+                columns |= zip((name + axis for axis in "xyz"), values.T)
         return pandas.DataFrame(columns)
 
     def page(self, second: Record | None = None) -> str:
-        """The page of `carom view`, as HTML that loads nothing: it plays the shot, with events, trails and charts, and another one
-        over or beside it."""
+        """The page of `carom view` as self-contained HTML: it plays the shot with events, trails and charts.
+
+        second: another record, played over the first or beside it
+        """
         return self._native.page(None if second is None else second._native)
 
     def hash(self) -> str:
-        """64 bits of all bits of segments and events, as 16 hexadecimal digits: equal on every machine."""
+        """A 64-bit hash over all bits of segments and events, as 16 hexadecimal digits: equal on every
+        machine."""
         return self._native.hash()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the record as JSON, whole or not at all: what `carom simulate -o` writes. Raises ValueError for a name that does
-        not end in .json, OSError where the file cannot be written."""
+        """Writes the record as JSON, as `carom simulate -o` does; the file appears complete or not at all.
+
+        Raises ValueError if the name does not end in .json, and OSError if the file cannot be written.
+        """
         name = os.fspath(path)
         if not name.endswith(".json"):
-            raise ValueError(f"{name}: a record is saved as .json")
+            raise ValueError(f"{name}: a record is saved as .json; use a name that ends in .json")
         try:
             self._native.save(name)
         except RuntimeError as error:
@@ -239,7 +259,8 @@ class Record:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """A record that `save` or `carom simulate -o` wrote. Raises SceneError where the file is none."""
+        """Loads a record that `save` or `carom simulate -o` wrote. Raises SceneError if the file is not
+        one."""
         return cls._of(_carom.load_record(os.fspath(path)))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -250,18 +271,19 @@ class Record:
         return None if self._native.scene is None else Scene._of(self._native.scene)
 
     def __repr__(self) -> str:
-        return f"<carom.Record: {self._native.balls} balls, {len(self.events)} events, {self.duration:.3f} s, {self.stopped}>"
+        counts = f"{self._native.balls} balls, {len(self.events)} events"
+        return f"<carom.Record: {counts}, {self.duration:.3f} s, {self.stopped}>"
 
     @staticmethod
     def _times(t: ArrayLike) -> tuple[NDArray[np.float64], tuple[int, ...]]:
         times = np.asarray(t, np.float64)
         if np.isnan(times).any():
-            raise ValueError("a time is not a number")
+            raise ValueError("a time is not a number; leave NaN out")
         return np.ascontiguousarray(times).reshape(-1), times.shape
 
 
 def _again(text: str, scene: Scene | None) -> Record:
-    """A record that was pickled."""
+    """Restores a pickled record."""
     return Record._of(_carom.parse_record(text, None if scene is None else scene._native))
 
 
@@ -273,6 +295,7 @@ def _output(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[
 
 
 def check_output(name: str, out: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
-    """Whether a caller's array can be filled. Raises ValueError."""
-    if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != dtype or not out.flags.c_contiguous or not out.flags.writeable:
+    """Raises ValueError unless a caller's array can be filled."""
+    fits = isinstance(out, np.ndarray) and out.shape == shape and out.dtype == dtype
+    if not fits or not out.flags.c_contiguous or not out.flags.writeable:
         raise ValueError(f"{name}: expected a writable contiguous array of {dtype} with the shape {shape}")

@@ -16,9 +16,6 @@ from carom._simulate import simulate
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: What a picture may have at most on a side [pixels].
-_LARGEST = 16384
-
 
 @checked
 def render(
@@ -31,34 +28,39 @@ def render(
     overlays: Sequence[str] = (),
     backend: Literal["auto", "egl", "osmesa"] = "auto",
 ) -> Iterator[NDArray[np.uint8]]:
-    """Draws a shot without a display: an iterator of frames, (height, width, 3) sRGB with the top row first, each the caller's own.
+    """Draws a shot without a display. Returns an iterator of frames.
 
-    shot: a record, or a scene, as `simulate` takes it, that is then simulated
-    camera: "top", "rail", "player" or "follow"; "scene" is what [render] of the scene says
-    size: (width, height) in pixels; as [render] if it is left out
-    fps: frames per second of the shot, from its start to its end; as [render] if it is left out
-    times: instead of fps, the times [s] to draw, in any order
-    overlays: of "trails", "events", "spin", "ghost" and "clock"
-    backend: the library that draws; "auto" takes EGL, or else OSMesa
+    A frame is (height, width, 3), sRGB, with the top row first; it belongs to the caller.
 
-    Memory does not grow with the number of frames. The first frame takes the longest: the table is drawn once. All frames are drawn by
-    the thread that asks for the first.
+    shot: a record, or a scene as for `simulate`, which is then simulated
+    camera: "top", "rail", "player", "follow", or "scene" for the one in the scene's [render] section
+    size: (width, height) in pixels; from [render] if it is left out
+    fps: frames per second of the shot, from its start to its end; from [render] if it is left out
+    times: the times [s] to draw instead of fps, in any order
+    overlays: any of "trails", "events", "spin", "ghost" and "clock"
+    backend: the drawing library; "auto" tries EGL first, then OSMesa
 
-    Raises RuntimeError where no library can draw; the message names the packages. Raises ValueError for what does not exist.
+    Memory does not grow with the number of frames. The first frame takes longest because the table is drawn
+    once. All frames are drawn by the thread that requests the first.
+
+    Raises RuntimeError if no library can draw, with the packages to install. Raises ValueError for an unknown
+    option or an invalid number.
     """
     record = shot if isinstance(shot, Record) else simulate(shot)
     width, height = record.picture_size if size is None else size
-    if not (1 <= width <= _LARGEST and 1 <= height <= _LARGEST):
-        raise ValueError(f"size={size}: expected 1 to {_LARGEST} pixels on each side")
+    most = _carom.MAX_IMAGE_SIZE
+    if not (1 <= width <= most and 1 <= height <= most):
+        raise ValueError(f"size={size}: expected 1 to {most} pixels on each side")
     rate = record.fps if fps is None else fps
     if not (0 < rate < np.inf):
         raise ValueError(f"fps={fps}: expected a number greater than 0")
     moments = None if times is None else np.asarray(times, np.float64).reshape(-1)
     if moments is not None and np.isnan(moments).any():
-        raise ValueError("a time is not a number")
+        raise ValueError("a time is not a number; leave NaN out")
     unknown = set(overlays) - {"trails", "events", "spin", "ghost", "clock"}
     if unknown:
-        raise ValueError(f"overlays: expected a list of trails, events, spin, ghost and clock, not {overlays!r}")
+        names = "trails, events, spin, ghost and clock"
+        raise ValueError(f"overlays: expected a list of {names}, not {overlays!r}")
     if camera not in ("scene", "top", "rail", "player", "follow"):
         raise ValueError(f"camera={camera!r}: expected scene, top, rail, player or follow")
     if backend not in ("auto", "egl", "osmesa"):
@@ -67,7 +69,8 @@ def render(
 
 
 def _frames(
-    record: Record, camera: str, width: int, height: int, fps: float, times: NDArray[np.float64] | None, overlays: str, backend: str
+    record: Record, camera: str, width: int, height: int, fps: float, times: NDArray[np.float64] | None,
+    overlays: str, backend: str,
 ) -> Iterator[NDArray[np.uint8]]:
     drawing = _open(record, camera, width, height, backend, overlays)
     if times is None:
@@ -83,7 +86,7 @@ def _frames(
 
 def _open(record: Record, camera: str, width: int, height: int, backend: str, overlays: str) -> _carom.Frames:
     problems = []
-    # EGL first, and not the default of the program: OSMesa hangs or crashes where drawings live in several threads.
+    # EGL first, unlike the program: OSMesa hangs or crashes if several threads draw.
     for name in ("egl", "osmesa") if backend == "auto" else (backend,):
         try:
             return _carom.Frames(record._native, camera, width, height, name, overlays)

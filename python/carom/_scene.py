@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _placeless(error: SceneError) -> SceneError:
-    """The text of a scene that was built in code is nobody's: its lines say nothing."""
+    """The error without its line numbers, which mean nothing for a scene that was built in code."""
     return SceneError(re.sub(r" in line \d+", "", error.message), error.file)
 
 
@@ -30,22 +30,22 @@ def _section(value: str | Mapping[str, Any], key: str) -> Mapping[str, Any]:
 
 @checked
 class Scene:
-    """A table, its balls, perhaps a shot. Immutable and valid.
+    """A table, its balls, and a strike if there is one. Immutable and valid.
 
     Sections and keys are those of scene files (docs/reference/scene_format.md):
-    `Scene(table="carom", balls="carom", rack="three_cushion", cue={"ball": "white", "speed": 4})`. A text stands for the preset of a table, of balls or
-    of a cue, and for the game of a rack.
+    `Scene(table="carom", balls="carom", rack="three_cushion", cue={"ball": "white", "speed": 4})`. A string
+    instead of a section is the preset of a table, of balls or of a cue, or the game of a rack.
 
-    table: table, "nine_foot" if it is left out
-    balls: material of all balls
-    ball: a mapping for each ball that is placed by itself
+    table: the table, "nine_foot" if it is left out
+    balls: the material of all balls
+    ball: one mapping for each ball that is placed by itself
     rack: balls that are placed together
-    cue: what strikes a ball; without it nothing is struck
+    cue: the strike; without it, no ball is struck
     physics, effects, stop, render: as in files
 
-    Raises SceneError where the engine refuses the scene.
+    Raises SceneError if the engine refuses the scene.
 
-    A scene pickles as its text. Two scenes are equal if `text()` is equal.
+    A scene pickles as its text. Two scenes are equal if their `text()` is equal.
     """
 
     __slots__ = ("_native",)
@@ -63,9 +63,9 @@ class Scene:
         **sections: Mapping[str, Any],
     ) -> None:
         tree: dict[str, Any] = {}
-        for name, text_is, part in (("table", "preset", table), ("balls", "preset", balls), ("rack", "game", rack), ("cue", "preset", cue)):
+        for name, part in (("table", table), ("balls", balls), ("rack", rack), ("cue", cue)):
             if part is not None:
-                tree[name] = _section(part, text_is)
+                tree[name] = _section(part, "game" if name == "rack" else "preset")
         if ball is not None:
             tree["ball"] = ball
         if physics is not None:
@@ -80,23 +80,29 @@ class Scene:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """The scene in a TOML file. Raises SceneError with the place of the mistake, also where the file cannot be read."""
+        """The scene in a TOML file. Raises SceneError, with the place of the mistake, also if it cannot be
+        read."""
         name = os.fspath(path)
         return cls._of(_carom.parse_scene(_carom.read_scene_text(name), name))
 
     @classmethod
     def loads(cls, text: str, name: str = "scene") -> Self:
-        """The scene in a TOML text; `name` stands for the file in messages. Raises SceneError with the place of the mistake."""
+        """The scene in a TOML text. Raises SceneError with the place of the mistake.
+
+        name: what messages give as the file
+        """
         return cls._of(_carom.parse_scene(text, name))
 
     @classmethod
     def from_dict(cls, tree: Mapping[str, Any], name: str = "scene") -> Self:
-        """The scene that a file with this content describes: what `tomllib.load` gives. Numbers and arrays of numpy will do.
-        Raises SceneError, in the words for a file but without a line."""
+        """The scene that a file with this content describes, as `tomllib.load` returns it.
+
+        Numbers and arrays of numpy are accepted. Raises SceneError with the message for a file, but no line.
+        """
         return cls._of(_from_tree(tree, name))
 
     def to_dict(self) -> dict[str, Any]:
-        """The file as a tree, as it was written: `Scene.from_dict(scene.to_dict()) == scene`."""
+        """The scene's file as a tree, as it was written: `Scene.from_dict(scene.to_dict()) == scene`."""
         import tomllib
 
         return tomllib.loads(self._native.source)
@@ -104,11 +110,11 @@ class Scene:
     def replace(self, **changes: Any) -> Self:
         """The scene with other values.
 
-        A key with dots names one value, as `carom sweep --vary` writes it: `scene.replace(**{"cue.speed": 3, "balls.mu_s": 0.18})`,
-        "ball.cue.position.x", "table.pocket.p1.radius". A key without dots replaces a whole section, and None removes it:
-        `scene.replace(cue={"speed": 3, "aim_deg": 88})`.
+        A key with dots sets one value, as in `carom sweep --vary`: "ball.cue.position.x",
+        "table.pocket.p1.radius" or `scene.replace(**{"cue.speed": 3, "balls.mu_s": 0.18})`. A key without
+        dots replaces a whole section, and None removes it: `scene.replace(cue={"speed": 3, "aim_deg": 88})`.
 
-        Raises SceneError for an unknown key, and where the engine refuses the result.
+        Raises SceneError for an unknown key, or if the engine refuses the result.
         """
         native, name = self._native, self._native.file
         sections = {key: part for key, part in changes.items() if "." not in key}
@@ -124,8 +130,10 @@ class Scene:
         return self._of(native)
 
     def text(self) -> str:
-        """The scene as a TOML file with every value written out. `Scene.loads(scene.text())` is the same scene to the bit; a rack
-        is written as its balls."""
+        """The scene as a TOML file with every value written out, a rack as its balls.
+
+        `Scene.loads(scene.text())` is the same scene to the bit.
+        """
         return self._native.text
 
     @property
@@ -135,7 +143,7 @@ class Scene:
 
     @property
     def file(self) -> str:
-        """The name that stands in messages."""
+        """The file name that messages give."""
         return self._native.file
 
     @property
@@ -145,7 +153,7 @@ class Scene:
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Where the balls are at the start [m]: (balls, 2), a copy."""
+        """The balls' starting positions [m]: (balls, 2), a copy."""
         out = np.empty((self._native.balls, 2))
         self._native.positions(out.reshape(-1))
         return out
@@ -163,7 +171,7 @@ class Scene:
         return f"<carom.Scene {self.file}: {', '.join(self.ids[:4])}{', ...' if len(self.ids) > 4 else ''}>"
 
 
-#: What functions take that play a scene: one that was read, the path of its file, or its tree.
+#: What functions accept as a scene: a Scene, the path of its file, or its tree.
 SceneLike: TypeAlias = Scene | str | os.PathLike[str] | Mapping[str, Any]
 may_be("SceneLike", "Scene | str | PathLike | Mapping")
 
@@ -181,12 +189,15 @@ def _from_tree(tree: Mapping[str, Any], name: str) -> _carom.Scene:
         raise _placeless(error) from None
 
 
-def scene_with_cue(cue: str | Mapping[str, Any] | None, make: Callable[[str], _carom.Scene], **standard: Any) -> Scene:
-    """The scene that `make` makes with the section [cue] of this cue, or without one.
+def scene_with_cue(
+    cue: str | Mapping[str, Any] | None, make: Callable[[str], _carom.Scene], **standard: Any
+) -> Scene:
+    """The scene that `make` returns for the section [cue] of this cue, or for an empty text without a cue.
 
-    standard: what the cue has where it does not say anything else
+    standard: defaults for what the cue leaves out
     """
+    tree = {} if cue is None else {"cue": standard | dict(_section(cue, "preset"))}
     try:
-        return Scene._of(make("" if cue is None else _toml.document({"cue": standard | dict(_section(cue, "preset"))}, "scene")))
+        return Scene._of(make(_toml.document(tree, "scene")))
     except SceneError as error:
         raise _placeless(error) from None

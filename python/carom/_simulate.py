@@ -1,4 +1,4 @@
-"""One shot, and many."""
+"""One shot, and batches of shots."""
 
 from __future__ import annotations
 
@@ -23,29 +23,32 @@ _CUE_KEYS = ("cue.speed", "cue.aim_deg", "cue.elevation_deg", "cue.offset.side",
 
 def _limits(until: float | None, max_events: int | None) -> None:
     if until is not None and not (until >= 0 and math.isfinite(until)):
-        raise ValueError(f"until={until}: expected a number of seconds of at least 0")
+        raise ValueError(f"until={until}: expected a time in seconds of at least 0")
     if max_events is not None and max_events < 0:
         raise ValueError(f"max_events={max_events}: expected at least 0")
 
 
 @checked
-def simulate(scene: SceneLike, *, until: float | None = None, max_events: int | None = None, verify: bool = False) -> Record:
-    """Plays one shot to rest, to a time [s] or to a number of events.
+def simulate(
+    scene: SceneLike, *, until: float | None = None, max_events: int | None = None, verify: bool = False
+) -> Record:
+    """Plays one shot to rest, to a time [s], or for a number of events.
 
-    scene: or the path of its file, or its tree as for `Scene.from_dict`
+    scene: a Scene, the path of its file, or its tree as for `Scene.from_dict`
     verify: check the laws of mechanics after every event
 
-    Raises SimulationError, with the record so far, for a run that cannot go on or breaks a law; never hangs. Raises SceneError
-    where [effects] leaves out what the scene needs, and ValueError for a limit that is none.
+    Raises SimulationError, with the record so far, if the run cannot continue or breaks a law; it never
+    hangs. Raises SceneError if [effects] switches off something the scene needs, and ValueError for an
+    invalid limit.
     """
     _limits(until, max_events)
     return Record._of(_carom.simulate(as_scene(scene)._native, until, max_events, verify))
 
 
 class SimulationError(RuntimeError):
-    """A run that cannot go on, or one whose record breaks a law (`verify=True`). `str()` says why.
+    """A run that cannot continue, or one whose record breaks a law (`verify=True`). `str()` says why.
 
-    record: what happened until then, or None where nothing was kept
+    record: what happened until then, or None if nothing was kept
     """
 
     record: Record | None
@@ -59,42 +62,50 @@ class SimulationError(RuntimeError):
 
 
 def simulation_error(message: str, native: _carom.Record | None) -> SimulationError:
-    """For the extension module."""
+    """Called by the extension module."""
     return SimulationError(message, None if native is None else Record._of(native))
 
 
 class ShotStatus(enum.IntEnum):
-    """How a shot of a batch ended. From INVALID on it has no result."""
+    """How a shot of a batch ended. From INVALID on, it has no result."""
 
     AT_REST = 0
     TIME = 1
     EVENTS = 2
     ENDLESS = 3  # balls move for ever, and nothing more happens
-    INVALID = 4  # its values make no valid scene
-    FAILED = 5  # the simulation could not go on
+    INVALID = 4  # its values do not make a valid scene
+    FAILED = 5  # the simulation could not continue
 
 
 @checked
 class Shots(NamedTuple):
-    """n shots of b balls, in the order of `scene.ids`. A shot without a result has its status, NaN as duration and places, 0 events,
-    -1 and 0 elsewhere, and a message."""
+    """n shots of b balls, in the order of `scene.ids`.
+
+    A shot without a result has its status and a message. Its duration and positions are NaN, its number of
+    events is 0, and everything else is -1 or 0.
+    """
 
     status: NDArray[np.uint8]  # (n,) ShotStatus
     duration: NDArray[np.float64]  # (n,) [s]
     events: NDArray[np.int64]  # (n,)
-    first_hit: NDArray[np.int32]  # (n,) the ball that the struck ball met first, or -1
+    first_hit: NDArray[np.int32]  # (n,) the first ball that the struck ball met, or -1
     contacts: NDArray[np.int32]  # (n,) how many balls it met, each counted once
-    approach_cushions: NDArray[np.int32]  # (n,) how many cushions it met before the second of them, or at all
-    xy: NDArray[np.float64]  # (n, b, 2) [m] at the end; of a pocketed ball the pocket, NaN for one that was left out
-    pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, -2 for one that has left the table, or -1
-    fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1, ..., or -1
+    # (n,) how many cushions it met before its second ball, or in the whole shot if it met fewer than two
+    approach_cushions: NDArray[np.int32]
+    # (n, b, 2) [m] at the end; for a pocketed ball, the pocket; NaN for a ball that was left out
+    xy: NDArray[np.float64]
+    pocket: NDArray[np.int32]  # (n, b) the pocket that holds the ball, -2 if it left the table, or -1
+    fell: NDArray[np.int32]  # (n, b) 0 for the ball that fell first, 1 for the next, ..., or -1
     cushions: NDArray[np.int32]  # (n, b) how often the ball met a cushion or a jaw
-    hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), where it was asked for
-    messages: dict[int, str]  # shot: why it has no result
+    hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), if requested
+    messages: dict[int, str]  # by shot: why it has no result
 
     @property
     def places(self) -> NDArray[np.float64]:
-        """Where balls are that are still on the table: (n, b, 2) [m], NaN for the others; a copy, for `simulate_many(xy=...)`."""
+        """Positions [m] of the balls still on the table, NaN for the others: (n, b, 2).
+
+        A copy, suitable for `simulate_many(xy=...)`.
+        """
         return np.where((self.pocket != -1)[:, :, None], np.nan, self.xy)
 
     def _native(self) -> Any:
@@ -143,21 +154,24 @@ def simulate_many(
     hashes: bool = False,
     out: Shots | None = None,
 ) -> Shots:
-    """Plays n shots that differ in numbers. Shot i has the bits of `simulate` for the scene with these numbers, whatever the number
-    of threads; one that fails has its status and does not raise for the others.
+    """Plays n shots that differ in numbers.
+
+    Shot i has the same bits as `simulate` for the scene with these numbers, whatever the number of threads. A
+    shot that fails gets a status and a message; the others are still played.
 
     scene: as for `simulate`
-    cue: (n, 5): speed [m/s], aim_deg, elevation_deg, side, height; the scene has to have a cue
-    xy: (n, balls, 2) places at the start [m]; a ball with NaN twice is left out of its shot
-    params: (n,) for each key, such as "balls.mu_s", "physics.gravity", "ball.cue.velocity.y", "cue.offset.side"
-    shots: n, where nothing else says it
+    cue: (n, 5): speed [m/s], aim_deg, elevation_deg, side, height; the scene must have a cue
+    xy: (n, balls, 2) starting positions [m]; a ball with two NaN is left out of its shot
+    params: (n,) for each key, such as "balls.mu_s", "physics.gravity", "ball.cue.velocity.y",
+        "cue.offset.side"
+    shots: n, if nothing else gives it
     until, max_events: limits of every shot, as for `simulate`
-    threads: 0 takes one for each core that the process may use
+    threads: 0 uses every core available to the process
     hashes: fill `Shots.hash`
-    out: arrays of an earlier call, or of `Shots.empty`, that are filled and returned; no others are made
+    out: arrays from an earlier call or from `Shots.empty`, to fill and return instead of new ones
 
-    Raises ValueError for a key that names no number, or arrays that do not fit. Ctrl-C ends the batch between two shots; what `out` then
-    holds is not specified.
+    Raises ValueError if a key does not name a number or an array does not fit. Ctrl-C ends the batch between
+    two shots; the contents of `out` are then unspecified.
     """
     _limits(until, max_events)
     if threads < 0:
@@ -166,14 +180,17 @@ def simulate_many(
     ids = scene.ids
     n, columns, absent = _columns_of(scene, cue, xy, params, shots)
     into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
-    failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads, into._native())
+    arrays = into._native()
+    failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads, arrays)
     return into._replace(messages=dict(failures))
 
 
 def _columns_of(
-    scene: Scene, cue: ArrayLike | None, xy: ArrayLike | None, params: Mapping[str, ArrayLike] | None = None, shots: int | None = None
+    scene: Scene, cue: ArrayLike | None, xy: ArrayLike | None,
+    params: Mapping[str, ArrayLike] | None = None, shots: int | None = None,
 ) -> tuple[int, list[tuple[str, NDArray[np.float64]]], NDArray[np.uint8]]:
-    """How many shots, the values that differ from shot to shot, and which balls are left out: as the extension module takes them."""
+    """For the extension module: the number of shots, the values that differ between them, and the absent
+    balls."""
     ids = scene.ids
     absent = np.empty(0, np.uint8)
     given = [] if cue is None else [("cue", [*_CUE_KEYS], _array("cue", cue, (5,), "(n, 5)"))]
@@ -186,7 +203,7 @@ def _columns_of(
     given += [(key, [key], _array(key, values, (), "(n,)")) for key, values in (params or {}).items()]
     n = next((len(values) for _, _, values in given), None) if shots is None else shots
     if n is None:
-        raise ValueError("there is nothing that says how many shots: give cue, xy, params or shots")
+        raise ValueError("the number of shots is unknown: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
     columns: list[tuple[str, NDArray[np.float64]]] = []

@@ -1,4 +1,4 @@
-"""Scenes that are built in code, as the text that the engine reads."""
+"""Scenes that are built in code, written as the text that the engine reads."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any
 
 from carom._errors import SceneError
 
-# The engine refuses values that stand deeper; here it keeps a tree that contains itself from being followed for ever.
+# The engine refuses values nested deeper; the limit here stops endless recursion into a tree that contains
+# itself.
 _DEEPEST = 20
 
 
@@ -18,7 +19,7 @@ def _string(text: str) -> str:
 
 
 def value(of: object, path: str, name: str, depth: int = 0) -> str:
-    """A value as TOML. `path` and `name` stand in messages. Raises SceneError for what TOML does not have."""
+    """A value as TOML. `path` and `name` are for messages. Raises SceneError for what TOML cannot hold."""
     if isinstance(of, str):
         return _string(of)
     if isinstance(of, bool):
@@ -32,9 +33,10 @@ def value(of: object, path: str, name: str, depth: int = 0) -> str:
     if isinstance(of, (datetime.date, datetime.time)):
         return of.isoformat()
     if depth > _DEEPEST:
-        raise SceneError(f"{path} stands in more than {_DEEPEST} others; scenes are flat", name)
+        raise SceneError(f"{path} is nested in more than {_DEEPEST} others; scenes are flat", name)
     if isinstance(of, Mapping):
-        return "{" + ", ".join(f"{_key(k, path, name)} = {value(v, f'{path}.{k}', name, depth + 1)}" for k, v in of.items()) + "}"
+        items = (f"{_key(k, path, name)} = {value(v, f'{path}.{k}', name, depth + 1)}" for k, v in of.items())
+        return "{" + ", ".join(items) + "}"
     item = getattr(of, "tolist", None)
     if item is not None:
         return value(item(), path, name, depth + 1)  # an array or a number of numpy
@@ -42,12 +44,12 @@ def value(of: object, path: str, name: str, depth: int = 0) -> str:
         return "[" + ", ".join(value(v, f"{path}[{i}]", name, depth + 1) for i, v in enumerate(of)) + "]"
     if of is None:
         raise SceneError(f"{path} is None; leave the key out", name)
-    raise SceneError(f"{path} has the type {type(of).__name__}; write numbers, texts, lists and dicts", name)
+    raise SceneError(f"{path} has the type {type(of).__name__}; use numbers, strings, lists and dicts", name)
 
 
 def _key(key: object, path: str, name: str) -> str:
     if not isinstance(key, str):
-        raise SceneError(f"{path or 'the scene'} has the key {key!r}; keys are texts", name)
+        raise SceneError(f"{path or 'the scene'} has the key {key!r}; use strings as keys", name)
     return _string(key)
 
 

@@ -1,7 +1,8 @@
-"""Impacts by themselves: arrays of states in, arrays of states out.
+"""Single impacts: arrays of states in, arrays of states out.
 
-A state is (3, 3): rows position [m], velocity [m/s], angular velocity [rad/s]. Parameters are numbers, or arrays with one number for
-each impact; their names and units are those of scene files, and their defaults those of the balls "pool_classic".
+A state is (3, 3): rows position [m], velocity [m/s], angular velocity [rad/s]. Parameters are numbers, or
+arrays with one number per impact. Their names and units are those of scene files; their defaults are those of
+the "pool_classic" balls.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _EPSILON = np.finfo(np.float64).eps
 
 
 def _rows(count: int, **columns: ArrayLike) -> NDArray[np.float64]:
-    """A row for all impacts, or one for each."""
+    """One row for all impacts, or one per impact."""
     arrays = {name: np.asarray(values, np.float64) for name, values in columns.items()}
     for name, array in arrays.items():
         if array.ndim > 0 and array.size != count:
@@ -55,15 +56,16 @@ def ball_ball(
     e_b: ArrayLike = 0.95,
     out: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
-    """Impacts of two alike balls.
+    """Impacts of two equal balls.
 
-    rvw: (..., 2, 3, 3), both balls when they touch, their centres at one height
+    rvw: (..., 2, 3, 3), both balls as they touch, with their centres at the same height
     model: "mathavan" (to `tolerance` of the approach speed, 1e-13 to 1e-1), "inelastic" or "elastic"
-    radius [m], mass [kg], mu_s (cloth), mu_b (between the balls), e_b: one number, or one for each impact
+    radius [m], mass [kg], mu_s (cloth), mu_b (between the balls), e_b: one number, or one per impact
     out: a contiguous array to fill; it may be rvw itself
 
-    Returns the states after the impact; balls that do not approach leave as they came. Raises ValueError for a state or parameter that
-    cannot be computed, naming the first; what `out` then holds is not specified.
+    Returns the states after the impact; balls that do not approach each other are unchanged. Raises
+    ValueError, naming the first, for a state or parameter that cannot be used; the contents of `out` are then
+    unspecified.
     """
     states = _states(rvw, (2, 3, 3))
     pairs = states.reshape(-1, 2, 9)
@@ -85,7 +87,7 @@ def _unit(normal: ArrayLike, count: int) -> NDArray[np.float64]:
     length = np.sqrt(normals[:, :1] * normals[:, :1] + normals[:, 1:] * normals[:, 1:])
     if not (np.abs(length - 1.0) <= 1e-3).all():
         raise ValueError("normal: expected vectors of length 1, from the cushion into the table")
-    # What is a unit vector up to rounding is used as it is.
+    # A vector that is a unit vector up to rounding is used unchanged.
     return np.ascontiguousarray(np.where(np.abs(length - 1.0) <= 4.0 * _EPSILON, normals, normals / length))
 
 
@@ -103,17 +105,17 @@ def ball_cushion(
     height: ArrayLike | None = None,
     out: NDArray[np.float64] | None = None,
 ) -> NDArray[np.float64]:
-    """Impacts of a ball and a cushion.
+    """Impacts of a ball on a cushion.
 
     rvw: (..., 3, 3)
     normal: (2,) or (..., 2), unit vectors from the cushion into the table
     model: "han_2005", "mathavan_2010", "stronge", "impulse" or "smooth"
-    radius [m], mass [kg], mu_s (cloth), e_c, f_c (cushion): one number, or one for each impact
-    height: of the nose above the cloth [m]; 1.28 radii if it is left out
+    radius [m], mass [kg], mu_s (cloth), e_c, f_c (cushion): one number, or one per impact
+    height: the nose's height above the cloth [m]; 1.28 radii if it is left out
     out: a contiguous array to fill; it may be rvw itself
 
-    Returns the states after the impact; a ball that does not approach leaves as it came. Raises ValueError for what cannot be
-    computed; what `out` then holds is not specified.
+    Returns the states after the impact; a ball that does not approach is unchanged. Raises ValueError for a
+    state or parameter that cannot be used; the contents of `out` are then unspecified.
     """
     states = _states(rvw, (3, 3))
     after = _output(out, states.shape)

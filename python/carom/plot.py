@@ -1,6 +1,7 @@
 """Pictures of records with matplotlib (extra [plot]).
 
-Every function draws into `ax`, or into new axes of pyplot, and returns the axes. matplotlib is imported by the first call.
+Every function draws into `ax`, or into new pyplot axes, and returns the axes. The first call imports
+matplotlib.
 """
 
 from __future__ import annotations
@@ -21,18 +22,18 @@ __all__ = ["energy", "speeds", "table"]
 _CLOTH = "#86b39c"
 _RAIL = "#6b4a2f"
 _HOLE = "#26221f"
-#: Points of a trail in one motion segment: a parabola is smooth with so few.
+#: Points of a trail in one motion segment: enough for a smooth parabola.
 _POINTS = 13
 
 
 @checked
 def table(record: Record, *, at: float | None = None, trails: bool = True, ax: Axes | None = None) -> Axes:
-    """A plan of the table, as the camera "top" sees it: y to the right, x downwards, both in m.
+    """The table from above, as the camera "top" sees it: y to the right, x downwards, both in m.
 
-    at: the time [s] whose places are drawn, with the trails until then; None for the whole shot, where rings show the start
-    trails: whether to draw the paths of the centres, in the colours of the balls; dotted where a ball is in the air
+    at: the time [s] to show, with the trails until then; None for the whole shot, with rings at the start
+    trails: draw the paths of the centres in the colours of the balls, dotted while a ball is in the air
 
-    Balls that lie in pockets have a trail and no disc. Raises ValueError for a time that is not a number.
+    Pocketed balls have a trail but no disc. Raises ValueError if the time is NaN.
     """
     axes: Axes = _axes(ax, (9.0, 5.0))
     end = record.duration if at is None else min(float(at), record.duration)
@@ -56,23 +57,28 @@ def table(record: Record, *, at: float | None = None, trails: bool = True, ax: A
 
 @checked
 def speeds(record: Record, *, ax: Axes | None = None) -> Axes:
-    """Speed [m/s] of every ball that moves, over time [s]."""
+    """Speed [m/s] of every moving ball over time [s]."""
     axes: Axes = _axes(ax, (9.0, 4.0))
     times = _times(record)
     speed = np.linalg.norm(record.states(times)[:, :, 1], axis=-1)
     for ball in np.flatnonzero(speed.max(axis=0) > 0):
-        axes.plot(times, speed[:, ball], color=tuple(record.colors[ball]), label=record.ids[ball], path_effects=_edge())
+        color = tuple(record.colors[ball])
+        axes.plot(times, speed[:, ball], color=color, label=record.ids[ball], path_effects=_edge())
     _over_time(axes, "speed [m/s]")
     return axes
 
 
 @checked
 def energy(record: Record, *, ax: Axes | None = None) -> Axes:
-    """Kinetic energy [J] of all balls over time [s]: of their travel, m v^2 / 2, and on top of their rotation, m R^2 w^2 / 5."""
+    """Kinetic energy [J] of all balls over time [s].
+
+    That of travel, m v^2 / 2, and stacked on it that of rotation, m R^2 w^2 / 5.
+    """
     axes: Axes = _axes(ax, (9.0, 4.0))
     times = _times(record)
     states = record.states(times)
-    travel, rotation = (np.sum(weight * np.sum(states[:, :, row] ** 2, axis=-1), axis=-1) for row, weight in _weights(record))
+    energies = (weight * np.sum(states[:, :, row] ** 2, axis=-1) for row, weight in _weights(record))
+    travel, rotation = (np.sum(of_balls, axis=-1) for of_balls in energies)
     axes.fill_between(times, 0, travel, label="travel", color="#3b6ea5", linewidth=0)
     axes.fill_between(times, travel, travel + rotation, label="rotation", color="#e0a030", linewidth=0)
     _over_time(axes, "kinetic energy [J]")
@@ -80,7 +86,8 @@ def energy(record: Record, *, ax: Axes | None = None) -> Axes:
 
 
 def _weights(record: Record) -> list[tuple[int, NDArray[np.float64]]]:
-    """The row of a state, and what its square is multiplied by: I / 2 = m R^2 / 5 for the spin."""
+    """Which row of a state to square, and its factor: m / 2 for the velocity, I / 2 = m R^2 / 5 for the
+    spin."""
     return [(1, record.masses / 2), (2, record.masses * record.radii**2 / 5)]
 
 
@@ -99,7 +106,7 @@ def _plan(place: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _edge() -> list[Any]:
-    """A thin dark edge along a line, so that a white or yellow one shows on white paper."""
+    """A thin dark edge along a line, so that white and yellow lines show on white paper."""
     from matplotlib import patheffects
 
     return [patheffects.withStroke(linewidth=2.4, foreground="#444444")]
@@ -111,31 +118,37 @@ def _disc(axes: Any, place: NDArray[np.float64], radius: float, face: Any, edge:
     axes.add_patch(Circle(_plan(place), radius, facecolor=face, edgecolor=edge, linewidth=0.8, zorder=5))
 
 
-def _name(axes: Any, name: str, place: NDArray[np.float64], radius: float, color: NDArray[np.float64]) -> None:
-    """The id of a ball on its disc, or beside it where it is too long for that."""
+def _name(
+    axes: Any, name: str, place: NDArray[np.float64], radius: float, color: NDArray[np.float64]
+) -> None:
+    """A ball's id on its disc, or beside the disc if the id is too long."""
     y, x = _plan(place)
     short = len(name) <= 3
     ink = "white" if short and color @ (0.299, 0.587, 0.114) < 0.5 else "black"
-    axes.text(y if short else y + 1.3 * radius, x, name, ha="center" if short else "left", va="center", fontsize=6, color=ink, zorder=6, clip_on=True)
+    left, align = (y, "center") if short else (y + 1.3 * radius, "left")
+    axes.text(left, x, name, ha=align, va="center", fontsize=6, color=ink, zorder=6, clip_on=True)
 
 
 def _outline(record: Record, axes: Any, end: float) -> None:
-    """Cloth, noses, jaws and pockets; the axes show them whole and no more, or, on an endless cloth, the balls until `end`."""
+    """Draws cloth, noses, jaws and pockets, and fits the axes to them, or to the balls on an endless
+    cloth."""
     from matplotlib.collections import LineCollection
     from matplotlib.patches import Circle, Rectangle
 
     plan = record.table
     ends = [[(y1, x1), (y2, x2)] for _, x1, y1, x2, y2 in plan.cushions]
     circles = [(y, x, radius) for _, x, y, radius in plan.jaws + plan.pockets]
-    points = np.array([p for line in ends for p in line] + [(y + s * r, x + s * r) for y, x, r in circles for s in (-1, 1)])
-    if len(points) == 0:  # an endless cloth: what the balls need
+    corners = [(y + s * r, x + s * r) for y, x, r in circles for s in (-1, 1)]
+    points = np.array([p for line in ends for p in line] + corners)
+    if len(points) == 0:  # an endless cloth: show the balls' paths until `end`
         axes.set_facecolor(_CLOTH)
         places = record.states(np.minimum(_times(record), end))[:, :, 0, 1::-1].reshape(-1, 2)
         points = np.concatenate([places - 4 * record.radii.max(), places + 4 * record.radii.max()])
     else:
         axes.set_facecolor(_RAIL)
         corner = (plan.corner[1], plan.corner[0])
-        axes.add_patch(Rectangle(corner, plan.length, plan.width, facecolor=_CLOTH, edgecolor="none", zorder=0))
+        size = (plan.length, plan.width)
+        axes.add_patch(Rectangle(corner, *size, facecolor=_CLOTH, edgecolor="none", zorder=0))
     for _, x, y, radius in plan.pockets:
         axes.add_patch(Circle((y, x), radius, facecolor=_HOLE, edgecolor="none", zorder=1))
     for _, x, y, radius in plan.jaws:
@@ -147,8 +160,10 @@ def _outline(record: Record, axes: Any, end: float) -> None:
 
 
 def _path(record: Record, ball: int, end: float) -> list[tuple[NDArray[np.float64], bool]]:
-    """A piece for every motion segment until `end` in which the ball moves: its points (n, 2) as the plan draws them, and whether it
-    is in the air."""
+    """One piece for every motion segment until `end` in which the ball moves.
+
+    A piece is its points (n, 2), in the plot's coordinates, and whether the ball is in the air.
+    """
     segments = record.segments[ball]
     stops = np.append(segments["start"][1:], record.duration)
     pieces = []
@@ -156,7 +171,8 @@ def _path(record: Record, ball: int, end: float) -> list[tuple[NDArray[np.float6
         stop = min(stop, end)
         if not start < stop or not velocity.any():
             continue
-        # The instant of the next segment belongs to it; a position is the same on both sides.
+        # The next segment's first instant belongs to that segment, but the position is the same on both
+        # sides.
         places = record.states(np.linspace(start, stop, _POINTS))[:, ball, 0, 1::-1]
         pieces.append((places, record.MOTIONS[state] == "airborne"))
     return pieces
@@ -168,15 +184,17 @@ def _trail(axes: Any, path: list[tuple[NDArray[np.float64], bool]], color: NDArr
     for flying, style in ((False, "solid"), (True, (0, (2, 2)))):
         lines = [places for places, in_air in path if in_air == flying]
         if lines:
-            axes.add_collection(LineCollection(lines, colors=[tuple(color)], linewidths=1.2, linestyles=[style], zorder=3))
+            axes.add_collection(LineCollection(
+                lines, colors=[tuple(color)], linewidths=1.2, linestyles=[style], zorder=3))
 
 
 def _times(record: Record) -> NDArray[np.float64]:
-    """Times between which all curves are smooth: both sides of every start of a segment, and some in between."""
+    """Times between which all curves are smooth: both sides of every segment's start, and some in between."""
     starts = np.unique(np.concatenate([segments["start"] for segments in record.segments]))
     starts = starts[starts < record.duration]
     stops = np.append(starts[1:], record.duration)
-    inside = [np.append(np.linspace(start, stop, 9)[:-1], np.nextafter(stop, start)) for start, stop in zip(starts, stops)]
+    spans = zip(starts, stops)
+    inside = [np.append(np.linspace(start, stop, 9)[:-1], np.nextafter(stop, start)) for start, stop in spans]
     return np.concatenate([*inside, [record.duration]])
 
 

@@ -1,5 +1,5 @@
-// Arithmetic on arrays that numpy has no function for, or none with the
-// same bits on every machine, or many that take longer than a shot.
+// Array arithmetic that numpy lacks, that it does with different bits on different machines, or that takes it
+// many calls, longer than a shot.
 #include <nanobind/stl/pair.h>
 
 #include <cmath>
@@ -14,22 +14,23 @@
 namespace carom::python {
 namespace {
 
-/// Within [-1, 1]; a number that is none stays.
+/// Clamps to [-1, 1]; NaN stays NaN.
 template <class T>
 T within_one(T value) {
     return value < T(-1) ? T(-1) : value > T(1) ? T(1) : value;
 }
 
-/// From the first end at -1 to the second one at 1, both to the bit.
+/// From the first end at -1 to the second at 1, exact to the bit at both.
 double between(const std::pair<double, double>& ends, double part) {
     const double far = 0.5 * (part + 1.0);
     return ends.first * (1.0 - far) + ends.second * far;
 }
 
-/// Actions as strikes, as Strikes in carom.gym says. numpy's arctan2 has other bits on other processors.
-/// @param actions  n x 5, or n x 6 with the elevation  @param along  n x 2 directions, or empty: the first
-/// two numbers of the actions
-/// @param offset   the greatest [ball radii]  @param out  n x 5
+/// Turns actions into strikes, as Strikes in carom.gym describes. numpy's arctan2 has other bits on other
+/// processors.
+/// @param actions n x 5, or n x 6 with the elevation @param along n x 2 directions, or empty: the first two
+/// numbers of the actions
+/// @param offset the largest [ball radii] @param out n x 5
 void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<const double>& along,
              const std::pair<double, double>& speed, const std::pair<double, double>& elevation,
              double offset, const Flat<double>& out) {
@@ -37,7 +38,7 @@ void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<co
     const std::size_t size = actions.size() / shots;
     if (size * shots != actions.size() || size < 5 || out.size() != 5 * shots ||
         (along.size() != 0 && along.size() != 2 * shots))
-        throw nb::value_error("expected arrays of as many shots");
+        throw nb::value_error("expected arrays with the same number of shots");
     for (std::size_t shot = 0; shot < shots; ++shot) {
         const double* const action = actions.data() + size * shot;
         const auto number = [action](std::size_t k) { return within_one(action[k]); };
@@ -47,14 +48,15 @@ void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<co
         cue[1] =
             games::direction_deg(ahead != nullptr ? Vec2(ahead[0], ahead[1]) : Vec2(number(0), number(1)));
         cue[2] = size > 5 ? between(elevation, number(5)) : elevation.first;
-        // The square onto the disc, continuous, one to one and without a change near the centre.
+        // Maps the square to the disc: continuous, one to one, and unchanged near the centre.
         const double side = number(3), height = number(4);
         cue[3] = offset * side * std::sqrt(1.0 - 0.5 * height * height);
         cue[4] = offset * height * std::sqrt(1.0 - 0.5 * side * side);
     }
 }
 
-/// Where balls may be drawn: at low + room * [0, 1)^2, outside every disc, and so far apart from each other.
+/// Where balls may be drawn: at low + room * [0, 1)^2, outside every disc, and this far apart from each
+/// other.
 struct Room {
     Flat<const double> low, room;  ///< [m] 2 each
     Flat<const double> discs;      ///< m x 3: centre [m] and square of the radius
@@ -74,9 +76,9 @@ struct Room {
     }
 };
 
-/// Draws places of balls for every row until they fit, each time all of them: `out` is n x balls x 2. A row
-/// has a generator of its own, SplitMix64, which moves on: a table draws the same alone as beside others.
-/// @return whether all rows have found some in so many tries
+/// Draws positions of balls for every row until they fit, all of them each time: `out` is n x balls x 2. Each
+/// row has its own generator, SplitMix64, which advances: a table draws the same alone as beside others.
+/// @return whether every row found positions within this number of tries
 bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& low,
                    const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,
                    const Flat<double>& out) {
@@ -84,7 +86,7 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
     if (rows == 0) return true;
     const std::size_t balls = out.size() / (2 * rows);
     if (balls * 2 * rows != out.size() || low.size() != 2 || room.size() != 2)
-        throw nb::value_error("expected as many places in every row");
+        throw nb::value_error("expected the same number of places in every row");
     const Room where = {low, room, discs, apart2};
     bool all = true;
     for (std::size_t row = 0; row < rows; ++row) {
@@ -103,17 +105,17 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
     return all;
 }
 
-/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three times 0 for a ball that
-/// is not there (NaN).
-/// @param balls  n x a x 2 [m]  @param marks  n x b x 2 [m]  @param middle, half  of the table, 2 each [m]
-/// @param out  n x (a + b) x 3
+/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three zeros for a missing ball
+/// (NaN).
+/// @param balls n x a x 2 [m] @param marks n x b x 2 [m] @param middle, half of the table, 2 each [m]
+/// @param out n x (a + b) x 3
 void observe(std::size_t tables, const Flat<const double>& balls, const Flat<const double>& marks,
              const Flat<const double>& middle, const Flat<const double>& half, const Flat<float>& out) {
     if (tables == 0) return;
     const std::size_t a = balls.size() / (2 * tables), b = marks.size() / (2 * tables);
     if (2 * a * tables != balls.size() || 2 * b * tables != marks.size() || middle.size() != 2 ||
         half.size() != 2 || out.size() != 3 * (a + b) * tables)
-        throw nb::value_error("expected arrays of as many tables");
+        throw nb::value_error("expected arrays with the same number of tables");
     float* to = out.data();
     const auto put = [&](const double* place) {
         const bool there = !std::isnan(place[0]);

@@ -49,7 +49,7 @@ NativeSweep make_sweep(const NativeScene& scene, const std::vector<std::string>&
     }
 }
 
-/// An array of numpy's that has the values of a list.
+/// A numpy array with the values of a list.
 template <class T>
 nb::any array_of(std::vector<T>&& list) {
     auto* const kept = new std::vector<T>(std::move(list));
@@ -58,7 +58,7 @@ nb::any array_of(std::vector<T>&& list) {
         nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
-/// A column: its array, and the texts where it has the places of texts.
+/// A column: its array, and its texts if the array holds indices of texts.
 std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnValues&& values) {
     if (kind == ValueKind::kNumber) return {array_of(std::move(values.numbers)), {}};
     if (kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), {}};

@@ -20,7 +20,7 @@
 
 namespace carom::python {
 
-/// Arrays of the caller's, contiguous, of n and of n x balls (x and y alternate), in the order of Shots in
+/// The caller's arrays, contiguous, of n and of n x balls (x and y alternate), in the order of Shots in
 /// _simulate.py, which makes and checks them: status, duration, events, first_hit, contacts,
 /// approach_cushions, xy, pocket, fell, cushions, hash (empty: not wanted).
 using ShotArrays = std::tuple<Flat<std::uint8_t>, Flat<double>, Flat<std::int64_t>, Flat<std::int32_t>,
@@ -76,7 +76,7 @@ std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int thr
     return failures;
 }
 
-/// The same of shots that differ in the numbers of columns. @param play  takes the scene, the columns, the
+/// The same for shots that differ in the numbers of columns. @param play takes the scene, the columns, the
 /// instruction set, options and arrays
 template <class Play>
 std::vector<Failure> played_columns(const NativeScene& native, const std::vector<Column>& columns,

@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "carom/engine/tolerances.h"
 #include "carom/render/draw_list.h"
 #include "carom/render/error.h"
 #include "carom/render/kept_image.h"
@@ -19,7 +20,7 @@
 namespace carom::python {
 namespace {
 
-/// Draws one record, frame after frame. OpenGL belongs to the thread that made it, and to one at a time.
+/// Draws one record, frame by frame. OpenGL belongs to the thread that made it, and to one at a time.
 class Frames {
   public:
     Frames(std::shared_ptr<const Record> record, const std::string& camera, int width, int height,
@@ -42,7 +43,7 @@ class Frames {
 
     void draw(double time, const Flat<std::uint8_t>& out) {
         if (std::this_thread::get_id() != maker_)
-            throw render::RenderError("frames are drawn by the thread that asked for the first one");
+            throw render::RenderError("frames must be drawn by the thread that drew the first one");
         const nb::gil_scoped_release no_gil;
         renderer_->draw(stage_->at(time));
         renderer_->read(image_);
@@ -71,6 +72,7 @@ void add_frames(nb::module_& m) {
                  new (frames) Frames(r.record, camera, width, height, backend, overlays);
              })
         .def("draw", &Frames::draw, nb::arg("time"), nb::arg("out").noconvert());
+    m.attr("MAX_IMAGE_SIZE") = kMaxImageSize;
     m.def("frame_count", render::frame_count);
     m.def("frame_time", render::frame_time);
 }

@@ -43,9 +43,9 @@ AimRow row_of(const games::Aim& aim) {
             aim.why};
 }
 
-/// The strike of the scene, whose aim is not read. @throws nb::value_error where there is none
+/// The scene's strike, whose aim is ignored. @throws nb::value_error if there is none
 const Cue& cue_of(const NativeScene& scene) {
-    if (!scene.scene->cue) throw nb::value_error("the scene has no cue; say how the ball is struck");
+    if (!scene.scene->cue) throw nb::value_error("the scene has no cue; give the strike");
     return *scene.scene->cue;
 }
 

@@ -1,5 +1,5 @@
-// Games: rules. Structs go over as tuples in the order of
-// the package's named tuples, enumerations by their names.
+// Games: rules. Structs are passed as tuples in the order of the package's named tuples, enumerations by
+// their names.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -34,7 +34,7 @@ using RespotRow = std::pair<std::string, Place>;
 using OptionRow = std::tuple<std::string, StateRow, std::vector<RespotRow>>;
 /// Fouls with their rules, points, penalty, options, chooser.
 using VerdictRow = std::tuple<std::vector<Two<std::string>>, int, int, std::vector<OptionRow>, int>;
-/// Cue balls, what may be met first, what may be called, where the cue ball is in hand, push out.
+/// Cue balls, what may be hit first, what may be called, where the cue ball is in hand, push out.
 using LegalRow = std::tuple<std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
                             std::string, bool>;
 

@@ -1,4 +1,4 @@
-// Impacts by themselves, many at once.
+// Single impacts, many at once.
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string numbered(std::size_t i, const std::string& why) {
     return "impact " + std::to_string(i) + ": " + why;
 }
 
-/// The model of this name. @throws nb::value_error that lists those there are
+/// The model of this name. @throws nb::value_error listing the known ones
 template <class Model>
 const Model& model_named(const char* kind, const std::string& name) {
     std::string known;
@@ -31,7 +31,7 @@ const Model& model_named(const char* kind, const std::string& name) {
         known += (known.empty() ? "" : ", ") + std::string(model->name);
     }
     throw nb::value_error(
-        ("there is no " + std::string(kind) + " model \"" + name + "\"; there are: " + known).c_str());
+        ("no " + std::string(kind) + " model \"" + name + "\"; expected one of " + known).c_str());
 }
 
 kernel::Ball ball_of(const double* rvw) {
@@ -66,7 +66,7 @@ std::string by_formula(const BallBallModelInfo& model, std::size_t count, const 
     return wrong;
 }
 
-/// params: radius, mass, mu_s of both, mu_b, e_b; a row for all impacts or one for each.
+/// params: radius, mass, mu_s of both, mu_b, e_b; one row for all impacts, or one for each.
 void ball_ball(const std::string& name, double tolerance, const Flat<const double>& in1,
                const Flat<const double>& in2, const Flat<const double>& params, const Flat<double>& out1,
                const Flat<double>& out2) {
@@ -87,8 +87,8 @@ void ball_ball(const std::string& name, double tolerance, const Flat<const doubl
     if (!wrong.empty()) throw nb::value_error(wrong.c_str());
 }
 
-/// params: radius, mass, mu_s, e_c, f_c, height of the nose; normals: unit, from
-/// the cushion into the table. Both have a row for all impacts or one for each.
+/// params: radius, mass, mu_s, e_c, f_c, height of the nose; normals: unit, from the cushion into the table.
+/// Both have one row for all impacts, or one for each.
 void ball_cushion(const std::string& name, const Flat<const double>& in, const Flat<const double>& normals,
                   const Flat<const double>& params, const Flat<double>& out) {
     const CushionModelInfo& model = model_named<CushionModelInfo>("cushion", name);
@@ -109,7 +109,7 @@ void ball_cushion(const std::string& name, const Flat<const double>& in, const F
             else if (!model.resolve(contact, {n[0], n[1]}, v, w))
                 wrong = numbered(i, "the model found no solution; lower the frictions");
             else if (!(v.allFinite() && w.allFinite()))
-                wrong = numbered(i, "the result is too large for a number");
+                wrong = numbered(i, "the result is too large");
             double* to = out.data() + kState * i;
             std::copy_n(rvw, 3, to);
             std::copy_n(v.data(), 3, to + 3);

@@ -1,5 +1,4 @@
-// Shots of one player's game, played and judged by its rules:
-// what environments of more than one shot are made of.
+// Shots of one player's game, played and judged by its rules, for environments of more than one shot.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -22,8 +21,8 @@
 namespace carom::python {
 namespace {
 
-/// Plays and judges n shots without the GIL: simulate_many, and beside it arrays
-/// of n and of n x balls (x and y in turns), as games::JudgedArrays has them.
+/// Plays and judges n shots without the GIL: simulate_many with arrays of n and of n x balls (x and y
+/// alternate), as in games::JudgedArrays.
 std::vector<Failure> judge_many(const NativeScene& native, const std::string& name, std::size_t shots,
                                 const std::vector<Column>& columns, const Flat<const std::uint8_t>& absent,
                                 std::optional<std::int64_t> max_events, int threads, const ShotArrays& out,
@@ -32,7 +31,7 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
                                 const Flat<std::uint8_t>& goes_on) {
     for (const std::size_t size : {group.size(), foul.size(), points.size(), goes_on.size(),
                                    xy.size() / (2 * native.scene->ball.size())})
-        if (size != shots) throw nb::value_error("expected arrays of as many shots");
+        if (size != shots) throw nb::value_error("expected arrays with the same number of shots");
     const games::Game game = value_of<games::Game>("game", name);
     const games::JudgedArrays judged = {xy.data(), group.data(), foul.data(), points.data(), goes_on.data()};
     return played_columns(native, columns, absent, std::nullopt, max_events, threads, out,
@@ -42,13 +41,13 @@ std::vector<Failure> judge_many(const NativeScene& native, const std::string& na
                           });
 }
 
-/// Which balls may be hit first: out is n x balls, 0 everywhere where no ball is left to play at.
+/// Which balls may be hit first: out is n x balls, 0 everywhere if no ball is left to play at.
 void legal_many(const NativeScene& native, const std::string& game, const Flat<const double>& xy,
                 const Flat<const std::int32_t>& group, const Flat<std::uint8_t>& out) {
     const std::vector<BallStart>& balls = native.scene->ball;
     const games::Game of = value_of<games::Game>("game", game);
     if (xy.size() != 2 * out.size() || out.size() != group.size() * balls.size())
-        throw nb::value_error("expected arrays of as many tables");
+        throw nb::value_error("expected arrays with the same number of tables");
     std::fill_n(out.data(), out.size(), std::uint8_t{0});
     std::vector<std::string> ids;
     for (std::size_t row = 0; row < group.size(); ++row) {

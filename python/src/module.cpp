@@ -1,4 +1,4 @@
-// The extension module carom._carom: errors, signals, and the parts put together.
+// The extension module carom._carom: errors, signals, and all its parts.
 #include <nanobind/stl/string.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ double seconds_now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// [s] Between two looks at the signals: short for a person, and long beside what taking the GIL costs.
+/// [s] Between two checks for signals: short for a person, and long compared with taking the GIL.
 constexpr double kSignalPeriod = 0.05;
 
 void translate(const std::exception_ptr& error, void*) {
@@ -54,7 +54,7 @@ bool SignalWatch::stopped() {
 
 NB_MODULE(_carom, m) {
     using namespace carom::python;
-    m.doc() = "The engine of carom for the package's own sources; use the package.";
+    m.doc() = "carom's engine, for the package's own sources; use the package instead.";
     m.attr("VERSION") = CAROM_VERSION;
     nb::register_exception_translator(translate);
     add_scenes(m);

@@ -1,5 +1,5 @@
-// What the parts of the extension module share. The Python sources in python/carom are the interface that
-// people see; the module takes flat arrays, which they have checked and shaped.
+// What the parts of the extension module share. The Python sources in python/carom are the public interface;
+// the module takes flat arrays, which they have checked and shaped.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -32,7 +32,7 @@ struct NativeRecord {
     std::shared_ptr<const Scene> scene;  ///< that was played; null for a record from a file
 };
 
-/// A contiguous array of the caller's, to read or to fill.
+/// A contiguous array of the caller, to read or to fill.
 template <class T>
 using Flat = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
@@ -43,7 +43,7 @@ std::vector<std::string> names_in_files() {
     return {names.begin(), names.end()};
 }
 
-/// The value of this name. @throws nb::value_error that lists those there are
+/// The value of this name. @throws nb::value_error listing the known ones
 template <class E>
 E value_of(const char* what, const std::string& text) {
     const auto names = names_of(E());
@@ -52,28 +52,26 @@ E value_of(const char* what, const std::string& text) {
     std::string known;
     for (const char* each : names) known += (known.empty() ? "" : ", ") + std::string(each);
     throw nb::value_error(
-        ("there is no " + std::string(what) + " \"" + text + "\"; there are: " + known).c_str());
+        ("no " + std::string(what) + " \"" + text + "\"; expected one of " + known).c_str());
 }
 
-/// The scene that was played, or `other`. @throws
-/// nb::value_error where there is none, or one with other balls
+/// The scene that was played, or `other`. @throws nb::value_error if there is none, or one with other balls
 const Scene& scene_of(const NativeRecord& record, const NativeScene* other);
 /// A scene built in code with one more section of a file, or "". @throws SceneError
 NativeScene parsed_with(const std::string& section, const Scene& scene);
 
-/// The instruction set that CAROM_ISA names, or else for
-/// every kernel the fastest one. @throws nb::value_error
+/// The instruction set that CAROM_ISA names, else the fastest one for every kernel. @throws nb::value_error
 kernel::Isa chosen_isa();
 
-/// Of two limits the smaller one; nothing where there is none.
+/// The smaller of two limits; empty if there is none.
 std::optional<std::int64_t> fewer(std::optional<std::int64_t> a, std::optional<std::int64_t> b);
 
-/// Lets Ctrl-C end a long computation without the GIL. Signals are looked
-/// for by the thread that made the watch, some 20 times a second.
+/// Lets Ctrl-C end a long computation without the GIL. The thread that made the watch checks for signals some
+/// 20 times a second.
 class SignalWatch {
   public:
     SignalWatch();
-    /// Whether a signal handler of Python's has raised an exception; it is then set. Any thread may call.
+    /// Whether a Python signal handler has raised an exception, which is then set. Any thread may call it.
     bool stopped();
 
   private:

@@ -62,7 +62,7 @@ int ball_count(const NativeRecord& r) {
     return static_cast<int>(r.record->tracks.size());
 }
 
-/// Nine numbers and a kind of motion for every ball at every time. Empty outputs are not wanted.
+/// Nine numbers and a kind of motion for every ball at every time. Empty outputs are skipped.
 void states(const NativeRecord& r, const Flat<const double>& times, const Flat<double>& rvw,
             const Flat<std::uint8_t>& kinds) {
     const nb::gil_scoped_release no_gil;
@@ -138,16 +138,15 @@ std::vector<std::string> event_names() {
 const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {
     const Scene* scene = other != nullptr ? other->scene.get() : r.scene.get();
     if (scene == nullptr)
-        throw nb::value_error(
-            "the record comes from a file, which has no physics: give the scene that was played");
+        throw nb::value_error("a record from a file has no physics; give the scene that was played");
     if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
                     [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
-        throw nb::value_error("the scene has other balls than the record");
+        throw nb::value_error("the scene and the record have different balls");
     return *scene;
 }
 
 NativeScene parsed_with(const std::string& section, const Scene& scene) {
-    // Sections of a file stand in any order, keys without a section in front of them.
+    // Sections of a file may come in any order; keys without a section come first.
     const std::string text = section + scene_text(scene);
     return {std::make_shared<const Scene>(parse_scene(text, scene.file)), text};
 }
@@ -155,10 +154,7 @@ NativeScene parsed_with(const std::string& section, const Scene& scene) {
 void add_records(nb::module_& m) {
     nb::class_<NativeRecord>(m, "Record")
         .def_prop_ro("duration", [](const NativeRecord& r) { return r.record->duration; })
-        .def_prop_ro("stopped",
-                     [](const NativeRecord& r) {
-                         return std::string(name(static_cast<ShotStatus>(r.record->stopped)));
-                     })
+        .def_prop_ro("stopped", [](const NativeRecord& r) { return words(r.record->stopped).word; })
         .def_prop_ro("ids", track_ids)
         .def_prop_ro("balls", ball_count)
         .def_prop_ro("table", table_of)
@@ -195,7 +191,7 @@ void add_records(nb::module_& m) {
                          return NativeScene{r.scene, scene_text(*r.scene)};
                      })
         .def("save", [](const NativeRecord& r, const std::string& path) { write_record(*r.record, path); });
-    // Functions, because only they get the object itself, which the views keep alive.
+    // Functions, because only they receive the object itself, which the views keep alive.
     m.def("events_of", [](nb::handle_t<NativeRecord> r) {
         return bytes_of(nb::cast<const NativeRecord&>(r).record->events, r);
     });

@@ -21,7 +21,7 @@ namespace {
 /// Ends a run because Python has an exception set.
 struct Stopped {};
 
-/// Of a run that cannot go on: the record so far, if there is one, becomes part of the exception.
+/// For a run that cannot continue: the record so far, if there is one, becomes part of the exception.
 [[noreturn]] void raise_simulation_error(const std::string& why, const nb::object& record) {
     const nb::object error = nb::module_::import_("carom._simulate").attr("simulation_error")(why, record);
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());

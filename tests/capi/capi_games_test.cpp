@@ -38,7 +38,7 @@ VerdictPtr judged(const carom_game_state& state, const carom_record* record,
     return {verdict, carom_verdict_free};
 }
 
-/// The one falls, and the cue ball behind it.
+/// The one falls, followed by the cue ball.
 const char* const kScratch =
     "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[[ball]]\nid = \"1\"\nposition = [0.2, 0.2]\n"
     "[[ball]]\nid = \"9\"\nposition = [0.7, 1.0]\n[cue]\nspeed = 4.0\naim_deg = 225.0\noffset = [0.0, 0.4]\n";
@@ -88,7 +88,7 @@ TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     cue.speed = 2.0;
     carom_scene* next = nullptr;
     EXPECT_EQ(carom_next_shot(record.get(), verdict.get(), 0, &cue, nullptr, &next), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "the cue ball is in hand; say where it is placed");
+    EXPECT_STREQ(carom_last_error(), "the cue ball is in hand; give its place");
     EXPECT_EQ(next, nullptr);
     const double place[2] = {0.7, 0.5};
     ASSERT_EQ(carom_next_shot(record.get(), verdict.get(), 0, &cue, place, &next), CAROM_OK)
@@ -113,7 +113,8 @@ TEST(CApiGames, AVerdictIsOfOneRecord) {
     const double place[2] = {0.7, 0.5};
     carom_scene* next = nullptr;
     EXPECT_EQ(carom_next_shot(other.get(), verdict.get(), 0, &cue, place, &next), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "the verdict is of another record; give the record that was judged");
+    EXPECT_STREQ(carom_last_error(),
+                 "the verdict belongs to another record; give the record that was judged");
 }
 
 TEST(CApiGames, ABallComesBackToItsSpot) {
@@ -169,7 +170,7 @@ TEST(CApiGames, NoiseIsThatOfTheLibrary) {
 TEST(CApiGames, BadArgumentsAreNamed) {
     carom_game_state state;
     EXPECT_EQ(carom_game_new(static_cast<carom_game>(7), 0, 0, &state), CAROM_BAD_ARGUMENT);
-    EXPECT_STREQ(carom_last_error(), "game is 7; it is 0 to 4");
+    EXPECT_STREQ(carom_last_error(), "game is 7; expected 0 to 4");
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 2, 0, &state), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_SNOOKER, 0, 0, nullptr), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_game_new(CAROM_THREE_CUSHION, 0, INT_MAX, &state), CAROM_BAD_ARGUMENT);

@@ -35,7 +35,7 @@ bool same(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
     return true;
 }
 
-// What a model says that it reads is what changes its result.
+// A model's result changes with exactly the parameters that it says it reads.
 TEST(BallBall, ModelsReadWhatTheySay) {
     for (const BallBallModelInfo* model : kModels) {
         const BallBallModelInfo& info = *model;
@@ -99,8 +99,8 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
     }
 }
 
-// Momentum and angular momentum about the contact are kept,
-// energy falls, Coulomb's limit holds or the slip ends.
+// Momentum and angular momentum about the contact are conserved, energy falls, and either Coulomb's limit
+// holds or the slip ends.
 TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
     const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
         two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};
@@ -174,7 +174,7 @@ TEST(Unequal, HeadOnElastic) {
     const double v = record.state_at(0, std::nextafter(hit->time, 0.0)).velocity.y();
     EXPECT_NEAR(record.state_at(0, hit->time).velocity.y(), v * 0.4 / 0.6, 1e-14);
     EXPECT_NEAR(record.state_at(1, hit->time).velocity.y(), v * 1.0 / 0.6, 1e-14);
-    // Each rolls by its own radius afterwards.
+    // Each then rolls by its own radius.
     const BallState small = record.state_at(1, hit->time + 0.9);
     ASSERT_EQ(small.state, MotionState::kRolling);
     EXPECT_NEAR(small.spin.x() * 0.02, -small.velocity.y(), 1e-14);
@@ -223,7 +223,7 @@ TEST(Unequal, RandomScenesKeepEveryLaw) {
     EXPECT_GT(hits, 250);
 }
 
-// A size that is written out but is that of all balls changes nothing.
+// A size that is written out but equals that of all balls changes nothing.
 TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
     const std::string two = "[[ball]]\nvelocity = [0.1, 2]\n[[ball]]\nid = \"1\"\nposition = [0.64, 1.2]\n";
     const Scene plain = scene_of(two), written = scene_of(two + "radius = 0.028575\nmass = 0.170097\n");
@@ -231,7 +231,7 @@ TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
     EXPECT_EQ(simulate(plan_of(plain)).hash(), simulate(plan_of(written)).hash());
 }
 
-// [physics] march: the two forms are close to each other and each is the kernel's own.
+// [physics] march: the two forms are close to each other, and each is the kernel's.
 TEST(Substeps, AreSummedOrMarchedAsPublished) {
     const std::string two =
         "[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity = [0.3, 2]\n[[ball]]\nid = \"b\"\nposition = "
@@ -269,7 +269,7 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
         return "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan " + why +
                "; use physics.ball_ball = \"two_step\"";
     };
-    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 1e-7\n"), refused("takes masses of a ratio up to 1000000"));
+    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 1e-7\n"), refused("accepts mass ratios up to 1000000"));
     EXPECT_EQ(
         error_of(big + "[balls]\nmu_s = 1\nmu_b = 1\n"),
         refused("has no solution with balls.mu_s = 1 and a friction of 1 between balls of these sizes"));

@@ -1,5 +1,5 @@
-// Batches: the same bits as shot by shot, whatever the number
-// of threads; what fails is a status; keys of numbers.
+// Batches: the same bits as shot by shot, whatever the number of threads; failures are statuses; keys of
+// numbers.
 #include "carom/engine/batch.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST(Batch, HasTheBitsOfSingleShots) {
     }
 }
 
-// Positions that overlap or lie in a cushion, values out of their ranges, speeds of a struck ball.
+// Positions that overlap or are in a cushion, values out of range, speeds of a struck ball.
 TEST(Batch, WhatIsInvalidIsAStatus) {
     SplitMix64 random(4);
     const Scene scene = scene_of("side_bank");
@@ -306,7 +306,7 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
         EXPECT_EQ(xy[2 * i], whole.x[i]);
         EXPECT_EQ(xy[2 * i + 1], whole.y[i]);
     }
-    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which is none
+    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which has no result
     EXPECT_EQ(pocket, whole.pocket);
     EXPECT_EQ(hash, whole.hash);
     ASSERT_EQ(messages.size(), 1u);
@@ -376,8 +376,8 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
-// A judge sees the record of every shot that has a result, with
-// and without all balls, and what it throws ends the batch.
+// A judge sees the record of every shot that has a result, with and without all balls; its exceptions end the
+// batch.
 TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     SplitMix64 random(17);
     const Scene scene = scene_of("side_bank");
@@ -449,7 +449,7 @@ TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
 
 TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
     const std::string text = read_source("scenes/draw.toml");
-    // Of the second, not every value is a number of the scene.
+    // In the second, one value is not a number of the scene.
     for (const std::vector<std::string>& rules :
          {std::vector<std::string>{"cue.aim_deg=normal(2)", "cue.speed=uniform(-0.1,4)"},
           std::vector<std::string>{"cue.aim_deg=normal(2)",
@@ -527,13 +527,14 @@ TEST(Batch, BadColumnsSayWhatToDo) {
     };
     EXPECT_EQ(error("cue.speed"), "");
     EXPECT_EQ(error("cue.speed", 1), "cue.speed: there are 1 values for 2 shots; give one for each");
-    EXPECT_EQ(error("cue.sped"), "cue.sped: it names no number in [cue]; did you mean speed?");
-    EXPECT_EQ(error("cue.preset"), "cue.preset: it names no number in [cue]");
-    EXPECT_EQ(error("cue.offset"), "cue.offset: it names no number in [cue]");
-    EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: it names no number in [cue]");
-    EXPECT_EQ(error("ball.cue.position.z"), "ball.cue.position.z: it names no number in [ball]");
-    EXPECT_EQ(error("ball.9.position.x"),
-              "ball.9.position.x: it names no ball; write ball.ID.position.x with one of these ids: cue, 1");
+    EXPECT_EQ(error("cue.sped"), "cue.sped: there is no such number in [cue]; did you mean speed?");
+    EXPECT_EQ(error("cue.preset"), "cue.preset: there is no such number in [cue]");
+    EXPECT_EQ(error("cue.offset"), "cue.offset: there is no such number in [cue]");
+    EXPECT_EQ(error("cue.offset.z"), "cue.offset.z: there is no such number in [cue]");
+    EXPECT_EQ(error("ball.cue.position.z"), "ball.cue.position.z: there is no such number in [ball]");
+    EXPECT_EQ(
+        error("ball.9.position.x"),
+        "ball.9.position.x: there is no such ball; write ball.ID.position.x with one of these ids: cue, 1");
     EXPECT_EQ(error("ball.1.radius"),
               "ball.1.radius: the ball has no size of its own; give it one, then vary it");
     EXPECT_EQ(error("table.pocket.p9.radius"), "table.pocket.p9.radius: the table has no such part");
@@ -585,7 +586,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
             simulate(plan, buffers, of_record, kept, options);
             EXPECT_EQ(of_record, outcome);
             EXPECT_EQ(kept, want);
-            // Nor do the orientations of the shot before stay.
+            // Nor do the orientations of the previous shot remain.
             EXPECT_EQ(kept.orientation_at(0, 1.0).coeffs(), want.orientation_at(0, 1.0).coeffs());
             EXPECT_EQ(fmt::format("{:016x}", outcome.hash), want.hash());
             EXPECT_EQ(outcome.clusters, static_cast<int>(want.clusters.size()));
@@ -597,7 +598,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
     }
 }
 
-// A plan that is made again decides as one made anew.
+// A plan that is remade decides like a new one.
 TEST(Planner, DecidesAsMakePlan) {
     SplitMix64 random(8);
     Scene scene = scene_of("side_bank");

@@ -1,4 +1,4 @@
-// A scene written out reads back to the same scene, and scenes built in code are checked like files.
+// A written-out scene reads back to the same scene, and scenes built in code are checked like files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every key of the format that can stand in a written-out scene, none at its default.
+/// Every key that a written-out scene may contain, none at its default.
 constexpr char kEveryKey[] = R"([table]
 cloth = "tournament"
 bed = [-1, -2, 7, 8]
@@ -173,7 +173,7 @@ TEST(Validate, ChecksASceneBuiltInCode) {
     scene.ball.push_back({"1", Vec3(0.5, 0.51, scene.balls.R), Vec3::Zero(), Vec3::Zero(), 0.0, {}});
     EXPECT_NE(error().find("my scene: balls \"cue\" and \"1\" overlap"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, 0.0);
-    EXPECT_NE(error().find("z has to be the sum of the two"), std::string::npos) << error();
+    EXPECT_NE(error().find("set z to the sum of the two"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, std::nan(""), scene.balls.R);
     EXPECT_NE(error().find("must be a finite number"), std::string::npos) << error();
     scene.ball[1].position = Vec3(0.5, 1.5, scene.balls.R);

@@ -1,4 +1,4 @@
-// Scenes in which one ball differs from the others: alike ones may rest on each other all the same.
+// Scenes in which one ball differs from the others: equal ones may still rest on each other.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -24,8 +24,8 @@ Scene two_that_rest(const BallSize& size) {
     return scene;
 }
 
-// A ball with topspin pushes the one before it, a metre from a heavier
-// one: the error was that "there are balls of different size".
+// A ball with topspin pushes the one in front of it, a metre from a heavier one: the error was that "there
+// are balls of different size".
 TEST(UnlikeBalls, AlikeOnesRestOnEachOther) {
     const Scene alone = two_that_rest(empty_scene().balls.size());
     Scene scene = alone;
@@ -38,7 +38,7 @@ TEST(UnlikeBalls, AlikeOnesRestOnEachOther) {
         EXPECT_EQ(record.tracks[ball].segments, pair.tracks[ball].segments);
 }
 
-// Two balls that have a size of their own rest on each other as they would if all balls had it.
+// Two balls with an explicit size rest on each other as if all balls had it.
 TEST(UnlikeBalls, AGroupHasTheSizeOfItsBalls) {
     Scene common = two_that_rest(kLarge);
     common.balls.R = kLarge.R;
@@ -105,8 +105,8 @@ Scene odd_break(std::uint64_t seed, bool large) {
     return scene;
 }
 
-// Of 500 breaks each, 97 with the heavy cue ball and 483 with the large one ended with the error that balls
-// of different size stay in contact.
+// Of 500 breaks each, 97 with the heavy cue ball and 483 with the large one ended with that error. 2 and 42
+// remain, in which the cue ball itself stays in contact with another ball.
 TEST(UnlikeBalls, BreaksWithAnOddCueBallEndAtRest) {
     for (const bool large : {false, true}) {
         for (std::uint64_t seed = 1; seed <= 500; ++seed) {

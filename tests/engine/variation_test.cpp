@@ -1,4 +1,4 @@
-// Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
+// Many scenes from one file: keys, distributions, and that a shot depends only on what it should.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/sweep_columns.h"
@@ -38,7 +38,7 @@ class VariationTest : public testing::Test {
     Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
         return Variation(folder_.write("s.toml", text_), rules, seed);
     }
-    /// The message of a rule that has to fail.
+    /// The message of a rule that must fail.
     std::string error_of(const std::string& rule) {
         try {
             vary({rule});
@@ -103,7 +103,7 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_EQ(alone.shot(999).values, alone.shot(999).values);
     EXPECT_NE(alone.fingerprint(), among.fingerprint());
     EXPECT_NE(alone.fingerprint(), other_seed.fingerprint());
-    // A written-down value: changing the generator would change every sweep that was ever published.
+    // A fixed value: changing the generator would change every published sweep.
     EXPECT_EQ(alone.shot(0).values[0], "1.1117882243348463");
     EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
 }
@@ -198,7 +198,7 @@ Scene without_places(Scene scene) {
     return scene;
 }
 
-// The quick way makes the scene that the file would, or says that it cannot.
+// The fast route makes the scene that the file would, or says that it cannot.
 TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
         const Variation v = vary(rules);
@@ -300,14 +300,14 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"quue.speed=uniform(1,2)", "unknown section or key \"quue\""},
         {"que.speed=normal(1)", "; did you mean cue?"},
         {"rack.seed=integer(1,2)", "the scene has no [rack]"},
-        {"ball.1.position.x=uniform(0,1)", "it names no [[ball]] of the scene"},
-        {"ball.cue.spin.z=uniform(0,1)", "does not write this array"},
-        {"cue.offset.2=uniform(0,1)", "the array in the scene is shorter"},
-        {"cue.offset.left=uniform(0,1)", "\"left\" is no element of an array"},
-        {"cue.speed.x=uniform(0,1)", "does not write this array"},
+        {"ball.1.position.x=uniform(0,1)", "the scene has no such [[ball]]"},
+        {"ball.cue.spin.z=uniform(0,1)", "does not contain this array"},
+        {"cue.offset.2=uniform(0,1)", "the array in the scene file is shorter"},
+        {"cue.offset.left=uniform(0,1)", "\"left\" is not an element of an array"},
+        {"cue.speed.x=uniform(0,1)", "does not contain this array"},
         {"table.pocket.1.radius=uniform(0,1)", "name the part by its number, as in table.pocket.p1.radius"},
-        {"table.pocket.p2.radius=uniform(0,1)", "does not write this part"},
-        {"table.jaw.j1.radius=uniform(0,1)", "does not write this part"},
+        {"table.pocket.p2.radius=uniform(0,1)", "does not contain this part"},
+        {"table.jaw.j1.radius=uniform(0,1)", "does not contain this part"},
         {"cue.speed=uniform(1)", "uniform has 1 values; write uniform(a,b)"},
         {"cue.speed=uniform(2,1)", "needs a <= b"},
         {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
@@ -338,7 +338,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         vary({"cue.offset=list([0,0])", "cue.offset.side=uniform(0,0.1)"});
         ADD_FAILURE() << "two rules for one value";
     } catch (const VariationError& error) {
-        EXPECT_NE(std::string(error.what()).find("cue.offset varies this value already"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("cue.offset already varies this value"), std::string::npos);
     }
 }
 
@@ -413,7 +413,9 @@ TEST(NewValues, SayWhatIsWrong) {
     EXPECT_EQ(error_of("cue.speed", "").rfind("cue.speed: expected one value, not 0", 0), 0u);
     EXPECT_EQ(error_of("cue.speed", "x = 1").rfind("cue.speed: cannot read the values of value(x = 1)", 0),
               0u);
-    EXPECT_EQ(error_of("ball.9.position", "[0, 0]").rfind("ball.9.position: it names no [[ball]]", 0), 0u);
+    EXPECT_EQ(
+        error_of("ball.9.position", "[0, 0]").rfind("ball.9.position: the scene has no such [[ball]]", 0),
+        0u);
     EXPECT_EQ(error_of("speed", "1"), "speed: name a value in its section, such as cue.speed");
     EXPECT_THROW(with_values("[", "s.toml", {}), SceneError);
 }

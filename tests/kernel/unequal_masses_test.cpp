@@ -20,9 +20,9 @@ struct Vector {
     double x, y, z;
 };
 
-// The impact in SI units and table coordinates, marched in `steps` equal normal
-// impulses: the equations of physics.md as they stand there, without the scaling
-// by which the kernel takes masses as friction. The line of centres is y.
+// The impact in SI units and table coordinates, marched in `steps` equal normal impulses: the equations
+// exactly as in physics.md, without the scaling by which the kernel treats masses as friction. The line of
+// centres is y.
 ImpactResult marched(const Impact& i, int steps) {
     const ImpactParams& p = i.params;
     const double m[2] = {p.m, p.m * p.mass_ratio}, R = p.R, mu_s[2] = {p.mu_s1, p.mu_s2};
@@ -151,8 +151,8 @@ TEST(UnequalMasses, MomentumAndEnergy) {
     }
 }
 
-// Equal masses are no special case: the result moves with
-// the ratio, and which ball comes first does not matter.
+// Equal masses are not a special case: the result is continuous in the ratio, and which ball comes first does
+// not matter.
 TEST(UnequalMasses, ContinuousAtEqualMassesAndWhicheverIsFirst) {
     Generator rng(73);
     for (int n = 0; n < 500; ++n) {

@@ -1,5 +1,8 @@
-"""Where the repository and the program are. The package is the one that Python finds: tests/python/CMakeLists.txt points PYTHONPATH
-at the build, and an installed wheel is tested without it."""
+"""Paths of the repository and the program.
+
+The package is the one that Python finds: tests/python/CMakeLists.txt points PYTHONPATH at the build, and an
+installed wheel is tested without it.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,23 @@ import subprocess
 
 import pytest
 
-# Pictures without a display, and without the backend of whoever runs the tests.
+# Draw without a display, whatever backend the user has configured.
 os.environ["MPLBACKEND"] = "Agg"
 SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
-#: Whether tests that take minutes run, too: CAROM_SLOW_TESTS=1.
+#: CAROM_SLOW_TESTS=1 also runs the tests that take minutes.
 SLOW = os.environ.get("CAROM_SLOW_TESTS") == "1"
-#: What takes so many seconds hangs: far above what a busy machine needs, for no test may fail because others work there.
+#: Anything that takes this many seconds hangs. Far above what a busy machine needs: load must not fail a
+#: test.
 HANGS = 600.0
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 
 def carom_program(*arguments: object, text: str | None = None, binary: bool = False):
-    """What the program prints. Its own tests are elsewhere; here it is what Python has to agree with."""
+    """The program's output, with which Python must agree; the program has its own tests elsewhere."""
     program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
-    return subprocess.run([program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout
+    return subprocess.run(
+        [program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout
 
 
 def rows_of(path):
@@ -34,8 +39,10 @@ def rows_of(path):
 
 
 def not_printed(wanted, output):
-    """The first line of a page's text block that does not appear in its place in the output, or "". "..." stands for any lines, and at the end
-    of a line for the rest of it."""
+    """The first line of a page's text block that the output lacks, or "".
+
+    "..." on its own stands for any lines, and at the end of a line for the rest of that line.
+    """
     lines = output.splitlines()
     for line in wanted.splitlines():
         if line == "...":
@@ -50,7 +57,8 @@ def not_printed(wanted, output):
 
 
 def refused(error, call, *cases):
-    """Every case of (arguments, message): keywords of `call` in a mapping, or one argument, or a call of its own where `call` is None."""
+    """Checks every case (arguments, message): a mapping of keywords, a single argument, or without `call` a
+    function to call."""
     for given, message in cases:
         with pytest.raises(error, match=message):
             if call is None:
@@ -62,11 +70,14 @@ def refused(error, call, *cases):
 
 
 def stuck_scene(speed):
-    """Balls of different mass that come to rest against each other, for which there is no model, if the first one moves to the right."""
+    """If the first ball moves to the right, balls of different mass come to rest in contact, for which there
+    is no model."""
     import carom
 
-    balls = [{"id": "a", "position": [0, 0], "velocity": [speed, 0]}, {"id": "b", "position": [0.2, 0], "mass": 0.34}]
-    return carom.Scene(table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
+    balls = [{"id": "a", "position": [0, 0], "velocity": [speed, 0]},
+             {"id": "b", "position": [0.2, 0], "mass": 0.34}]
+    return carom.Scene(
+        table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
 
 
 def program_sweep(folder, scene, rules, count, seed):

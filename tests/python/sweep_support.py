@@ -1,4 +1,4 @@
-"""What the tests of sweeps in shards share: plans, workers, and what lies in a folder."""
+"""What the tests of sharded sweeps share: plans, workers, and the contents of folders."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ from carom import sweep
 from conftest import HANGS, SOURCE
 
 DRAW = ["cue.aim_deg=normal(2)", "cue.speed=uniform(1,4)"]
-# Each shot takes milliseconds: time to kill a worker in.
+# Each shot takes milliseconds, which leaves time to kill a worker.
 BREAKS = ["cue.aim_deg=normal(0.3)", "cue.speed=uniform(8,10)"]
-# Half of the shots come to an end that nobody can compute.
+# Half of these shots reach a state that cannot be computed.
 STUCK = """
 balls = {mu_s = 0.6, mu_b = 4.0}
 physics = {substeps = 10}
-ball = [{id = "a", position = [0.6, 1], velocity = [0, 1], spin = [-1e6, 0, 0]}, {id = "b", position = [0.6, 1.06]}]
+ball = [
+    {id = "a", position = [0.6, 1], velocity = [0, 1], spin = [-1e6, 0, 0]},
+    {id = "b", position = [0.6, 1.06]},
+]
 stop = {time = 1}
 """
 
@@ -32,8 +35,10 @@ def break_plan(shots, shard):
 
 
 def stamps(folder):
-    """For every file of a shard what changes when it is written again."""
-    return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in pathlib.Path(folder).glob("*.parquet")}
+    """For every shard's file, values that change when the file is written again."""
+    return {
+        path.name: (path.stat().st_ino, path.stat().st_mtime_ns)
+        for path in pathlib.Path(folder).glob("*.parquet")}
 
 
 def contents(folder):
@@ -45,9 +50,11 @@ def unfinished(folder):
 
 
 def worker(plan, shard, folder, **options):
-    """A process of its own that makes a shard."""
-    code = f"from carom import sweep; print(sweep.run_shard({str(plan)!r}, {shard}, {str(folder)!r})['played'])"
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    """Starts a process that makes one shard."""
+    call = f"sweep.run_shard({str(plan)!r}, {shard}, {str(folder)!r})"
+    code = f"from carom import sweep; print({call}['played'])"
+    return subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
 def wait_for(what):

@@ -1,4 +1,4 @@
-"""carom.games: the noise of a strike, rules, and aim help."""
+"""carom.games: the noise of a strike, rules, and aiming aids."""
 
 from __future__ import annotations
 
@@ -21,18 +21,23 @@ def test_noise_has_names_and_is_the_same_for_a_seed():
     struck = games.noisy(cue, "ai3603", 7, 2)
     assert struck == games.noisy(cue, "ai3603", 7, 2) != games.noisy(cue, "ai3603", 7, 3)
     assert struck["ball"] == "cue" and struck["speed"] != 3.0 and struck["elevation_deg"] >= 0.0
-    assert games.noisy({}, "none", 1) == {"speed": 9.0, "aim_deg": 90.0, "elevation_deg": 0.0, "offset": [0.0, 0.1]}
+    assert games.noisy({}, "none", 1) == {
+        "speed": 9.0, "aim_deg": 90.0, "elevation_deg": 0.0, "offset": [0.0, 0.1]}
     carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}], cue=struck)
     many = games.noisy(np.tile([3.0, 40.0, 0.0, 0.0, 0.1], (5, 1)), "ai3603", 7)
-    assert many[2].tolist() == [struck["speed"], struck["aim_deg"], struck["elevation_deg"], *struck["offset"]]
+    assert many[2].tolist() == [
+        struck["speed"], struck["aim_deg"], struck["elevation_deg"], *struck["offset"]]
 
 
 def test_noise_is_what_a_sweep_draws(tmp_path):
-    scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}], cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
+    scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}],
+                        cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
     (tmp_path / "s.toml").write_text(scene.text())
-    rules = ["cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)", "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
+    rules = ["cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)",
+             "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
     header, rows = program_sweep(tmp_path, tmp_path / "s.toml", rules, 20, 5)
-    strikes = games.noisy(np.tile([4.0, 30.0, 9.0, 0.1, 0.0], (20, 1)), games.Noise(0.2, 0.3, 0.4, 0.01, 0.02), 5)
+    strikes = games.noisy(
+        np.tile([4.0, 30.0, 9.0, 0.1, 0.0], (20, 1)), games.Noise(0.2, 0.3, 0.4, 0.01, 0.02), 5)
     columns = [header.index(rule.split("=")[0]) for rule in rules]
     assert [[float(row[c]) for c in columns] for row in rows] == strikes.tolist()
 
@@ -53,22 +58,31 @@ def test_a_noisy_strike_is_legal_whatever_it_was():
 
 
 RACKS = {
-    "eight_ball": {"table": "nine_foot", "balls": "pool", "rack": "eight_ball", "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
-    "nine_ball": {"table": "nine_foot", "balls": "pool", "rack": "nine_ball", "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "eight_ball": {"table": "nine_foot", "balls": "pool", "rack": "eight_ball",
+                   "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "nine_ball": {"table": "nine_foot", "balls": "pool", "rack": "nine_ball",
+                  "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
     "three_cushion": {"table": "carom", "balls": "carom", "rack": "three_cushion"},
-    "snooker": {"table": "snooker", "balls": "snooker", "rack": "snooker", "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
-    "sum_to_three": {"table": "carom", "balls": "carom", "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
+    "snooker": {"table": "snooker", "balls": "snooker", "rack": "snooker",
+                "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
+    "sum_to_three": {"table": "carom", "balls": "carom",
+                     "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
 }
 
 
 def test_a_new_game_and_what_is_legal():
     state = games.new_game("eight_ball")
-    assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"), False, (0, 0), "red", False)
+    assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"),
+                                False, (0, 0), "red", False)
     assert games.legal(state, ["cue", "8", "1"]) == games.Legal(["cue"], ["8", "1"], [], "head string", False)
     later = state._replace(opening=False, in_hand="no", group=("solids", "stripes"))
     assert games.legal(later, ["cue", "8", "1", "9"]).callable == ["1"]
-    assert games.legal(games.new_game("three_cushion", first=1), carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
-    for bad in (lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3), lambda: games.legal(state._replace(over=True), ["8"])):
+    assert games.legal(games.new_game("three_cushion", first=1),
+                       carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
+    for bad in (
+        lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3),
+        lambda: games.legal(state._replace(over=True), ["8"])
+    ):
         with pytest.raises(ValueError):
             bad()
     with pytest.raises(ValueError, match="open, solids, stripes"):
@@ -76,11 +90,12 @@ def test_a_new_game_and_what_is_legal():
 
 
 def test_a_shot_is_judged_and_the_next_scene_follows():
-    # The one is potted, and the cue ball behind it: a scratch of nine-ball.
+    # The 1 is potted and the cue ball follows it: a scratch in nine-ball.
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
-        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]}, {"id": "9", "position": [0.7, 1.0]}],
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
         cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
     )
     record = carom.simulate(scene)
@@ -89,7 +104,7 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     assert verdict.fouls == [games.Foul("cue ball pocketed", "WPA 6.1")] and verdict.chooser == -1
     assert verdict.next.turn == 1 and verdict.next.in_hand == "anywhere" and verdict.next.fouls == (1, 0)
     assert [option.decision for option in verdict.options] == ["take in hand"]
-    with pytest.raises(ValueError, match="say where it is placed"):
+    with pytest.raises(ValueError, match="give its place"):
         games.next_scene(record, verdict)
     assert not games.may_place(record, verdict.options[0], (0.7, 1.02))
     with pytest.raises(ValueError, match="not free"):
@@ -105,7 +120,8 @@ def test_respots_come_back_exactly():
     scene = carom.Scene(
         table="snooker",
         balls="snooker",
-        ball=[{"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]}, {"id": "1", "position": [0.5, 2.0]}],
+        ball=[{"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]},
+              {"id": "1", "position": [0.5, 2.0]}],
         cue={"speed": 1.5, "aim_deg": 45.0, "offset": [0.0, -0.2]},
     )
     record = carom.simulate(scene)
@@ -123,11 +139,15 @@ def test_whole_games_of_random_strikes(game):
     state, scene = games.new_game(game, target=3), carom.Scene(**RACKS[game])
     for _ in range(60):
         legal = games.legal(state, scene)
-        cue, target = (scene.positions[scene.ids.index(ball)] for ball in (state.cue_ball, str(random.choice(legal.first))))
+        cue, target = (
+            scene.positions[scene.ids.index(ball)]
+            for ball in (state.cue_ball, str(random.choice(legal.first))))
         aim = float(np.degrees(np.arctan2(*(target - cue)[::-1]))) + random.normal(0.0, 1.0)
-        scene = scene.replace(cue={"ball": state.cue_ball, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
+        scene = scene.replace(
+            cue={"ball": state.cue_ball, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
         record = carom.simulate(scene)
-        verdict = games.judge(state, record, games.Call(str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}"))
+        verdict = games.judge(state, record, games.Call(
+            str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}"))
         option = verdict.options[random.integers(len(verdict.options))]
         state = option.state
         if state.over:
@@ -145,7 +165,9 @@ def test_whole_games_of_random_strikes(game):
 
 
 def pool(*balls, **cue):
-    return carom.Scene(table="nine_foot", balls="pool", ball=[{"id": ball, "position": place} for ball, place in balls], cue={"offset": [0.0, 0.0]} | cue)
+    return carom.Scene(
+        table="nine_foot", balls="pool", ball=[{"id": ball, "position": place} for ball, place in balls],
+        cue={"offset": [0.0, 0.0]} | cue)
 
 
 def test_an_aim_pots_the_ball():
@@ -160,13 +182,19 @@ def test_an_aim_pots_the_ball():
     events = carom.simulate(scene.replace(**{"cue.aim_deg": aim.aim_deg})).event_list()
     assert ("ball_pocket", "1", "p4") in [event[1:] for event in events]
     for route in games.bank_routes(scene.replace(**{"cue.speed": 4.0}), "1", "p1"):
-        events = carom.simulate(scene.replace(**{"cue.speed": 4.0, "cue.aim_deg": route.aim_deg})).event_list()
-        assert ("ball_pocket", "1", "p1") in [event[1:] for event in events] and ("ball_cushion", "1", route.cushion) in [event[1:] for event in events]
+        events = carom.simulate(
+            scene.replace(**{"cue.speed": 4.0, "cue.aim_deg": route.aim_deg})).event_list()
+        assert ("ball_pocket", "1", "p1") in [event[1:] for event in events]
+        assert ("ball_cushion", "1", route.cushion) in [event[1:] for event in events]
 
 
 def test_an_aim_that_is_none_says_why():
     scene = pool(("cue", [0.4, 0.4]), ("1", [0.7, 1.4]), ("2", [0.55, 0.9]), speed=3.0)
-    assert games.aim_pot(scene, "1", "p4")[0] is None and games.aim_pot(scene, "1", "p4").why == "the cue ball meets ball 2 first"
-    for bad in (lambda: games.aim_pot(scene, "7", "p4"), lambda: games.aim_pot(scene, "1", "p9"), lambda: games.aim_pot(scene.replace(cue=None), "1", "p4")):
+    assert games.aim_pot(scene, "1", "p4")[0] is None
+    assert games.aim_pot(scene, "1", "p4").why == "the cue ball meets ball 2 first"
+    for bad in (
+        lambda: games.aim_pot(scene, "7", "p4"), lambda: games.aim_pot(scene, "1", "p9"),
+        lambda: games.aim_pot(scene.replace(cue=None), "1", "p4")
+    ):
         with pytest.raises(ValueError):
             bad()

@@ -1,4 +1,5 @@
-"""Environments of Gymnasium: its own checks, legal strikes for every action, the vector as so many single environments, bits that repeat."""
+"""Gymnasium environments: Gymnasium's own checks, legal strikes for every action, vectors that equal single
+environments, repeatable bits."""
 
 from __future__ import annotations
 
@@ -11,18 +12,21 @@ import numpy as np
 import pytest
 from conftest import SOURCE, refused
 
-gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install 'carom-billiards[gym]'")
+gymnasium = pytest.importorskip(
+    "gymnasium", reason="gymnasium is not installed: pip install 'carom-billiards[gym]'")
 import carom.gym  # noqa: E402
 from gymnasium.utils.env_checker import check_env, data_equivalence  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
 NAMES = sorted(carom.gym.GAMES)
-#: Options that reach every part of an observation, an action and an info.
-OPTIONS = [{}, {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True, "noise": "fastfiz"}]
+#: Options that reach every part of observations, actions and info.
+OPTIONS = [
+    {},
+    {"aim": "ball", "observation": "dict", "elevation_deg": (0.0, 5.0), "hashes": True, "noise": "fastfiz"}]
 
 
 def same_bits(a, b):
-    """data_equivalence without its tolerance, which takes 1e-5 for nothing; NaN equals NaN."""
+    """data_equivalence without its tolerance of 1e-5; NaN equals NaN."""
     if isinstance(a, dict):
         return data_equivalence(a, b) and all(same_bits(a[key], b[key]) for key in a)
     if isinstance(a, np.ndarray) and a.dtype != object:
@@ -58,16 +62,19 @@ def test_the_vector_is_so_many_single_environments(name, options, mode):
         actions = single.action_space.sample()
         a, b = many.step(actions), single.step(actions)
         assert same_bits(a, b), (a, b)
-        assert a[0] in many.observation_space if isinstance(a[0], dict) else many.observation_space.contains(a[0])
+        space = many.observation_space
+        assert a[0] in space if isinstance(a[0], dict) else space.contains(a[0])
         ended = a[2] | a[3]
         over += ended.sum()
         if mode == AutoresetMode.DISABLED and ended.any():
             with pytest.raises(gymnasium.error.ResetNeeded, match="is over"):
                 many.step(actions)
-            # One by one as Gymnasium's own vector, with a seed for one of them.
+            # Reset some tables, as Gymnasium's own vector does, and seed one of them.
             again = [None, 9, None, None, None]
-            assert same_bits(many.reset(seed=again, options={"reset_mask": ended.copy()}), single.reset(seed=again, options={"reset_mask": ended.copy()}))
-    assert over > 0 and same_bits(many.reset(seed=8), single.reset(seed=8)) and same_bits(many.reset(), single.reset())
+            assert same_bits(many.reset(seed=again, options={"reset_mask": ended.copy()}),
+                             single.reset(seed=again, options={"reset_mask": ended.copy()}))
+    assert over > 0 and same_bits(many.reset(seed=8), single.reset(seed=8))
+    assert same_bits(many.reset(), single.reset())
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -80,7 +87,9 @@ def test_a_seed_repeats_to_the_bit_whatever_the_threads(name):
 
     one, two = run(1), run(3)
     assert all(same_bits(a, b) for a, b in zip(one, two))
-    hashes = np.concatenate([(step[4]["final_info"] if step[2][row] else step[4])["hash"][[row]] for step in one[1:] for row in range(40)])
+    hashes = np.concatenate([
+        (step[4]["final_info"] if step[2][row] else step[4])["hash"][[row]] for step in one[1:]
+        for row in range(40)])
     assert len(set(hashes.tolist())) == len(hashes) == 160
 
 
@@ -104,11 +113,12 @@ def test_what_is_returned_is_nobody_elses():
 
 
 def corners(size):
-    """Every action whose numbers are ends, middles, or hardly more than nothing."""
+    """Actions whose numbers are at the ends, in the middle, or close to zero."""
     tiny = np.array([-1.0, 0.0, 1.0, 1e-45, -1e-30, 0.5])
     few = np.array(list(itertools.product([-1.0, 0.0, 1.0], repeat=size)))
     random = np.random.default_rng(5)
-    return np.concatenate((few, random.choice(tiny, (300, size)), random.uniform(-1, 1, (700, size)), random.uniform(-3, 3, (200, size))))
+    return np.concatenate((few, random.choice(tiny, (300, size)), random.uniform(-1, 1, (700, size)),
+                           random.uniform(-3, 3, (200, size))))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -119,7 +129,7 @@ def test_every_action_is_a_legal_strike(aim, elevation, dtype):
     env.reset(seed=4)
     actions = corners(env.action_space.shape[0]).astype(dtype)
     played = env.rollout(env.states.take(np.zeros(len(actions), int)), actions)
-    # The scene's own check has the last word on what is legal: none of them is invalid.
+        # The scene's own check decides what is legal: no shot is invalid.
     assert not played.shots.messages and (played.shots.status == carom.ShotStatus.AT_REST).all()
     speed, aim_deg, raised, side, height = played.cue.T
     assert (speed >= 0.3).all() and (speed <= 5.0).all() and {0.3, 5.0} <= set(speed.tolist())
@@ -133,15 +143,18 @@ def test_the_square_of_offsets_is_laid_on_the_whole_disc():
     env.reset(seed=1)
     side, height = env.rollout(env.states.take([0] * 5), ends).cue.T[3:]
     half = np.sqrt(0.125)
-    assert np.allclose(np.column_stack((side, height)), [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]], atol=1e-9)
+    assert np.allclose(np.column_stack((side, height)),
+                       [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]], atol=1e-9)
 
 
 def test_directions_are_those_of_numpy():
     def directions_deg(along):
         actions = np.column_stack((along, np.zeros((len(along), 3))))
-        return carom.gym.Strikes().cue(actions, np.empty((len(along), 0, 2)), 0, np.empty((len(along), 0), bool), np.empty(0))[:, 1]
+        return carom.gym.Strikes().cue(
+            actions, np.empty((len(along), 0, 2)), 0, np.empty((len(along), 0), bool), np.empty(0))[:, 1]
 
-    along = np.random.default_rng(1).uniform(-1, 1, (1000, 2)) * 10.0 ** np.random.default_rng(2).uniform(-40, 0, (1000, 1))
+    scales = 10.0 ** np.random.default_rng(2).uniform(-40, 0, (1000, 1))
+    along = np.random.default_rng(1).uniform(-1, 1, (1000, 2)) * scales
     assert np.abs(directions_deg(along) - np.degrees(np.arctan2(along[:, 1], along[:, 0]))).max() < 1e-13
     ends = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1e-170, 1e-160], [np.nan, 1]], float)
     assert np.allclose(directions_deg(ends)[:5], [0, 0, 180, 90, -90], rtol=0, atol=1e-13)
@@ -151,14 +164,14 @@ def test_directions_are_those_of_numpy():
 def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
     env = carom.gym.make_env("Pot", aim="ball")
     env.reset(seed=1)
-    # Straight up the table, so that left and right are seen in x.
+    # Straight up the table, so that left and right show in x.
     states = carom.gym.States(np.array([[[0.6, 0.6], [0.6, 1.6]]] * 5), np.empty((5, 0)))
     full = np.array([0.0, 0.5, -0.5, 0.98, -0.98])
     actions = np.column_stack((np.zeros(5), full, np.full(5, -0.2), np.zeros((5, 2))))
     played = env.rollout(states, actions)
     radius = 0.028575
     line = np.radians(played.cue[:, 1])
-    # The distance of the other ball from the line of aim, to the right of it.
+    # How far to the right of the line of aim the other ball is.
     right = (1.0 * np.cos(line)) * -1.0
     assert np.allclose(right, full * 2 * radius, atol=1e-12)
     assert (played.shots.first_hit == 1).all()
@@ -176,16 +189,18 @@ def test_noise_is_that_of_the_seed():
         return np.array(made)
 
     made = strikes(5)
-    assert np.array_equal(made, strikes(5)) and len(np.unique(made[:, 1])) == 3 and not np.isin(strikes(6)[:, 1], made[:, 1]).any()
+    assert np.array_equal(made, strikes(5)) and len(np.unique(made[:, 1])) == 3
+    assert not np.isin(strikes(6)[:, 1], made[:, 1]).any()
     n = 2000
     many = env.states.take([0] * n)
     exact = env.rollout(many, np.tile(meant, (n, 1))).cue
     assert (exact == exact[0]).all()
     noisy = env.rollout(many, np.tile(meant, (n, 1)), noise_seed=3)
     assert np.array_equal(noisy.cue, carom.games.noisy(exact, "fastfiz", 3))
-    # An elevation below 0 is a level cue, and so half of its errors are none.
+    # An elevation below 0 becomes a level cue, so half of the elevation errors vanish.
     level = [0, 1, 3, 4]
-    assert np.allclose((noisy.cue - exact).std(0)[level], np.array(carom.games.Noise.named("fastfiz"))[level], rtol=0.1)
+    assert np.allclose(
+        (noisy.cue - exact).std(0)[level], np.array(carom.games.Noise.named("fastfiz"))[level], rtol=0.1)
     assert (noisy.cue[:, 2] == 0).mean() == pytest.approx(0.5, abs=0.05)
     own = carom.gym.make_env("Pot", noise=[0, 0.5, 0, 0, 0])
     own.reset(seed=1)
@@ -197,7 +212,7 @@ def test_noise_is_that_of_the_seed():
 
 
 def uniforms(states, draws):
-    """Of SplitMix64, by whole numbers of Python; the generators move on."""
+    """SplitMix64 in Python's integers; advances the generators."""
     bits, out = (1 << 64) - 1, np.empty((len(states), draws))
     for row in range(len(states)):
         state = int(states[row])
@@ -255,7 +270,7 @@ def test_an_observation_is_the_table_from_minus_one_to_one():
     wanted[np.isnan(places[:, :, 0])] = 0.0
     wanted = np.clip(wanted, -1.0, 1.0)
     assert same_bits(game.observe(states), wanted) and (np.abs(wanted) == 1).any()
-    # Of any piece of other arrays.
+    # Also for slices of larger arrays.
     assert same_bits(game.observe(carom.gym.States(xy[::-2], states.extra[::-2])), wanted[::-2].copy())
 
 
@@ -271,9 +286,13 @@ def play_one(game, xy, cue, **extra):
 def test_pot_pays_for_the_ball_and_takes_for_fouls():
     # A straight shot into the corner (0, 0) from the diagonal of the table.
     straight = [[0.6, 0.6], [0.3, 0.3]]
-    for speed, height, reward, foul in ((1.0, -0.3, 1.0, ""), (2.0, 0.45, -1.0, "scratch"), (0.3, 0.0, 0.0, "")):
+    for speed, height, reward, foul in (
+        (1.0, -0.3, 1.0, ""), (2.0, 0.45, -1.0, "scratch"), (0.3, 0.0, 0.0, "")
+    ):
         played = play_one("Pot", straight, [speed, -135, 0, 0, height])
-        assert played.reward.tolist() == [reward] and played.foul.tolist() == [foul] and played.terminated.all(), (speed, height)
+        case = speed, height
+        assert played.reward.tolist() == [reward] and played.foul.tolist() == [foul], case
+        assert played.terminated.all(), case
 
 
 def test_position_takes_the_distance_to_the_target():
@@ -285,8 +304,9 @@ def test_position_takes_the_distance_to_the_target():
 
 @pytest.mark.parametrize("name", ["ThreeCushion", "SumToThree", "NineBallRun", "EightBallRun"])
 def test_what_a_shot_is_worth_is_what_the_rules_say(name):
-    """Every shot as a scene and a record of its own, judged by carom.games."""
-    env = carom.gym.make_vector_env(name, 60, autoreset_mode="SameStep", aim="ball", speed=(2.0, 6.0), hashes=True)
+    """Plays every shot again as a scene of its own and judges its record by carom.games."""
+    env = carom.gym.make_vector_env(
+        name, 60, autoreset_mode="SameStep", aim="ball", speed=(2.0, 6.0), hashes=True)
     game = carom.gym.GAMES[name]()
     env.reset(seed=2)
     env.action_space.seed(3)
@@ -300,7 +320,8 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
             if name == "EightBallRun":
                 group = ("open", "solids", "stripes")[int(states.extra[row, 0])]
                 other = {"open": "open", "solids": "stripes", "stripes": "solids"}[group]
-                state = carom.games.new_game(game.RULES)._replace(opening=False, in_hand="no", group=(group, other))
+                state = carom.games.new_game(game.RULES)._replace(
+                    opening=False, in_hand="no", group=(group, other))
             else:
                 state = carom.games.new_game(game.RULES)._replace(opening=False, in_hand="no")
             scene = game.scene_of(states.xy[row], played.cue[row])
@@ -309,7 +330,8 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
             record = carom.simulate(scene)
             assert f"{played.shots.hash[row]:016x}" == record.hash()
             fallen = [(event.a, event.b) for event in record.event_list() if event.type == "ball_pocket"]
-            call = next((carom.games.Call(*fell) for fell in fallen if fell[0] in may.callable), carom.games.Call())
+            call = next(
+                (carom.games.Call(*fell) for fell in fallen if fell[0] in may.callable), carom.games.Call())
             verdict = carom.games.judge(state, record, call)
             fair = not verdict.fouls
             assert played.foul[row] == ("" if fair else verdict.fouls[0].name)
@@ -318,13 +340,16 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
             points = verdict.points if "Run" not in name else sum(ball != "cue" for ball, _ in fallen) * fair
             assert played.reward[row] == points
             if goes_on:
-                there = {ball: place for ball, place in zip(game.ids, played.states.xy[row]) if place[0] == place[0]}
-                # Of a foul the next scene asks for a place of the cue ball, and here it is out of the game.
+                there = {ball: place for ball,
+                         place in zip(game.ids, played.states.xy[row]) if place[0] == place[0]}
+                # After a foul, the next scene needs a place for the cue ball; these games end instead.
                 after = carom.games.next_scene(record, verdict)
-                assert sorted(there) == sorted(after.ids) and all(np.array_equal(there[ball], xy) for ball, xy in zip(after.ids, after.positions))
+                assert sorted(there) == sorted(after.ids)
+                assert all(np.array_equal(there[ball], xy) for ball, xy in zip(after.ids, after.positions))
             seen["goes on"] += goes_on
             seen["fair" if fair else "foul"] += 1
-    assert seen["goes on"] > 0 and seen["fair"] > 0 and (seen["foul"] > 0 or name in ("ThreeCushion", "SumToThree")), seen
+    assert seen["goes on"] > 0 and seen["fair"] > 0 and (
+        seen["foul"] > 0 or name in ("ThreeCushion", "SumToThree")), seen
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -335,7 +360,8 @@ def test_playing_and_judging_in_one_pass_or_in_two_is_the_same(name):
     states = env.states
     states.xy[3] = np.nan  # no balls, so no shot
     played = env.rollout(states, env.action_space.sample())
-    assert played.truncated[3] and played.shots.messages[3] and played.foul[3] == "" and np.isnan(played.states.xy[3]).all()
+    assert played.truncated[3] and played.shots.messages[3] and played.foul[3] == ""
+    assert np.isnan(played.states.xy[3]).all()
     game = env._rules.game
     judged = game.judge(states, played.cue, played.shots)
     whole = ~played.truncated
@@ -344,7 +370,8 @@ def test_playing_and_judging_in_one_pass_or_in_two_is_the_same(name):
     assert same_bits(judged.states.take(whole), played.states.take(whole))
     for threads in (1, 2):
         shots, again = game.play(states, played.cue, max_events=None, threads=threads, hashes=True)
-        assert all(same_bits(a, b) for a, b in zip(shots, played.shots)) and same_bits(again.reward[whole], played.reward[whole])
+        assert all(same_bits(a, b) for a, b in zip(shots, played.shots))
+        assert same_bits(again.reward[whole], played.reward[whole])
         assert same_bits(again.states.xy[whole], played.states.xy[whole])
 
 
@@ -361,7 +388,8 @@ def test_a_subclass_may_judge_by_itself():
     actions = np.random.default_rng(1).uniform(-1, 1, (30, 5)).astype(np.float32)
     strict, usual = env.step(actions), plain.step(actions)
     fouls = usual[4]["final_info"]["foul"][usual[2]] != ""
-    assert fouls.any() and np.array_equal(strict[1][usual[2]], usual[1][usual[2]] - fouls) and same_bits(strict[0], usual[0])
+    assert fouls.any() and np.array_equal(strict[1][usual[2]], usual[1][usual[2]] - fouls)
+    assert same_bits(strict[0], usual[0])
 
 
 def test_the_scene_of_a_point_is_a_point():
@@ -379,7 +407,8 @@ def test_the_last_ball_ends_the_run():
     env.reset(seed=1, options={"xy": xy})
     assert env._rules.game.legal(env.states)[0].nonzero()[0].tolist() == [nine]
     played = env._rules.play(env.states, np.array([[1.0, -135, 0, 0, -0.3]]))
-    assert played.reward[0] == 1 and played.terminated[0] and played.foul[0] == "" and np.isnan(played.states.xy[0, nine]).all()
+    assert played.reward[0] == 1 and played.terminated[0] and played.foul[0] == ""
+    assert np.isnan(played.states.xy[0, nine]).all()
     assert not env._rules.game.legal(played.states).any()
 
 
@@ -394,19 +423,22 @@ def test_a_shot_without_an_end_is_truncated_and_says_why():
     actions = np.zeros((3, 5), np.float32)
     actions[1, 2] = np.nan
     _, reward, terminated, truncated, infos = many.step(actions)
-    assert truncated.tolist() == [False, True, False] and terminated.tolist() == [True, False, True] and reward[1] == 0
-    assert infos["status"][1] == carom.ShotStatus.INVALID and infos["_message"].tolist() == [False, True, False] and "speed" in infos["message"][1]
+    assert truncated.tolist() == [False, True, False] and terminated.tolist() == [True, False, True]
+    assert reward[1] == 0
+    assert infos["status"][1] == carom.ShotStatus.INVALID
+    assert infos["_message"].tolist() == [False, True, False] and "speed" in infos["message"][1]
 
 
 def test_a_run_that_cannot_go_on_is_truncated_too():
     balls = [{"id": "cue", "position": [0.4, 0.4]}, {"id": "b", "position": [0.6, 0.4], "mass": 0.34}]
-    scene = carom.Scene(balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls, cue={"speed": 1.0, "aim_deg": 0.0})
+    scene = carom.Scene(balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls,
+                        cue={"speed": 1.0, "aim_deg": 0.0})
     env = carom.gym.make_env("Pot", scene=scene)
     env.reset(seed=1, options={"scene": scene})
     *_, reward, terminated, truncated, info = env.step(np.array([1, 0, -0.5, 0, 0], np.float32))
     assert info["status"] == carom.ShotStatus.FAILED and truncated and not terminated and reward == 0
     assert info["message"].startswith("simulation stopped at t = ")
-    # An open table has no size to draw a layout in.
+    # A table without cushions has no area for a random layout.
     with pytest.raises(ValueError, match="no cushions"):
         carom.gym.make_env("Pot", scene=scene.replace(table={"cushion": []}))
 
@@ -414,11 +446,12 @@ def test_a_run_that_cannot_go_on_is_truncated_too():
 def test_the_record_is_the_shot_and_the_picture_the_table():
     env = carom.gym.make_env("Position", hashes=True, render_mode="rgb_array", size=(64, 36))
     env.reset(seed=3)
-    with pytest.raises(RuntimeError, match="no shot"):
+    with pytest.raises(RuntimeError, match="no shot since reset"):
         env.record()
     *_, info = env.step(np.array([0.3, 0.8, 0.1, 0.2, -0.4], np.float32))
     record = env.record()
-    assert record.hash() == f"{info['hash']:016x}" and len(record.events) == info["events"] and record.duration == info["duration"]
+    assert record.hash() == f"{info['hash']:016x}" and len(record.events) == info["events"]
+    assert record.duration == info["duration"]
     picture = env.render()
     assert picture.shape == (36, 64, 3) and picture.std() > 0
     assert carom.gym.make_env("Pot").render() is None
@@ -436,7 +469,8 @@ def test_a_rollout_is_what_a_step_would_be():
         places = env.states.xy[0]
         _, reward, terminated, truncated, info = env.step(actions[k])
         assert (reward, terminated, truncated) == (tried.reward[k], tried.terminated[k], tried.truncated[k])
-        assert info["hash"] == tried.shots.hash[k] and np.array_equal(env.states.xy[0], tried.states.xy[k], equal_nan=True)
+        assert info["hash"] == tried.shots.hash[k]
+        assert np.array_equal(env.states.xy[0], tried.states.xy[k], equal_nan=True)
         env.reset(options={"xy": places})
 
 
@@ -452,11 +486,11 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
     refused(
         ValueError,
         lambda **options: env.reset(options=options),
-        ({"xz": 1}, "there is no 'xz'; there are scene, xy"),
+        ({"xz": 1}, "'xz' is unknown; use scene, xy"),
         ({"xy": np.zeros((3, 2))}, r"xy has the shape \(3, 2\)"),
         ({"xy": [[0.5, 0.5], [0.5, 0.51]]}, "table 0 cannot be played: "),
         ({"xy": each[0], "scene": scene}, "give one"),
-        ({"scene": "draw.toml"}, "no carom.Scene"),
+        ({"scene": "draw.toml"}, "expected scene to be a carom.Scene"),
         ({"scene": carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")}, "the scene has a ball"),
     )
     wrong = [
@@ -480,7 +514,8 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
 
 def test_places_know_balls_that_left_the_table():
     scene = carom.Scene.load(SOURCE / "scenes/jump.toml")
-    shots = carom.simulate_many(scene, params={"cue.speed": np.linspace(1, 12, 60), "cue.elevation_deg": np.full(60, 40.0)})
+    shots = carom.simulate_many(
+        scene, params={"cue.speed": np.linspace(1, 12, 60), "cue.elevation_deg": np.full(60, 40.0)})
     out = shots.pocket == -2
     assert out.any() and np.isnan(shots.places[out]).all()
 
@@ -493,10 +528,12 @@ def test_planes_have_their_balls_where_they_are():
     assert seen.shape == (4, 30, 60) and same_bits(env.planes(states)[0], seen)
     for ball, (x, y) in zip(ids, states.xy[0]):
         plane = {"cue": 0, "1": 1}.get(ball, 2)
-        at = seen[:, int(30 * (x - table.corner[0]) / table.width), int(60 * (y - table.corner[1]) / table.length)]
+        at = seen[:, int(30 * (x - table.corner[0]) / table.width), int(
+            60 * (y - table.corner[1]) / table.length)]
         assert at[plane] > 0.6
-    # One cone each; the plane of targets is empty, and that of Position has one.
-    assert seen[0].sum() == pytest.approx(seen[1].sum(), rel=0.1) and seen[2].sum() > 5 * seen[1].sum() and (seen[3] == 0).all()
+    # One cone per ball; the plane of targets is empty, except in Position.
+    assert seen[0].sum() == pytest.approx(seen[1].sum(), rel=0.1) and seen[2].sum() > 5 * seen[1].sum()
+    assert (seen[3] == 0).all()
     other = carom.gym.FeaturePlanes(carom.gym.make_env("Position"))
     assert other.reset(seed=1)[0][3].max() > 0.6
     gone = states.take([0, 0])
@@ -509,6 +546,7 @@ def test_planes_have_their_balls_where_they_are():
 def test_pixels_are_those_of_gymnasiums_wrapper():
     from gymnasium.wrappers import AddRenderObservation
 
-    env = AddRenderObservation(gymnasium.make("carom/Pot-v0", render_mode="rgb_array", size=(64, 36)), render_only=True)
+    env = AddRenderObservation(
+        gymnasium.make("carom/Pot-v0", render_mode="rgb_array", size=(64, 36)), render_only=True)
     seen, _ = env.reset(seed=1)
     assert seen.shape == (36, 64, 3) and seen.dtype == np.uint8 and env.observation_space.contains(seen)

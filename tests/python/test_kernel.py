@@ -1,4 +1,4 @@
-"""Impacts on arrays: those of the program, and of the engine's shots."""
+"""Impacts on arrays agree with the program and with the engine's shots."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ R = 0.028575
 
 
 def pairs(n):
-    """Balls that touch and approach each other."""
+    """Pairs of touching balls that approach each other."""
     rvw = RANDOM.normal(0, [[0.0], [2.0], [40.0]], (n, 2, 3, 3))
     rvw[:, :, 1, 2] = 0
     angle = RANDOM.uniform(0, 2 * np.pi, n)
@@ -37,16 +37,18 @@ def answers(lines, *options):
 def test_ball_ball_is_that_of_the_program(model):
     n = 70
     rvw, mu_b, e_b = pairs(n), RANDOM.uniform(0, 0.1, n), RANDOM.uniform(0.5, 1, n)
-    after = kernel.ball_ball(rvw, model=model, tolerance=1e-9, mu_b=mu_b, e_b=e_b, radius=R, mass=0.17, mu_s=0.2)
+    after = kernel.ball_ball(
+        rvw, model=model, tolerance=1e-9, mu_b=mu_b, e_b=e_b, radius=R, mass=0.17, mu_s=0.2)
     lines = []
     for (one, two), mu, e in zip(rvw.tolist(), mu_b, e_b):
         params = {"R": R, "m": 0.17, "mu_s1": 0.2, "mu_s2": 0.2, "mu_b": mu, "e_b": e}
-        lines.append({"kind": "ball_ball", "params": params, "r1": one[0], "v1": one[1], "w1": one[2], "r2": two[0], "v2": two[1], "w2": two[2]})
+        lines.append({"kind": "ball_ball", "params": params, "r1": one[0], "v1": one[1], "w1": one[2],
+                      "r2": two[0], "v2": two[1], "w2": two[2]})
     options = ["--tolerance", "1e-9"] if model == "mathavan" else ["--method", model]
     speed = np.abs(rvw[:, :, 1]).max()
     for i, answer in enumerate(answers(lines, *options)):
         wanted = np.array([[answer["v1"], answer["w1"]], [answer["v2"], answer["w2"]]])
-        # Batches and single impacts may differ by the tolerance.
+        # Batches and single impacts may differ within the tolerance.
         slack = 2e-9 * 2 * speed if model == "mathavan" else 0
         np.testing.assert_allclose(after[i, :, 1], wanted[:, 0], rtol=0, atol=slack)
         np.testing.assert_allclose(after[i, :, 2], wanted[:, 1], rtol=0, atol=slack / R)
@@ -88,7 +90,9 @@ def test_shapes_and_one_number_for_all():
 def test_defaults_are_pool_classic():
     text = carom.Scene(balls="pool_classic", ball=[{"id": "a"}]).text()
     balls = dict(line.split(" = ") for line in text.splitlines() if " = " in line)
-    for function, keys in ((kernel.ball_ball, ("radius", "mass", "mu_s", "mu_b", "e_b")), (kernel.ball_cushion, ("radius", "mass", "mu_s", "e_c", "f_c"))):
+    for function, keys in ((kernel.ball_ball, ("radius", "mass", "mu_s", "mu_b", "e_b")), (
+        kernel.ball_cushion, ("radius", "mass", "mu_s", "e_c", "f_c")
+    )):
         for key in keys:
             assert inspect.signature(function).parameters[key].default == float(balls[key])
 
@@ -104,7 +108,7 @@ def test_what_cannot_be_computed_is_refused():
         (lambda: kernel.ball_ball(rvw, e_b=1.5), "impact 0: "),
         (lambda: kernel.ball_ball(rvw, mu_b=[0.1, 0.2]), "mu_b: 2 numbers for 3 impacts"),
         (lambda: kernel.ball_ball(rvw, tolerance=1.0), "tolerance: expected"),
-        (lambda: kernel.ball_ball(rvw, model="march"), 'no ball-ball model "march"; there are: mathavan'),
+        (lambda: kernel.ball_ball(rvw, model="march"), 'no ball-ball model "march"; expected one of mathavan'),
         (lambda: kernel.ball_ball(rvw, out=np.empty(3)), "out: expected"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 1]), "normal: expected vectors of length 1"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [[1, 0], [1, 0]]), "normal: 2 vectors for 3 impacts"),
@@ -112,7 +116,8 @@ def test_what_cannot_be_computed_is_refused():
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], height=1), "height: expected"),
         (lambda: kernel.ball_cushion(bad[:, 0], [1, 0]), "rvw: expected finite"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="rubber"), "no cushion model"),
-        (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="mathavan_2010", f_c=1.0, mu_s=1.0), "could jam"),
+        (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="mathavan_2010", f_c=1.0, mu_s=1.0),
+         "could jam"),
     ]:
         with pytest.raises(ValueError, match=message):
             call()

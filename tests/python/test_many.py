@@ -1,4 +1,4 @@
-"""Batches: the bits of single shots, failures that stay where they are, arrays that are reused."""
+"""Batches: the bits of single shots, failures that affect only their own shot, and arrays that are reused."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ RANDOM = np.random.default_rng(7)
 
 def cues(n):
     return np.column_stack(
-        [RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n), RANDOM.uniform(-0.3, 0.3, n)]
+        [RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n),
+         RANDOM.uniform(-0.3, 0.3, n)]
     )
 
 
 def one_by_one(scene, cue, xy, params, i):
-    """Shot i as a scene of its own."""
+    """Shot i as its own scene."""
     changes = {f"cue.{key}": cue[i, k] for k, key in enumerate(("speed", "aim_deg", "elevation_deg"))}
     changes["cue.offset"] = [cue[i, 3], cue[i, 4]]
     for k, ball in enumerate(scene.ids):
@@ -41,10 +42,13 @@ def test_a_batch_has_the_bits_of_single_shots(draw_scene):
         assert shots.duration[i] == record.duration and shots.events[i] == len(record.events)
         assert shots.status[i] == ShotStatus.AT_REST and record.stopped == "at_rest"
         assert (shots.xy[i] == record.states(record.duration)[:, 0, :2]).all()
-        cushions = [e.a for e in record.event_list() if e.type in ("ball_cushion", "ball_jaw", "ball_cushion_hold", "ball_jaw_hold")]
+        cushions = [
+            e.a for e in record.event_list()
+            if e.type in ("ball_cushion", "ball_jaw", "ball_cushion_hold", "ball_jaw_hold")]
         assert shots.cushions[i].tolist() == [cushions.count(ball) for ball in record.ids]
         fallen = [e.a for e in record.event_list() if e.type == "ball_pocket"]
-        assert [ball for _, ball in sorted((f, b) for f, b in zip(shots.fell[i], record.ids) if f >= 0)] == fallen
+        assert [
+            ball for _, ball in sorted((f, b) for f, b in zip(shots.fell[i], record.ids) if f >= 0)] == fallen
         assert ((shots.pocket[i] >= 0) == (shots.fell[i] >= 0)).all()
 
 
@@ -70,7 +74,8 @@ def test_a_bad_shot_has_a_status_and_the_others_are_played(draw_scene):
     for i in (1, 2, 4):
         assert np.isnan(shots.duration[i]) and np.isnan(shots.xy[i]).all()
         assert shots.events[i] == 0 and shots.first_hit[i] == -1
-        assert (shots.pocket[i] == -1).all() and (shots.fell[i] == -1).all() and (shots.cushions[i] == 0).all()
+        assert (shots.pocket[i] == -1).all() and (shots.fell[i] == -1).all()
+        assert (shots.cushions[i] == 0).all()
     for i in (0, 3, 5):
         assert np.array_equal(shots.xy[i], good.xy[i]) and shots.duration[i] == good.duration[i]
 
@@ -90,7 +95,9 @@ def test_out_is_filled_and_returned(draw_scene):
         if isinstance(given, np.ndarray):
             assert mine is given and np.array_equal(given, wanted)
     assert carom.simulate_many(draw_scene, cue=cue, out=out).hash is None
-    with pytest.raises(ValueError, match="out.status: expected a writable contiguous array of uint8 with the shape .11,."):
+    with pytest.raises(
+        ValueError, match="out.status: expected a writable contiguous array of uint8 with the shape .11,."
+    ):
         carom.simulate_many(draw_scene, cue=cues(11), out=out)
     with pytest.raises(ValueError, match="out.hash"):
         carom.simulate_many(draw_scene, cue=cue, out=carom.Shots.empty(10, 2), hashes=True)
@@ -103,7 +110,7 @@ def test_out_is_filled_and_returned(draw_scene):
 def test_a_ball_without_a_place_is_left_out(break_scene):
     xy = np.repeat(break_scene.positions[None], 3, axis=0)
     xy[1, [3, 5, 8]] = np.nan
-    xy[2, 0] = np.nan  # the cue ball, which is struck
+    xy[2, 0] = np.nan  # the struck ball
     shots = carom.simulate_many(break_scene, xy=xy, hashes=True)
     assert shots.status.tolist() == [0, 0, ShotStatus.INVALID]
     assert 'no ball "cue"' in shots.messages[2]
@@ -112,7 +119,7 @@ def test_a_ball_without_a_place_is_left_out(break_scene):
     assert f"{shots.hash[1]:016x}" == carom.simulate(carom.Scene.from_dict(tree)).hash()
     assert f"{shots.hash[0]:016x}" == carom.simulate(break_scene).hash()
     assert np.isnan(shots.xy[1]).any(axis=-1).nonzero()[0].tolist() == [3, 5, 8]
-    # One coordinate alone is a mistake.
+    # A single NaN coordinate is a mistake.
     xy[1, 3, 0] = 0.5
     assert carom.simulate_many(break_scene, xy=xy).status[1] == ShotStatus.INVALID
 
@@ -122,8 +129,10 @@ def test_shots_follow_each_other(break_scene):
     assert (first.pocket >= 0).any()
     places = first.places
     assert (np.isnan(places).all(axis=-1) == (first.pocket >= 0)).all()
-    second = carom.simulate_many(break_scene, xy=places, cue=np.tile([3.0, 45, 0, 0, 0.1], (4, 1)), hashes=True)
-    after = carom.simulate(break_scene).final_scene(cue=break_scene.to_dict()["cue"] | {"speed": 3.0, "aim_deg": 45, "offset": [0, 0.1]})
+    second = carom.simulate_many(
+        break_scene, xy=places, cue=np.tile([3.0, 45, 0, 0, 0.1], (4, 1)), hashes=True)
+    after = carom.simulate(break_scene).final_scene(
+        cue=break_scene.to_dict()["cue"] | {"speed": 3.0, "aim_deg": 45, "offset": [0, 0.1]})
     assert {f"{h:016x}" for h in second.hash} == {carom.simulate(after).hash()}
     assert (np.isnan(second.xy[:, :, 0]) == (first.pocket >= 0)).all()
 
@@ -140,12 +149,12 @@ def test_what_does_not_fit_is_refused(draw_scene):
     refused(
         ValueError,
         functools.partial(carom.simulate_many, draw_scene),
-        (dict(), "nothing that says how many shots"),
+        (dict(), "the number of shots is unknown"),
         (dict(cue=np.zeros((3, 4))), r"cue: expected the shape \(n, 5\), not \(3, 4\)"),
         (dict(cue=np.zeros((3, 5)), shots=4), "cue: 3 values for 4 shots"),
         (dict(xy=np.zeros((3, two + 1, 2))), "xy: expected the shape"),
-        (dict(params={"cue.sped": [1.0]}), "cue.sped: it names no number"),
-        (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: the key is there twice"),
+        (dict(params={"cue.sped": [1.0]}), "cue.sped: there is no such number"),
+        (dict(params={"cue.speed": [1.0]}, cue=np.zeros((1, 5))), "cue.speed: this key appears twice"),
         (dict(shots=1, threads=-1), "threads=-1"),
         (dict(shots=-1), "shots=-1"),
     )

@@ -1,4 +1,5 @@
-"""Games of two players in PettingZoo's form: its own tests, whole games, the cue ball in hand, calls, and shots without an end."""
+"""Games for two players as PettingZoo environments: PettingZoo's own tests, whole games, ball in hand, calls,
+and shots without an end."""
 
 from __future__ import annotations
 
@@ -15,18 +16,19 @@ from pettingzoo.test import api_test, seed_test  # noqa: E402
 NAMES = ["EightBall", "NineBall", "Snooker"]
 
 
-@pytest.mark.parametrize("options", [{}, {"aim": "ball", "elevation_deg": (0.0, 3.0)}], ids=["plain", "options"])
+@pytest.mark.parametrize(
+    "options", [{}, {"aim": "ball", "elevation_deg": (0.0, 3.0)}], ids=["plain", "options"])
 @pytest.mark.parametrize("name", NAMES)
 def test_pettingzoo_accepts_the_game(name, options, capsys):
     with warnings.catch_warnings():
-        # It would rather have an array than a dict.
+        # PettingZoo warns that it prefers an array to a dict.
         warnings.filterwarnings("ignore", message="Observation.*")
         api_test(match.env(name, **options), num_cycles=30)
         seed_test(lambda: match.env(name, noise="ai3603", **options), num_cycles=15)
 
 
 def play(env, seed, act, most=3000):
-    """A whole game: (agent, reward, phase, info) of every turn."""
+    """Plays a whole game. Returns (agent, reward, phase, info) for every turn."""
     env.reset(seed=seed)
     turns = []
     for agent in env.agent_iter(most):
@@ -43,7 +45,8 @@ def test_games_between_random_players_end(name):
     ends, phases, fouls = [], 0, set()
     for seed in range(4):
         random = np.random.default_rng(seed)
-        turns = play(env, seed, lambda agent, _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
+        turns = play(env, seed, lambda agent,
+                     _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
         assert not env.agents and env.state_of_the_game.over
         last = {agent: reward for agent, reward, *_ in turns[-2:]}
         assert sorted(last.values()) == [-1.0, 1.0] and last[f"player_{env.state_of_the_game.winner}"] == 1.0
@@ -51,7 +54,7 @@ def test_games_between_random_players_end(name):
         ends.append((len(turns), env.record().hash()))
         phases += sum(phase for *_, phase, _ in turns)
         fouls |= {info["foul"] for *_, info in turns if info.get("foul")}
-        # Who is to place the cue ball also strikes it.
+        # The player who places the cue ball also strikes it.
         assert all(a[0] == b[0] for a, b in zip(turns, turns[1:]) if a[2])
     assert len(set(ends)) == 4 and phases > 0 and {"cue ball pocketed", "wrong ball first"} <= fouls
     again = np.random.default_rng(3)
@@ -76,11 +79,14 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
         agent, area = env.agent_selection, env.state_of_the_game.in_hand
         corners = [np.array([x, y, 0, 0, 0], np.float32) for x in (-1, 0, 1) for y in (-1, 0.3, 1)]
         wanted = [env._free_place(corner[:2].astype(float)) for corner in corners]
-        assert all(carom.games.may_place(env._record, env._option, place) for place in wanted) and len(set(wanted)) == 9, area
+        assert all(
+            carom.games.may_place(env._record, env._option, place)
+            for place in wanted) and len(set(wanted)) == 9, area
         if area == "anywhere":
-            # On another ball: beside it, no farther than it takes.
+            # A place on another ball becomes one just beside it.
             other = next(i for i, place in enumerate(env._xy) if i != cue and not np.isnan(place[0]))
-            low, high = np.array(env._game.table.corner) + env._game.radii[cue], np.array([env._game.table.width, env._game.table.length]) - 2 * env._game.radii[cue]
+            low, high = np.array(env._game.table.corner) + env._game.radii[cue], np.array(
+                [env._game.table.width, env._game.table.length]) - 2 * env._game.radii[cue]
             place = env._free_place(2 * (env._xy[other] - low) / high - 1)
             assert np.hypot(*(place - env._xy[other])) < 4 * env._game.radii[cue]
         env.step(corners[4])
@@ -93,13 +99,15 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
 def test_rings_cover_the_plane_once():
     rings = np.concatenate([match._ring(k) for k in range(6)])
     assert len(np.unique(rings, axis=0)) == len(rings) and (np.diff((rings * rings).sum(1)) >= 0).all()
-    assert {tuple(p) for p in rings} == {(i, j) for i in range(-5, 6) for j in range(-5, 6) if i * i + j * j <= 25}
+    assert {tuple(p) for p in rings} == {
+        (i, j) for i in range(-5, 6) for j in range(-5, 6) if i * i + j * j <= 25}
 
 
 def test_calls_are_numbers_of_the_action():
     env = match.env("EightBall", called=True)
     assert env.action_space("player_0").shape == (7,)
-    # Without a call that comes true a ball that falls ends the turn: compare with luck on the same shots.
+    # With `called`, pocketing a ball that was not called ends the turn: compare the same shots with lucky
+    # calls.
     lucky, called = match.env("EightBall", aim="ball"), match.env("EightBall", aim="ball", called=True)
     differ = 0
     for seed in range(3):
@@ -127,8 +135,10 @@ def test_a_shot_without_an_end_truncates_the_game():
     env.reset(seed=1)
     before = env.observe("player_0")["balls"]
     env.step(np.array([np.nan, 0, 0, 0, 0], np.float32))
-    assert all(env.truncations.values()) and not any(env.terminations.values()) and set(env.rewards.values()) == {0.0}
-    assert env.infos["player_1"]["status"] == carom.ShotStatus.INVALID and "not a number" in env.infos["player_1"]["message"]
+    assert all(env.truncations.values()) and not any(env.terminations.values())
+    assert set(env.rewards.values()) == {0.0}
+    assert env.infos["player_1"]["status"] == carom.ShotStatus.INVALID
+    assert "not a number" in env.infos["player_1"]["message"]
     assert np.array_equal(env.observe("player_0")["balls"], before)
     short = match.env("NineBall", most_shots=1)
     short.reset(seed=1)

@@ -1,4 +1,4 @@
-"""The package as a whole: who imports whom."""
+"""The package as a whole: imports, argument types, and what is accepted as a scene."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from conftest import SOURCE
 
 ROOT = pathlib.Path(carom.__file__).parent
 SOURCES = {
-    ".".join(("carom", *path.relative_to(ROOT).with_suffix("").parts)).removesuffix(".__init__"): path.read_text(encoding="utf-8")
+    ".".join(("carom", *path.relative_to(ROOT).with_suffix("").parts)).removesuffix(".__init__"):
+        path.read_text(encoding="utf-8")
     for path in ROOT.rglob("*.py")
-    if path.is_file()  # in a folder that was built in before, what is gone left its link
+    if path.is_file()  # an old build folder may hold dangling links
 }
 
 
@@ -25,15 +26,20 @@ def imported(node):
     """The modules that a statement may import."""
     if isinstance(node, ast.Import):
         return {alias.name for alias in node.names}
-    return {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)} if isinstance(node, ast.ImportFrom) else set()
+    if not isinstance(node, ast.ImportFrom):
+        return set()
+    return {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
 
 
 def wrong_imports(sources):
-    """Modules that import each other in a circle, checkers of types included, and imports of the package inside functions."""
+    """Modules in import cycles, imports for type checking included, and imports of the package inside
+    functions."""
     trees = {name: ast.parse(text) for name, text in sources.items()}
-    # The package itself is no part of a circle: whoever imports one of its modules has it.
+    # The package itself is left out: importing any of its modules imports it.
     edges = {
-        name: {other for node in ast.walk(tree) for other in imported(node) if other in sources and other not in ("carom", name)}
+        name: {
+            other for node in ast.walk(tree) for other in imported(node) if other in sources
+            and other not in ("carom", name)}
         for name, tree in trees.items()
     }
     while free := {name for name in edges if not edges[name] & edges.keys()}:
@@ -57,9 +63,11 @@ def test_modules_import_each_other_in_no_circle_and_at_the_top():
     ("planted", "wrong"),
     [
         ({"carom._scene": "from carom import _record"}, ({"carom._record", "carom._scene"}, [])),
-        ({"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"}, ({"carom._record", "carom._scene"}, [])),
+        ({"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"},
+         ({"carom._record", "carom._scene"}, [])),
         ({"carom._toml": "def f():\n    import carom._isa"}, (set(), ["carom._toml:2"])),
-        ({"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"}, ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
+        ({"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"},
+         ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
     ],
 )
 def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
@@ -68,7 +76,7 @@ def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
     assert wrong[0] <= set(circle) and bool(circle) == bool(wrong[0])
 
 
-#: What each of them is of, as annotations write it.
+#: Each value with the annotations that accept it.
 WRONG = [
     ((), b"bytes"),
     ((), object()),
@@ -82,8 +90,9 @@ WRONG = [
 
 
 def public_functions():
-    """The functions and methods of carom's public names, by their names. What the classes of others define is theirs."""
-    modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep, importlib.import_module("carom.io.pooltool")]
+    """The functions and methods of carom's public names, without those that other packages define."""
+    modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep,
+               importlib.import_module("carom.io.pooltool")]
     if importlib.util.find_spec("pettingzoo"):
         modules += map(importlib.import_module, ("carom.gym", "carom.gym.match", "carom.gym._env"))
     for module in modules:
@@ -105,7 +114,9 @@ def arguments():
     for name, function in public_functions():
         for parameter in inspect.signature(function).parameters.values():
             named = "word" if parameter.kind is parameter.VAR_KEYWORD else parameter.name
-            if parameter.annotation is not parameter.empty and "Any" not in re.sub(r"\[.*\]", "", parameter.annotation):
+            if parameter.annotation is not parameter.empty and "Any" not in re.sub(
+                r"\[.*\]", "", parameter.annotation
+            ):
                 yield pytest.param(function, named, parameter.annotation, id=f"{name}({parameter})"[:120])
 
 
@@ -117,8 +128,10 @@ def test_a_wrong_type_is_refused_by_the_name_of_the_argument(function, name, ann
     for kinds, value in WRONG:
         if set(kinds) & set(whole.split(" | ")):
             continue
-        # The message comes before one about other arguments that are missing.
-        with pytest.raises((TypeError, ValueError), match=rf"^{name}: expected .+, not .+ \({type(value).__name__}\)$"):
+        # The type is checked before missing arguments are reported.
+        with pytest.raises(
+            (TypeError, ValueError), match=rf"^{name}: expected .+, not .+ \({type(value).__name__}\)$"
+        ):
             function(**{name: value})
 
 

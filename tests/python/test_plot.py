@@ -1,4 +1,4 @@
-"""Pictures and tables of records: what matplotlib and pandas are given, and that notebooks show it."""
+"""Pictures and tables of records: what matplotlib and pandas receive, and what notebooks show."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import SOURCE
 
-# A record without friction between balls: the cue ball rolls into the 1 fully.
+# A record without friction between the balls: the cue ball rolls into the 1 head-on.
 HEAD_ON = dict(
     table={"cushion": []},
     balls={"mu_b": 0.0, "e_b": 1.0},
@@ -31,7 +31,7 @@ def pyplot():
 
 
 def pixels(axes):
-    """The picture as numbers, and a function from places on the table to its colours."""
+    """The picture as an array, and a function that returns the colour at a place on the table."""
     figure = axes.figure
     figure.canvas.draw()
     image = np.asarray(figure.canvas.buffer_rgba())[:, :, :3] / 255.0
@@ -47,20 +47,21 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     from carom.plot import _CLOTH, _HOLE
     from matplotlib.colors import to_rgb
 
-    record = carom.simulate(carom.Scene(ball=[{"id": "red", "position": [0.4, 0.5]}], cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
+    record = carom.simulate(carom.Scene(ball=[{"id": "red", "position": [0.4, 0.5]}],
+                                        cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
     red = record.colors[0]
     assert red.tolist() == pytest.approx([0.80, 0.06, 0.08])
     end = record.states(record.duration)[0, 0]
     image, at = pixels(carom.plot.table(record))
     near = dict(atol=0.06)
     np.testing.assert_allclose(at(end[0] + 0.015, end[1]), red, **near)
-    np.testing.assert_allclose(at(0.4, 0.515), red, atol=0.35)  # the trail inside the ring of the start
+    np.testing.assert_allclose(at(0.4, 0.515), red, atol=0.35)  # the trail inside the starting ring
     np.testing.assert_allclose(at(0.4, 0.8), red, atol=0.35)
     np.testing.assert_allclose(at(0.42, 0.8), to_rgb(_CLOTH), **near)
     np.testing.assert_allclose(at(0.415, 0.5), to_rgb(_CLOTH), **near)  # the ring is empty
     for _, x, y, _radius in record.table.pockets:
         np.testing.assert_allclose(at(x, y), to_rgb(_HOLE), **near)
-    # At an instant: the disc is there, the trail ends there, and without trails there is none.
+    # At a given time there is a disc, and the trail ends there; without trails there is no trail.
     place = record.states(0.3)[0, 0]
     _, at = pixels(carom.plot.table(record, at=0.3))
     np.testing.assert_allclose(at(place[0] + 0.015, place[1]), red, **near)
@@ -100,8 +101,9 @@ def test_speeds_and_energies_are_those_of_the_states(pyplot):
     assert set(lines) == {"cue", "1"}
     for ball, name in enumerate(record.ids):
         times, speed = lines[name].T
-        np.testing.assert_allclose(speed, np.linalg.norm(record.states(times)[:, ball, 1], axis=-1), atol=1e-12)
-        # Both sides of the impact, so that the jump is upright.
+        np.testing.assert_allclose(
+            speed, np.linalg.norm(record.states(times)[:, ball, 1], axis=-1), atol=1e-12)
+        # Both sides of the impact, so that the jump is vertical.
         assert (times < hit).any() and np.diff(times[np.searchsorted(times, hit) - 1 :][:2])[0] < 1e-12
     energy = carom.plot.energy(record)
     assert [text.get_text() for text in energy.get_legend().get_texts()] == ["travel", "rotation"]
@@ -115,7 +117,8 @@ def test_a_notebook_shows_the_page_and_nothing_from_outside(pyplot):
     shown = record._repr_html_()
     assert "1 balls" in shown and not re.search(r"<b>|<script", shown)
     inside = re.fullmatch(r'<iframe [^>]* sandbox="allow-scripts" srcdoc="([^"]+)"></iframe>', shown)[1]
-    assert html.unescape(inside) == record.page() and not re.search(r"https?://(?!www.w3.org/2000/svg)", record.page())
+    assert html.unescape(inside) == record.page()
+    assert not re.search(r"https?://(?!www.w3.org/2000/svg)", record.page())
     assert record.page(record).count('<script type="application/json"') == 3
 
     assert record._repr_png_().startswith(b"\x89PNG")
@@ -136,7 +139,8 @@ for call in (carom.plot.table, carom.Record.to_pandas):
     except ImportError as error:
         print(error)
 """
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
+    out = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.splitlines()
     assert out == [
         "carom.plot needs matplotlib: pip install 'carom-billiards[plot]'",
         "to_pandas needs pandas: pip install 'carom-billiards[notebook]'",
@@ -152,8 +156,10 @@ def test_events_and_segments_become_data_frames(break_scene):
     segments = record.to_pandas("segments")
     for ball, view in zip(record.ids, record.segments):
         rows = segments[segments["ball"] == ball]
-        assert (rows["start"].to_numpy() == view["start"]).all() and (rows["held"].to_numpy() == view["held"]).all()
-        assert (rows[["rx", "ry", "rz"]].to_numpy() == view["r"]).all() and (rows[["dwx", "dwy"]].to_numpy() == view["dw"]).all()
+        assert (rows["start"].to_numpy() == view["start"]).all()
+        assert (rows["held"].to_numpy() == view["held"]).all()
+        assert (rows[["rx", "ry", "rz"]].to_numpy() == view["r"]).all()
+        assert (rows[["dwx", "dwy"]].to_numpy() == view["dw"]).all()
         assert list(rows["state"]) == [record.MOTIONS[state] for state in view["state"]]
     assert len(segments) == sum(map(len, record.segments))
     with pytest.raises(ValueError, match="expected events or segments"):

@@ -1,5 +1,8 @@
-"""pooltool's files both ways. tests/data/pooltool holds Systems that pooltool 0.6.0 saved: the same shot before and after it was
-simulated, a potted ball, and a jaw. lab/measure/pooltool_parity.py asks pooltool itself."""
+"""pooltool's files, both ways.
+
+tests/data/pooltool holds Systems that pooltool 0.6.0 saved: one shot before and after simulation, a potted
+ball, and a jaw. lab/measure/pooltool_parity.py compares with pooltool itself.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,9 @@ from carom.io import pooltool
 from conftest import SCENES, SOURCE
 
 SYSTEMS = SOURCE / "tests/data/pooltool"
-NAMES = {"stick_ball": "cue_strike", "ball_linear_cushion": "ball_cushion", "ball_circular_cushion": "ball_jaw", "sliding_rolling": "slide_roll", "rolling_stationary": "roll_stop"}
+NAMES = {
+    "stick_ball": "cue_strike", "ball_linear_cushion": "ball_cushion", "ball_circular_cushion": "ball_jaw",
+    "sliding_rolling": "slide_roll", "rolling_stationary": "roll_stop"}
 
 
 def system_of(path):
@@ -27,18 +32,21 @@ def test_a_system_plays_as_in_pooltool(name):
     ours = record.event_list()
     assert [e.type for e in ours] == [NAMES.get(event["event_type"], event["event_type"]) for event in theirs]
     times = np.array([[e.time, event["time"]] for e, event in zip(ours, theirs)])
-    # To rounding until two balls or a jaw have met; then pooltool's balls stand 1e-6 m apart.
+    # Equal to rounding until two balls or a jaw meet; from then on, pooltool's balls are 1e-6 m apart.
     met = next(i for i, e in enumerate(ours) if e.type in ("ball_ball", "ball_jaw"))
     np.testing.assert_allclose(times[: met + 1, 0], times[: met + 1, 1], rtol=0, atol=1e-13)
     np.testing.assert_allclose(times[:, 0], times[:, 1], rtol=0, atol=1e-4)
     end = record.states(record.duration)[:, 0]
-    np.testing.assert_allclose(end, [system["balls"][ball]["state"]["rvw"][0] for ball in record.ids], atol=1e-4)
+    np.testing.assert_allclose(
+        end, [system["balls"][ball]["state"]["rvw"][0] for ball in record.ids], atol=1e-4)
 
 
 def test_the_friction_between_balls_is_pooltools():
-    # Without the scaled friction the balls would roll half a millisecond earlier, or later.
+    # Without the scaled friction, the balls would roll half a millisecond earlier or later.
     scene = pooltool.load(SYSTEMS / "two_balls.json")
-    rolls = [e["time"] for e in system_of(SYSTEMS / "two_balls.json")["events"] if e["event_type"] == "sliding_rolling"][:2]
+    rolls = [
+        e["time"] for e in system_of(SYSTEMS / "two_balls.json")["events"]
+        if e["event_type"] == "sliding_rolling"][:2]
     for fit, agrees in ((None, True), ([0.009951, 0.108, 1.088], False)):
         played = scene if fit is None else scene.replace(balls=scene.to_dict()["balls"] | {"mu_b_fit": fit})
         ours = [e.time for e in carom.simulate(played).event_list() if e.type == "slide_roll"][:2]
@@ -67,18 +75,23 @@ def test_a_system_that_was_not_simulated_is_the_same_shot(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: s["balls"]["1"].pop("params"), "balls.1.params is missing; expected a System as pooltool 0.6.0 saves it in .json"),
-        (lambda s: s["balls"]["1"]["params"].update(R="big"), "balls.1.params.R is no number"),
-        (lambda s: s["balls"]["1"]["params"].update(m=float("nan")), "balls.1.params.m is no number"),
-        (lambda s: s["balls"]["1"]["params"].update(u_s=0.3), "balls.cue.params differ from those of other balls in more than R and m"),
-        (lambda s: s["balls"]["1"]["state"].update(s=9), "balls.1.state.s is 9, and states of motion are 0 to 4"),
-        (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0], [0, 0, 0], [0, 0, 0]]), r"balls.1.state.rvw\[0\] has 2 numbers instead of 3"),
-        (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0, 0]]), "balls.1.state.rvw has 1 rows instead of 3"),
+        (lambda s: s["balls"]["1"].pop("params"),
+         "balls.1.params is missing; expected a System as pooltool 0.6.0 saves it in .json"),
+        (lambda s: s["balls"]["1"]["params"].update(R="big"), "balls.1.params.R is not a number"),
+        (lambda s: s["balls"]["1"]["params"].update(m=float("nan")), "balls.1.params.m is not a number"),
+        (lambda s: s["balls"]["1"]["params"].update(u_s=0.3),
+         "balls.cue.params differs from other balls in more than R and m"),
+        (lambda s: s["balls"]["1"]["state"].update(s=9),
+         "balls.1.state.s is 9, but states of motion are 0 to 4"),
+        (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0], [0, 0, 0], [0, 0, 0]]),
+         r"balls.1.state.rvw\[0\] has 2 numbers instead of 3"),
+        (lambda s: s["balls"]["1"]["state"].update(rvw=[[0, 0, 0]]),
+         "balls.1.state.rvw has 1 rows instead of 3"),
         (lambda s: s.update(balls={}), "balls has no ball on the table"),
-        (lambda s: s.update(balls=[]), "balls is no object"),
-        (lambda s: s.update(events={}), "events is no list"),
+        (lambda s: s.update(balls=[]), "balls is not an object"),
+        (lambda s: s.update(events={}), "events is not a list"),
         (lambda s: s["cue"].update(a=0.9), "cue.offset is"),
-        (lambda s: s["cue"].update(cue_ball_id=3), "cue.cue_ball_id is no text"),
+        (lambda s: s["cue"].update(cue_ball_id=3), "cue.cue_ball_id is not a string"),
         (lambda s: s["table"].pop("cushion_segments"), "table.cushion_segments is missing"),
     ],
 )
@@ -94,10 +107,12 @@ def test_what_is_no_system_is_named(change, message, tmp_path):
 
 def test_what_is_no_file_or_no_json_is_named(tmp_path):
     (tmp_path / "a.json").write_text('{"cue": {},\n "balls": }')
-    with pytest.raises(carom.SceneError, match=r"a.json:2:11: is no JSON"):
+    with pytest.raises(carom.SceneError, match=r"a.json:2:11: is not JSON"):
         pooltool.load(tmp_path / "a.json")
     (tmp_path / "b.msgpack").write_bytes(b"\x85\xa3cue\xff")
-    with pytest.raises(carom.SceneError, match="not UTF-8; pooltool writes it where the name of a file ends in .json"):
+    with pytest.raises(
+        carom.SceneError, match="not UTF-8; pooltool writes JSON if the name of the file ends in .json"
+    ):
         pooltool.load(tmp_path / "b.msgpack")
     with pytest.raises(carom.SceneError, match="none.json: cannot be read: No such file"):
         pooltool.load(tmp_path / "none.json")
@@ -107,13 +122,15 @@ def test_what_is_no_file_or_no_json_is_named(tmp_path):
 
 
 def keys_of(value, path=""):
-    """The paths of all objects in a tree with their keys, as pairs; balls, cushions and jaws of any name are alike."""
+    """The paths of all objects in a tree, as pairs with their keys. Names of balls, cushions and jaws are
+    ignored."""
     if isinstance(value, list):
         return {pair for part in value for pair in keys_of(part, f"{path}[]")}
     if not isinstance(value, dict):
         return set()
     named = path.rsplit(".", 1)[-1] in ("balls", "linear", "circular", "pockets")
-    inside = {pair for key, part in value.items() for pair in keys_of(part, f"{path}.*" if named else f"{path}.{key}")}
+    inside = {pair for key,
+              part in value.items() for pair in keys_of(part, f"{path}.*" if named else f"{path}.{key}")}
     return inside if named else inside | {(path, frozenset(value))}
 
 
@@ -129,10 +146,11 @@ def test_a_saved_record_is_a_system(path, tmp_path):
     system = system_of(tmp_path / "s.json")
     known = {pair for file in SYSTEMS.glob("*.json") for pair in keys_of(system_of(file))}
     assert keys_of(system) <= known
-    # What pooltool plays begins at the state after the last event of a ball: that is the record's.
+    # pooltool starts at the state after a ball's last event: it must be the record's.
     assert system["events"][0]["event_type"] == system["events"][-1]["event_type"] == "none"
     times = [event["time"] for event in system["events"]]
-    assert times == sorted(times) and times[0] == 0.0 and times[-1] == pytest.approx(record.duration, abs=2e-9)
+    assert times == sorted(times) and times[0] == 0.0
+    assert times[-1] == pytest.approx(record.duration, abs=2e-9)
     told = {ball: {0.0} for ball in record.ids}
     for event in system["events"][1:-1]:
         for agent in event["agents"]:
@@ -158,11 +176,13 @@ def test_a_saved_record_comes_back_with_its_cue_and_table(break_scene, tmp_path)
     assert sorted(again.ids) == sorted(break_scene.ids)
     places = dict(zip(break_scene.ids, break_scene.positions.tolist()))
     assert [places[ball] for ball in again.ids] == again.positions.tolist()
-    # The ball leaves the cue as it did, and the table is the same one.
+    # The ball leaves the cue at the same velocity, and the table is the same.
     played = carom.simulate(again, until=0.05)
-    np.testing.assert_allclose(played.states(0.0)[again.ids.index("cue")], record.states(0.0)[break_scene.ids.index("cue")], atol=1e-12)
-    assert played.table.cushions == record.table.cushions and played.table.pockets == record.table.pockets and played.table.jaws == record.table.jaws
-    # From a file a record has no cue: the balls move from the first event on.
+    np.testing.assert_allclose(played.states(0.0)[again.ids.index("cue")],
+                               record.states(0.0)[break_scene.ids.index("cue")], atol=1e-12)
+    assert played.table.cushions == record.table.cushions and played.table.pockets == record.table.pockets
+    assert played.table.jaws == record.table.jaws
+    # A record from a file has no cue: the balls move from the first event on.
     record.save(tmp_path / "r.json")
     pooltool.save(carom.Record.load(tmp_path / "r.json"), tmp_path / "t.json")
     with_cue, without = system_of(tmp_path / "s.json"), system_of(tmp_path / "t.json")

@@ -1,4 +1,4 @@
-"""What a package owes its process: a light import, Ctrl-C, threads, fork and spawn, memory that does not grow."""
+"""How the package behaves in a process: imports, Ctrl-C, threads, fork and spawn, constant memory."""
 
 from __future__ import annotations
 
@@ -18,16 +18,18 @@ import numpy as np
 import pytest
 from conftest import HANGS, SOURCE
 
-# Rolls for ever between cushions that lose nothing: only a limit or a signal ends it.
+# A ball that rolls for ever between ideal cushions: only a limit or a signal ends it.
 PERPETUAL = """
 import carom
-scene = carom.Scene(balls={"mu_s": 0, "mu_r": 0, "mu_sp": 0, "mu_b": 0, "e_b": 1, "e_c": 1, "f_c": 0}, physics={"cushion": "smooth"},
-                    table="carom", ball=[{"id": "cue", "velocity": [3, 4]}], stop={"time": 1e6})
+ideal = {"mu_s": 0, "mu_r": 0, "mu_sp": 0, "mu_b": 0, "e_b": 1, "e_c": 1, "f_c": 0}
+scene = carom.Scene(balls=ideal, physics={"cushion": "smooth"}, table="carom",
+                    ball=[{"id": "cue", "velocity": [3, 4]}], stop={"time": 1e6})
 """
 
 
 def run(code, **options):
-    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    return subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
 @pytest.mark.parametrize(
@@ -59,10 +61,12 @@ print(carom.simulate(scene, until=1.0).stopped)
 
 
 def test_nothing_heavy_is_imported():
-    code = "import sys, numpy; before = set(sys.modules); import carom; print(*sorted(set(sys.modules) - before))"
+    news = "print(*sorted(set(sys.modules) - before))"
+    code = f"import sys, numpy; before = set(sys.modules); import carom; {news}"
     out, err = run(code).communicate(timeout=HANGS)
     new = {name.split(".")[0] for name in out.split()}
-    heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow", "subprocess", "tempfile", "tomllib"}
+    heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow",
+             "subprocess", "tempfile", "tomllib"}
     assert "carom" in new and not new & heavy, (new, err)
 
 
@@ -127,7 +131,7 @@ def resident():
 
 
 def test_many_records_leave_no_memory_behind(draw_scene):
-    # CAROM_RECORDS=1000000 is what was asked of a release; in the suite a part of it.
+    # CAROM_RECORDS=1000000 was required for a release; the suite runs part of it.
     count = int(os.environ.get("CAROM_RECORDS", 20_000))
     broken = carom.Scene(ball=[{"id": "a"}])
     kept = []
@@ -171,7 +175,8 @@ def test_everything_public_is_documented():
         thing = getattr(carom, name)
         if name.startswith("__"):
             continue
-        members = [m for n, m in vars(thing).items() if not n.startswith("_")] if isinstance(thing, type) else []
+        members = [
+            m for n, m in vars(thing).items() if not n.startswith("_")] if isinstance(thing, type) else []
         if not thing.__doc__:
             undocumented.append(name)
         for member in members:
@@ -179,5 +184,6 @@ def test_everything_public_is_documented():
             if (callable(member) or isinstance(member, property)) and not member.__doc__:
                 undocumented.append(f"{name}: {member}")
     for module in (carom.kernel, carom.sweep):
-        undocumented += [f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
+        undocumented += [
+            f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
     assert not undocumented

@@ -1,4 +1,4 @@
-"""Records: the bits of the program, views without copies, files."""
+"""Records: the same bits as the program, views without copies, files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def test_a_record_has_the_bits_of_the_program(path):
 
 
 def test_states_are_those_of_the_samples(break_scene, tmp_path):
-    carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv", "--sample-dt", 0.25)
+    carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv",
+                  "--sample-dt", 0.25)
     record = carom.simulate(break_scene)
     header, *lines = rows_of(tmp_path / "s.csv")
     rows = [dict(zip(header, line)) for line in lines]
@@ -36,7 +37,8 @@ def test_states_are_those_of_the_samples(break_scene, tmp_path):
     assert states.shape == (len(times), 16, 3, 3) and kinds.shape == (len(times), 16)
     for row in rows:
         k, i = np.searchsorted(times, float(row["time"])), record.ids.index(row["ball"])
-        assert states[k, i].ravel().tolist() == [float(row[c]) for c in ("x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz")]
+        assert states[k, i].ravel().tolist() == [
+            float(row[c]) for c in ("x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz")]
         assert record.MOTIONS[kinds[k, i]] == row["state"]
 
 
@@ -50,7 +52,8 @@ def test_shapes_follow_the_times(break_scene):
     out = np.empty((2, 16, 3, 3))
     assert record.states([0.1, 0.2], out=out) is out
     assert (out == record.states([0.1, 0.2])).all()
-    np.testing.assert_allclose(np.linalg.norm(record.orientations(np.linspace(0, 9, 50)), axis=-1), 1, atol=1e-12)
+    np.testing.assert_allclose(
+        np.linalg.norm(record.orientations(np.linspace(0, 9, 50)), axis=-1), 1, atol=1e-12)
     for bad in (np.empty((2, 16, 3)), np.empty((2, 16, 3, 3), np.float32), np.empty((4, 16, 3, 3))[::2]):
         with pytest.raises(ValueError, match="out: expected"):
             record.states([0.1, 0.2], out=bad)
@@ -74,14 +77,15 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
     assert named[0] == (0.0, "cue_strike", "cue", "")
     del record
     gc.collect()
-    assert [carom.simulate(break_scene).hash() for _ in range(20)]  # would write over freed memory
+    assert [carom.simulate(break_scene).hash() for _ in range(20)]  # would overwrite freed memory
     assert (events.tobytes(), segments[3].tobytes()) == hash_of
 
 
 def test_events_are_those_of_the_program(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--events", tmp_path / "e.csv")
     rows = rows_of(tmp_path / "e.csv")[1:]
-    assert [(float(time), kind, a, b) for time, kind, a, b in rows] == carom.simulate(break_scene).event_list()
+    assert [
+        (float(time), kind, a, b) for time, kind, a, b in rows] == carom.simulate(break_scene).event_list()
 
 
 def test_segments_hold_the_closed_form(draw_scene):
@@ -104,7 +108,7 @@ def test_a_record_saves_and_loads(break_scene, tmp_path):
     again = carom.Record.load(tmp_path / "p.json")
     assert again.hash() == record.hash() and again.event_list() == record.event_list()
     assert again.final_scene(scene=break_scene) == record.final_scene()
-    with pytest.raises(ValueError, match="has no physics: give the scene"):
+    with pytest.raises(ValueError, match="has no physics; give the scene"):
         again.final_scene()
     with pytest.raises(ValueError, match="saved as .json"):
         record.save(tmp_path / "r.png")
@@ -120,9 +124,11 @@ def test_a_record_saves_and_loads(break_scene, tmp_path):
 def test_a_record_pickles_with_its_scene(break_scene, tmp_path):
     record = carom.simulate(break_scene)
     again = pickle.loads(pickle.dumps(record))
-    assert again.hash() == record.hash() and again.event_list() == record.event_list() and again.stopped == record.stopped
+    assert again.hash() == record.hash() and again.event_list() == record.event_list()
+    assert again.stopped == record.stopped
     assert again.final_scene() == record.final_scene()
-    assert carom.simulate(again.final_scene(cue={"speed": 1})).hash() == carom.simulate(record.final_scene(cue={"speed": 1})).hash()
+    assert carom.simulate(again.final_scene(cue={"speed": 1})).hash() == carom.simulate(
+        record.final_scene(cue={"speed": 1})).hash()
     record.save(tmp_path / "r.json")
     loaded = pickle.loads(pickle.dumps(carom.Record.load(tmp_path / "r.json")))
     assert loaded.hash() == record.hash()
@@ -141,7 +147,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
     kept = [i for i, ball in enumerate(record.ids) if ball in after.ids]
     assert (after.positions == end[kept, 0, :2]).all()
     assert carom.simulate(after).event_list()[0].type == "cue_strike"
-    # Over as many shots as there are: what rests keeps its place to the bit.
+    # Over many shots: a ball at rest keeps its place to the bit.
     for shot in range(1, 8):
         record = carom.simulate(after)
         end = dict(zip(record.ids, record.states(record.duration)[:, 0, :2]))
@@ -149,7 +155,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
         assert all((place == end[ball]).all() for ball, place in zip(after.ids, after.positions))
         assert after == record.final_scene().replace(cue={"speed": 0.5, "aim_deg": 50 * shot})
     other = carom.Scene(ball=[{"id": "x"}])
-    with pytest.raises(ValueError, match="other balls"):
+    with pytest.raises(ValueError, match="different balls"):
         record.final_scene(scene=other)
     with pytest.raises(carom.SceneError, match=r'no ball "nobody"'):
         record.final_scene(cue={"ball": "nobody"})

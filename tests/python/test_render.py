@@ -1,4 +1,4 @@
-"""Frames: the pixels of the program, and what cannot be drawn."""
+"""Frames: the program's pixels, and what cannot be drawn."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SCENE = SOURCE / "scenes/draw.toml"
 
 
 def drawn(*options):
-    """The frames that the program draws, without what PNG does to them."""
+    """The program's frames, decoded from PNG."""
     raw = carom_program("render", SCENE, "--size", "160x90", "--raw", *options, binary=True)
     return np.frombuffer(raw, np.uint8).reshape(-1, 90, 160, 3)
 
@@ -34,7 +34,8 @@ def test_frames_are_those_of_the_program(backend):
         assert (frame == theirs).all()
     (theirs,) = drawn("--gl", backend, "--at", 0.37, "--camera", "player", "--overlay", "trails,spin")
     (frame,) = carom.render(
-        carom.simulate(carom.Scene.load(SCENE)), times=[0.37], size=(160, 90), camera="player", overlays=["trails", "spin"], backend=backend
+        carom.simulate(carom.Scene.load(SCENE)), times=[0.37], size=(160, 90), camera="player",
+        overlays=["trails", "spin"], backend=backend
     )
     assert (frame == theirs).all()
 
@@ -45,7 +46,8 @@ def test_the_scene_says_what_is_left_out(draw_scene):
     assert len(frames) == 1 + int(carom.simulate(scene).duration * 2) and frames[0].shape == (64, 96, 3)
     other = list(carom.render(scene, camera="top"))
     assert (frames[0] != other[0]).any()
-    placed = next(iter(carom.render(scene.replace(render={"size": [96, 64], "eye": [1.0, 1.0, 2.0], "target": [0.5, 1.0, 0.0]}))))
+    placed = next(iter(carom.render(
+        scene.replace(render={"size": [96, 64], "eye": [1.0, 1.0, 2.0], "target": [0.5, 1.0, 0.0]}))))
     assert (placed != frames[0]).any()
 
 
@@ -63,7 +65,7 @@ def test_another_thread_does_not_draw(draw_scene):
     thread = threading.Thread(target=go_on)
     thread.start()
     thread.join()
-    assert raised == ["frames are drawn by the thread that asked for the first one"]
+    assert raised == ["frames must be drawn by the thread that drew the first one"]
 
 
 def test_drawings_side_by_side_and_dropped_elsewhere(draw_scene):

@@ -1,4 +1,4 @@
-"""Sweeps: the table of `carom sweep`, bit for bit."""
+"""Sweeps: the same table as `carom sweep`, bit for bit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RULES = {
 
 
 def same(text, value):
-    """Whether a cell of a CSV file is the value, to the bit."""
+    """Whether a cell of a CSV file equals the value to the bit."""
     if value is None:
         return text == ""
     if isinstance(value, float):
@@ -25,10 +25,11 @@ def same(text, value):
 
 
 def all_the_same(header, rows, columns):
-    """Whether columns hold what the rows of a CSV file do."""
+    """Whether columns hold the same values as the rows of a CSV file."""
     assert list(columns) == header
     for k, column in enumerate(header):
-        wrong = [(row[k], value) for row, value in zip(rows, columns[column], strict=True) if not same(row[k], value)]
+        wrong = [(row[k], value) for row,
+                 value in zip(rows, columns[column], strict=True) if not same(row[k], value)]
         assert not wrong, (column, wrong[:3])
 
 
@@ -41,7 +42,8 @@ def test_columns_are_those_of_the_program(tmp_path, name, threads):
     scene = carom.Scene.load(path)
     columns = sweep.columns(scene, rules, count, seed=4, threads=threads)
     assert len(rows) == count
-    all_the_same(header, rows, {name: values.tolist() if isinstance(values, np.ndarray) else values for name, values in columns.items()})
+    all_the_same(header, rows, {name: values.tolist() if isinstance(values, np.ndarray) else values for name,
+                                values in columns.items()})
     assert set(columns["outcome"]) >= {"at_rest"}
     part = sweep.columns(scene, rules, count, seed=4, first=20, last=45)
     for column, values in part.items():
@@ -65,7 +67,8 @@ def test_what_is_wrong_is_said(draw_scene):
     refused(
         ValueError,
         None,
-        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5), "vary: expected a mapping or a list"),
+        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5),
+         "vary: expected a mapping or a list"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=gauss(2)"], 5), "unknown distribution"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=list(-1)"], 5), "none of the first"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, last=6), "first=0, last=6"),
@@ -91,5 +94,6 @@ def test_a_table_has_the_columns_and_where_they_come_from(draw_scene, tmp_path):
     assert again.equals(table)
     about = {key.decode(): value.decode() for key, value in again.schema.metadata.items()}
     assert carom.Scene.loads(about["carom.scene"]) == draw_scene
-    assert (about["carom.seed"], about["carom.first"], about["carom.last"], about["carom.version"]) == ("2", "0", "80", carom.__version__)
+    assert (about["carom.seed"], about["carom.first"], about["carom.last"], about["carom.version"]) == (
+        "2", "0", "80", carom.__version__)
     assert pyarrow.types.is_int64(table.schema.field("events").type)

@@ -1,5 +1,8 @@
-"""Sweeps on many machines, which are processes here: schedulers and workers of Dask as commands on ports, a stub of sbatch. They are killed, stopped
-and doubled; the folder has to hold the same files as after a run in one process."""
+"""Sweeps on many machines, which here are processes: Dask schedulers and workers on ports, and a stub of
+sbatch.
+
+They are killed, stopped and doubled; the folder must still hold the same files as after a run in one process.
+"""
 
 from __future__ import annotations
 
@@ -21,26 +24,28 @@ from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, w
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 
-# A worker that is silent for so long is given up; the test of one that comes back is quick so.
-DASK = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s", "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
+# A worker that is silent for this long is given up; a short time keeps the test of a returning worker quick.
+DASK = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
+        "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
 slow = pytest.mark.skipif(not SLOW, reason="takes long; CAROM_SLOW_TESTS=1 runs it")
 
 
 def command(*arguments, **options):
     return subprocess.Popen(
-        [sys.executable, "-m", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **{"env": os.environ | DASK} | options
+        [sys.executable, "-m", *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, **{"env": os.environ | DASK} | options
     )
 
 
 def sweep_command(*arguments, **options):
-    """`python -m carom.sweep` to its end."""
+    """Runs `python -m carom.sweep` to its end."""
     process = command("carom.sweep", *arguments, **options)
     out, err = process.communicate(timeout=HANGS)
     return process.returncode, out, err
 
 
 def sweep_in_process(capsys, monkeypatch, *arguments):
-    """The same without a process of its own, for many calls that end at once."""
+    """The same in this process, for many calls that end at once."""
     from carom.sweep.__main__ import main
 
     monkeypatch.setattr(sys, "argv", ["carom.sweep", *map(str, arguments)])
@@ -55,7 +60,7 @@ def sweep_in_process(capsys, monkeypatch, *arguments):
 
 
 class Cluster:
-    """A scheduler and workers, each a command of its own."""
+    """A scheduler and workers, each its own command."""
 
     def __init__(self, folder, **scheduler):
         self.folder, self.options = folder, scheduler
@@ -68,15 +73,18 @@ class Cluster:
 
     def start(self, *arguments, **options):
         with (self.folder / f"dask-{len(self.processes)}.log").open("w") as log:
-            process = subprocess.Popen([sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log, env=os.environ | DASK | options, cwd=self.folder)
+            process = subprocess.Popen([sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log,
+                                       env=os.environ | DASK | options, cwd=self.folder)
         self.processes.append(process)
         return process
 
     def begin_scheduler(self):
-        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address", "127.0.0.1:0", **self.options)
+        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address",
+                          "127.0.0.1:0", **self.options)
 
     def worker(self, *arguments, **options):
-        return self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1", "--death-timeout", "60", *arguments, **options)
+        return self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1",
+                          "--death-timeout", "60", *arguments, **options)
 
     def __enter__(self):
         return self
@@ -98,8 +106,10 @@ def cluster(tmp_path):
 
 
 def of_process(folder, process):
-    """Whether this process has a file that grows."""
-    return any(f".{process.pid}." in name for name in unfinished(folder)) if (folder / ".unfinished").exists() else False
+    """Whether this process is writing a file."""
+    if not (folder / ".unfinished").exists():
+        return False
+    return any(f".{process.pid}." in name for name in unfinished(folder))
 
 
 def client_of(cluster, file, folder):
@@ -142,18 +152,19 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
     before = stamps(tmp_path / "a")
     out, err = ended_well(client)
     assert re.match(r"dashboard: http://127\.0\.0\.1:\d+/status\n", out)
-    played = re.search(r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
-    # A result that the dead worker had not handed over yet is asked of another one, who finds the shard there.
+    played = re.search(
+        r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
+    # If the dead worker had not reported a shard yet, another worker is asked for it and finds its file.
     assert played and int(played[1]) in (3450, 3600), out
     assert "24 of 24 shards, 0 left, 3600 rows, " in err
     assert before.items() <= stamps(tmp_path / "a").items()
     assert whole(tmp_path / "a", plan, files)
-    # What the dead one left is removed by whoever makes its shard, on the same machine.
+    # Whoever makes the dead worker's shard removes its leftovers, if it is on the same machine.
     assert unfinished(tmp_path / "a") == []
 
     from distributed import Client
 
-    def count(table):  # of no module that a worker could import: Dask sends what it does
+    def count(table):  # not in a module that a worker could import: Dask sends the code
         return {"shots": len(table), "duration": float(table["duration"].to_numpy().sum())}
 
     with Client(cluster.address) as dask:
@@ -162,8 +173,10 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
         assert moments == sweep.reduce(small, count, threads=1)
         with pytest.raises(sweep.SweepError, match="there is another plan already"):
             sweep.run(small, tmp_path / "a", dask)
-        # A worker that plays other bits refuses, and says where it is.
-        with pytest.raises(sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* with other bits"):
+        # A worker whose bits differ refuses, and says where it runs.
+        with pytest.raises(
+            sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* with other bits"
+        ):
             sweep.run(small._replace(probe="0" * 64), tmp_path / "b", dask)
         assert sweep.run(small, tmp_path / "c", dask, shards=[3]).played == 90
 
@@ -187,14 +200,15 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
     pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
     plan, file, files = once
     (tmp_path / "dask").mkdir()
-    # The first death of a worker is one too many for what it had.
+    # The first death of a worker already exceeds the limit for its task.
     with Cluster(tmp_path / "dask", DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
         victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
         client = client_of(cluster, file, tmp_path / "a")
         wait_for(lambda: of_process(tmp_path / "a", victim))
         kill(victim)
         ended_well(client)
-        assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (tmp_path / "dask/dask-0.log").read_text()
+        assert "KilledWorker" in (tmp_path / "dask/dask-0.log").read_text() or "marked as failed" in (
+            tmp_path / "dask/dask-0.log").read_text()
         assert whole(tmp_path / "a", plan, files)
 
 
@@ -209,7 +223,7 @@ def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
     ended_well(client)
     assert whole(tmp_path / "a", plan, files)
     before = stamps(tmp_path / "a")
-    assert of_process(tmp_path / "a", late)  # it lives: nobody clears up behind it
+    assert of_process(tmp_path / "a", late)  # it is alive, so nobody cleans up after it
     late.send_signal(signal.SIGCONT)
     wait_for(lambda: not of_process(tmp_path / "a", late))
     assert stamps(tmp_path / "a") == before and whole(tmp_path / "a", plan, files)
@@ -260,11 +274,12 @@ def test_a_worker_of_another_version_refuses(tmp_path, cluster, once):
     cluster.worker("--no-nanny", PYTHONPATH=f"{tmp_path / 'other'}:{os.environ.get('PYTHONPATH', '')}")
     code, out, err = sweep_command(once[1], "-o", tmp_path / "a", "--dask", cluster.address)
     assert code == 1
-    assert re.search(rf"this is carom 0\.0\.9, and the plan is of carom {re.escape(carom.__version__)}: install that one here", err), err
+    wanted = rf"this is carom 0\.0\.9, and the plan is of carom {re.escape(carom.__version__)}"
+    assert re.search(f"{wanted}: install that one here", err), err
     assert contents(tmp_path / "a") == {}
 
 
-# Runs the elements of an array in another order, two at a time; of the first array the first one is killed.
+# Runs an array's elements out of order, two at a time; in the first array, the first element is killed.
 SBATCH = """#!{python}
 import os, random, subprocess, sys, time
 options = dict(word[2:].split("=", 1) for word in sys.argv[1:] if "=" in word)
@@ -283,10 +298,14 @@ for k, element in enumerate(elements):
         time.sleep(0.01)
     out = open(options["output"].replace("%A", "7").replace("%a", str(element)), "w")
     environment = os.environ | {{"SLURM_ARRAY_TASK_ID": str(element), "SLURM_CPUS_PER_TASK": "1"}}
-    running.append(subprocess.Popen(["/bin/sh", "-c", "exec " + options["wrap"]], env=environment, stdout=out, stderr=out))
+    running.append(subprocess.Popen(
+        ["/bin/sh", "-c", "exec " + options["wrap"]], env=environment, stdout=out, stderr=out))
     if first_array and k == 0:
         folder = os.path.dirname(options["output"])
-        while not any(int(name[6:8]) % 4 == element for name in os.listdir(folder) if name.endswith(".parquet")):
+        def made():
+            files = [name for name in os.listdir(folder) if name.endswith(".parquet")]
+            return any(int(name[6:8]) % 4 == element for name in files)
+        while not made():
             time.sleep(0.01)
         running[0].kill()
 for process in running:
@@ -305,7 +324,8 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     folder = tmp_path / "a"
     arguments = [file, "-o", folder, "--slurm", "--elements", "4", "--sbatch=--time=60"]
     code, out, err = sweep_command(*arguments)
-    assert (code, out) == (0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
+    assert (code, out) == (
+        0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
     before = stamps(folder)
     missing = sweep.status(folder).missing
     assert 1 <= len(missing) <= 6 and len({shard % 4 for shard in missing}) == 1
@@ -319,19 +339,23 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     assert log.read_text() == f"0-3 60\n{missing[0] % 4} 60\n"
     stub.write_text("#!/bin/sh\necho 'sbatch: error: invalid partition' >&2\nexit 1\n")
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "-o", tmp_path / "b", "--slurm")
-    assert (code, err) == (1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
+    assert (code, err) == (
+        1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
 
 
 def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
     file = tmp_path / "p.json"
-    arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary", "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
+    arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary",
+                 "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
     assert sweep_command(file, *arguments, "--shots", 60) == (0, f"{file}: 60 shots in 3 shards\n", "")
     assert sweep.Plan.load(file) == draw_plan(60, 20)
     assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     for words, code, message in [
-        ([file, *arguments, "--shots", 61], 1, f"{file}: there is another plan already; remove it, or write to another place"),
+        ([file, *arguments, "--shots", 61], 1,
+         f"{file}: there is another plan already; remove it, or write to another place"),
         ([file, *arguments], 2, "--scene needs --vary and --shots"),
-        ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2, "no.toml: cannot be read: there is no such file; check the path"),
+        ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
+         "no.toml: cannot be read: there is no such file; check the path"),
         ([tmp_path / "q.json", *arguments, "--shots", 0], 2, "shots=0: expected 1 to 2**53"),
         ([tmp_path / "q.json"], 2, f"{tmp_path}/q.json: cannot read it: No such file or directory"),
         ([file, "--part", "3/2"], 2, "--part 3/2: expected I/N with 0 <= I < N, as in 3/100"),
@@ -340,16 +364,19 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
         ([file, "--slurm"], 1, "sbatch: there is no such program; this is no machine of a Slurm cluster"),
     ]:
         assert sweep_in_process(capsys, monkeypatch, *words) == (code, "", f"carom.sweep: {message}\n")
-    # As a process: the status is the code.
+    # As its own process, the exit status is the code.
     assert sweep_command(*words) == (code, "", f"carom.sweep: {message}\n")
     folder = tmp_path / "p"
     code, out, err = sweep_command(file, "--part", "1/2")
-    assert code == 0 and re.search(r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
+    assert code == 0 and re.search(
+        r"^1 of 1 shards, 0 left, 20 rows, \d+ shots/s, 0 failed$", err, re.MULTILINE), err
     assert out.startswith(f"{folder}: 20 rows (at_rest 20), 20 of them played in ")
-    assert sweep_in_process(capsys, monkeypatch, file, "--status") == (1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
+    assert sweep_in_process(capsys, monkeypatch, file, "--status") == (
+        1, f"{folder}: 1 of 3 shards, 20 of 60 rows\nmissing: 0,2\n", "")
     code, out, err = sweep_in_process(capsys, monkeypatch, folder / "plan.json", "--threads", "2")
     assert code == 0 and out.startswith(f"{folder}: 60 rows (at_rest 60), 40 of them played in "), err
-    assert sweep_in_process(capsys, monkeypatch, file, "--check") == (0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
+    assert sweep_in_process(capsys, monkeypatch, file, "--check") == (
+        0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
     path = folder / "shard-1.parquet"
     path.write_bytes(path.read_bytes()[:-1])
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "--check")

@@ -1,4 +1,5 @@
-"""Sweeps in shards that something happens to: damaged and foreign files, full disks, workers that are killed, interrupted or late."""
+"""Sharded sweeps that go wrong: damaged and foreign files, full disks, and workers that are killed,
+interrupted or late."""
 
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ from carom.sweep import _shard  # noqa: E402
 
 def test_a_worker_with_another_carom_refuses(tmp_path):
     plan = draw_plan()
-    with pytest.raises(sweep.SweepError, match=f"process {os.getpid()}: this is carom {carom.__version__}, and the plan is of carom 0.0.9"):
+    versions = f"this is carom {carom.__version__}, and the plan is of carom 0.0.9"
+    with pytest.raises(sweep.SweepError, match=f"process {os.getpid()}: {versions}"):
         sweep.run(plan._replace(version="0.0.9"), tmp_path / "a")
     with pytest.raises(sweep.SweepError, match="plays the first shots with other bits"):
         sweep.run(plan._replace(probe="0" * 64), tmp_path / "b")
@@ -37,14 +39,15 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
     plan = draw_plan(40, 10)
     sweep.run(plan, tmp_path, shards=[2, 0])
     found = sweep.status(tmp_path)
-    assert (found.done, found.missing, found.rows, found.unfinished, found.strangers) == (2, (1, 3), 20, (), ())
+    assert (
+        found.done, found.missing, found.rows, found.unfinished, found.strangers) == (2, (1, 3), 20, (), ())
     assert not sweep.check(tmp_path).whole and sweep.check(tmp_path).rows == 20
     with pytest.raises(sweep.SweepError, match="2 of 4 shards are missing"):
         sweep.open(tmp_path)
     assert sweep.open(tmp_path, partial=True).to_table()["shot"].to_pylist() == [*range(10), *range(20, 30)]
     before = stamps(tmp_path)
     assert sweep.run(plan, tmp_path).played == 20
-    assert before.items() <= stamps(tmp_path).items()  # what is whole is not made again
+    assert before.items() <= stamps(tmp_path).items()  # complete files are not made again
     with pytest.raises(sweep.SweepError, match="plan.json: there is another plan already"):
         sweep.run(draw_plan(41, 10), tmp_path)
     shutil.copy(tmp_path / "shard-0.parquet", tmp_path / "shard-00.parquet")
@@ -58,7 +61,10 @@ def test_a_file_of_another_plan_or_place_is_named_by_everyone(tmp_path):
     plan, other = draw_plan(30, 10), draw_plan(31, 10)
     sweep.run(plan, tmp_path / "a")
     sweep.run(other, tmp_path / "b")
-    for source, words in ("b/shard-1.parquet", f"a file of plan {other.id}, not of shard 1 of plan {plan.id}"), ("a/shard-0.parquet", "a file of shots 0 to 10"):
+    for source, words in (
+        ("b/shard-1.parquet", f"a file of plan {other.id}, not of shard 1 of plan {plan.id}"),
+        ("a/shard-0.parquet", "a file of shots 0 to 10"),
+    ):
         shutil.copy(tmp_path / source, tmp_path / "a/shard-1.parquet")
         assert words in sweep.check(tmp_path / "a").faults["shard-1.parquet"]
         for call in (
@@ -80,7 +86,8 @@ def test_a_truncated_file_is_named_by_everyone(tmp_path):
         path.write_bytes(whole[:length])
         assert "shard-1.parquet: no whole Parquet file" in sweep.check(tmp_path).faults["shard-1.parquet"]
         for call in (lambda: sweep.open(tmp_path, verify=False), lambda: sweep.run(plan, tmp_path)):
-            with pytest.raises(sweep.SweepError, match="shard-1.parquet: no whole Parquet file.*remove it, and it is made again"):
+            again = "shard-1.parquet: no whole Parquet file.*remove it, and it is made again"
+            with pytest.raises(sweep.SweepError, match=again):
                 call()
     path.unlink()
     assert sweep.run(plan, tmp_path).played == 10
@@ -100,7 +107,7 @@ def test_a_flipped_byte_is_found_or_changes_nothing(tmp_path):
             found += 1
             with pytest.raises(sweep.SweepError, match="shard-0.parquet"):
                 sweep.open(tmp_path)
-        else:  # of what nobody reads: who wrote the file, how large parts of it are
+        else:  # in bytes that readers ignore: the writer's name, the sizes of parts
             assert sweep.open(tmp_path).to_table().equals(table, check_metadata=True)
     assert found > 0.6 * len(whole) / step
 
@@ -132,17 +139,19 @@ except OSError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == f"[Errno 27] cannot write: File too large: '{tmp_path}/shard-0.parquet'\n" and done.stderr == ""
+    assert done.stdout == f"[Errno 27] cannot write: File too large: '{tmp_path}/shard-0.parquet'\n"
+    assert done.stderr == ""
     assert contents(tmp_path) == {} and unfinished(tmp_path) == []
     assert sweep.run(plan, tmp_path).played == 30_000
     assert sweep.check(tmp_path).whole
 
 
 def _mounted(folder):
-    """Whether a small disk could be put there."""
+    """Whether a small disk could be mounted there."""
     if os.geteuid() != 0 or shutil.which("mount") is None:
         return False
-    return subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True, check=False).returncode == 0
+    return subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True,
+                          check=False).returncode == 0
 
 
 def test_a_small_disk_that_fills_up(tmp_path):
@@ -173,13 +182,16 @@ def test_a_worker_that_is_killed_while_it_writes_leaves_nothing_that_counts(tmp_
     assert len(found.unfinished) == 1 and found.missing == (0, 1)
     with pytest.raises(sweep.SweepError, match="2 of 2 shards are missing"):
         sweep.open(tmp_path, partial=True)
-    # The next one who makes this shard clears up; files of a process that lives, or of another machine, stay.
-    alive, far = (f"shard-0.parquet.{name}.tmp" for name in (f"{os.uname().nodename}.{os.getpid()}.00", "elsewhere.1.00"))
+    # The next process to make this shard cleans up; files of a live process or of another machine stay.
+    alive, far = (
+        f"shard-0.parquet.{name}.tmp"
+        for name in (f"{os.uname().nodename}.{os.getpid()}.00", "elsewhere.1.00"))
     for name in alive, far:
         (tmp_path / ".unfinished" / name).touch()
     again = worker(tmp_path / "plan.json", 0, tmp_path)
     wait_for(lambda: any(str(again.pid) in name for name in unfinished(tmp_path)))
-    assert {alive, far} <= set(unfinished(tmp_path)) and not any(str(process.pid) in name for name in unfinished(tmp_path))
+    assert {alive, far} <= set(unfinished(tmp_path))
+    assert not any(str(process.pid) in name for name in unfinished(tmp_path))
     again.kill()
     again.communicate()
 
@@ -214,7 +226,8 @@ def test_a_twin_with_other_results_is_reported(tmp_path):
 def test_ctrl_c_ends_a_run_soon_and_the_next_one_goes_on(tmp_path):
     plan = break_plan(100_000, 300)
     plan.save(tmp_path / "plan.json")
-    code = f"from carom import sweep; sweep.run(sweep.Plan.load({str(tmp_path / 'plan.json')!r}), {str(tmp_path)!r}, threads=2)"
+    plan_file, folder = str(tmp_path / "plan.json"), str(tmp_path)
+    code = f"from carom import sweep; sweep.run(sweep.Plan.load({plan_file!r}), {folder!r}, threads=2)"
     process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
     wait_for(lambda: len(contents(tmp_path)) >= 2)
     process.send_signal(signal.SIGINT)
@@ -248,7 +261,7 @@ def test_a_dead_worker_of_a_pool_is_an_error_that_says_what_to_do(tmp_path):
 
 
 class _GivesUp(concurrent.futures.ThreadPoolExecutor):
-    """Gives the first tasks up, as Dask does whose workers die."""
+    """Gives up the first tasks, as Dask does when workers die."""
 
     def __init__(self, times):
         super().__init__(1)

@@ -1,4 +1,5 @@
-"""The commands of docs/guide/clusters.md that need the package, as they are printed: the other ones are docs_test's."""
+"""Runs the commands of docs/guide/clusters.md that need the package, as printed; docs_test runs the
+others."""
 
 from __future__ import annotations
 
@@ -16,8 +17,10 @@ pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pya
 pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
 
 PAGE = SOURCE / "docs/guide/clusters.md"
-BLOCK = re.compile(r"^<!-- not run by the tests: tests/python/test_sweep_page.py runs it.*? -->\n```sh\n(.*?)^```$(?:\n```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
-# Runs the elements of the array one after the other.
+BLOCK = re.compile(
+    r"^<!-- not run by the tests: tests/python/test_sweep_page.py runs it.*? -->\n```sh\n(.*?)^```$"
+    r"(?:\n```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
+# Runs the array's elements one after the other.
 SBATCH = """#!/bin/bash
 for word in "$@"; do
     case $word in
@@ -33,11 +36,13 @@ echo 1
 
 
 def run(code, folder, bin_folder):
-    """Runs a block to its end, and ends what it started: schedulers and workers take their time."""
+    """Runs a block to its end, then ends the processes it started, which takes schedulers and workers a
+    while."""
     out, err = folder / "out", folder / "err"
     with out.open("w") as stdout, err.open("w") as stderr:
         environment = os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}:/usr/bin:/bin"}
-        shell = subprocess.Popen(["/bin/bash", "-euo", "pipefail", "-c", code], cwd=folder, env=environment, stdout=stdout, stderr=stderr, start_new_session=True)
+        shell = subprocess.Popen(["/bin/bash", "-euo", "pipefail", "-c", code], cwd=folder, env=environment,
+                                 stdout=stdout, stderr=stderr, start_new_session=True)
     try:
         status = shell.wait(timeout=HANGS)
     finally:
@@ -64,5 +69,6 @@ def test_commands_print_what_the_page_says(tmp_path):
         code_status, out, err = run(code, tmp_path, bin_folder)
         assert code_status == 0, (code, out, err)
         assert not not_printed(wanted, out), (out, err)
-    check = subprocess.run([sys.executable, "-m", "carom.sweep", "breaks.json", "--check"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    check = subprocess.run([sys.executable, "-m", "carom.sweep", "breaks.json", "--check"], cwd=tmp_path,
+                           capture_output=True, text=True, check=False)
     assert check.returncode == 0, check.stdout + check.stderr

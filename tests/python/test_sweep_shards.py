@@ -1,4 +1,5 @@
-"""Sweeps in shards: the rows of `carom sweep` whatever the shards and workers, plans that are checked, files that say where they come from."""
+"""Sharded sweeps: the rows of `carom sweep` whatever the shards and workers, checked plans, and files that
+state their origin."""
 
 from __future__ import annotations
 
@@ -37,7 +38,7 @@ def test_any_shards_and_workers_give_the_rows_of_the_program(tmp_path, name):
         tables.append(sweep.open(folder).to_table())
     assert all(table.equals(tables[0]) for table in tables)
     all_the_same(header, rows, tables[0].to_pydict())
-    # Who makes a file, and in which company, is not in it.
+    # A file does not depend on who makes it, or on which other files are made.
     assert contents(tmp_path / "7-1") == contents(tmp_path / "7-2")
 
 
@@ -49,7 +50,7 @@ def test_processes_that_were_spawned_make_the_same_files(tmp_path):
         again = sweep.reduce(plan, _moments, pool)
     assert contents(tmp_path / "threads") == contents(tmp_path / "processes")
     assert again == sweep.reduce(plan, _moments, threads=1)
-    with multiprocessing.pool.ThreadPool(2) as pool:  # has no submit
+    with multiprocessing.pool.ThreadPool(2) as pool:  # it has no submit
         assert sweep.run(plan, tmp_path / "map", pool).played == 60
         assert sweep.reduce(plan, _moments, pool) == again
     assert contents(tmp_path / "threads") == contents(tmp_path / "map")
@@ -59,20 +60,25 @@ def _moments(table):
     import pyarrow.compute
 
     duration = table["duration"].to_numpy()
-    return {"shots": len(table), "sums": (duration.sum(), (duration**2).sum()), "histogram": np.histogram(duration, 10, (0, 10))[0].tolist()}
+    return {"shots": len(table), "sums": (duration.sum(), (duration**2).sum()),
+            "histogram": np.histogram(duration, 10, (0, 10))[0].tolist()}
 
 
 def test_a_reduction_is_that_of_the_rows_and_merges_in_order(tmp_path):
     plan = draw_plan(1000, 90)
     whole = sweep.reduce(plan, _moments, threads=3, merge=_add)
-    duration = sweep.table(carom.Scene.load(SOURCE / "scenes/draw.toml"), DRAW, 1000, seed=4)["duration"].to_numpy()
+    duration = sweep.table(
+        carom.Scene.load(SOURCE / "scenes/draw.toml"), DRAW, 1000, seed=4)["duration"].to_numpy()
     parts = [duration[k : k + 90] for k in range(0, 1000, 90)]
-    assert whole["sums"][0] == sum(part.sum() for part in parts)  # to the bit: the order is that of the shards
+    # Equal to the bit, because results are merged in the order of the shards.
+    assert whole["sums"][0] == sum(part.sum() for part in parts)
     assert whole["histogram"] == np.histogram(duration, 10, (0, 10))[0].tolist()
     first = sweep.reduce(plan, lambda table: [table["shot"][0].as_py()], threads=4, merge=lambda a, b: a + b)
     assert first == list(range(0, 1000, 90))
-    added = sweep.reduce(plan, lambda table: ({"n": len(table)}, np.ones(3), 0.5, {"only in some": 1} if table["shot"][0].as_py() == 90 else {}))
-    assert added[0] == {"n": 1000} and added[1].tolist() == [12.0] * 3 and added[2:] == (6.0, {"only in some": 1})
+    added = sweep.reduce(plan, lambda table: (
+        {"n": len(table)}, np.ones(3), 0.5, {"only in some": 1} if table["shot"][0].as_py() == 90 else {}))
+    assert added[0] == {"n": 1000} and added[1].tolist() == [12.0] * 3
+    assert added[2:] == (6.0, {"only in some": 1})
     with pytest.raises(ZeroDivisionError):
         sweep.reduce(plan, lambda table: 1 / 0)
 
@@ -95,14 +101,17 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     assert all(said[key.decode()] == value.decode() for key, value in table.schema.metadata.items())
     assert carom.Scene.loads(table.schema.metadata[b"carom.scene"].decode()) == scene
     assert said["carom.scene_sha256"] == _plan.sha256(scene.source.encode())
-    wanted = {"plan": plan.id, "version": carom.__version__, "vary": "\n".join(DRAW), "seed": "4", "first": "8", "last": "16"}
+    wanted = {"plan": plan.id, "version": carom.__version__, "vary": "\n".join(DRAW), "seed": "4",
+              "first": "8", "last": "16"}
     assert {key: said[f"carom.{key}"] for key in wanted} == wanted
     assert said["carom.writer"] == f"pyarrow {pyarrow.__version__}"
     assert json.loads(said["carom.outcomes"]) == {"at_rest": 8}
-    units = {field.name: field.metadata[b"unit"].decode() for field in table.schema if field.metadata and b"unit" in field.metadata}
+    units = {
+        field.name: field.metadata[b"unit"].decode() for field in table.schema if field.metadata
+        and b"unit" in field.metadata}
     metres = {f"{ball}.{axis}": "m" for ball in ("cue", "1") for axis in "xy"}
     assert units == {"cue.aim_deg": "degrees", "cue.speed": "m/s", "duration": "s"} | metres
-    # A row can be played again and compared, and the digest is of these hashes.
+    # A row can be replayed and compared; the digest is over these hashes.
     hashes = table["record_hash"].to_numpy()
     for row in table.to_pylist()[:3]:
         again = carom.simulate(scene.replace(**{key: row[key] for key in ("cue.aim_deg", "cue.speed")}))
@@ -115,7 +124,8 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     digest = records("all", draw_plan(140, 130, hashes="column"), 0)
     all_hashes = parquet.read_table(tmp_path / "all/shard-0.parquet")["record_hash"].to_numpy()
     assert (hashes == all_hashes[8:16]).all()
-    assert said["carom.records_every"] == "64" and digest == _plan.sha256(all_hashes[[0, 64, 128]].astype("<u8").tobytes())
+    assert said["carom.records_every"] == "64"
+    assert digest == _plan.sha256(all_hashes[[0, 64, 128]].astype("<u8").tobytes())
     assert records("digest", draw_plan(140, 130), 0) == digest
     assert records("late", draw_plan(140, 60), 1) == _plan.sha256(all_hashes[[64]].astype("<u8").tobytes())
     assert records("none", draw_plan(20, 8, hashes="none"), 1) == ""
@@ -135,9 +145,10 @@ def test_the_hash_of_the_content_does_not_depend_on_how_a_table_is_cut(draw_scen
     assert whole == digest(table.slice(0, 0), table.slice(0, 33), table.slice(33, 1), table.slice(34))
     assert whole == digest(pyarrow.concat_tables([table.slice(0, 50), table.slice(50)]))
     assert whole != digest(table.slice(0, 99)) and whole != digest(table.slice(50), table.slice(0, 50))
-    # A value and its absence, and where a text ends, make a difference.
+    # The digest tells null from 0, and where one string ends and the next begins.
     one, two = (pyarrow.table({"a": pyarrow.array(values)}) for values in (["ab", "c"], ["a", "bc"]))
-    null, zero = (pyarrow.table({"a": pyarrow.array(values, pyarrow.int64())}) for values in ([1, None], [1, 0]))
+    null, zero = (
+        pyarrow.table({"a": pyarrow.array(values, pyarrow.int64())}) for values in ([1, None], [1, 0]))
     assert len({digest(part) for part in (one, two, null, zero)}) == 4
 
 
@@ -148,7 +159,8 @@ def test_shots_that_fail_are_rows_and_are_counted(tmp_path):
     assert done.failed > 0 and done.failed + done.outcomes["time"] == 8
     assert [progress.done for progress in told] == [0, 1, 2, 3]
     rows = sweep.open(tmp_path).to_table().to_pylist()
-    assert [row["outcome"] == "failed" for row in rows] == ["did not end within its bound" in row["message"] for row in rows]
+    assert [row["outcome"] == "failed" for row in rows] == [
+        "reached its limit of steps" in row["message"] for row in rows]
     assert all((row["duration"] is None) == (row["outcome"] == "failed") for row in rows)
     assert sweep.check(tmp_path).outcomes == done.outcomes
 
@@ -173,8 +185,10 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
     with pytest.raises(sweep.SweepError, match="nowhere/p.json: cannot write it: No such file"):
         plan.save(tmp_path / "nowhere/p.json")
     for text, message in [
-        (path.read_text().replace('"shots": 60', '"shots": 61'), "p.json: the plan was changed by hand or is damaged"),
-        (path.read_text().replace('"seed": 4', '"sed": 4'), "p.json: the plan was changed by hand or is damaged"),
+        (path.read_text().replace('"shots": 60', '"shots": 61'),
+         "p.json: the plan was changed by hand or is damaged"),
+        (path.read_text().replace('"seed": 4', '"sed": 4'),
+         "p.json: the plan was changed by hand or is damaged"),
         (path.read_text()[:-10], r"p.json:\d+:\d+: .*; a plan is what"),
         ("[]", 'p.json: no plan of a sweep: "format" has to be'),
         ("\udcff", "p.json: cannot read it: .*utf-8"),
@@ -189,7 +203,8 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
 def test_what_cannot_be_planned_is_said():
     refused(
         ValueError,
-        lambda **options: sweep.plan(**{"scene": SOURCE / "scenes/draw.toml", "vary": DRAW, "shots": 10} | options),
+        lambda **options: sweep.plan(
+            **{"scene": SOURCE / "scenes/draw.toml", "vary": DRAW, "shots": 10} | options),
         ({"shots": 0}, r"shots=0: expected 1 to 2\*\*53"),
         ({"shots": 2**53 + 1}, r"expected 1 to 2\*\*53"),
         ({"shard": 0}, "shard=0: expected at least 1"),
@@ -210,7 +225,7 @@ def test_what_cannot_be_planned_is_said():
 
 def test_the_last_shots_of_the_largest_sweep_are_played(tmp_path):
     large = draw_plan(2**53, 10**10)
-    # Cut so that the last shard has few shots: their numbers survive.
+    # Cut so that the last shard has few shots: their values survive.
     small = large._replace(shard=2**53 - 5)
     sweep.run_shard(small, 1, tmp_path)
     table = parquet.read_table(tmp_path / small.file(1))
@@ -224,9 +239,11 @@ def test_duckdb_reads_the_files(tmp_path):
     plan = sweep.plan(SOURCE / "scenes/eight_ball_break.toml", RULES["eight_ball_break"], 60, shard=25)
     sweep.run(plan, tmp_path)
     table = sweep.open(tmp_path).to_table()
-    query = f"SELECT count(*), sum(events), count(DISTINCT shot), sum((pocketed <> '')::int) FROM '{tmp_path}/*.parquet'"
+    columns = "count(*), sum(events), count(DISTINCT shot), sum((pocketed <> '')::int)"
+    query = f"SELECT {columns} FROM '{tmp_path}/*.parquet'"
     rows = table.to_pylist()
-    assert duckdb.sql(query).fetchall()[0] == (60, sum(row["events"] for row in rows), 60, sum(row["pocketed"] != "" for row in rows))
+    assert duckdb.sql(query).fetchall()[0] == (
+        60, sum(row["events"] for row in rows), 60, sum(row["pocketed"] != "" for row in rows))
 
 
 def test_the_plan_of_the_study_can_be_read():

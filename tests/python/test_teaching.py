@@ -1,6 +1,6 @@
-"""The scripts for teachers run, draw, and check what they expect; and their checks can fail.
+"""The teaching scripts run, draw, and check their own expectations, and these checks can fail.
 
-CAROM_PICTURES=FOLDER keeps the pictures there.
+CAROM_PICTURES=FOLDER keeps the pictures in that folder.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import pytest
 from conftest import SOURCE
 
 SCRIPTS = sorted((SOURCE / "examples/teaching").glob("*.py"))
-# What breaks the physics of each script: a check has to notice.
+# A change that breaks the physics of each script, which one of its checks must notice.
 WRONG = {
     "accuracy_and_margin": ("abs(order - 1)", "abs(order - 2)"),
     "cushions": ("(1 + E_C) * v[:, 0] * cosine", "(1 + E_C) * v[:, 0]"),
@@ -26,7 +26,8 @@ WRONG = {
 
 
 def run(name, source, folder=None):
-    """Runs a script as a notebook does, cell after cell. How many colours each of its pictures has; they are kept in the folder."""
+    """Runs a script cell by cell, as a notebook does. Returns the number of colours in each picture; keeps
+    the pictures in the folder."""
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -37,7 +38,8 @@ def run(name, source, folder=None):
         for number in pyplot.get_fignums():
             figure = pyplot.figure(number)
             if folder is not None:
-                figure.savefig(folder / f"teaching_{name}_{len(pictures) + 1}.png", dpi=60, metadata={"Software": None})
+                figure.savefig(
+                    folder / f"teaching_{name}_{len(pictures) + 1}.png", dpi=60, metadata={"Software": None})
             figure.canvas.draw()
             pictures.append(len(np.unique(np.ascontiguousarray(figure.canvas.buffer_rgba()).view(np.uint32))))
         pyplot.close("all")
@@ -47,7 +49,7 @@ def run(name, source, folder=None):
     try:
         for cell in source.split("# %%"):
             exec(compile(cell.removeprefix(" [markdown]"), f"{name}.py", "exec"), names)
-            # A notebook shows and drops what is open at the end of a cell.
+            # At the end of a cell, a notebook shows and closes all open figures.
             assert pyplot.get_fignums() == [], f"a picture is not shown in its cell: {cell}"
     finally:
         pyplot.show = kept
@@ -57,7 +59,8 @@ def run(name, source, folder=None):
 
 @pytest.fixture(scope="module", autouse=True)
 def accuracy_once():
-    """`carom.accuracy` takes seconds: the right and the wrong script look at one report of each call, in copies of their own."""
+    """Makes one report per call of `carom.accuracy`, which takes seconds; the right and the wrong script each
+    get a copy."""
     kept, reports = carom.accuracy, {}
 
     def accuracy(*arguments, **named):

@@ -1,4 +1,4 @@
-// carom compare: what it prints, what it returns.
+// carom compare: what it prints and returns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ TEST_F(Compare, ASceneAndItsRecordAreTheSameBitForBit) {
         const ProcessResult result = carom({"compare", a, b, "--tolerance", "0"});
         EXPECT_EQ(result.status, 0) << result.err;
         EXPECT_EQ(lines_of(result.out).back(), "the same, bit for bit");
-        EXPECT_TRUE(contains(result.out, "alike: all, at the same times\n")) << result.out;
+        EXPECT_TRUE(contains(result.out, "matching: all, at the same times\n")) << result.out;
         EXPECT_EQ(result.err, "");
     }
     const Json same = json_of({scene_, record}, 0);
@@ -67,7 +67,7 @@ TEST_F(Compare, AnotherShotIsATableAndAStatus) {
     EXPECT_EQ(json["tolerance"], 1e-4);
     EXPECT_EQ(json["only_in_a"], Json::array());
     ASSERT_EQ(json["balls"].size(), 3u);
-    // A row for every ball, with the numbers of the JSON.
+    // One row per ball, with the numbers of the JSON.
     for (const Json& ball : json["balls"]) {
         const std::string id = ball["id"];
         std::string row;
@@ -85,7 +85,7 @@ TEST_F(Compare, AnotherShotIsATableAndAStatus) {
     EXPECT_EQ(events["first_apart"]["a"]["type"], events["first_apart"]["b"]["type"]);
     EXPECT_GT(events["first_apart"]["a"]["time"], events["first_apart"]["b"]["time"])
         << "the faster ball is there earlier";
-    EXPECT_TRUE(contains(result.out, "number 2 is the first at another time: ")) << result.out;
+    EXPECT_TRUE(contains(result.out, "event 2 is the first at a different time: ")) << result.out;
     EXPECT_EQ(lines.back().find("different: 2 of 3 balls more than 0.0001 m apart, the farthest "), 0u)
         << lines.back();
 }
@@ -116,14 +116,13 @@ TEST_F(Compare, OtherBallsAreSaidAndTheRestIsCompared) {
     const std::string other = folder_.write("other.toml", text);
     const ProcessResult result = carom({"compare", scene_, other});
     EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.out, "\nballs of A alone: ball 2\nballs of B alone: 3\n")) << result.out;
+    EXPECT_TRUE(contains(result.out, "\nballs only in A: ball 2\nballs only in B: 3\n")) << result.out;
     EXPECT_TRUE(
-        contains(result.out, "\ndifferent: not the same balls; those of both are equal within 0.0001 m"))
+        contains(result.out, "\ndifferent: not the same balls; the common ones are equal within 0.0001 m"))
         << result.out;
     EXPECT_EQ(json_of({scene_, other}, 1)["only_in_b"], Json::array({"3"}));
     const std::string none = folder_.write("none.toml", "[[ball]]\nid = \"x\"\n");
-    EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(),
-              "different: they have no ball in common");
+    EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(), "different: no ball in common");
 }
 
 TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
@@ -131,7 +130,7 @@ TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
     ASSERT_EQ(carom({"simulate", scene_, "--until", "0.5", "-o", record}).status, 0);
     const ProcessResult result = carom({"compare", scene_, record});
     EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.out, "\n  largest: up to 0.5000 s, when one of them was stopped\n"))
+    EXPECT_TRUE(contains(result.out, "\n  largest: until 0.5000 s, when one of the shots was stopped\n"))
         << result.out;
     EXPECT_TRUE(contains(result.out, " m at the end")) << result.out;
     const Json json = json_of({scene_, record}, 1);
@@ -140,7 +139,7 @@ TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
     EXPECT_TRUE(json["events"]["first_other"]["b"].is_null()) << json["events"];
 }
 
-// 1 is the answer that they differ, so what gives no answer is 2.
+// 1 means that they differ, so the status without an answer is 2.
 TEST_F(Compare, NoAnswerIs2) {
     const std::string bad = folder_.write("bad.toml", "[cue]\nsped = 1\n");
     const std::string stuck = folder_.write("stuck.toml", kStuckScene);

@@ -1,4 +1,4 @@
-// carom margin: what it prints and writes. Times are measured, and no test asserts one.
+// carom margin: what it prints and writes. No test asserts a measured time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -107,7 +107,7 @@ TEST_F(CliMargin, ForPeople) {
     for (const char* part :
          {" missed\n", "\n  simulate ", "\n    kernel ", "\n    cluster ", "\n  draw ", "\n  readback ",
           "\n  encode ", "\n  write ", "\n  all ", "Slack: ", "Without encoding", "Medians of 2 runs",
-          "The parts add up to ", "Timing itself: ", "worst frame: "}) {
+          "The stages add up to ", "Cost of timing: ", "worst frame: "}) {
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     }
 }

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -39,10 +40,10 @@ class Mistakes : public testing::Test {
 };
 
 TEST_F(Mistakes, AMistypedCommandNamesTheNearest) {
-    refused("there is no command \"simulat\"; did you mean simulate?", {"simulat", scene_});
-    refused("there is no command \"rendr\"; did you mean render?", {"rendr"});
-    refused("there is no command \"fly-away\"; there are simulate, render, view", {"fly-away"});
-    refused("name a command before the file, as in carom simulate " + scene_, {scene_});
+    refused("unknown command \"simulat\"; did you mean simulate?", {"simulat", scene_});
+    refused("unknown command \"rendr\"; did you mean render?", {"rendr"});
+    refused("unknown command \"fly-away\"; expected simulate, render, view", {"fly-away"});
+    refused(": no command before the file; try carom simulate " + scene_, {scene_});
 }
 
 TEST_F(Mistakes, MistypedKeysAndValuesNameTheNearest) {
@@ -75,17 +76,17 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     const std::string before = read_file(scene_), same = folder_.file("same");
     const std::string link = folder_.file("link.toml");
     fs::create_symlink(scene_, link);
-    refused("-o \"" + scene_ + "\" would replace what is read", {"simulate", scene_, "-o", scene_});
-    refused("would replace what is read", {"simulate", scene_, "-o", link});
-    refused("would replace what is read", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
-    refused("would replace what is read", sweep(scene_));
-    refused("would replace what is read", {"margin", scene_, "--no-render", "--csv", scene_});
+    refused("-o \"" + scene_ + "\" would overwrite the input", {"simulate", scene_, "-o", scene_});
+    refused("would overwrite the input", {"simulate", scene_, "-o", link});
+    refused("would overwrite the input", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
+    refused("would overwrite the input", sweep(scene_));
+    refused("would overwrite the input", {"margin", scene_, "--no-render", "--csv", scene_});
     refused("-o -: give a name", sweep("-"));
     refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
-    refused("-o: a file without a name", sweep(""));
-    // Files that are not there yet, under two names.
+    refused("-o: empty file name", sweep(""));
+    // Files that do not exist yet, under two names.
     fs::create_symlink(same, folder_.file("to_same"));
     fs::create_symlink("to_same", folder_.file("to_link"));
     fs::create_directory_symlink(".", folder_.file("here"));
@@ -100,7 +101,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     fs::current_path(folder_.path());
     refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", "./a.json"});
     refused("name the same file", {"simulate", scene_, "-o", "a.json", "--events", folder_.file("a.json")});
-    refused("would replace what is read", {"render", "./s.toml", "-o", "s.toml"});
+    refused("would overwrite the input", {"render", "./s.toml", "-o", "s.toml"});
     fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
@@ -110,11 +111,10 @@ TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
     refused("pictures are PNG files", {"render", scene_, "-o", folder_.file("f%d.jpg")});
     refused("pictures are PNG files", {"render", scene_, "--at", "0.1", "-o", folder_.file("f.jpg")});
     refused("or the name of a film", {"render", scene_, "-o", folder_.file("movie.avi")});
-    refused("--at 99: the shot is over after", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
+    refused("--at 99: the shot ends at", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
     for (const char* option : {"--at", "--from"})
         for (const char* late : {"99", "1e16", "1e17", "1e300"})
-            refused(": the shot is over after",
-                    {"render", scene_, option, late, "-o", folder_.file("%d.png")});
+            refused(": the shot ends at", {"render", scene_, option, late, "-o", folder_.file("%d.png")});
     EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
     const std::string one = folder_.file("f.png");
     const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
@@ -131,18 +131,19 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         return carom(all);
     };
     folder_.write("f1.png", "of nobody");
-    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the frames there are of"));
+    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the existing frames show"));
     fs::remove(folder_.file("f1.png"));
     ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
-    EXPECT_TRUE(contains(render({"--resume"}).out, "0 frames: all are there"));
+    EXPECT_TRUE(contains(render({"--resume"}).out, "all frames already exist"));
     const std::vector<std::vector<std::string>> others = {
         {"--camera", "rail"}, {"--trails"}, {"--from", "0.1"}, {"--eye", "1,1,1", "--target", "0,0,0"}};
     for (std::vector<std::string> other : others) {
         other.push_back("--resume");
         const ProcessResult result = render(other);
         EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(contains(result.err, "of another shot, camera, overlay or size; render without --resume"))
+        EXPECT_TRUE(
+            contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
             << result.err;
     }
     std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
@@ -162,8 +163,8 @@ TEST_F(Mistakes, ARecordIsNoScene) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     for (const char* command : {"simulate", "check", "margin"})
         refused(
-            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and compare "
-            "take it",
+            "this is JSON, but a scene is TOML; if it is a record, pass it to carom render, view, export or "
+            "compare",
             {command, record});
 }
 
@@ -172,8 +173,8 @@ TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
         const char *scene, *warning;
     } kCases[] = {
         {"[[ball]]\nposition = [50, 45]\n",
-         "warning: ball \"cue\" lies 48.7 m beside the table; positions are in m"},
-        {"[[ball]]\nposition = [2.0, 0.45]\n", "warning: ball \"cue\" lies 0.73 m beside the table"},
+         "warning: ball \"cue\" lies 48.7 m outside the table; positions are in m"},
+        {"[[ball]]\nposition = [2.0, 0.45]\n", "warning: ball \"cue\" lies 0.73 m outside the table"},
         {"[[ball]]\n[cue]\nspeed = 2500\n[stop]\nevents = 3\n", "warning: the cue moves at 2500 m/s"},
         {"[[ball]]\nvelocity = [300, 0]\n[stop]\nevents = 3\n", "warning: ball \"cue\" starts at 300 m/s"},
         {"[table]\ncushion = []\n[balls]\nradius = 28.575\n[[ball]]\n",
@@ -191,7 +192,7 @@ TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
 TEST_F(Mistakes, StandardOutputIsAFileToo) {
     const ProcessResult samples = carom({"simulate", scene_, "--samples", "-", "--sample-dt", "0.5"});
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
-    EXPECT_FALSE(contains(samples.out, "balls at the end"));
+    EXPECT_FALSE(contains(samples.out, "final positions"));
     EXPECT_FALSE(fs::exists("-"));
     refused("-o -: give a name", sweep("-"));
     refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
@@ -199,7 +200,7 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }
 
-// A shell's >>: what was there before stays, and what is printed comes after.
+// A shell's >>: earlier contents stay, and the output comes after them.
 TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     const std::string log = folder_.file("log.txt");
     const std::string hash = carom({"simulate", scene_, "--hash"}).out;
@@ -219,19 +220,14 @@ TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     EXPECT_TRUE(shell(sweep("/dev/stdout")).starts_with("before\n" + read_file(table)));
 }
 
-TEST_F(Mistakes, EventsAsATable) {
+TEST_F(Mistakes, ListTellsEveryEvent) {
     const ProcessResult result = carom({"simulate", scene_, "--list"});
     EXPECT_EQ(result.status, 0);
     const auto counts = nlohmann::json::parse(carom({"simulate", scene_, "--json"}).out);
-    int events = 0;
-    for (const auto& [name, count] : counts["events_by_kind"].items()) {
-        events += count.get<int>();
-        int lines = 0;
-        for (const std::string& line : lines_of(result.out))
-            lines += contains(line, " " + name + " ") ? 1 : 0;
-        EXPECT_GE(lines, count.get<int>()) << name;
-    }
-    EXPECT_EQ(events, counts["events"].get<int>());
+    const std::vector<std::string> lines = lines_of(result.out);
+    const auto told =
+        std::count_if(lines.begin(), lines.end(), [](const std::string& l) { return contains(l, " s  "); });
+    EXPECT_EQ(told, counts["events"].get<int>());
 }
 
 TEST_F(Mistakes, ASeedIsAWholeNumber) {
@@ -248,75 +244,12 @@ TEST_F(Mistakes, AShardReplacesNoOther) {
     EXPECT_EQ(read_file(output), first);
 }
 
-// The unfinished file of a sweep, as the same command finds it again.
-class TakenUp : public Mistakes {
-  protected:
-    void SetUp() override {
-        ASSERT_EQ(carom(sweep(output_)).status, 0);
-        whole_ = read_file(output_);
-        fs::remove(output_);
-        // A full disk leaves it, and tells its name.
-        ProcessOptions full;
-        full.file_limit = 1;
-        const ProcessResult stopped = carom(sweep(output_), full);
-        for (const auto& entry : fs::directory_iterator(folder_.path()))
-            if (entry.path().extension() == ".part") part_ = entry.path().string();
-        ASSERT_NE(part_, "") << stopped.err;
-        fs::remove(part_);
-    }
-    std::string output_ = folder_.file("w.csv"), whole_, part_;
-};
-
-TEST_F(TakenUp, ALinkIsNotFollowed) {
-    const std::string victim = folder_.write("victim", "of value\n");
-    fs::create_symlink(victim, part_);
-    const ProcessResult result = carom(sweep(output_));
-    EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.err, "this is a link")) << result.err;
-    EXPECT_EQ(read_file(victim), "of value\n");
-    fs::remove(part_);
-    ASSERT_EQ(::mkfifo(part_.c_str(), 0600), 0);
-    EXPECT_TRUE(contains(carom(sweep(output_)).err, "this is no file"));
-}
-
-TEST_F(TakenUp, RowsAreLookedAt) {
-    const std::vector<std::string> lines = lines_of(whole_);
-    const auto first_rows = [&](std::size_t count) {
-        std::string text;
-        for (std::size_t i = 0; i < count; ++i) text += lines[i] + "\n";
-        return text;
-    };
-    folder_.write(fs::path(part_).filename().string(), first_rows(4));
-    ASSERT_EQ(carom(sweep(output_)).status, 0);
-    EXPECT_EQ(read_file(output_), whole_);
-    for (const std::size_t forged : {0u, 2u}) {
-        std::string text;
-        for (std::size_t i = 0; i < 5; ++i) text += (i == forged ? "9" : "") + lines[i] + "\n";
-        folder_.write(fs::path(part_).filename().string(), text);
-        const ProcessResult result = carom(sweep(output_));
-        EXPECT_EQ(result.status, 1);
-        EXPECT_TRUE(contains(result.err, "its rows are not what this program computes")) << result.err;
-    }
-}
-
-TEST_F(TakenUp, FailuresThatAreThereCount) {
-    std::vector<std::string> lines = lines_of(whole_);
-    // The second row says that its shot failed; the last one is played again, and is as it was.
-    lines[2] = lines[2].substr(0, lines[2].find(',', 2)) + ",failed,,,,,,,,,,,,,,,,why";
-    std::string text;
-    for (std::size_t i = 0; i < 4; ++i) text += lines[i] + "\n";
-    folder_.write(fs::path(part_).filename().string(), text);
-    const ProcessResult result = carom(sweep(output_));
-    EXPECT_EQ(result.status, 1);
-    EXPECT_TRUE(contains(result.err, "1 shot failed while running; its row says why")) << result.err;
-}
-
-// Others may write in the folder, too.
+// Others may also write in the folder.
 TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
     const std::string record = folder_.file(std::string(240, 'r') + ".json");
     EXPECT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     EXPECT_TRUE(fs::exists(record));
-    // Rights stay, and links to nothing are followed.
+    // Permissions stay, and dangling links are followed.
     const std::string secret = folder_.write("secret.csv", "");
     fs::permissions(secret, fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(carom({"simulate", scene_, "--events", secret}).status, 0);

@@ -31,7 +31,7 @@ const Malformed kScenes[] = {
     {"[render]\nfps = 0\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
      ":2:7: render.fps = 0 is out of range; it must be more than 0 and at most 100000 frames per second"},
     {"[table]\npreset = \"nine_foot\"\npreset = \"carom\"\n",
-     ":3:10: this key or section is there already; keep one of the two (Error while parsing key-value pair: "
+     ":3:10: this key or section appears twice; keep one of the two (Error while parsing key-value pair: "
      "cannot "
      "redefine existing string 'preset')"},
 };
@@ -45,8 +45,8 @@ TEST(CliScene, CheckShowsFrictionBySlipAndBallsOfTheirOwn) {
                      "[[ball]]\nid = \"b\"\nposition = [0.9, 0.5]\nmass = 0.2\n");
     const ProcessResult result = carom({"check", scene});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("mu_b at a slip u: 0.01 + 0.1 exp(-1.5 u)\n"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("of its own, ball b: R 0.028575 m, mass 0.2 kg\n"), std::string::npos);
+    EXPECT_NE(result.out.find("mu_b at slip u: 0.01 + 0.1 exp(-1.5 u)\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("ball b differs: R 0.028575 m, mass 0.2 kg\n"), std::string::npos);
     EXPECT_NE(result.out.find("closed form"), std::string::npos);
 }
 

@@ -1,4 +1,5 @@
 // carom sweep: one table, whatever the number of threads and parts, and whatever happened on the way.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/fnv.h"
 #include "cli.h"
 
 namespace carom::test {
@@ -38,21 +40,52 @@ void expect_ok(const ProcessResult& result) {
     EXPECT_EQ(result.status, 0) << result.err;
 }
 
-/// The file that a sweep leaves when it is stopped, or "".
-std::string part_in(const TemporaryFolder& folder) {
+/// The folder that a stopped sweep leaves, or "".
+std::string parts_in(const TemporaryFolder& folder) {
     for (const auto& entry : fs::directory_iterator(folder.path()))
-        if (entry.path().extension() == ".part") return entry.path().string();
+        if (entry.path().extension() == ".parts") return entry.path().string();
     return "";
 }
 
-/// Waits until some rows stand in the unfinished file of a sweep.
-std::string wait_for_rows(const TemporaryFolder& folder) {
-    for (int i = 0; i < 1000; ++i) {
-        const std::string part = part_in(folder);
-        if (!part.empty() && lines_of(read_file(part)).size() > 5) return part;
+/// Its parts, in the order of their shots.
+std::vector<std::string> files_in(const std::string& parts) {
+    std::vector<std::string> files;
+    for (const auto& entry : fs::directory_iterator(parts))
+        if (entry.path().extension() == ".csv") files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end(), [](const std::string& a, const std::string& b) {
+        return std::stoull(fs::path(a).stem()) < std::stoull(fs::path(b).stem());
+    });
+    return files;
+}
+
+/// The rows of all parts, without the last two lines of each, which describe it.
+std::vector<std::string> rows_in(const std::string& parts) {
+    std::vector<std::string> rows;
+    for (const std::string& file : files_in(parts)) {
+        const std::vector<std::string> lines = lines_of(read_file(file));
+        rows.insert(rows.end(), lines.begin(), lines.end() - 2);
+    }
+    return rows;
+}
+
+/// Waits until a sweep has kept this many parts.
+std::string wait_for_parts(const TemporaryFolder& folder, std::size_t count = 1) {
+    for (int i = 0; i < 2000; ++i) {
+        const std::string parts = parts_in(folder);
+        if (!parts.empty() && files_in(parts).size() >= count) return parts;
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return "";
+}
+
+/// Lets a sweep run until it has kept some rows, and interrupts it. Returns its folder.
+std::string interrupted_parts(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), CAROM_PROGRAM);
+    Process process(arguments, {});
+    std::string parts = wait_for_parts(folder);
+    process.interrupt();
+    EXPECT_EQ(process.finish("").status, 130);
+    return parts;
 }
 
 TEST(CliSweep, TheTableIsTheSameForAnyJobsAndAsShards) {
@@ -69,7 +102,7 @@ TEST(CliSweep, TheTableIsTheSameForAnyJobsAndAsShards) {
         fs::remove(folder.file("part.csv"));
     }
     EXPECT_EQ(whole, parts);
-    EXPECT_EQ(part_in(folder), "");
+    EXPECT_EQ(parts_in(folder), "");
 
     const std::vector<std::string> lines = lines_of(whole);
     ASSERT_EQ(lines.size(), 61u);
@@ -87,24 +120,24 @@ TEST(CliSweep, TheTableIsTheSameForAnyJobsAndAsShards) {
 TEST(CliSweep, GoesOnAfterAKill) {
     const TemporaryFolder folder;
     const std::string whole = folder.file("whole.csv"), killed = folder.file("killed.csv");
-    const std::vector<std::string> command = breaks(600, killed, {"--jobs", "2"});
+    const std::vector<std::string> command = breaks(1200, killed, {"--jobs", "2"});
     std::vector<std::string> arguments = command;
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
-    std::string part;
-    {
+    std::string parts;
+    for (const std::size_t count : {1u, 2u}) {
         const Process process(arguments, {});
-        part = wait_for_rows(folder);
-        ASSERT_NE(part, "");
+        parts = wait_for_parts(folder, count);
+        ASSERT_NE(parts, "");
         // The destructor kills it with SIGKILL.
     }
     EXPECT_FALSE(fs::exists(killed));
-    // Half a row, as a full disk or a crash may leave it.
-    std::ofstream(part, std::ios::app) << "123,90.0";
+    // Half a part, as a crash may leave it, before it gets its name.
+    std::ofstream(parts + "/.carom.1.0.tmp") << "123,90.0";
     const ProcessResult result = carom(command);
     expect_ok(result);
-    EXPECT_NE(result.err.find("going on with " + part), std::string::npos) << result.err;
-    EXPECT_EQ(part_in(folder), "");
-    expect_ok(carom(breaks(600, whole)));
+    EXPECT_NE(result.err.find("continuing with " + parts), std::string::npos) << result.err;
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"killed.csv"});
+    expect_ok(carom(breaks(1200, whole)));
     EXPECT_EQ(read_file(killed), read_file(whole));
 }
 
@@ -114,25 +147,85 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     std::vector<std::string> arguments = breaks(100000, output);
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
     Process process(arguments, {});
-    const std::string part = wait_for_rows(folder);
-    ASSERT_NE(part, "");
+    const std::string parts = wait_for_parts(folder);
+    ASSERT_NE(parts, "");
     const ProcessResult second = carom(breaks(100000, output));
     EXPECT_EQ(second.status, 1);
-    EXPECT_EQ(second.err, "carom: " + part + ": another program is writing this very file\n");
+    EXPECT_EQ(second.err,
+              "carom: " + parts + "/lock: another program is writing the files that this lock protects\n");
     process.interrupt();
     const ProcessResult result = process.finish("");
     EXPECT_EQ(result.status, 130);
-    EXPECT_EQ(result.err, "carom: stopped; the same command goes on with " + part + "\n");
-    EXPECT_FALSE(fs::exists(output));
-    const std::string rows = read_file(part);
-    EXPECT_EQ(rows.back(), '\n');
+    EXPECT_EQ(result.err, "carom: stopped; run the same command to continue with " + parts + "\n");
+    // No table, no lock, no temporary file.
+    EXPECT_EQ(folder.names().size(), files_in(parts).size());
+}
 
-    // Rows of another build are not continued.
-    std::ofstream(part, std::ios::app) << lines_of(rows).size() - 1 << ",1,2,3\n";
-    const ProcessResult again = carom(breaks(100000, output));
-    EXPECT_EQ(again.status, 1);
-    EXPECT_NE(again.err.find("its last row is not what this program computes"), std::string::npos)
-        << again.err;
+TEST(CliSweep, APartIsLookedAt) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> command = breaks(100000, folder.file("a.csv"));
+    const std::string parts = interrupted_parts(folder, command);
+    ASSERT_NE(parts, "");
+    const auto refused = [&](const std::string& message) {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 1);
+        EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+    };
+    const std::string part = parts + "/0.csv", text = read_file(part);
+    const auto write = [&](const std::string& other) { std::ofstream(part, std::ios::binary) << other; };
+    for (const std::size_t at : {std::size_t{0}, text.size() / 2, text.size() - 25, text.size() - 2}) {
+        std::string changed = text;
+        changed[at] ^= 1;
+        write(changed);
+        refused(part + ": its rows are not those that were written; remove it, and it is made again");
+    }
+    for (const std::string& short_one :
+         {std::string(), text.substr(0, 20), text.substr(0, text.size() - 1)}) {
+        write(short_one);
+        refused("are not those that were written");
+    }
+
+    // From another build, which has other bits.
+    const auto signed_again = [&](std::string other) {
+        Fnv hash;
+        hash.add(other);
+        write(other + fmt::format("{:016x}\n", hash.value()));
+    };
+    const std::string rows = text.substr(0, text.find("{\"version\"")), about = text.substr(rows.size());
+    const std::string said = about.substr(0, about.find('\n') + 1);
+    std::string other = said;
+    other.replace(12, 1, "9");
+    signed_again(rows + other);
+    refused(part + ": this is carom ");
+    for (const std::string& file : files_in(parts))
+        if (file != part) fs::remove(file);
+    signed_again(rows.substr(0, rows.size() - 1) + "9\n" + said);
+    refused("its last row is not what this program computes; remove it to start again");
+
+    // A part that is removed is made again.
+    fs::remove(part);
+    EXPECT_EQ(interrupted_parts(folder, command), parts);
+    EXPECT_EQ(rows_in(parts)[0] + "\n", rows.substr(0, rows.find('\n') + 1));
+}
+
+// Others may also write in the folder.
+TEST(CliSweep, ALinkIsNotFollowed) {
+    const TemporaryFolder folder, elsewhere;
+    const std::vector<std::string> command = breaks(100000, folder.file("a.csv"));
+    const std::string parts = interrupted_parts(folder, command);
+    ASSERT_NE(parts, "");
+    fs::remove_all(parts);
+    const auto refused = [&] {
+        const ProcessResult result = carom(command);
+        EXPECT_EQ(result.status, 1);
+        EXPECT_EQ(result.err, "carom: " + parts + ": this is not a folder; remove it\n");
+        fs::remove(parts);
+    };
+    fs::create_directory_symlink(elsewhere.path(), parts);
+    refused();
+    std::ofstream(parts) << "of value\n";
+    refused();
+    EXPECT_TRUE(elsewhere.names().empty());
 }
 
 TEST(CliSweep, AStatusFileSaysHowFarItIs) {
@@ -160,30 +253,28 @@ TEST(CliSweep, AStatusFileSaysHowFarItIs) {
 TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     const TemporaryFolder folder;
     const std::string status = folder.file("status.json");
-    // 2^53 shots in 999 999 parts: no shard has a whole
-    // share, and the product of the two numbers has 73 bits.
+    // 2^53 shots in 999 999 parts: no shard is an exact fraction, and the product of the two numbers has 73
+    // bits.
     std::vector<std::string> arguments =
         breaks(1, folder.file("a.csv"), {"--shard", "999999/999999", "--status", status, "--jobs", "1"});
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
     *(std::find(arguments.begin(), arguments.end(), "--count") + 1) = "9007199254740992";
-    Process process(arguments, {});
-    const std::string part = wait_for_rows(folder);
-    ASSERT_NE(part, "");
-    process.interrupt();
-    EXPECT_EQ(process.finish("").status, 130);
+    const std::vector<std::string> command(arguments.begin() + 1, arguments.end());
+    const std::string parts = interrupted_parts(folder, command);
+    ASSERT_NE(parts, "");
     const auto stopped = nlohmann::json::parse(read_file(status));
     EXPECT_EQ(stopped["state"], "stopped");
     EXPECT_EQ(stopped["first"], 9007190247532730);  // floor(2^53 * 999998 / 999999)
     EXPECT_EQ(stopped["last"], 9007199254740992);
-    EXPECT_EQ(read_file(part).find("9007190247532730,"), 0u);
-    const std::vector<std::string> rows = lines_of(read_file(part));
+    const std::vector<std::string> rows = rows_in(parts);
+    EXPECT_EQ(rows.front().find("9007190247532730,"), 0u) << rows.front();
     EXPECT_EQ(stopped["rows"], rows.size());
     EXPECT_EQ(rows.back().find(std::to_string(9007190247532730 + rows.size() - 1) + ","), 0u) << rows.back();
 
-    // The same command goes on, and says which rows are there without having played them.
+    // The same command continues, and reports existing rows without playing them again.
+    const std::size_t count = files_in(parts).size();
     Process again(arguments, {});
-    for (int i = 0; i < 1000 && lines_of(read_file(part)).size() < rows.size() + 5; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(wait_for_parts(folder, count + 1), parts);
     again.interrupt();
     EXPECT_EQ(again.finish("").status, 130);
     const auto later = nlohmann::json::parse(read_file(status));
@@ -216,11 +307,32 @@ TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
     int failed = 0, stopped = 0;
     for (const std::string& line : lines_of(read_file(output))) {
         failed +=
-            line.find(",0.6,failed,") != line.npos && line.find("did not end within its bound") != line.npos;
+            line.find(",0.6,failed,") != line.npos && line.find("reached its limit of steps") != line.npos;
         stopped += line.find(",0,time,1,") != line.npos;
     }
     EXPECT_GT(failed, 0);
     EXPECT_EQ(failed + stopped, 8);
+}
+
+TEST(CliSweep, FailuresThatAreThereCount) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("s.toml", kStuckScene), output = folder.file("a.csv");
+    std::vector<std::string> command = {"sweep",   scene,   "--vary", "balls.mu_s=list(0.6,0.0)",
+                                        "--count", "60000", "-o",     output};
+    command.insert(command.begin(), CAROM_PROGRAM);
+    {
+        const Process killed(command, {});
+        ASSERT_NE(wait_for_parts(folder), "");
+    }
+    command.erase(command.begin());
+    const ProcessResult result = carom(command);
+    EXPECT_EQ(result.status, 1);
+    const std::string table = read_file(output);
+    int failed = 0;
+    for (std::size_t at = 0; (at = table.find(",0.6,failed,", at)) != table.npos; ++at) ++failed;
+    EXPECT_NE(result.err.find("continuing with "), result.err.npos) << result.err;
+    EXPECT_NE(result.err.find(std::to_string(failed) + " shots failed while running"), result.err.npos)
+        << result.err;
 }
 
 TEST(CliSweep, SaysWhatItNeeds) {
@@ -251,7 +363,8 @@ TEST(CliSweep, SaysWhatItNeeds) {
     const ProcessResult folder_asked =
         carom({"sweep", scene, "--vary", vary, "--count", "3", "-o", folder.path().string()});
     EXPECT_EQ(folder_asked.status, 1);
-    EXPECT_EQ(folder_asked.err, "carom: " + folder.path().string() + ": cannot write: Is a directory\n");
+    EXPECT_EQ(folder_asked.err,
+              "carom: " + folder.path().string() + ": cannot open for writing: Is a directory\n");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"s.toml"});
     expect_ok(carom({"sweep", scene, "--vary", vary, "--count", "3", "-o", "/dev/null"}));
 }

@@ -18,9 +18,10 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "a command is missing: simulate, render, view, export, compare, margin, accuracy, sweep, check, "
+         "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
+         "accuracy, sweep, check, "
          "impact or describe; see carom --help"},
-        {{"accuracy"}, "accuracy: a scene file is required; see --help"},
+        {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
         {{"simulate"}, "SCENE is required; see carom simulate --help"},
@@ -49,7 +50,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--png-level", "1"}, "--png-level"},
         {{"render", scene, "--png-writer", "paint"}, "paint"},
         {{"render", scene, "--raw", "--y4m"}, "--raw"},
-        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m goes with neither"},
+        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m cannot be combined"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},
         {{"margin", scene, "--repeat", "0"}, "--repeat"},
         {{"margin", scene, "--sweep"}, "--sweep"},
@@ -89,7 +90,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 TEST(CliUsage, HelpNamesEveryDefault) {
     for (const char* command :
          {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
-        // Options begin with two blanks and a dash; their text may go on in the lines below.
+        // Options begin with two spaces and a dash; their text may continue on the lines below.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
@@ -143,7 +144,7 @@ TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
         {"/bin/sh", "-c", "exec \"$0\" simulate \"$1\" -o \"$2\" >&-", CAROM_PROGRAM, scene, record});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(read_file(record).substr(0, 10), "{\"format\":");
-    EXPECT_FALSE(contains(read_file(record), "balls at the end"));
+    EXPECT_FALSE(contains(read_file(record), "final positions"));
 }
 
 TEST(CliIsa, UnknownAndUnavailableAreErrors) {
@@ -178,7 +179,7 @@ TEST(CliCheck, PrintsThePlan) {
           "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
-    // Where none is named, every kernel has its own.
+    // By default, every kernel has its own.
     const std::string free = carom_isa("", {"check", scene}).out;
     const std::string impacts = kernel::name(kernel::fastest_isa(kernel::KernelKind::kTolerance)),
                       clusters = kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase));

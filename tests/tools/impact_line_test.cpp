@@ -1,4 +1,4 @@
-// carom impact, line by line: right answers for right lines, an error and no crash for all others.
+// carom impact, line by line: right answers to right lines, an error and no crash for all others.
 #include "commands/impact/impact_line.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(ImpactLine, MassesThatDiffer) {
     const ImpactAnswer answer = answer_impact(line.dump(), by_tolerance);
     ASSERT_TRUE(answer.ok) << answer.json;
     const Json out = Json::parse(answer.json);
-    // Along the line of centres the cloth takes little: (m1 - e m2)/(m1 + m2) of the approach speed is left.
+    // Along the line of centres the cloth takes little: (m1 - e m2)/(m1 + m2) of the approach speed remains.
     EXPECT_NEAR(out["v1"][0].get<double>(), (1.0 - 2.0 * 0.95) / 3.0, 5e-3);
     EXPECT_NEAR(out["v2"][0].get<double>(), 1.95 / 3.0, 5e-3);
     const auto error_of = [](const Json& wrong, const ImpactSettings& with) {
@@ -72,7 +72,7 @@ TEST(ImpactLine, MassesThatDiffer) {
     ASSERT_TRUE(marched.ok) << marched.json;
     EXPECT_NEAR(Json::parse(marched.json)["v2"][0].get<double>(), out["v2"][0].get<double>(), 2e-3);
     EXPECT_EQ(error_of(line, settings(ImpactSettings::Method::kInelastic)),
-              "\"m2\": only mathavan takes balls that differ; leave it out");
+              "\"m2\": only --method mathavan solves different balls; leave it out");
     // A larger ball 2 stands higher, and the small one is pressed on the cloth.
     line["params"]["R2"] = 0.03;
     line["r2"] = {2.0 * std::sqrt(0.028575 * 0.03), 0.0, 0.03};
@@ -80,10 +80,10 @@ TEST(ImpactLine, MassesThatDiffer) {
     ASSERT_TRUE(tilted.ok) << tilted.json;
     EXPECT_NEAR(Json::parse(tilted.json)["v2"][0].get<double>(), 1.95 / 3.0, 2e-2);
     line["params"]["R2"] = 0.115;
-    EXPECT_EQ(error_of(line, by_tolerance), "\"R2\": expected R times or over 4 at most");
+    EXPECT_EQ(error_of(line, by_tolerance), "\"R2\": expected at most a factor of 4 from R");
     line["params"].erase("R2");
     line["params"]["m2"] = 1.71e5;
-    EXPECT_EQ(error_of(line, by_tolerance), "\"m2\": expected m times or over 1000000 at most");
+    EXPECT_EQ(error_of(line, by_tolerance), "\"m2\": expected at most a factor of 1000000 from m");
 }
 
 TEST(ImpactLine, BallBallIsTheKernelsResult) {
@@ -258,7 +258,7 @@ std::string changed(const Json& line, const std::string& pointer, const Json& va
     return changed_json(line, pointer, value).dump();
 }
 
-// Four digits make a unit vector: the rest of its length is taken out.
+// Four digits make a unit vector: its length is normalised.
 TEST(ImpactLine, ANormalMayBeRounded) {
     const Json line = cushion_line();
     const Json exact = Json::parse(answer_impact(changed(line, "/normal", {-0.6, 0.8}), settings()).json);
@@ -268,7 +268,7 @@ TEST(ImpactLine, ANormalMayBeRounded) {
         EXPECT_NEAR(rounded["v"][i].get<double>(), exact["v"][i].get<double>(), 1e-15);
 }
 
-// Every key of a line, of its params and of its answer stands in the row of its kind.
+// Every key of a line, of its params and of its answer is in the row of its kind.
 TEST(ImpactLine, TheHelpListsTheKeys) {
     const std::string help = impact_keys();
     for (const Json& line : {ball_ball_line(), cushion_line()}) {
@@ -289,8 +289,8 @@ TEST(ImpactLine, TheHelpListsTheKeys) {
 }
 
 TEST(ImpactLine, SaysWhatIsWrong) {
-    EXPECT_EQ(error_of(""), "this is not JSON (at byte 1)");
-    EXPECT_EQ(error_of("[1, 2]"), "expected an object");
+    EXPECT_EQ(error_of(""), "not valid JSON (at byte 1)");
+    EXPECT_EQ(error_of("[1, 2]"), "expected a JSON object");
     EXPECT_EQ(error_of("{}"), "the key \"kind\" is missing");
     EXPECT_EQ(error_of("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\", \"cushion\" or \"cloth\"");
     const Json line = ball_ball_line();
@@ -309,9 +309,9 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     for (const CushionModelInfo* model : all_of(&kHan2005))
         models += (models.empty() ? "" : ", ") + std::string(model->name);
     EXPECT_EQ(error_of(changed(cushion, "/model", "rubber")),
-              "\"model\": this is no cushion model of this version; there are: " + models);
+              "\"model\": unknown cushion model; expected one of " + models);
     EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
-              "\"normal\": expected a vector of length 1, this one has 2");
+              "\"normal\": expected a vector of length 1, this one has length 2");
     EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");
     EXPECT_EQ(error_of(changed(cushion, "/params/height", 1)),
               "\"height\": expected a number inside 0 to 0.05715");
@@ -322,7 +322,7 @@ TEST(ImpactLine, SaysWhatIsWrong) {
     Json stuck = line;
     stuck["params"].update({{"mu_s1", 0.6}, {"mu_s2", 0.6}, {"mu_b", 4.0}});
     stuck.update({{"v1", {1, 0, 0}}, {"w1", {0, 1e6, 0}}});
-    EXPECT_EQ(error_of(stuck.dump()), "the march did not end within its bound on steps");
+    EXPECT_EQ(error_of(stuck.dump()), "the integration reached its limit of steps");
     for (const Json& whole : {line, cushion}) {
         for (const auto& item : whole.items()) {
             Json less = whole;
@@ -339,10 +339,10 @@ TEST(ImpactLine, SaysWhatIsWrong) {
 
 TEST(ImpactLine, HostileLinesAreErrors) {
     const std::string whole = ball_ball_line().dump();
-    EXPECT_EQ(error_of(std::string(500000, '[')), "nested more than 8 deep");
+    EXPECT_EQ(error_of(std::string(500000, '[')), "more than 8 levels of nesting");
     std::string deep;
     for (int i = 0; i < 100000; ++i) deep += "{\"a\":";
-    EXPECT_EQ(error_of(deep), "nested more than 8 deep");
+    EXPECT_EQ(error_of(deep), "more than 8 levels of nesting");
     EXPECT_NE(error_of("NaN").find("not JSON"), std::string::npos);
     EXPECT_NE(error_of("{\"kind\":\"\xff\xfe\"}").find("not JSON"), std::string::npos);
     EXPECT_NE(error_of(std::string("{\"kind\":\0\"x\"}", 13)).find("not JSON"), std::string::npos);

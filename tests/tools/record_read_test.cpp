@@ -1,4 +1,4 @@
-// The reader of records: what it says about a file that is wrong, old or hostile. No file crashes it.
+// The reader of records: what it says about a wrong, old or hostile file. No file crashes it.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -30,7 +30,7 @@ TEST(RecordFile, SaysWhatIsWrong) {
         Json value;
         const char* message;
     } kCases[] = {
-        {"/format", "other", " this is no record of carom; carom simulate SCENE -o shot.json writes one"},
+        {"/format", "other", " this is not a carom record; write one with carom simulate SCENE -o shot.json"},
         {"/version", 3,
          " version: this program reads versions 1 to 2; use the carom that wrote it, or write it again: "
          "carom "
@@ -51,8 +51,7 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/tracks/0/segments/3/r", Json::array({1, 2}),
          " tracks[0].segments[3].r: expected a list of 3 numbers"},
         {"/tracks/0/segments/3/r/1", "x", " tracks[0].segments[3].r[1]: expected a number"},
-        {"/tracks/0/segments/3/start", 0.0,
-         " tracks[0].segments[3]: starts before the segment in front of it"},
+        {"/tracks/0/segments/3/start", 0.0, " tracks[0].segments[3]: starts before the previous segment"},
         {"/tracks/0/segments/3/duration", -1.0,
          " tracks[0].segments[3].duration: expected a number of at least 0"},
         {"/tracks/0/segments/3/held", 1, " tracks[0].segments[3].held: expected true or false"},
@@ -69,7 +68,7 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/events/3/type", "\x1b[2J\xc2\x9b\xe2\x80\xae", " events[3].type: unknown name \"?[2J??\""},
         {"/render/size/1", "\x1b[2J", " render.size[1]: expected an integer from 1 to 16384"},
         {"/balls/mu_b_more", -1, " balls.mu_b_more: expected a number of at least 0"},
-        {"/events/1/time", 9.0, " events[2]: happens before the event in front of it"},
+        {"/events/1/time", 9.0, " events[2]: happens before the previous event"},
         {"/events/2/balls/1", 3, " events[2].balls[1]: expected an integer from 0 to 2"},
         {"/events/4/nose", -1, " events[4].nose: expected an integer from 0 to 2"},
         {"/events/1/steps", -1, " events[1].steps: expected an integer from 0 to 9223372036854775807"},
@@ -107,17 +106,17 @@ TEST(RecordFile, HostileFilesAreErrors) {
     EXPECT_EQ(error_of("{\n  \"format\" 1}"), "2:12: this is not JSON, or the file was cut short");
     EXPECT_NE(error_of(cut.substr(0, cut.size() / 2)).find("cut short"), std::string::npos);
     EXPECT_NE(error_of(std::string(1000000, '[')).find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("no record"),
+    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("not a carom record"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\",\"version\":1e999}").find("cannot be read"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"\xff\"}").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of("null").find("no record"), std::string::npos);
+    EXPECT_NE(error_of("null").find("not a carom record"), std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\"}").find("the key \"version\" is missing"),
               std::string::npos);
     EXPECT_NE(error_of(std::string(64, '\0')).find("not JSON"), std::string::npos);
     EXPECT_EQ(error_of("{\"format\":\"carom-record\",\"\\u0066ormat\":1}"),
-              " the key \"format\" is there twice");
+              " the key \"format\" appears twice");
     EXPECT_THROW(read_record("/nonexistent/r.json"), SceneError);
     EXPECT_THROW(read_record("/dev/zero"), SceneError);
     EXPECT_THROW(read_record("/"), SceneError);
@@ -144,7 +143,7 @@ TEST(RecordFile, NestingNeedsNoStack) {
     pthread_attr_destroy(&small);
     ASSERT_EQ(messages.size(), 3u);
     EXPECT_EQ(messages[0], "1:1000001: this is not JSON, or the file was cut short");
-    EXPECT_NE(messages[1].find("no record"), std::string::npos);
+    EXPECT_NE(messages[1].find("not a carom record"), std::string::npos);
     EXPECT_EQ(messages[2], "no error");
 }
 
@@ -164,8 +163,8 @@ TEST(RecordFile, Version1IsReadWithANote) {
     std::vector<std::string> notes;
     const Record old = parse_record(version_1().dump(), "old.json", &notes);
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_NE(notes[0].find("version 1 of the format does not keep mu_b_fit"), std::string::npos) << notes[0];
-    // All else is there.
+    EXPECT_NE(notes[0].find("version 1 of the format lacks mu_b_fit"), std::string::npos) << notes[0];
+    // Everything else is present.
     Record expected = sample_record();
     BallParams& balls = expected.balls;
     balls.mu_b_more = balls.mu_b_fall = 0.0;
@@ -189,15 +188,14 @@ TEST(RecordFile, UnknownKeysAreLeftOutWithANote) {
     Json json = Json::parse(changed("/tracks/1/segments/2/jerk\x1b", {{"of", {1, "]}", nullptr}}}));
     EXPECT_TRUE(parse_record(json.dump(), "r.json", &notes) == sample_record());
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_EQ(notes[0],
-              "the key tracks[1].segments[2].jerk? is none that this program knows; it was left out");
+    EXPECT_EQ(notes[0], "the key tracks[1].segments[2].jerk? is unknown to this program and was left out");
     json["weather"] = {{"rain", true}};
     json["events"][0]["sound"] = "\"click\\";
     notes.clear();
     EXPECT_TRUE(parse_record(json.dump(), "r.json", &notes) == sample_record());
     ASSERT_EQ(notes.size(), 1u);
-    EXPECT_EQ(notes[0].substr(0, 71),
-              "3 keys are none that this program knows; they were left out. The first ");
+    EXPECT_EQ(notes[0].substr(0, 72),
+              "3 keys are unknown to this program and were left out, the first of them ");
 }
 
 TEST(RecordFile, AnyWayOfWritingTheSameJsonIsRead) {

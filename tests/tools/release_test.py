@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tools/release, on a copy of what it reads: it sees every kind of fault, and what it cuts has none. Usage: release_test.py (finds the repository by itself)."""
+"""Tests tools/release on a copy of its inputs: it finds every kind of fault, and the release it makes has
+none. Usage: release_test.py"""
 import contextlib
 import datetime
 import importlib.machinery
@@ -19,7 +20,8 @@ sys.dont_write_bytecode = True
 loader = importlib.machinery.SourceFileLoader("release", str(ROOT / "tools/release"))
 release = importlib.util.module_from_spec(importlib.util.spec_from_loader("release", loader))
 loader.exec_module(release)
-READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h", "docs/reference/record.schema.json",
+READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h",
+                                               "docs/reference/record.schema.json",
                                                "tests/data/engine/golden_hashes.json"}
 
 
@@ -50,10 +52,11 @@ class Release(unittest.TestCase):
         for name, pattern in release.PLACES[1:]:
             with self.subTest(name=name):
                 text = (self.root / name).read_text()
-                (self.root / name).write_text(re.sub(pattern, lambda m: m.group(0).replace(m.group(1), "9.9.9" if release.FULL in m.re.pattern else "9.9"), text))
+                (self.root / name).write_text(re.sub(pattern, lambda m: m.group(0).replace(
+                    m.group(1), "9.9.9" if release.FULL in m.re.pattern else "9.9"), text))
                 self.one_fault(f"{name} has 9.9")
                 (self.root / name).write_text("nothing\n")
-                self.assertTrue(any("no version is found" in fault for fault in release.faults_of(self.root)))
+                self.assertTrue(any("no version matches" in fault for fault in release.faults_of(self.root)))
                 (self.root / name).write_text(text)
 
     def test_the_changelog_keeps_its_form(self):
@@ -66,7 +69,7 @@ class Release(unittest.TestCase):
 
     def test_an_entry_has_a_heading(self):
         self.change("CHANGELOG.md", "(?m)^## \\[Unreleased\\]$", "## [Unreleased]\n\n* Lost.")
-        self.one_fault("an entry stands above the first heading")
+        self.one_fault("an entry is above the first heading")
 
     def test_a_group_begins_a_paragraph(self):
         self.change("CHANGELOG.md", r"\n\n(Program)\n", r"\n\1\n")
@@ -77,7 +80,8 @@ class Release(unittest.TestCase):
         self.one_fault("expected **(changes bits)**")
 
     def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
-        self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration", "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
+        self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration",
+                    "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
         self.assertEqual(release.faults_of(self.root), [])
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         self.one_fault("no longer declares")
@@ -92,31 +96,35 @@ class Release(unittest.TestCase):
 
     def test_a_record_version_that_changes_is_a_fault(self):
         self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)2', r"\g<1>3")
-        self.one_fault("records have version 3 in place of 2")
+        self.one_fault("records have version 3 instead of 2")
 
     def test_what_is_cut_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
         major, minor, patch = map(int, release.version_here(self.root).split("."))
         for version in (f"{major}.{minor}.{patch + 1}", f"{major}.{minor + 1}.0", f"{major + 1}.0.0"):
             with self.subTest(version=version):
-                self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)", "## [Unreleased]\n\n### Added\n\n* New in " + version + ".\n")
+                self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
+                            "## [Unreleased]\n\n### Added\n\n* New in " + version + ".\n")
                 release.set_version(self.root, version, date)
                 self.assertEqual(release.faults_of(self.root), [])
                 self.assertEqual(release.version_here(self.root), version)
                 self.assertIn(f"## [{version}] - 2030-01-02", (self.root / "CHANGELOG.md").read_text())
-                self.assertEqual((self.root / "CITATION.cff").read_text().count("date-released: 2030-01-02"), 1)
+                self.assertEqual(
+                    (self.root / "CITATION.cff").read_text().count("date-released: 2030-01-02"), 1)
                 self.assertIn(f"* New in {version}.", release.notes(self.root))
 
     def test_a_patch_may_not_renew_a_promise(self):
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         major, minor, patch = map(int, release.version_here(self.root).split("."))
-        release.set_version(self.root, f"{major}.{minor}.{patch + 1}", datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
+        release.set_version(self.root, f"{major}.{minor}.{patch + 1}",
+                            datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
         self.one_fault("no longer declares")
 
     @unittest.skipUnless(shutil.which("git"), "git is not installed")
     def test_cutting_brings_commit_and_tag_only_when_all_went_well(self):
         def git(*words):
-            return subprocess.run(["git", "-C", self.root, *words], check=True, text=True, stdout=subprocess.PIPE).stdout.strip()
+            return subprocess.run(["git", "-C", self.root, *words], check=True, text=True,
+                                  stdout=subprocess.PIPE).stdout.strip()
 
         def files(root, out, skip, jobs):
             out.mkdir(parents=True)
@@ -129,16 +137,21 @@ class Release(unittest.TestCase):
         git("config", "user.name", "somebody")
         git("config", "user.email", "somebody@example.org")
         (self.root / ".gitignore").write_text("/build/\n")
-        # Right after a release nothing stands there.
-        self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)", "## [Unreleased]\n\n### Added\n\n* Something.\n")
+        # Right after a release the section is empty.
+        self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
+                    "## [Unreleased]\n\n### Added\n\n* Something.\n")
         git("add", "--all")
         git("commit", "--quiet", "-m", "start")
         start = git("rev-parse", "HEAD")
         major, minor, _ = release.version_here(self.root).split(".")
         version = f"{major}.{int(minor) + 1}.0"
-        with unittest.mock.patch.object(release, "ROOT", self.root), unittest.mock.patch.object(release, "make_files", files), \
-                unittest.mock.patch.object(release, "sections", lambda root=self.root, sections=release.sections: sections(root)), \
-                unittest.mock.patch.object(release, "version_here", lambda root=self.root, here=release.version_here: here(root)), \
+        with unittest.mock.patch.object(release, "ROOT", self.root), unittest.mock.patch.object(
+            release, "make_files", files
+        ), \
+                unittest.mock.patch.object(
+                    release, "sections", lambda root=self.root, sections=release.sections: sections(root)), \
+                unittest.mock.patch.object(
+                    release, "version_here", lambda root=self.root, here=release.version_here: here(root)), \
                 contextlib.redirect_stderr(io.StringIO()):
             fails = True
             with self.assertRaisesRegex(SystemExit, "two builds differ"):
@@ -154,7 +167,7 @@ class Release(unittest.TestCase):
             with self.assertRaisesRegex(SystemExit, "is not later than"):
                 release.cut(version, 1)
             (self.root / "CHANGELOG.md").write_text((self.root / "CHANGELOG.md").read_text() + "\n")
-            with self.assertRaisesRegex(SystemExit, "not committed"):
+            with self.assertRaisesRegex(SystemExit, "uncommitted changes"):
                 release.cut(f"{major}.{int(minor) + 2}.0", 1)
 
 

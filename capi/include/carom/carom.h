@@ -4,10 +4,10 @@
  * the long side, the origin where two nose lines meet. The state of a ball is nine doubles, row by row:
  * position [m], velocity [m/s], angular velocity [rad/s] ("rvw", a 3 x 3 array in other programs).
  *
- * Functions that can fail return a carom_status; after a failure carom_last_error() tells what is wrong and
+ * Functions that can fail return a carom_status; after a failure, carom_last_error() says what is wrong and
  * what to do. The library prints nothing, does not abort, and throws no exceptions. Any function may be
  * called from any thread. A scene may be changed by one thread at a time; a record may be read by several
- * threads. Every pointer must be valid and not NULL, unless the comment of the function allows NULL.
+ * threads. Every pointer must be valid and not NULL, unless the function's comment allows NULL.
  */
 #ifndef CAROM_CAROM_H
 #define CAROM_CAROM_H
@@ -63,7 +63,7 @@ typedef enum carom_impact_status {
     CAROM_IMPACT_STEP_LIMIT = 4     /* not solved within the step limit: unchanged */
 } carom_impact_status;
 
-/* Solves one impact of the model of Mathavan, Jackson and Parkin (2014) with an error of at most `tolerance`
+/* Solves one impact in the model of Mathavan, Jackson and Parkin (2014) with an error of at most `tolerance`
  * (1e-13 to 1e-1) times the approach speed. Outputs may be inputs. Returns CAROM_BAD_ARGUMENT if a state, a
  * parameter or the tolerance is invalid. For balls that do not approach it returns CAROM_OK and the unchanged
  * states. */
@@ -71,11 +71,11 @@ CAROM_API carom_status carom_collide_balls(const double in1[9], const double in2
                                            const carom_impact_params* params, double tolerance,
                                            double out1[9], double out2[9]);
 
-/* Solves `count` impacts, several times faster per impact. States are consecutive (count x 3 x 3).
- * Parameters: one set for all impacts (params_count = 1) or one for each (params_count = count). `status`
- * receives count values of carom_impact_status, or is NULL. If an impact cannot be computed, its states are
- * left unchanged, the others are solved, and the call returns CAROM_BAD_ARGUMENT. `out` may be `in`. The
- * error bound is that of carom_collide_balls; the results may differ from it within that bound. */
+/* Solves `count` impacts, several times faster per impact than carom_collide_balls. States are consecutive
+ * (count x 3 x 3). Parameters: one set for all impacts (params_count = 1) or one for each (params_count =
+ * count). `status` receives count values of carom_impact_status, or is NULL. If an impact cannot be computed,
+ * its states are left unchanged, the others are solved, and the call returns CAROM_BAD_ARGUMENT. `out` may be
+ * `in`. The error bound is that of carom_collide_balls; the results may differ from it within that bound. */
 CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1, const double* in2,
                                                  const carom_impact_params* params, size_t params_count,
                                                  double tolerance, double* out1, double* out2,
@@ -86,13 +86,13 @@ CAROM_API carom_status carom_collide_balls_batch(size_t count, const double* in1
 typedef struct carom_scene carom_scene;
 
 /* Reads a scene from a file or from its text (docs/reference/scene_format.md); messages use `name` as the
- * name of the file. On failure *scene is NULL. */
+ * file name. On failure *scene is NULL. */
 CAROM_API carom_status carom_scene_read(const char* path, carom_scene** scene);
 CAROM_API carom_status carom_scene_parse(const char* text, const char* name, carom_scene** scene);
 
 /* Creates a scene without balls on it. table: "nine_foot", ... (docs/reference/scene_format.md), or "" for an
- * unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these with
- * "_classic" behind the name. */
+ * unbounded cloth. balls: "pool", "snooker" or "carom", with the cushion model of their game, or these
+ * with "_classic" appended. */
 CAROM_API carom_status carom_scene_create(const char* table, const char* balls, carom_scene** scene);
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
@@ -106,7 +106,8 @@ CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
 
 /* Adds a ball, or sets the state of the ball with this id, which keeps its own radius and mass. The height of
- * its centre must be its radius, its vertical velocity 0. carom_simulate reports balls that overlap. */
+ * its centre must be its radius, and its vertical velocity must be 0. carom_simulate reports balls that
+ * overlap. */
 CAROM_API carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const double rvw[9]);
 
 typedef struct carom_cue {
@@ -147,8 +148,8 @@ CAROM_API size_t carom_record_event_count(const carom_record* record);
 /* Id of a ball by its index from 0; NULL if the index is out of range. Valid as long as the record exists. */
 CAROM_API const char* carom_record_ball_id(const carom_record* record, size_t ball);
 
-/* The types of events are those of docs/reference/record_format.md; docs/reference/scene_format.md has the
- * ids of balls and parts. */
+/* docs/reference/record_format.md lists the types of events, docs/reference/scene_format.md the ids of balls
+ * and parts. */
 typedef struct carom_event {
     double time;      /* [s] */
     const char* type; /* "ball_ball", "ball_cushion", "slide_roll", ... */
@@ -159,27 +160,27 @@ typedef struct carom_event {
 /* Event 0, 1, ... in chronological order. */
 CAROM_API carom_status carom_record_event(const carom_record* record, size_t index, carom_event* event);
 
-/* State of a ball at time t [s]; before the start that of the start, after the end that of the end. `state`
- * receives "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket), "airborne"
- * or "out", or is NULL. */
+/* State of a ball at time t [s]. Before the start it is the initial state, after the end the final one.
+ * `state` receives "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket),
+ * "airborne" or "out", or is NULL. */
 CAROM_API carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
                                           const char** state);
 
 /* Hash of all bits of the record: 16 hexadecimal digits and a final 0. */
 CAROM_API carom_status carom_record_hash(const carom_record* record, char hash[17]);
 
-/* One ball between two events that touch it, in closed form. At u = t - start, 0 <= u <= duration, its centre
- * is at r + u (v + u a / 2); its velocity is v + u a, of a rolling ball that is not held v (1 - u /
- * duration); its angular velocity is w + u dw in x and y, of a rolling ball that of rolling; w_z goes to 0 by
- * spin_decay a second and stays there. */
+/* The motion of a ball between two events that involve it, in closed form. At u = t - start,
+ * 0 <= u <= duration, its centre is at r + u (v + u a / 2). Its velocity is v + u a, or v (1 - u / duration)
+ * if it rolls and is not held. Its angular velocity is w + u dw in x and y, or that of rolling if it rolls;
+ * w_z moves towards 0 by spin_decay per second and stays there. */
 typedef struct carom_segment {
     double start;       /* [s] since the start of the shot */
     double duration;    /* until the ball's own next transition [s]; infinite if there is none */
     double r[3], v[3];  /* centre [m] and velocity [m/s] at the start */
     double w[3];        /* angular velocity at the start [rad/s] */
-    double a[3], dw[3]; /* what they change by in a second, constant [m/s^2], [rad/s^2]; dw[2] is 0, and so is
-                           a[2] unless the ball falls or flies */
-    double spin_decay;  /* of |w_z| [rad/s^2], at least 0 */
+    double a[3], dw[3]; /* constant rates of v and w [m/s^2], [rad/s^2]; dw[2] is 0, and so is a[2] unless the
+                           ball falls or flies */
+    double spin_decay;  /* decrease of |w_z| per second [rad/s^2], at least 0 */
     int32_t state;      /* a carom_motion_state */
     int32_t held;       /* 1 in a resting contact, otherwise 0 */
 } carom_segment;
@@ -192,27 +193,27 @@ typedef enum carom_motion_state {
     CAROM_POCKETED = 4,
     CAROM_FALLING = 5,
     CAROM_AIRBORNE = 6,
-    CAROM_OUT = 7 /* it has left the table and plays no more */
+    CAROM_OUT = 7 /* it has left the table */
 } carom_motion_state;
 
-/* The segments of a ball in the order of their starts; of two with the same start the later one counts.
- * `segments` receives carom_record_segment_count of them, which is 0 if there is no such ball. A game draws
- * every frame from these without another call. */
+/* The segments of a ball in the order of their starts; if two have the same start, the later one applies.
+ * `segments` receives carom_record_segment_count of them, which is 0 if there is no such ball. A game can
+ * draw every frame from these without another call. */
 CAROM_API size_t carom_record_segment_count(const carom_record* record, size_t ball);
 CAROM_API carom_status carom_record_segments(const carom_record* record, size_t ball,
                                              carom_segment* segments);
 
 /* States of all balls at `count` times: `rvw` receives count x balls x 9 numbers, ball after ball at the
  * first time, then at the second. `states` receives count x balls values of carom_motion_state, or is NULL.
- * Times before the start and after the end as in carom_record_state. */
+ * Times before the start and after the end are treated as in carom_record_state. */
 CAROM_API carom_status carom_record_states(const carom_record* record, size_t count, const double* times,
                                            double* rvw, uint8_t* states);
 
-/* A new scene for the next shot: that of the record with its balls where and as they are at the end, without
- * the balls in pockets and without the cue. On failure *scene is NULL. */
+/* A new scene for the next shot: the record's scene with its balls in their final states, without pocketed
+ * balls and without the cue. On failure *scene is NULL. */
 CAROM_API carom_status carom_scene_from_record(const carom_record* record, carom_scene** scene);
 
-/* The same with the next strike, and validated: the cue strikes the ball with this id. Returns
+/* The same with the next strike, validated: the cue strikes the ball with this id. Returns
  * CAROM_BAD_SCENE if that ball has fallen or has left the table, or is not at rest. */
 CAROM_API carom_status carom_next_scene(const carom_record* record, const char* id, const carom_cue* cue,
                                         carom_scene** scene);
@@ -235,19 +236,19 @@ typedef enum carom_in_hand {
     CAROM_IN_THE_D = 3
 } carom_in_hand;
 
-/* All that a game remembers between two shots, beside where the balls lie. Players are 0 and 1. */
+/* Everything a game remembers between two shots, besides the positions of the balls. Players are 0 and 1. */
 typedef struct carom_game_state {
     int32_t game;    /* a carom_game */
     int32_t turn;    /* whose shot it is */
-    int32_t opening; /* 1: the break, or the first shot of a game of carom */
+    int32_t opening; /* 1: the break, or the first shot of a carom game */
     int32_t in_hand; /* a carom_in_hand */
     int32_t points[2];
-    int32_t target;       /* points that win a game of carom; 0: no end */
+    int32_t target;       /* points that win a carom game; 0: no end */
     int32_t over;         /* 1: the game is over */
     int32_t winner;       /* -1: none, or not yet */
     int32_t group[2];     /* eight-ball, of each player: 0 open, 1 solids, 2 stripes */
     int32_t may_push_out; /* nine-ball: 1 for the shot after the break */
-    int32_t fouls[2];     /* nine-ball: of each player, without a legal shot between */
+    int32_t fouls[2];     /* nine-ball: consecutive fouls of each player */
     int32_t on;           /* snooker: 0 any colour, 1 red, 2 yellow, ..., 7 black */
     int32_t free_ball;    /* snooker: 1: any ball may be nominated as the ball on */
 } carom_game_state;
@@ -256,14 +257,14 @@ typedef struct carom_game_state {
 CAROM_API carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state);
 
 /* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive
- * 1 or 0 for each: the ball may be struck, may be the first that the cue ball meets, may be called. Each may
- * be NULL. */
+ * 1 or 0 for each: whether the ball may be struck, may be hit first by the cue ball, and may be called. Each
+ * of them may be NULL. */
 CAROM_API carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids,
                                    uint8_t* strike, uint8_t* first, uint8_t* callable);
 
-/* What a player says before a shot. NULL as a text: nothing. */
+/* What a player announces before a shot. A text that is NULL announces nothing. */
 typedef struct carom_call {
-    const char* ball;   /* eight-ball: that will fall; snooker: the nominated colour or free ball */
+    const char* ball;   /* eight-ball: the called ball; snooker: the nominated colour or free ball */
     const char* pocket; /* eight-ball: "p1", ... */
     int32_t safety;     /* eight-ball: 1: the turn ends whatever falls */
     int32_t push_out;   /* nine-ball: 1 for a push out */
@@ -271,8 +272,8 @@ typedef struct carom_call {
 
 typedef struct carom_verdict carom_verdict;
 
-/* Judges a shot by the state before it. `call` may be NULL. On failure *verdict is NULL: the record does not
- * end at rest, no cue strikes in it, it lacks the game's balls, or the game is over. */
+/* Judges a shot; `state` is the one before it. `call` may be NULL. The call fails, and *verdict is NULL, if
+ * the record does not end at rest, has no cue strike or lacks the game's balls, or if the game is over. */
 CAROM_API carom_status carom_judge(const carom_game_state* state, const carom_record* record,
                                    const carom_call* call, carom_verdict** verdict);
 CAROM_API void carom_verdict_free(carom_verdict* verdict); /* NULL is allowed */
@@ -286,34 +287,34 @@ CAROM_API const char* carom_verdict_rule(const carom_verdict* verdict, size_t in
 CAROM_API int carom_verdict_points(const carom_verdict* verdict); /* scored by the shot */
 CAROM_API int carom_verdict_penalty(
     const carom_verdict* verdict); /* snooker: what the other player receives */
-/* The player who chooses among the options; -1 where there is one, and where lots decide. */
+/* The player who chooses among the options; -1 if there is only one, or if lots decide. */
 CAROM_API int carom_verdict_chooser(const carom_verdict* verdict);
 
-/* How the game may go on: at least one option. The first one is what happens unless the chooser takes
- * another. */
+/* One way for the game to continue; a verdict has at least one. The first one applies unless the chooser
+ * takes another. */
 typedef struct carom_option {
     const char*
         decision; /* "play on", "take in hand", "pass back", "rerack", ...; valid until the program ends */
     carom_game_state state; /* of the next shot */
-    int32_t rerack;         /* 1: the balls are racked anew */
-    size_t respots;         /* balls that come back to the table */
+    int32_t rerack;         /* 1: the balls are racked again */
+    size_t respots;         /* number of balls that are respotted */
 } carom_option;
 CAROM_API size_t carom_verdict_option_count(const carom_verdict* verdict);
 CAROM_API carom_status carom_verdict_option(const carom_verdict* verdict, size_t index, carom_option* option);
-/* A ball that comes back: its id, valid as long as the verdict exists, and its place [m]. */
+/* A respotted ball: its id, valid as long as the verdict exists, and its place [m]. */
 CAROM_API carom_status carom_verdict_respot(const carom_verdict* verdict, size_t option, size_t index,
                                             const char** ball, double place[2]);
 
-/* The next shot: what is gone is gone, what is respotted is back, the cue ball of the state is placed and
- * struck. `place` is needed where the cue ball is gone and allowed where it is in hand; otherwise NULL. On
- * failure *scene is NULL. */
+/* The next shot: pocketed balls are gone, respotted balls are back, and the cue ball of the state is placed
+ * and struck. `place` is required if the cue ball is gone and allowed if it is in hand; otherwise it is NULL.
+ * On failure *scene is NULL. */
 CAROM_API carom_status carom_next_shot(const carom_record* record, const carom_verdict* verdict,
                                        size_t option, const carom_cue* cue, const double* place,
                                        carom_scene** scene);
 
-/* The strike that a player makes who means `cue`: with normal errors of these standard deviations, of speed
- * [m/s], aim, elevation [degrees], side and height [ball radii]. The same seed and index give the same
- * errors. The result is always a strike that a scene takes. `out` may be `cue`. */
+/* The strike of a player who intends `cue`, with normal errors of these standard deviations: speed [m/s],
+ * aim, elevation [degrees], side and height [ball radii]. The same seed and index give the same errors. The
+ * result is always a legal strike. `out` may be `cue`. */
 CAROM_API carom_status carom_noisy_cue(const carom_cue* cue, const double deviations[5], uint64_t seed,
                                        uint64_t index, carom_cue* out);
 /* The deviations of "none", "fastfiz" or "ai3603" for a ball of this radius [m]. */
@@ -325,11 +326,11 @@ typedef struct carom_batch carom_batch;
 
 typedef enum carom_shot_status {
     CAROM_SHOT_AT_REST = 0,
-    CAROM_SHOT_TIME = 1,    /* ended at its time */
-    CAROM_SHOT_EVENTS = 2,  /* ended at its number of events */
+    CAROM_SHOT_TIME = 1,    /* ended at the time limit */
+    CAROM_SHOT_EVENTS = 2,  /* ended at the event limit */
     CAROM_SHOT_ENDLESS = 3, /* nothing stops the balls, and nothing more happens to them */
     CAROM_SHOT_INVALID = 4, /* no result: these values make no valid scene */
-    CAROM_SHOT_FAILED = 5   /* no result: the simulation could not go on */
+    CAROM_SHOT_FAILED = 5   /* no result: the simulation could not continue */
 } carom_shot_status;
 
 /* Plays `shots` shots of one scene that differ in the numbers of some keys, such as "cue.speed",
@@ -337,7 +338,7 @@ typedef enum carom_shot_status {
  * (docs/guide/sweep.md; the numbers of [cue], [balls], [[ball]], [physics], [stop] and of the parts of the
  * table). `values` holds key_count x shots numbers: all of the first key, then all of the second. Every shot
  * has the results of carom_simulate, bit for bit, whatever the number of threads (0: one for each core). A
- * shot that is invalid or fails has its status, and the others are played: the call returns CAROM_OK.
+ * shot that is invalid or fails has its status, the others are played, and the call returns CAROM_OK.
  * `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure (an
  * unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
 CAROM_API carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
@@ -348,18 +349,18 @@ CAROM_API void carom_batch_free(carom_batch* batch); /* NULL is allowed */
 CAROM_API size_t carom_batch_shot_count(const carom_batch* batch);
 CAROM_API size_t carom_batch_ball_count(const carom_batch* batch);
 
-/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, and -1 as
- * ball. */
+/* Arrays of shot_count numbers, valid as long as the batch exists. A shot without a result has 0, or -1 for
+ * a ball. */
 CAROM_API const uint8_t* carom_batch_status(const carom_batch* batch);  /* a carom_shot_status */
 CAROM_API const double* carom_batch_duration(const carom_batch* batch); /* [s] */
 CAROM_API const int64_t* carom_batch_events(const carom_batch* batch);  /* number of events */
 CAROM_API const int32_t* carom_batch_first_hit(
-    const carom_batch* batch); /* ball that the struck ball meets, or -1 */
+    const carom_batch* batch); /* first ball that the struck ball hits, or -1 */
 CAROM_API const int32_t* carom_batch_contacts(
-    const carom_batch* batch); /* how many balls it meets, each counted once */
+    const carom_batch* batch); /* number of balls it hits, each counted once */
 CAROM_API const int32_t* carom_batch_approach_cushions(
-    const carom_batch* batch); /* how many cushions it meets before the second of them, or at all */
-/* The hash of carom_record_hash as a number; NULL unless it was asked for. */
+    const carom_batch* batch); /* number of cushions it hits before its second ball, or in the whole shot */
+/* The hash of carom_record_hash as a number; NULL unless it was requested. */
 CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
 
 /* Arrays of shot_count x ball_count numbers: the balls of the first shot in the order of the scene, then
@@ -371,7 +372,7 @@ CAROM_API const int32_t* carom_batch_pocket(
 CAROM_API const int32_t* carom_batch_fell(
     const carom_batch* batch); /* 0 for the ball that fell first, 1, ..., or -1 */
 CAROM_API const int32_t* carom_batch_cushions(
-    const carom_batch* batch); /* how often it met a cushion or a jaw */
+    const carom_batch* batch); /* how often it hit a cushion or a jaw */
 
 /* Why a shot has no result; "" if it has one. Valid as long as the batch exists. */
 CAROM_API const char* carom_batch_message(const carom_batch* batch, size_t shot);

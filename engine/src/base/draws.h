@@ -1,4 +1,4 @@
-// Random draws by name: what is drawn for one thing depends neither on what else is drawn nor on the order.
+// Random draws by name: the draws for one thing do not depend on other draws, nor on their order.
 #pragma once
 
 #include <cstdint>

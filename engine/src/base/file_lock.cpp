@@ -18,8 +18,8 @@ namespace {
     throw std::runtime_error(name + ": " + what + ": " + std::strerror(reason));
 }
 
-/// Whether the file still has this name: between opening and
-/// locking, another program may have renamed or removed it.
+/// Whether the file still has this name: another program may have renamed or removed it between opening and
+/// locking.
 bool is_named(int fd, const std::string& name) {
     struct stat opened {};
     struct stat named {};
@@ -27,19 +27,14 @@ bool is_named(int fd, const std::string& name) {
            opened.st_dev == named.st_dev;
 }
 
-void lock(int fd, const std::string& name, int how, const char* what) {
+void lock(int fd, const std::string& name, int how) {
     if (::flock(fd, how | LOCK_NB) == 0) return;
-    if (errno == EWOULDBLOCK) throw std::runtime_error(name + ": another program is writing " + what);
+    if (errno == EWOULDBLOCK)
+        throw std::runtime_error(name + ": another program is writing the files that this lock protects");
     fail(name, "cannot lock");
 }
 
 }  // namespace
-
-void lock_file(int fd, const std::string& name) {
-    lock(fd, name, LOCK_EX, "this very file");
-    if (!is_named(fd, name))
-        throw std::runtime_error(name + ": another program has just finished this very file");
-}
 
 FileLock::FileLock(std::string name, bool alone) : name_(std::move(name)) {
     constexpr int kTries = 100;
@@ -47,7 +42,7 @@ FileLock::FileLock(std::string name, bool alone) : name_(std::move(name)) {
         fd_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd_ < 0) fail(name_, "cannot open for writing");
         try {
-            lock(fd_, name_, alone ? LOCK_EX : LOCK_SH, "the files that this is for");
+            lock(fd_, name_, alone ? LOCK_EX : LOCK_SH);
         } catch (...) {
             ::close(fd_);
             throw;
@@ -55,11 +50,11 @@ FileLock::FileLock(std::string name, bool alone) : name_(std::move(name)) {
         if (is_named(fd_, name_)) return;
         ::close(fd_);
     }
-    throw std::runtime_error(name_ + ": other programs are writing the files that this is for");
+    throw std::runtime_error(name_ + ": other programs are writing the files that this lock protects");
 }
 
 FileLock::~FileLock() {
-    // Whoever shares the lock removes the file when it is the last one; nobody waits for a lock.
+    // The last holder of a shared lock removes the file; nobody waits for a lock.
     if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) ::unlink(name_.c_str());
     ::close(fd_);
 }

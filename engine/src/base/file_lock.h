@@ -5,16 +5,12 @@
 
 namespace carom {
 
-/// Locks an open file that `name` names, for itself. Every
-/// failure is a std::runtime_error that begins with the name.
-void lock_file(int fd, const std::string& name);
-
-/// Files that a program works on, as long as it lives: an empty file beside them,
-/// which is removed at the end. One that a killed program left is taken over.
+/// Locks files that a program works on, for its own lifetime, by an empty file next to them. The lock file is
+/// removed at the end; one that a killed program left behind is reused.
 class FileLock {
   public:
-    /// @param alone  false: others that are not alone may work on the files too
-    /// @throws std::runtime_error that names the file, also where another program has the lock
+    /// @param alone  false: other users with `alone` false may work on the files too
+    /// @throws std::runtime_error that names the file, including when another program has the lock
     FileLock(std::string name, bool alone);
     ~FileLock();
     FileLock(const FileLock&) = delete;

@@ -62,7 +62,7 @@ double cos_near_zero(Sum r) {
     p = p * z + 1.0 / 40320.0;             // 1/8!
     p = p * z - 1.0 / 720.0;               // 1/6!
     p = p * z + 1.0 / 24.0;                // 1/4!
-    // 1 - z/2 loses bits; the lost part and the rounding of z are added back with the other terms.
+    // 1 - z/2 loses bits; the lost part and the rounding of z are added with the other terms.
     const Sum square = two_product(r.hi, r.hi);
     const double half = 0.5 * square.hi;
     const double top = 1.0 - half;
@@ -89,8 +89,8 @@ SinCos in_quadrant(Sum r, int quadrant) {
 constexpr SinCos kUndefined{std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::quiet_NaN()};
 
-/// Remainder of x >= 0 by 360. It is exact because each subtraction is
-/// exact (Sterbenz). Angles in files are small; the loops serve all others.
+/// Remainder of x >= 0 by 360. It is exact because each subtraction is exact (Sterbenz). Angles in files are
+/// usually small; the loops handle all others.
 double remainder_360(double x) {
     while (x >= 360.0) {
         double part = 360.0;
@@ -158,8 +158,8 @@ double exponential(double x) {
     if (x != x) return x;
     if (x > 709.8) return std::numeric_limits<double>::infinity();
     if (x < -745.2) return 0.0;
-    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 has two parts,
-    // so that k ln 2 is exact except for the last bits.
+    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 is in two parts, so that k ln 2 is exact except for the last
+    // bits.
     constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
     const double k = nearest(x * 1.4426950408889634);
     const double high = x - k * kLn2High, low = k * kLn2Low;
@@ -179,7 +179,7 @@ double exponential(double x) {
     p = p * r + 0.5;
     const double tail = (high - r) - low;  // the rounding error of r
     const double value = 1.0 + (r + (r * r * p + tail));
-    // 2^k as two factors: the result may be representable (also as a subnormal number) where 2^k is not.
+    // 2^k as two factors: the result may be representable (perhaps as a subnormal number) even if 2^k is not.
     const auto power = [](int n) {
         const std::uint64_t bits = static_cast<std::uint64_t>(n + 1023) << 52;
         double out;

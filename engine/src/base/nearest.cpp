@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-// [bytes] No name is longer, and the work stays small whatever a file says.
+// [bytes] No name is longer; the limit keeps the work small whatever a file contains.
 constexpr std::size_t kLongestWord = 40;
 constexpr std::size_t kTooFar = 1000;  // [edits]
 
@@ -16,8 +16,8 @@ char small(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Letters to add, drop, change or swap with their neighbour,
-/// none of them twice, on the way from one word to the other.
+/// Number of letters to add, drop, change or swap with their neighbour, none of them twice, to turn one word
+/// into the other.
 std::size_t edits_between(std::string_view from, std::string_view to) {
     using Row = std::array<std::size_t, kLongestWord + 1>;
     Row before_last{}, last{}, row{};

@@ -1,4 +1,4 @@
-// "Did you mean": what a mistyped name stands near to.
+// "Did you mean": the names closest to a mistyped one.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace carom {
 
-/// The end of a message about `word`, which is none of `names`: "; did you mean aim_deg?", with all of them
-/// where several are equally near, or "" where none is. Near are at most two letters that are missing, too
-/// many, other ones, or swapped with their neighbour, in words that are for the most part alike, and names
-/// that begin with the word or the other way round (aim, aim_deg). Capitals do not count.
+/// The end of a message about `word`, which is none of `names`: "; did you mean aim_deg?", listing all names
+/// that are equally near, or "" if none is near. A name is near if at most two letters are missing, added,
+/// changed or swapped with their neighbour and the words are mostly alike, or if one begins with the other
+/// (aim, aim_deg). Case does not matter.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& names);
 
 }  // namespace carom

@@ -22,11 +22,11 @@ namespace carom {
 
 namespace {
 
-constexpr int kMostLinks = 40;    // as in the kernel
+constexpr int kMostLinks = 40;    // as in the Linux kernel
 constexpr int kMostNames = 1000;  // temporary files of one process in one folder
 constexpr std::string_view kTemporary = ".carom.", kTemporaryEnd = ".tmp";
 
-/// Number of a descriptor, -1 for what is none.
+/// The number of a file descriptor, -1 if it is none.
 int descriptor(std::string_view path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
@@ -38,8 +38,8 @@ int descriptor(std::string_view path) {
     return error == std::errc() && end == path.data() + path.size() ? number : -1;
 }
 
-/// Removes what killed programs left in a folder: temporary files that
-/// nobody has locked. Once for each folder, for one may hold many files.
+/// Removes what killed programs left in a folder: temporary files that nobody has locked. Once per folder,
+/// because a run may write many files.
 void remove_left(const std::filesystem::path& folder) {
     static std::mutex mutex;
     static std::set<std::filesystem::path> seen;
@@ -66,7 +66,7 @@ std::FILE* own_stream(const std::string& path) {
     errno = 0;
     const int number = descriptor(path);
     if (number < 0) return nullptr;
-    if (number == STDOUT_FILENO) std::fflush(stdout);  // what was printed before stays before
+    if (number == STDOUT_FILENO) std::fflush(stdout);  // keep the order with what was printed before
     const int fd = ::fcntl(number, F_DUPFD_CLOEXEC, 0);
     return fd < 0 ? nullptr : ::fdopen(fd, "wb");
 }
@@ -99,21 +99,21 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_
     open_temporary();
 }
 
-// Others may be able to make files in the folder: the temporary one has to
-// be new, and no link. It has the rights of the file that it will replace.
+// Others may be able to create files in the folder, so the temporary file must be new and not a link. It gets
+// the permissions of the file that it will replace.
 void OutputFile::open_temporary() {
     struct stat there {};
     const bool replaces = ::stat(target_.c_str(), &there) == 0;
     const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
     remove_left(folder.empty() ? "." : folder);
     for (int k = 0; k < kMostNames; ++k) {
-        // Short, because the name of the file may be as long as a name
-        // can be; of this process, for other programs write here, too.
+        // Short, because the name of the file may already have the maximum length. It contains the process
+        // id, because other programs write here too.
         temporary_ = (folder / fmt::format("{}{}.{}{}", kTemporary, ::getpid(), k, kTemporaryEnd)).string();
         const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST) continue;
-        // Locked as long as it is written, so that others see that it
-        // is not left over; one who saw it before that removed it.
+        // Locked while it is written, so that others see that it is in use. If another program saw it before
+        // that and removed it, try again.
         struct stat opened {};
         if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
             opened.st_nlink == 0) {
@@ -145,14 +145,25 @@ void OutputFile::write(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("cannot write");
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(bool durable) {
+    durable = durable && !is_direct();
+    // Some file systems cannot; they promise nothing.
+    if (durable &&
+        (std::fflush(file_) != 0 || (::fsync(::fileno(file_)) != 0 && errno != EINVAL && errno != EROFS)))
+        fail("cannot write");
     std::FILE* file = file_;
     file_ = nullptr;
-    // fclose reports errors that buffering has hidden until now, for example a full disk.
+    // fclose reports errors that buffering has hidden until now, such as a full disk.
     if (std::fclose(file) != 0) fail("cannot write");
     if (temporary_.empty()) return;
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot rename to this name");
     temporary_.clear();
+    if (!durable) return;
+    const std::string folder = std::filesystem::path(target_).parent_path().string();
+    const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return;
+    ::fsync(fd);
+    ::close(fd);
 }
 
 }  // namespace carom

@@ -8,8 +8,7 @@ namespace {
 
 constexpr std::size_t kLongest = 60;  // [bytes] longer texts are cut
 
-/// Number of bytes of the UTF-8 character at the start of
-/// `text`, and its code point in `code`; 0 if it is not valid.
+/// Number of bytes of the UTF-8 character at the start of `text`, and its code point in `code`; 0 if invalid.
 std::size_t character(std::string_view text, std::uint32_t& code) {
     const auto byte = [&](std::size_t i) {
         return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));
@@ -40,7 +39,7 @@ bool steers(std::uint32_t code) {
            (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;  // isolates, byte order mark
 }
 
-/// Calls take(character, whether a terminal may have it) for every character until it answers false.
+/// Calls take(character, whether it is safe for a terminal) for every character until it returns false.
 template <class Take>
 void each_character(std::string_view text, Take&& take) {
     for (std::size_t at = 0, length = 0; at < text.size(); at += length) {

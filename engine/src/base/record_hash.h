@@ -1,5 +1,5 @@
-// The hash of a record, from its parts in their order: of every ball
-// the number of segments and the segments, the events, the duration.
+// The hash of a record, from its parts in this order: for each ball the number of segments and the segments,
+// then the events, then the duration.
 #pragma once
 
 #include <cstddef>

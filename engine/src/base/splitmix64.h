@@ -1,8 +1,7 @@
-// The random generator for racks. It is implemented here so
-// that a seed always gives the same rack on every system.
+// The random generator for racks. It is implemented here so that a seed gives the same rack on every system.
 //
-// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number
-// generators", OOPSLA 2014, with the constants of the variant mix13.
+// SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
+// constants of the variant mix13.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +26,7 @@ class SplitMix64 {
     /// Uniform in 0 .. n-1 for small n (the bias is below n 2^-32).
     int below(int n) { return static_cast<int>(((next() >> 32) * static_cast<std::uint64_t>(n)) >> 32); }
 
-    /// The seed of a generator that goes on from here.
+    /// The seed of a generator that continues from here.
     std::uint64_t state() const { return state_; }
 
   private:

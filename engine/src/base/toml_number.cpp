@@ -56,7 +56,7 @@ double number_in(const toml::node& node, const Interval& allowed) {
     const std::int64_t whole = written->get();
     const double x = static_cast<double>(whole);
     refuse(objection(x, whole, allowed));
-    // Not back to an integer: 2^63 is none.
+    // Do not convert back to an integer: 2^63 is not one.
     if (!node.value<double>())
         refuse(fmt::format("= {} has more digits than a number holds; write {:.1f} for the nearest one",
                            whole, x));

@@ -1,4 +1,4 @@
-// A batch: threads that take blocks of shots, each with a simulator of its own.
+// A batch: threads that take blocks of shots, each with its own simulator.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -21,8 +21,9 @@ namespace carom {
 
 namespace {
 
-// [-] Most shots that a thread takes at once: a few microseconds each at least, so that taking them costs
-// nothing. Small batches are taken in smaller pieces, so that all threads end at about the same time.
+// [-] Most shots that a thread takes at once. Each needs at least a few microseconds, so that taking them
+// costs nothing. Small batches are divided into smaller blocks, so that all threads end at about the same
+// time.
 constexpr std::size_t kBlock = 16;
 
 std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
@@ -35,7 +36,7 @@ std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
                                         " values for " + std::to_string(shots) + " shots; give one for each");
         for (std::size_t other = 0; other < k; ++other)
             if (columns[other].key == column.key)
-                throw std::invalid_argument(column.key + ": the key is there twice; keep one of the two");
+                throw std::invalid_argument(column.key + ": this key appears twice; keep one of the two");
         numbers.emplace_back(scene, column.key);
     }
     return numbers;
@@ -46,7 +47,7 @@ void fill(T* array, std::size_t count, T value, std::size_t stride = 1) {
     for (std::size_t i = 0; array != nullptr && i < count; ++i) array[i * stride] = value;
 }
 
-/// What a shot without a result has, and a ball that is left out.
+/// The values of a shot without a result, and of a ball that is left out.
 void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double place) {
     const std::size_t at = shot * balls;
     const auto from = [](auto* array, std::size_t first) { return array ? array + first : nullptr; };
@@ -63,7 +64,7 @@ void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double p
     fill(from(out.cushions, at), balls, 0);
 }
 
-/// @param balls  of the scene; `present` says which of them the outcome has, or is null where it has all
+/// @param balls  of the scene; `present` lists those in the outcome, or is null if it has all
 void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std::size_t balls,
           const std::vector<int>* present) {
     const auto put = [](auto* array, std::size_t at, const auto& value) {
@@ -87,13 +88,13 @@ void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std:
     }
 }
 
-/// A thread of a batch: what it plays with, and the balls of its last shot if they are not all.
+/// A thread of a batch: its simulators, and the balls of its last shot if some are left out.
 struct Player {
     Player(const Scene& scene, kernel::Isa isa, bool keeps_records)
         : whole(scene, isa), records(keeps_records) {
         if (records) whole.keep_records();
     }
-    /// What plays shots without some of the balls.
+    /// The simulator for shots without some of the balls.
     Simulator& partial(const Scene& scene, kernel::Isa isa) {
         if (!part) {
             part.emplace(scene, isa);
@@ -150,7 +151,7 @@ struct ColumnShots {
     }
 };
 
-/// What the threads share.
+/// State shared by the threads.
 struct Work {
     Work(const Scene& base, std::size_t count, PlayShot how_to_play, kernel::Isa set, const BatchOptions& how,
          const BatchArrays& arrays)
@@ -175,7 +176,7 @@ struct Work {
     const BatchOptions& options;
     SimulateOptions simulate, hashed;
     const BatchArrays& out;
-    std::uint64_t number = 0;  // of the first shot, where shots have numbers
+    std::uint64_t number = 0;  // of the first shot, if shots have numbers
     std::vector<Batch::Message> messages;
     std::size_t block = kBlock;
     std::atomic<std::size_t> next{0};
@@ -188,7 +189,7 @@ struct Work {
         if (!error) error = std::move(why);
         stopped = true;
     }
-    void tell(std::size_t shot, const std::string& text) {
+    void add_message(std::size_t shot, const std::string& text) {
         const std::lock_guard lock(mutex);
         messages.push_back({shot, text});
     }
@@ -202,7 +203,7 @@ struct Work {
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
         if (!has_result(status)) {
-            tell(shot, player.last->message());
+            add_message(shot, player.last->message());
             return;
         }
         keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);

@@ -9,7 +9,7 @@
 namespace carom {
 
 static_assert(static_cast<int>(ShotStatus::kEndless) == static_cast<int>(StopReason::kEndless));
-static_assert(names_of(ShotStatus()).size() == kShotStatuses);
+static_assert(static_cast<std::size_t>(ShotStatus::kInvalid) == kStopWords.size());
 
 Simulator::Simulator(const Scene& scene, kernel::Isa isa) : planner_(scene, isa) {}
 
@@ -25,7 +25,7 @@ ShotStatus Simulator::play(Change change, const SimulateOptions& options) {
     } catch (const SceneError& error) {
         std::string why = error.message();
         try {
-            validate(scene());  // finds the mistake that a reader would find first
+            validate(scene());  // finds the mistake that a reader would report first
         } catch (const SceneError& first) {
             why = first.message();
         }
@@ -55,7 +55,7 @@ ShotStatus Simulator::run(bool same_table, const SimulateOptions& options) {
             simulate(plan, buffers_, outcome_, record_, options);
         else
             simulate(plan, buffers_, outcome_, options);
-    } catch (const SceneError& error) {  // [effects] refuses what these values need
+    } catch (const SceneError& error) {  // [effects] excludes what these values need
         return refuse(error.message());
     } catch (const SimulationError& error) {
         message_ = error.what();

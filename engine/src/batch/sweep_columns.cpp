@@ -30,7 +30,7 @@ class Texts {
     std::unordered_map<std::string, std::int32_t> places_;
 };
 
-/// A number as TOML writes it, which may be 0x1F, 0o17 or 0b101 where it is whole.
+/// A number in TOML notation, which may be 0x1F, 0o17 or 0b101 if it is whole.
 template <class T>
 T read_number(std::string_view text) {
     const auto read = [&text](auto& value, auto... base) {
@@ -58,7 +58,7 @@ void read_draws(ColumnValues& column, ValueKind kind, std::span<const std::strin
     }
 }
 
-/// The balls that fell, in this order, between semicolons.
+/// The balls that fell, in order, separated by semicolons.
 std::string fallen(const std::vector<BallStart>& balls, const std::int32_t* fell) {
     std::vector<const std::string*> order(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i)

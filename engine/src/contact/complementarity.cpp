@@ -11,14 +11,15 @@ namespace carom {
 namespace {
 // [-] Block exchanges without fewer infeasible rows before single exchanges (Murty's rule) begin.
 constexpr int kBlockTries = 8;
-// [-] Further refinements after the first two: each multiplies the residual by the compliance divided by the
-// smallest eigenvalue, so more of them help only where the matrix is singular to rounding.
+// [-] Further refinements after the first two. Each multiplies the residual by the compliance divided by the
+// smallest eigenvalue, so more of them help only if the matrix is singular to rounding.
 constexpr int kMoreRefinements = 20;
 constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
-// [-] Softness, relative to the mobility, with which a solution is approached, and most rounds.
+// [-] Regularisation, relative to the mobility, at the start of the proximal iteration and at its end, and
+// most rounds.
 constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-8;
 constexpr int kMostRounds = 40;
-// [-] Exchanges of a matrix that may have no solution: where there is one, three are usual.
+// [-] Exchanges before giving up: a matrix that has a solution usually needs three.
 constexpr std::size_t kFewExchanges = 16;
 constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
 }  // namespace
@@ -32,8 +33,8 @@ void Complementarity::multiply_add(double factor, const std::vector<double>& x,
     }
 }
 
-// LU factorisation with partial pivoting of the basic rows and columns.
-// Contacts that are ordered by place fill a band, beyond which all stays zero.
+// LU factorisation with partial pivoting of the basic rows and columns. Contacts ordered by position fill a
+// band; all outside it stays zero.
 bool Complementarity::factor() {
     index_.clear();
     place_.assign(size, size);
@@ -102,7 +103,7 @@ void Complementarity::residual(std::vector<double>& w) const {
     multiply_add(1.0, z, w);
 }
 
-// size_of_: of each row, the sum of the absolute values of its terms.
+// size_of_: for each row, the sum of the absolute values of its terms.
 void Complementarity::add_sizes() {
     size_of_.resize(size);
     for (std::size_t i = 0; i < size; ++i) size_of_[i] = std::abs(q[i]);
@@ -122,7 +123,7 @@ double Complementarity::worst_residual(const std::vector<double>& w) {
 }
 
 // The refinements remove the effect of the compliance down to rounding, as long as each at least halves the
-// residual; where contacts contradict each other it does not. In a wedge whose smallest eigenvalue is 1e-11,
+// residual; if contacts contradict each other, it does not. In a wedge whose smallest eigenvalue is 1e-11,
 // two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
 void Complementarity::polish(std::vector<double>& w) {
     refine(w);
@@ -166,7 +167,7 @@ void Complementarity::refine(std::vector<double>& w) {
     residual(w);
 }
 
-// Rows that a solution cannot have: a pull, or a negative w.
+// Rows that no solution can have: a pull, or a negative w.
 void Complementarity::find_wrong(const std::vector<double>& w) {
     constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
     double largest = 0.0;
@@ -185,10 +186,10 @@ bool Complementarity::solve(bool thorough) {
     return false;
 }
 
-// Contacts between which the softness decides may be exchanged without end. With more of it they are not, and
-// each solution is where the next one is soft towards: what the softness changes dies away (the proximal
-// point method of Martinet and Rockafellar). It dies away the faster the less of it there is, so that each
-// round has a tenth of it, for as long as the exchanges end.
+// Pivoting can cycle if only the regularisation separates two contacts. A stronger one prevents that, and if
+// each solution is the centre of the next one, its effect decays (the proximal point method of Martinet and
+// Rockafellar). It decays faster the weaker the regularisation is, so each round uses a tenth of it, as long
+// as the pivoting ends.
 bool Complementarity::approach() {
     const std::vector<double> wanted = q;
     std::vector<double> own(size, 0.0), before;
@@ -209,7 +210,7 @@ bool Complementarity::approach() {
             q[c] = wanted[c] - soft * before[c];
         }
         if (!exchange(found ? kFewExchanges : 200 + 20 * size)) {
-            z = before;  // as near as rounding lets it come
+            z = before;  // as near as rounding allows
             if (least || !found) break;
             least = true;
             softness *= 10.0;

@@ -8,13 +8,13 @@
 
 namespace carom {
 
-/// [-] Compliance of each contact of a group, relative to its mobility (the
-/// diagonal of A). It makes the solution unique: redundant contacts share the load.
+/// [-] Compliance of each contact of a group, relative to its mobility (the diagonal of A). It makes the
+/// solution unique: redundant contacts share the load.
 inline constexpr double kContactSoftness = 1e-12;
 
 /// z >= 0, w = A z + q >= 0, z . w = 0.
 struct Complementarity {
-    /// n unknowns, without columns, in the memory that it has.
+    /// n unknowns and no columns, in the memory that it has.
     void resize(std::size_t n) {
         q.assign(n, 0.0);
         z.assign(n, 0.0);
@@ -25,8 +25,8 @@ struct Complementarity {
         entries.clear();
         first.clear();
     }
-    /// The next column of A: begin_column(), then its entries, each row once, that of the diagonal among
-    /// them. What is left out is zero, as between contacts without a common ball.
+    /// Adds the next column of A: begin_column(), then its entries, each row once, including the diagonal.
+    /// Entries that are left out are zero, as between contacts without a common ball.
     void begin_column() { first.push_back(entries.size()); }
     void add(std::size_t row, double value) { entries.push_back({row, value}); }
     /// result += A x, column by column.
@@ -37,11 +37,10 @@ struct Complementarity {
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
     /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share
     /// their load evenly and the solution is unique; iterative refinement removes this effect again, down to
-    /// rounding. It begins with the rows in which z is positive or A z + q negative.
-    /// @param thorough  whether to go on where the pivots do not end: for matrices without negative
-    /// eigenvalues, in which rounding decides; others
-    ///                  may have no solution, and are given up soon
-    /// @return false if no solution was found (A may have none); z is then 0
+    /// rounding. Starts with the rows in which z is positive or A z + q negative.
+    /// @param thorough  whether to continue if the pivoting does not end: for matrices without negative
+    /// eigenvalues, for which rounding decides. Others may have no solution, and are given up early
+    /// @return false if no solution was found (there may be none); z is then 0
     bool solve(bool thorough = true);
 
     struct Entry {
@@ -74,7 +73,7 @@ struct Complementarity {
     std::vector<char> basic_;
     std::vector<std::size_t> index_, pivot_, wrong_;
     std::vector<std::size_t> place_;         // of a basic row in index_
-    std::vector<std::size_t> top_, bottom_;  // the first and the last row of a column of lu_ that is not zero
+    std::vector<std::size_t> top_, bottom_;  // first and last row of a column of lu_ that is not zero
     std::vector<double> lu_, w_, part_, before_, last_, size_of_;
 };
 

@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// What a ball touches, in the order of simultaneous events; a nose (a jaw or a cushion's end) counts as a
+/// What a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end) counts as a
 /// cushion. kOut: the border of the table, over which a ball flies.
 enum class With : std::uint8_t { kPocket, kNothing, kBall, kCushion, kNose, kOut };
 
@@ -28,12 +28,12 @@ struct Contact {
     }
 };
 
-/// Whether the part of the table is a jaw, not a cushion or the end of one.
+/// Whether the part of the table is a jaw, rather than a cushion or the end of one.
 inline bool is_jaw(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
 }
 
-/// The fields b and detail of an event of this contact: see Event.
+/// The fields b and detail of an event of this contact (Event).
 inline int event_partner(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose ? geometry.noses[c.other].index : c.other;
 }

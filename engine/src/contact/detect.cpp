@@ -11,8 +11,8 @@ namespace carom {
 
 namespace {
 
-// [ulp of the coordinates and the length] A foot point nearer than this to the
-// end of a cushion is at the end: four roundings of position, end and projection.
+// [ulp of the coordinates and the length] A foot point closer to the end of a cushion than this is at the
+// end: four roundings of position, end and projection.
 constexpr double kEndUlp = 4.0;
 
 constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
@@ -37,7 +37,7 @@ double closing_speed(const Relative& m, double t) {
     return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
 }
 
-// At most one small step back from a time at which balls overlap to the side without penetration.
+// At most one small step back, from a time at which balls overlap to one without penetration.
 double outside(const Relative& m, double reach, double t, double gap, double closing) {
     if (!(gap < 0.0)) return t;
     const double back = closing > m.noise ? t + gap / closing : t;
@@ -47,8 +47,8 @@ double outside(const Relative& m, double reach, double t, double gap, double clo
     return earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap ? earlier : t;
 }
 
-// Refines a root of the polynomial with the distance itself: Newton steps on |r(t)| - reach, accepted only
-// while the gap decreases (at a graze they would diverge).
+// Refines a root of the polynomial with the distance itself, by Newton steps on |r(t)| - reach. A step is
+// accepted only while the gap decreases (at a graze they would diverge).
 double refine(const Relative& m, double reach, double t, double horizon) {
     double gap = length(at(m, t)) - reach;
     for (int i = 0; i < 3 && gap != 0.0; ++i) {
@@ -71,13 +71,13 @@ double press_delay(double closing_acceleration, double noise, double horizon) {
     return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
 }
 
-// [-] Steps towards contact before the quartic is asked; and what a step
-// may leave of the gap for it to be the last, as a share of the reach.
+// [-] Steps towards contact before the quartic is solved; and the share of the reach that the last step may
+// leave as a gap.
 constexpr int kApproaches = 16;
 constexpr double kArrived = 1e-16;
 
-// Straight relative path with the signed acceleration `alpha`
-// along it. It is solved in arc length, exactly at a graze.
+// Straight relative path with the signed acceleration `alpha` along it. Solved in arc length, which is exact
+// at a graze.
 double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
     const Vec2 e = m.v / speed;
     const double along = -dot(m.r, e);  // arc length of the closest approach
@@ -95,12 +95,13 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     return t <= horizon ? refine(m, reach, t, horizon) : kNever;
 }
 
-// Goes on from t, before which the gap cannot close, to contact: true once it is reached or cannot be within
-// the horizon (t is kNever then). A distance curves by -|a| at least, so the time that it would take at this
-// curvature from the present closing speed is free of contact; near the root this is Newton's step. False
-// where it creeps, near a graze: the quartic knows it from there. From farther off it does not: the
-// coefficients of |r|^2 - reach^2 are as large as the squares of the distances travelled, and at a graze
-// their rounding (1e-11 m over 100 m) would decide instead of the distance.
+// Advances from t, before which the gap cannot close, to contact. Returns true once it is reached or cannot
+// be within the horizon (t is then kNever). The distance curves by -|a| at least, so no contact is possible
+// before a parabola of that curvature, with the present closing speed, would close the gap; near the root
+// this is Newton's step. Returns false if progress is slow, near a graze: from there the quartic is accurate.
+// From farther away it is not, because the coefficients of |r|^2 - reach^2 are as large as the squares of the
+// distances travelled, and at a graze their rounding (1e-11 m over 100 m) would decide instead of the
+// distance.
 bool approach(const Relative& m, double reach, double pull, double horizon, double& t) {
     for (int i = 0;; ++i) {
         const Vec2 r = at(m, t), v = rate(m, t);
@@ -117,7 +118,7 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
             t = kNever;
             return true;
         }
-        // What curves the distance by at most |v|^2 / d + |a| leaves so much of the gap.
+        // The curvature of the distance, at most |v|^2 / d + |a|, leaves no more than this of the gap.
         if ((dot(v, v) + pull * d) * (step * step) <= kArrived * reach * d) {
             t = outside(m, reach, t, length(at(m, t)) - reach, closing);
             return closing > m.noise;
@@ -125,8 +126,8 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
     }
 }
 
-// First time within the horizon at which |r| decreases to
-// reach, closing or only touching; c0 = |r|^2 - reach^2 now.
+// First time within the horizon at which |r| decreases to reach, closing or only touching; c0 = |r|^2 -
+// reach^2 now.
 double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
     const double speed = length(m.v), pull = length(m.a);
     if (speed == 0.0 && pull == 0.0) return kNever;
@@ -148,7 +149,7 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     const Vec2 r = near > 0.0 ? at(m, near) : m.r, v = rate(m, near);
     if (near > 0.0) {
         const double d = length(r);
-        if (!(d > reach)) return near;  // it closes more slowly than rounding can tell
+        if (!(d > reach)) return near;  // it closes more slowly than rounding can resolve
         c0 = (d - reach) * (d + reach);
     }
     const double c[5] = {c0, 2.0 * dot(r, v), dot(v, v) + dot(r, m.a), dot(v, m.a), 0.25 * dot(m.a, m.a)};
@@ -156,7 +157,7 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
     return t == kNever ? kNever : refine(m, reach, std::min(horizon, near + t), horizon);
 }
 
-// First contact that closes by more than rounding. Grazes below that are skipped. A contact that closes only
+// First contact that closes by more than rounding; slower grazes are skipped. A contact that closes only
 // because it is pressed together begins when its closing speed can be distinguished from 0.
 double time_to_reach(Relative m, double reach, double horizon, bool straight) {
     const double d = length(m.r);
@@ -246,14 +247,14 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
             t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);
         else {
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
-            // It touches more slowly than rounding can tell,
-            // and the acceleration presses it on into the nose.
+            // It touches more slowly than rounding can resolve, and the acceleration presses it into the
+            // nose.
             if (t < kNever && h2 < 0.0 && !(h1 + t * h2 < -noise))
                 t += press_delay(-h2, noise, ball.horizon - t);
         }
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
-        // A ball that touches the nose at its end can move round
-        // it onto the cushion: closing once the foot enters.
+        // A ball that touches the nose at its end can move around it onto the cushion: it closes once the
+        // foot enters.
         const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
                                            dot(direction, ball.a), line_length, ball.horizon);
         if (enter == kNever) continue;

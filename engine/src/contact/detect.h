@@ -15,22 +15,21 @@
 
 namespace carom {
 
-/// Translation of one ball from now on: r + v t + a t^2 /
-/// 2, for 0 <= t <= horizon (its next state transition).
+/// Translation of one ball from now: r + v t + a t^2 / 2, for 0 <= t <= horizon (its next state transition).
 struct Path {
     Vec2 r, v, a;
     double horizon;  ///< s, may be infinite
     bool straight;   ///< v and a are parallel (rolling; sliding with u parallel to v; at rest)
     bool moves;
-    double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the speed of the centre
+    double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the centre's speed
 };
 
-/// [ulp of the speeds of centres and surfaces] Closing speeds below
-/// this are rounding errors of the projection, not an approach.
+/// [ulp of the speeds of centres and surfaces] Lower closing speeds are rounding errors of the projection,
+/// not an approach.
 inline constexpr double kClosingUlp = 8.0;
 
-/// Time until the distance of two centres decreases to `reach`
-/// (R1 + R2) while closing; kNever if not within both horizons.
+/// Time until the distance between two centres decreases to `reach` (R1 + R2) while closing; kNever if not
+/// within both horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
 /// Time until the distance of the centre from a fixed point decreases to `reach` while closing.
@@ -46,8 +45,7 @@ double end_rounding(const Vec2& r, double line_length);
 
 /// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding its direction
 /// of motion decides, so that a ball that leaves over the end is not mistaken for one that arrives: the
-/// condition that ends a contact here cannot begin it. Beyond the end, the end point or the jaw is
-/// responsible.
+/// condition that ends a contact here cannot begin it. Beyond the end, the end point or the jaw takes over.
 bool past_end(double left, double rate, double pull, double rounding);
 
 /// Time until the centre enters the circle of a pocket; 0 if it is inside.
@@ -68,7 +66,7 @@ inline double least(double c, double b, double a, double T) {
 }
 
 /// Quick rejection: whether a relative motion stays out of reach on [0, window] by a margin far above
-/// rounding, so that the functions above would find nothing there. Needs no root and no division by a length;
+/// rounding, so that the functions above would find nothing. It needs no root and no division by a length;
 /// false means that they must be called. Two projections give lower bounds of the distance: on the present
 /// direction to the other centre, and on the normal of the relative velocity.
 inline bool stays_apart_plain(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
@@ -83,8 +81,8 @@ inline bool stays_apart_plain(const Vec2& r, const Vec2& v, const Vec2& a, doubl
 }
 
 #if defined(__SSE2__)
-/// The same with both projections at once and without a branch on
-/// them: which one of the cases of least() holds cannot be predicted.
+/// The same with both projections at once and without branches on them: which case of least() applies cannot
+/// be predicted.
 inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare), d2 = dot(r, r), side = cross(r, v),

@@ -11,10 +11,10 @@ namespace {
 
 // [-] Steps of the search: 3 in the median, 12 at most in 4000 random cases.
 constexpr int kMostSteps = 200;
-// [-] Grazes that are passed over before the search ends.
+// [-] Grazes that are skipped before the search ends.
 constexpr int kMostGrazes = 4;
 
-/// A distance and its first two derivatives by time.
+/// A distance and its first two time derivatives.
 struct Distance {
     double d, rate, bend;
 };
@@ -26,7 +26,7 @@ double dot_of(const Vec3& a, const Vec3& b) {
     return dot3(a, b);
 }
 
-/// Of the length of a vector x(t) whose derivatives are v and a.
+/// Those of the length of a vector x(t) with the derivatives v and a.
 template <class Vector>
 Distance of_length(const Vector& x, const Vector& v, const Vector& a) {
     const double d = std::sqrt(dot_of(x, x));
@@ -36,7 +36,7 @@ Distance of_length(const Vector& x, const Vector& v, const Vector& a) {
 }
 
 /// @param at  time -> Distance
-/// @param curving  [m/s^2] least upper bound of -bend that is known
+/// @param curving  [m/s^2] known upper bound of -bend
 /// @param rounding  [m] of the distance
 /// @param from  [s] start of the search
 template <class At>
@@ -50,8 +50,8 @@ double first_contact(const At& at, double reach, double curving, double rounding
         if (gap <= rounding) {
             if (now.rate < -noise) return t;
             if (now.rate <= noise) {
-                // It only touches. Where it is pressed on, the
-                // contact begins once its speed can be told from 0.
+                // It only touches. If it is pressed on, the contact begins once its speed can be
+                // distinguished from 0.
                 if (now.bend < 0.0) {
                     const double pressed = t + 2.0 * noise / -now.bend;
                     return pressed <= horizon ? pressed : kNever;
@@ -70,7 +70,7 @@ double first_contact(const At& at, double reach, double curving, double rounding
             if (!(curving > 0.0)) return kNever;
             next = (now.rate + root) / curving;
         }
-        // No later time is nearer to the contact.
+        // No later time is closer to the contact.
         if (!(t + next > t)) return now.rate < -noise ? t : kNever;
         t += next;
     }
@@ -99,7 +99,7 @@ Window over(double foot, double rate, double line_length, double horizon) {
     return {std::max(0.0, std::min(one, two)), std::min(horizon, std::max(one, two))};
 }
 
-/// Time until a centre that moves straight comes over a disc about the origin; negative where it is over it.
+/// Time until a centre on a straight path is over a disc at the origin; negative if it is over it already.
 double time_over_disc(const Vec2& r, const Vec2& v, double radius) {
     const double out = (length(r) - radius) * (length(r) + radius), along = dot(r, v);
     if (radius == 0.0) return kNever;
@@ -117,7 +117,7 @@ double flight_to_ball(const Flight& f, double reach) {
 
 double flight_to_line(const Flight& f, const Vec3& from, const Vec2& direction, double line_length,
                       double reach) {
-    // In the plane across the line: the horizontal distance and the height.
+    // In the plane perpendicular to the line: the horizontal distance and the height.
     const auto across = [&](const Vec3& x) { return Vec2(cross(direction, planar(x)), x.z()); };
     const Flight g{f.r - from, f.v, f.a, f.horizon, f.noise};
     const Window window =
@@ -149,6 +149,11 @@ double flight_over_line(const Flight& f, const Vec2& from, const Vec2& direction
     if (!(height * rate < 0.0)) return kNever;
     const double t = -height / rate, foot = dot(direction, r) + t * dot(direction, v);
     return t <= f.horizon && foot >= 0.0 && foot <= line_length ? t : kNever;
+}
+
+double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon) {
+    const double t = time_over_disc(r, v, radius);
+    return t <= horizon ? std::max(0.0, t) : kNever;
 }
 
 double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v) {

@@ -3,25 +3,17 @@
 #include <algorithm>
 #include <limits>
 
+#include "carom/engine/event_details.h"
 #include "carom/engine/vec.h"
 
 namespace carom {
 namespace {
 
-// [ball radii] A ball that moved by less than this off a cushion has not
-// left it: the rounding of places, and far below what anyone could see.
+// [ball radii] A ball that has moved away from a cushion by less than this has not left it: rounding of
+// positions, far below anything visible.
 constexpr double kStillFrozen = 1e-9;
 
-/// The point of the table's part that is nearest to a place.
-Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
-    const auto part = static_cast<std::size_t>(event.b);
-    if (kind(event.type).partner == Partner::kJaw) return table.jaws[part].center;
-    const Cushion& c = table.cushions[part];
-    const Vec2 line = c.to - c.from;
-    return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
-}
-
-/// Until when the segment `i` is in force [s after its start], at most until `time`.
+/// How long segment `i` is in force [s after its start], at most until `time`.
 double lasts(std::span<const Segment> segments, std::size_t i, double time) {
     const double next =
         i + 1 < segments.size() ? segments[i + 1].start : std::numeric_limits<double>::infinity();
@@ -36,7 +28,7 @@ double farthest(std::span<const Segment> segments, const Vec2& along, double tim
         const Segment& s = segments[i];
         const double whole = lasts(segments, i, time);
         const double v = dot(along, planar(s.v)), a = dot(along, s.a);
-        // The ends, and where it turns back.
+        // The ends, and the turning point.
         for (const double tau : {0.0, whole, a < 0.0 ? std::clamp(-v / a, 0.0, whole) : whole})
             most = std::max(most, dot(along, planar(position_at(s, tau))));
     }

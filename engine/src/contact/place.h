@@ -1,4 +1,4 @@
-// An order of places on the table for sums that are to be the same to the last bit in a mirror image.
+// An order of positions on the table, for sums that must be the same to the last bit in a mirror image.
 #pragma once
 
 #include <algorithm>

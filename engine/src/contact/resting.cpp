@@ -18,12 +18,11 @@ namespace {
 constexpr double kLeastRestitution = 0.1;
 // [s] A speed that rolling friction would stop within this time counts as zero.
 constexpr double kStopNoise = 1e-12;
-// [s] The same without rolling friction, with sliding friction instead:
-// such a speed moves a ball by no more than 1e-12 m in an hour.
+// [s] The same if there is only sliding friction: such a speed moves a ball by at most 1e-12 m in an hour.
 constexpr double kSlideNoise = 1e-16;
-// [of a closing speed] Impulses that leave less of it come nearer to a solution.
+// [of a closing speed] Impulses that leave less than this share of it count as progress.
 constexpr double kNearer = 0.5;
-// [s] A slip that an impulse leaves counts as zero if sliding friction ends it within this time.
+// [s] A slip after an impulse counts as zero if sliding friction ends it within this time.
 constexpr double kSlipNoise = 1e-12;
 
 }  // namespace
@@ -89,9 +88,10 @@ Link link_of(const Group& g, const RestingContact& c) {
     return link;
 }
 
-// What slips that count as zero, and the rounding of impulses a million times the speeds, in a flat wedge,
-// would add to the energy is taken from all motions alike, so that rates and slips of zero stay zero.
-// @return whether that is something
+// Removes energy that does not exist: slips that count as zero, and in a flat wedge the rounding of impulses
+// a million times larger than the speeds, would add some. Scales all motions alike, so that rates and slips
+// of zero stay zero.
+// @return whether there was any
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
@@ -107,7 +107,7 @@ bool keep_energy(Group& g) {
     return true;
 }
 
-// Takes the velocities after impulses at an instant as the present ones.
+// Accepts the velocities after impulses at an instant as the present ones.
 void accept(Group& g) {
     const double gone = std::max(g.noise, 3.5 * g.motion.slide * kSlipNoise);
     for (Body& b : g.bodies)
@@ -124,8 +124,8 @@ void accept(Group& g) {
     }
 }
 
-// A contact that opens so slowly that friction alone could close it again
-// within the duration of a contact goes on until its gap can be noticed.
+// If a contact opens so slowly that friction alone could close it again within the duration of a contact, it
+// continues until its gap is noticeable.
 void mark_open(Group& g) {
     for (Link& link : g.links) {
         const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
@@ -142,7 +142,7 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// Where rounding leaves no solution, as in flat wedges, what comes nearer is the start of the next pass.
+// If rounding leaves no solution, as in flat wedges, start the next pass from the closest state.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
@@ -156,9 +156,9 @@ void remove_closing_speeds(Group& g) {
     mark_open(g);
 }
 
-// A contact ends once its gap opens by more than rounding, and never at the
-// instant at which it began, so that no contact can begin and end forever. A
-// contact without force that does not open (balls at rest, equal rolling) stays.
+// A contact ends once its gap opens by more than rounding, but never at the instant at which it began, so
+// that no contact can begin and end forever. A contact without force that does not open (balls at rest, equal
+// rolling) stays.
 void mark_released(Group& g) {
     for (std::size_t c = 0; c < g.links.size(); ++c) g.group.contacts[c].released = g.links[c].open;
 }
@@ -225,7 +225,7 @@ bool holds(double v_n, double a_c, double restitution) {
 
 double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
-    // Without rolling friction nothing stops such a ball: the sliding friction then sets the scale.
+    // Without rolling friction nothing stops such a ball, so sliding friction sets the scale.
     return std::max(motion.roll > 0.0 ? kStopNoise * motion.roll : kSlideNoise * motion.slide,
                     8.0 * kClosingUlp * kEpsilon * (speed + motion.R * spin));
 }

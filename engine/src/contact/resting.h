@@ -1,10 +1,10 @@
-// Resting contacts: balls that stay in contact and push each other, or a
-// cushion. Accelerations are constant over an interval, so that motions remain
-// polynomials. Source: docs/reference/physics.md, tests/README.md H5, H7.
+// Resting contacts: balls that stay in contact and push each other, or a cushion. Accelerations are constant
+// over an interval, so that motions remain polynomials. Source: docs/reference/physics.md, tests/README.md
+// H5, H7.
 //
 // Forces per contact (normal force N >= 0, n from the ball to the other one or into the cushion): -N n on the
-// ball, +N n on the other, and the vertical share of the friction between two balls, which loads the cloth
-// and slows the spins. The friction parallel to the cloth and the friction of cushions are neglected.
+// ball, +N n on the other, and the vertical part of the friction between two balls, which loads the cloth and
+// slows the spins. Friction parallel to the cloth and friction of cushions are neglected.
 #pragma once
 
 #include <vector>
@@ -20,15 +20,15 @@ namespace carom {
 /// contact instead of a bounce: the rebound would be shorter than the Hertz contact time.
 bool holds(double v_n, double a_c, double restitution);
 
-/// Speed that counts as zero in a group [m/s]: the rounding of the velocities in
-/// a few sums of eight terms, or a speed that rolling friction stops at once.
+/// Speed that counts as zero in a group [m/s]: the rounding of the velocities in a few sums of eight terms,
+/// or a speed that rolling friction stops at once.
 double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
 
 struct RestingContact {
     Contact contact;  ///< with a ball, a cushion or a nose
     /// unit, from the ball to the other or into the table's part; fixed over one interval
     Vec2 n = Vec2::Zero();
-    double began = 0.0;     ///< [s] when it became one
+    double began = 0.0;     ///< [s] when the resting contact began
     bool released = false;  ///< result: the gap opens
 };
 
@@ -44,7 +44,7 @@ struct RestingBall {
 struct RestingGroup {
     std::vector<RestingBall> balls;
     std::vector<RestingContact> contacts;
-    double last = kNever;  ///< [s] shortest interval that its balls were in until now
+    double last = kNever;  ///< [s] shortest interval that its balls have been in until now
 };
 
 /// The table that a group touches, and the parameters of its balls.
@@ -59,8 +59,8 @@ struct RestingSurroundings {
 /// too much. Contacts that open are marked released; a contact without force that does not open stays.
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now);
 
-/// Time until the foot point of a ball that moves along a cushion
-/// passes the end of the cushion; 0 if it passes it now.
+/// Time until the foot point of a ball that moves along a cushion passes the end of the cushion; 0 if it
+/// passes it now.
 double time_to_line_end(const CushionLine& line, const Segment& segment);
 
 /// Sets the state of a member after its state transition (its slip, velocity or spin has become zero).

@@ -1,20 +1,18 @@
-// One solution of one group of resting contacts (resting.h): what impulses do (resting_response.cpp), which
-// impulses end an interval without closing contacts (resting_newton.cpp), the step over it, and what counts
-// as a solution (resting_step.cpp), and how long an interval may be (resting_interval.cpp). resting.cpp
-// defines the order.
+// One solution of one group of resting contacts (resting.h): the effect of impulses (resting_response.cpp);
+// the impulses that close no contact at the end of an interval (resting_newton.cpp); the step over an
+// interval, and the criteria for a solution (resting_step.cpp); and the length of the interval
+// (resting_interval.cpp). resting.cpp defines the order.
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping
-// for unilateral contacts with friction). For each ball, per mass, with v its velocity, s = R (w_y, -w_x) the
-// velocity with which it would roll, and u = v - s its slip:
+// for unilateral contacts with friction). For each ball, per mass, let v be its velocity, s = R (w_y, -w_x)
+// the velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
-// with the pushes P = sum of +-J n, the couples C = -sum of f_z J n of the vertical friction f_z J between
-// two balls, the friction of the cloth f, and the resistance d of a rolling ball. J is per mass of the
-// lightest ball, and of what it does a heavier ball gets its share (Body::ease). The line of centres of two
-// balls of different radius is tilted, so that J loads the cloth under the smaller one. The friction opposes
-// the slip at the end: f = -mu_s g h u'/|u'|, or whatever ends the slip where less is enough; d likewise
-// opposes the velocity at the end. So a ball stops, rolls, or slides by what the whole interval does to it,
-// and no interval is too short for a direction that reverses. The impulses J >= 0 of the contacts fulfil J >=
-// 0, gap rate at the end >= 0, J x rate = 0.
+// P = sum of +-J n are the pushes, C = -sum of f_z J n the couples of the vertical friction f_z J between two
+// balls, f is the friction of the cloth, and d the resistance of a rolling ball. The friction opposes the
+// slip at the end: f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the
+// velocity at the end. So a ball stops, rolls, or slides by the effect of the whole interval, and no interval
+// is too short for a direction that reverses. The impulses of the contacts fulfil J >= 0, gap rate at the end
+// >= 0, J x rate = 0.
 #pragma once
 
 #include <vector>
@@ -24,13 +22,13 @@
 
 namespace carom::resting {
 
-/// [s] Shortest interval: whatever reverses within it is taken as what it is at its end.
+/// [s] Shortest interval: whatever reverses within it is treated as in its end state.
 inline constexpr double kShortestInterval = 1e-5;
-/// [m] and [s] A deeper overlap is removed within the interval, but not in less than this time: otherwise the
+/// [m] and [s] A deeper overlap is removed within the interval, but over at least this time: otherwise the
 /// rounding errors of a long push would add up to nearly 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 inline constexpr double kRecoveryTime = 1e-3;
-/// [m] Largest gap of a contact that goes on.
+/// [m] Largest gap of a contact that continues.
 inline constexpr double kGapLeft = 1e-8;
 /// [m] Overlap that may arise within an interval.
 inline constexpr double kOverlapGrowth = 1e-13;
@@ -51,8 +49,8 @@ inline bool moves(const Vec2& a) {
 struct Body {
     // At the start of the interval [m/s].
     Vec2 v = Vec2::Zero(), s = Vec2::Zero();
-    Vec2 u = Vec2::Zero();  ///< exactly zero where the ball rolls or rests
-    /// Direction of the friction, where that of the middle of the interval is known from an earlier solution.
+    Vec2 u = Vec2::Zero();  ///< exactly zero if the ball rolls or rests
+    /// Direction of the friction, if an earlier solution gives that of the middle of the interval.
     bool guided = false;
     Vec2 guide = Vec2::Zero();
     double load = 1.0;  ///< share of the weight that the cloth supports
@@ -66,7 +64,7 @@ struct Body {
     double lift = 0.0;                                ///< vertical impulse of the contacts
     double impulses = 0.0;                            ///< sum of |J| per mass, for rounding
     Matrix by_push, by_couple;                        ///< derivatives of v_end
-    Vec2 by_lift = Vec2::Zero();                      ///< the same: less load, less friction
+    Vec2 by_lift = Vec2::Zero();                      ///< the same: less load means less friction
 
     Vec2 slip_end() const { return v_end - s_end; }
 };
@@ -75,7 +73,8 @@ struct Body {
 struct Link {
     int i, j;
     Vec2 n;
-    double distance;                    ///< [m] of the centres, as the normal turns; 0: a straight cushion
+    /// [m] between the centres, as the normal turns; 0: a straight cushion
+    double distance;
     const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
     double gap = 0.0;                   ///< [m]; negative: overlap
     bool begins = false;                ///< the contact begins now, and so does not end now
@@ -94,22 +93,22 @@ struct Group {
     double now;
     std::vector<Body> bodies;  ///< as group.balls
     std::vector<Link> links;   ///< as group.contacts
-    double solved = 0.0;       ///< [s] interval for which the bodies and links hold a solution; 0: for none
-    bool smooth = false;  ///< the solution is without friction between balls, because with it there is none
-    /// [s] how long the interval should be whose solution was given up for that; 0: none was
+    double solved = 0.0;       ///< [s] interval for which the bodies and links have a solution; 0: none
+    bool smooth = false;       ///< the solution ignores friction between balls, because with it there is none
+    /// [s] recommended length after a solution was given up because its interval was too long; 0: none was
     double cut = 0.0;
     double noise = 0.0;  ///< [m/s] rounding of the group's speeds in a few sums of eight terms
-    // Memory of solve_interval() and step().
+    // Workspace of solve_interval() and step().
     std::vector<Body> bodies_before;
     std::vector<Link> links_before;
     Complementarity problem;
 };
 
-/// What a step includes.
+/// Options of a step.
 struct StepOptions {
     bool friction = true;   ///< the vertical friction between balls
     bool stabilise = true;  ///< Link::turning
-    bool may_cut = false;   ///< whether an interval that turns out too long is solved no further (Group::cut)
+    bool may_cut = false;   ///< whether to give up on an interval that turns out to be too long (Group::cut)
 };
 
 /// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
@@ -118,41 +117,42 @@ struct Across {
 };
 Across across(const Group& g, const Link& link, double h);
 
-/// [m/s] Rate at which the gap opens at the start, and at the
-/// end of the interval (without the turning of the normal).
+/// [m/s] Rate at which the gap opens, at the start and at the end of the interval (without the turning of the
+/// normal).
 double gap_rate(const Group& g, const Link& link);
 double end_rate(const Group& g, const Link& link);
-/// [m/s] Upward slip of two balls at their contact, and the one parallel to the cloth.
+/// [m/s] Upward slip of two balls at their contact, and the slip parallel to the cloth.
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 
 // resting_response.cpp
 /// Moves the balls by the impulses of their contacts over h [s]; at an instant, h = 0, without friction.
 /// @param friction  whether the contacts' vertical friction loads the cloth
-/// @param stops     whether the derivatives of a ball that hardly moves are those at rest
+/// @param stops     whether a ball that hardly moves has the derivatives of a ball at rest
 void respond(Group& g, double h, bool friction, bool stops = false);
 
 // resting_newton.cpp
-/// Solves for the impulses of the contacts that are not open, by Newton's method, from those that are there.
+/// Solves for the impulses of the contacts that are not open, by Newton's method, starting from the present
+/// ones.
 /// @return whether there is a solution
 bool solve_newton(Group& g, double h, const StepOptions& options);
 /// [m/s] Slip of two balls that their friction ends within the interval.
 double slip_ended(const Group& g, const Link& link);
 
 // resting_step.cpp
-/// Solves the step over h [s]; without friction for 0, an instant. @return
-/// whether there is a solution; without one the closest state is left
+/// Solves the step over h [s]; 0 is an instant, without friction. @return whether there is a solution; if
+/// not, leaves the closest state
 bool step(Group& g, double h, StepOptions options = {});
-/// Whether an impulse of the solution over h is more than what drives the group makes: balls lock each other.
+/// Whether an impulse of the solution over h exceeds what drives the group: balls lock each other.
 bool locks(const Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
 /// [m/s] Rounding of the rates of the gaps.
 double rate_rounding(const Group& g);
-/// [m/s] Friction between balls as it would be with the slip at the start.
+/// [m/s] Friction between balls, given the slip at the start.
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
-/// [s] How long a solution over h holds.
+/// [s] How long a solution over h is accurate.
 double accurate_interval(const Group& g, double h);
 /// Chooses the interval, solves it and writes the segments.
 void solve_interval(Group& g);

@@ -1,4 +1,4 @@
-// How long one solution of a group of resting contacts holds, and its segments.
+// How long one solution of a group of resting contacts is accurate, and its segments.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -12,44 +12,44 @@ namespace carom::resting {
 
 namespace {
 
-// [s] Longest interval, and the length of the first attempt where nothing moves.
+// [s] Longest interval, and the length of the first attempt if nothing moves.
 constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
 constexpr double kPlaceError = 2e-8;
-// [s] What friction stops at once rests after this time at the
-// latest: with the error of places alone it could creep for days.
+// [s] A ball that friction stops rests after this time at the latest: with the tolerance of positions alone
+// it could creep for days.
 constexpr double kStopsWithin = 0.01;
-// [s] Longest interval without the friction between balls,
-// where that leaves no solution and anything accelerates.
+// [s] Longest interval without friction between balls, if friction leaves no solution and anything
+// accelerates.
 constexpr double kSmooth = 0.03;
-// [-] Where an interval may go on for this share of itself after a stop, it is not made to end there exactly.
+// [-] If an interval overruns a stop by less than this fraction, keep it as it is.
 constexpr double kSoon = 1e-2;
-// [m] Smaller position errors by the direction at the end of an interval are left.
+// [m] Ignore smaller position errors from using the direction at the end of an interval.
 constexpr double kUnguided = 1e-9;
-// [rad] Up to this, a direction that turns is that of the middle of the interval.
+// [rad] Up to this angle, use the direction of the middle of the interval for one that turns.
 constexpr double kTurnOfMiddle = 0.5;
 // [rad] Largest rotation of a normal within an interval.
 constexpr double kNormalTurn = 0.03;
 // [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
 constexpr double kOpening = 1e-10;
-// [-] Directions that differ by less (sine of the angle) count
-// as constant: the closed form of a straight line applies.
+// [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight
+// line applies.
 constexpr double kStraight = 1e-9;
-// [-] An interval is met to this share of itself.
+// [-] Relative tolerance of the length of an interval.
 constexpr double kMet = 1e-9;
 // [ulp of the time] Shortest interval, so that the clock advances.
 constexpr double kClockTicks = 8.0;
-// [-] Most attempts at an interval, and at a longer one, which
-// ends when something has gone; it is tried if that is nearly so.
+// [-] Most attempts at an interval, and at a longer one that ends when a slip or velocity has gone; a longer
+// one is tried if the end is within kNearly.
 constexpr int kAttempts = 60, kLonger = 6;
 constexpr double kNearly = 1e-2;
-// [-] First attempt, as a multiple of the group's last
-// interval: what limited that one mostly limits this one.
+// [-] First attempt, as a multiple of the group's last interval: whatever limited that one mostly limits this
+// one.
 constexpr double kGrowth = 4.0;
 // [-] Shortest next attempt, as a share of the last.
 constexpr double kShorter = 0.2;
 
-// First time at which |x + t D| = S t: friction S has then taken what x was and D brought.
+// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
 double time_gone(const Vec2& x, const Vec2& D, double S) {
     const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
     const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
@@ -57,8 +57,8 @@ double time_gone(const Vec2& x, const Vec2& D, double S) {
     return time > 0.0 ? time : kNever;
 }
 
-// Interval, in steps of a tenth, in which an error that
-// grows with the given power of it is at most `allowed`.
+// Interval, reduced in steps of a tenth, in which an error that grows as the given power of it is at most
+// `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
     if (!(error > allowed)) return kNever;
     constexpr double kStep = 0.9;
@@ -70,7 +70,7 @@ double allowed_interval(double h, double error, double allowed, int power) {
     return h;
 }
 
-// What has a direction at the start and at the end, by which friction of strength S acts.
+// A slip or velocity at the start and at the end, opposed by friction of this strength.
 struct Moving {
     Vec2 start, end;
     double strength;
@@ -82,7 +82,7 @@ Moving moving(const Group& g, const Body& b) {
     return {b.v, b.v_end, g.motion.roll};
 }
 
-// Sine of the angle; 1 for more than a right angle.
+// Sine of the angle; 1 beyond a right angle.
 double turn_of(const Vec2& from, const Vec2& to) {
     return dot(from, to) > 0.0 ? std::abs(cross(from, to)) / (length(from) * length(to)) : 1.0;
 }
@@ -97,13 +97,13 @@ double gone_within(const Group& g, const Body& b, double h) {
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
 }
 
-// [s] How long an interval goes on after a stop: what stops
-// within it is stopped evenly until its end, and so goes too far.
+// [s] How far an interval may extend past a stop: a ball that stops within it decelerates evenly until its
+// end, and so moves too far.
 double after_stop(double speed) {
     return std::min(kStopsWithin, 2.0 * kPlaceError / speed);
 }
 
-// The same, if the interval has to end there.
+// The same, but only if the interval has to end there.
 double gone_fast(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     if (gone == kNever) return kNever;
@@ -111,7 +111,7 @@ double gone_fast(const Group& g, const Body& b, double h) {
     return slack <= kSoon * gone && h > gone + slack ? gone : kNever;
 }
 
-// Time at which something fast will have gone if it goes on as in the interval h.
+// Time at which a fast slip or velocity will have gone if it continues as in the interval h.
 double gone_later(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     const double start = length(m.start), along = start > 0.0 ? dot(m.end, m.start) / start : 0.0;
@@ -120,9 +120,9 @@ double gone_later(const Group& g, const Body& b, double h) {
     return goes ? h * start / (start - along) : kNever;
 }
 
-// Interval for which the friction of a ball has the right direction: S w h^2 /
-// 12 is the error of a friction of strength S along a direction that turns by
-// w, taken at the middle of the interval, and S h^2 / 2 is more than any error.
+// Interval for which the friction of a ball has the right direction. A friction of strength S along a
+// direction that turns by w, taken at the middle of the interval, has the error S w h^2 / 12; S h^2 / 2 is an
+// upper bound of any error.
 double friction_interval(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     if (!moves(m.start)) return kNever;
@@ -150,8 +150,8 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
     }
     const double rate = gap_rate(g, link);
     if (!(link.J > 0.0)) {
-        // A contact that opens is released once its rate can be
-        // distinguished from rounding, and before its gap can be seen.
+        // A contact that opens is released once its rate can be distinguished from rounding, and before its
+        // gap is visible.
         const double opening = (end_rate(g, link) - rate) / h + link.turning;
         if (opening > kOpening * g.motion.slide)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
@@ -159,8 +159,8 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
         return interval;
     }
-    // Neither the rounding of the rates nor a closing speed
-    // that could not be removed may add up to an overlap.
+    // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an
+    // overlap.
     const double closing = rounding + std::max(0.0, -rate);
     interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
@@ -194,10 +194,10 @@ double first_attempt(const Group& g) {
     return h;
 }
 
-// Friction has the direction of the middle of the interval, for second order.
+// Gives friction the direction of the middle of the interval, for second order.
 bool guide(Group& g, double h) {
     bool any = false;
-    double wrong = 0.0;  // S w h^2 / 3: the position error by the direction of the end
+    double wrong = 0.0;  // S w h^2 / 3: the position error with the direction of the end
     for (Body& b : g.bodies) {
         b.guided = false;
         const Moving m = moving(g, b);
@@ -215,13 +215,13 @@ bool guide(Group& g, double h) {
     return false;
 }
 
-// Whether what was guided still goes the way that its friction opposes.
+// Whether guided balls still move in the direction that their friction opposes.
 bool keeps_direction(const Group& g) {
     return std::all_of(g.bodies.begin(), g.bodies.end(),
                        [&g](const Body& b) { return !b.guided || dot(moving(g, b).end, b.guide) >= 0.0; });
 }
 
-// The same interval again, guided; without a solution it stays as it was.
+// Solves the same interval again, guided; without a solution it stays as it was.
 void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
@@ -277,9 +277,9 @@ bool accelerates(const Group& g) {
     });
 }
 
-// The step over h. Where friction leaves no solution (Painleve), balls lock each other, and may stop each
-// other at an instant; where that has no solution either, friction is left out over kSmooth at most, and over
-// the longest of the attempts that were cut for friction's sake.
+// The step over h. If friction leaves no solution (Painlevé's paradox), balls lock each other, and may stop
+// each other at an instant. If that has no solution either, friction is ignored for kSmooth at most, and at
+// most for the longest of the attempts that were cut because of friction.
 // @return whether there is a solution
 bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
     g.cut = 0.0;
@@ -335,13 +335,13 @@ void solve_interval(Group& g) {
         if (attempt == kAttempts) break;  // the bodies hold the solution of this h
         if (std::min(accurate, gone) < h * (1.0 - kMet) && h > shortest) {
             gone_before = gone <= accurate ? h : 0.0;
-            // A much too long interval says little about what a shorter one needs.
+            // A much too long interval says little about the right length of a shorter one.
             h = std::max(shortest, std::min(std::max(accurate, kShorter * h), gone * (1.0 + 0.5 * kMet)));
         } else if (later < std::max(gone_before, (1.0 + kNearly) * h) && longer < kLonger) {
             h = later * (1.0 + 0.5 * kMet);
             ++longer;
         } else {
-            // What moves straight and evenly goes on until something ends it.
+            // If all moves straight and evenly, continue until something ends it.
             if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             break;
         }

@@ -12,41 +12,40 @@ namespace carom::resting {
 
 namespace {
 
-// [-] Most Newton steps of one solution; a few are usual, each
-// is exact as soon as every ball's kind of motion is right.
+// [-] Most Newton steps of one solution. A few are usual; a step is exact once every ball's kind of motion is
+// right.
 constexpr int kNewtonSteps = 40;
-// [-] Until this step, what a change of the load does to the friction of the cloth is part of the linear
-// problem: fewer steps, but where balls lock each other no solution.
+// [-] Up to this step, the effect of load changes on the friction of the cloth is part of the linear problem.
+// That saves steps, but has no solution if balls lock each other.
 constexpr int kLoadSteps = 12;
-// [-] From this step on, each second one takes balls for stopped that hardly move: on the way to rest,
-// Newton's method only halves their speed again and again.
+// [-] From this step on, every second one treats balls that hardly move as stopped: close to rest, Newton's
+// method only halves their speed again and again.
 constexpr int kStopsFrom = 5;
-// [of the interval] Where a step of Newton's method says that its
-// solution will hold for less, the interval is solved no further.
+// [of the interval] Give the interval up if a Newton step shows that its solution is accurate for less than
+// this.
 constexpr double kTooLong = 0.95;
-// [of the wrong rates] A step that leaves more of them makes no headway.
+// [of the wrong rates] A step that leaves more of them makes no progress.
 constexpr double kStandsStill = 0.9;
-// [-] A gap whose normal turns further than this is not
-// looked at in detail: the interval is shortened anyway.
+// [-] A gap whose normal turns further than this is not examined in detail: the interval is shortened anyway.
 constexpr double kLongestTurn = 0.1;
 // [m] Overlap that the turning of a normal may cause within an interval.
 constexpr double kOverlapLeft = 4e-15;
-// [m] and [of the gap] A gap may be wrong by so much after an interval, if it opens or closes, and its normal
-// may turn by the rest of it; an overlap counts against what is harmless. A gap that opens under an impulse
-// gains energy, of which so much is rounding [of the group's].
+// [m] and [of the gap] Tolerance of a gap after an interval if it opens, and share of a gap by which it may
+// close; the turning of its normal may use the rest. An existing overlap reduces the tolerance. A gap that
+// opens under an impulse gains energy; this share [of the group's] is rounding.
 constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 1e-13;
-// [m] Smaller changes of a gap are not looked at.
+// [m] Smaller changes of a gap are ignored.
 constexpr double kNoGap = 4e-15;
-// [-] Most trials of a line search, and the share of its first slope that may be left.
+// [-] Most trials of a line search, and the share of its first slope that may remain.
 constexpr int kSearches = 8;
 constexpr double kSlopeLeft = 0.25;
-// [of its coefficient] Accuracy of the friction between balls; and [m] what it may be wrong
-// by in a place, if that is no more than so much in a speed [of the fastest]. The first two
-// double in each step, so many times at most, for contacts that hold each other's slip.
+// [of its coefficient] Accuracy of the friction between balls; or [m] its tolerance in a position, as long as
+// it is at most this share in a speed [of the fastest]. The first two double in each step, this many times at
+// most, for contacts that hold each other's slip.
 constexpr double kFrictionAccuracy = 1e-9, kFrictionPlace = 1e-11, kFrictionSpeed = 1e-6;
 constexpr int kLooser = 20, kLooserPlace = 10;
 
-// How much one of impulse between two balls changes their upward slip.
+// Change of the upward slip of two balls per unit of impulse between them.
 double ease_of(const Group& g, const Link& link) {
     const auto ease = [](const Body& b) {
         return b.ease * (b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0));
@@ -54,16 +53,16 @@ double ease_of(const Group& g, const Link& link) {
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
 
-// What must not become negative: the rate of a gap at the end, with the turning of its normal.
+// The rate that must not be negative: that of a gap at the end, with the turning of its normal.
 double wanted_rate(const Group& g, const Link& link, double h, const StepOptions& options) {
     return end_rate(g, link) + (options.stabilise ? h * link.turning : 0.0);
 }
 
-// The friction between two balls opposes their slip at the end; the upward
-// slip without it, X, and the impulse's effect on it give f = -X / (effect +
-// |slip| / mu), in which |slip| follows in a few turns of the secant method.
+// The friction between two balls opposes their slip at the end. With the upward slip X without it, and the
+// impulse's effect on it, f = -X / (effect + |slip| / mu), where |slip| follows from a few iterations of the
+// secant method.
 double vertical_friction(const Group& g, const Link& link) {
-    // What holds two balls at rest may have any size.
+    // A friction that holds two balls at rest may have any size.
     if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
         return link.friction_z;
     const Vec2 slip = contact_slip(g, link, true);
@@ -86,16 +85,16 @@ double vertical_friction(const Group& g, const Link& link) {
     return std::clamp(f, -most, most);
 }
 
-// [m/s^2] What must be added to the acceleration of a gap along its first normal: with the tangential
-// velocity v and acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) /
-// D as the normal turns, and its rate ends with 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. Where the gap
-// would become negative meanwhile, it opens instead. Overlaps end within the interval.
+// [m/s^2] Correction to the acceleration of a gap along its first normal. With the tangential velocity v and
+// acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal
+// turns, and its rate ends at 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. If the gap would become negative
+// meanwhile, let it open instead. Overlaps end within the interval.
 double turning_of(const Link& link, const Across& t, double h) {
     const double time = std::max(h, kRecoveryTime);
     const double recovery = link.gap < -kOverlapDepth ? 2.0 * link.gap / (time * time) : 0.0;
     if (t.distance == 0.0) return recovery;
     const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
-    // What rounds to no gap would only stop balls at rest from leaning on each other.
+    // A change that rounds to no gap would only stop balls at rest from leaning on each other.
     if (h * h * (c + h * (std::abs(k) + kk * h)) <= kNoGap) return recovery;
     const double taylor = c + h * (1.5 * k + 0.5 * kk * h);
     // The distance along the first normal is somewhat shorter by then.
@@ -113,9 +112,9 @@ double turning_of(const Link& link, const Across& t, double h) {
     return (free ? level : std::min(level, least)) + recovery;
 }
 
-// Takes over from a solution what the next one starts from, but for frictions that are right already: so the
-// impulses that belong to them stay right.
-// @return whether it differs
+// Takes from a solution the starting values of the next one, except frictions that are right already, so that
+// the impulses that belong to them stay right.
+// @return whether anything changed
 bool update(Group& g, double h, const StepOptions& options, int times) {
     const double accuracy = kFrictionAccuracy * static_cast<double>(1 << std::min(times, kLooser)) *
                             g.around.balls.ball_friction()(0.0);
@@ -135,7 +134,7 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         const double wrong = std::abs(f - link.friction_z);
         if (link.J > 0.0 && (wrong <= accuracy || wrong * link.J <= left)) continue;
         changed = changed || link.J > 0.0;
-        // The next contact of the balls already feels it.
+        // The next contact of these balls already uses it.
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
             Body& b = g.bodies[k];
@@ -147,10 +146,9 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
     return changed;
 }
 
-/// Frictions between balls follow from a solution and change the next one. Two changes in turn tell where
-/// that leads to (D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965,
-/// with one step back): balls that hold each other's spin come to it by a few percent of the way in each
-/// step.
+/// Frictions between balls follow from a solution and change the next one. Two successive changes predict the
+/// limit (D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965, with one
+/// step back). Without that, balls that hold each other's spin would approach it by a few percent per step.
 class Extrapolation {
   public:
     void note(const Group& g) {
@@ -158,7 +156,7 @@ class Extrapolation {
         for (const Link& link : g.links) before_.push_back(link.friction_z);
     }
     void forget() { last_.clear(); }
-    /// @param g  with the frictions that follow from those that were noted
+    /// @param g  with the frictions that follow from those passed to note()
     void extrapolate(Group& g) {
         const bool known = !last_.empty();
         now_.clear();
@@ -190,8 +188,8 @@ class Extrapolation {
     std::vector<double> change_;               // of the vertical impulses
 };
 
-/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. That
-/// is piecewise smooth and, but for the friction between balls, monotone.
+/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. The
+/// problem is piecewise smooth and, except for the friction between balls, monotone.
 class Newton {
   public:
     Newton(Group& g, double h, const StepOptions& options)
@@ -208,12 +206,12 @@ class Newton {
         list_contacts();
     }
 
-    /// @return whether there is a solution; with Group::cut, it was looked for no further
+    /// @return whether there is a solution; if Group::cut is set, the search was given up
     bool run() {
         for (int newton = 0;; ++newton) {
             const bool stops = newton >= kStopsFrom && newton % 2 == 1;
             respond(g_, h_, options_.friction, stops);
-            // What a solution takes from the one before: friction between balls, turning of normals.
+            // Values that depend on the last solution: friction between balls, turning of normals.
             frictions_.note(g_);
             const bool changed = update(g_, h_, options_, newton);
             if (changed) {
@@ -234,8 +232,7 @@ class Newton {
     }
 
   private:
-    // Whether a whole step of the same linear problem has
-    // left the rates as wrong as they were: rounding decides.
+    // Whether a whole step of the same linear problem has not improved the rates: rounding decides.
     bool stands_still() const {
         bool same = whole_ && worst_ > kStandsStill * worst_before_ && modes_.size() == g_.bodies.size();
         for (std::size_t b = 0; b < modes_.size(); ++b) same = same && modes_[b] == g_.bodies[b].mode;
@@ -265,15 +262,15 @@ class Newton {
 
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, options_); }
 
-    // [m] How much a gap may be wrong by after the interval, more than a touch that has none may be.
+    // [m] Tolerance of a gap after the interval, beyond that of a touch without a gap.
     double room_of(const Link& link, double rate, double energy) const {
         if (h_ == 0.0) return 0.0;
         if (rate > 0.0) return link.J * rate <= kEnergyUnnoticed * energy ? kOpensUnnoticed : 0.0;
         return link.gap > 0.0 ? kGapUsed * link.gap : std::max(-kOverlapGrowth, link.gap);
     }
 
-    // Notes the rates. Where balls go over from rest to rolling and back, a
-    // share of kRestCompliance is left: harmless where no gap notices it.
+    // Stores the rates. If balls alternate between rest and rolling, a share of kRestCompliance remains,
+    // which is harmless unless a gap notices it.
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
@@ -292,7 +289,7 @@ class Newton {
         return solved;
     }
 
-    // With friction there may be none, and no use in looking for it long.
+    // With friction there may be no solution, so do not search long.
     bool solve(double lifts) {
         linearise(lifts);
         if (problem_.solve(!options_.friction)) return true;
@@ -331,7 +328,7 @@ class Newton {
         problem_.multiply_add(-1.0, before_, problem_.q);
     }
 
-    // What the change dv of a ball's velocity changes in the rates of its contacts, but for number k.
+    // Adds the effect of a change dv of a ball's velocity on the rates of its contacts, except number k.
     void add(std::size_t k, int body, const Vec2& dv) {
         for (std::size_t n = first_[body]; n < first_[body + 1]; ++n) {
             const std::size_t r = of_body_[n];
@@ -341,9 +338,9 @@ class Newton {
         }
     }
 
-    // Without friction between balls the rates are the gradient of a convex
-    // function of the impulses: its least value on the way to the solution of the
-    // linear problem is taken, so that two kinds of motion do not alternate.
+    // Without friction between balls, the rates are the gradient of a convex function of the impulses. A line
+    // search towards the solution of the linear problem takes its minimum, so that two kinds of motion do not
+    // alternate.
     void search() {
         const double first = slope();
         double low = 0.0, at_low = first, high = 1.0;
@@ -382,10 +379,10 @@ class Newton {
     Complementarity& problem_;
     Extrapolation frictions_;
     std::vector<Mode> modes_;                  // at the last linear problem
-    bool whole_ = false;                       // whether its solution was taken
+    bool whole_ = false;                       // whether its solution was taken in full
     double worst_ = 0.0, worst_before_ = 0.0;  // [m/s] largest wrong rate, now and before the last step
     std::vector<double> before_, rates_;       // impulses and rates before the step, as active_
-    // The contacts of each ball, as places in active_, and where those of a ball begin.
+    // The contacts of each ball, as indices into active_, and where those of each ball begin.
     std::vector<std::size_t> of_body_, first_;
 };
 

@@ -1,4 +1,4 @@
-// How the balls of a group answer the impulses of their contacts over an interval (resting_group.h).
+// The response of a group's balls to the impulses of their contacts over an interval (resting_group.h).
 #include <algorithm>
 #include <cmath>
 
@@ -8,10 +8,10 @@ namespace carom::resting {
 
 namespace {
 
-// [of what friction takes] A ball that moves by less hardly moves.
+// [of the change by friction] A ball that is slower hardly moves.
 constexpr double kHardlyMoves = 1e-2;
-// [-] Mobility of a ball at rest in the derivatives only, so that balls at rest share a load; a sliding ball
-// has 1. With less of it a rate that is nearly right asks for impulses that set the balls moving.
+// [-] Mobility of a ball at rest, in the derivatives only, so that balls at rest share a load; a sliding ball
+// has 1. A smaller value would turn a nearly right rate into impulses that set the balls moving.
 constexpr double kRestCompliance = 1e-4;
 
 Matrix identity(double c) {
@@ -20,7 +20,7 @@ Matrix identity(double c) {
 
 // c (1 - d d^T)
 Matrix across_of(double c, const Vec2& d) {
-    // the products first: the same turned
+    // the products first, so that turned directions give the same bits
     return {c * (d.y() * d.y()), -c * (d.x() * d.y()), c * (d.x() * d.x())};
 }
 
@@ -71,7 +71,7 @@ void respond(const Group& g, Body& b, double h, bool stops) {
     }
     const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
     const double speed = length(rolls);
-    // A ball that begins with a slip rolls at the end at most: it is not braked yet.
+    // A ball that slips at the start only rolls at the end: rolling friction does not slow it yet.
     if (slips || drag == 0.0) {
         b.mode = Mode::kRolling;
         b.v_end = rolls;

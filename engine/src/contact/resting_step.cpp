@@ -13,11 +13,11 @@ namespace carom::resting {
 
 namespace {
 
-// [of what drives a group] Where a contact pushes more than that, balls lock each other.
+// [of what drives a group] If a contact pushes more than this, balls lock each other.
 constexpr double kLocked = 10.0;
 // [of the accelerations that drive a group] Larger forces show that a wedge cannot be stabilised.
 constexpr double kLargestStabilised = 1e3;
-// [-] They are a wedge's own where it has them without being stabilised, but for this factor.
+// [-] A wedge's forces are its own if they are as large without stabilisation, up to this factor.
 constexpr double kOwnForce = 2.0;
 // [of the energy] Less work is rounding.
 constexpr double kWorkRounding = 1e-12;
@@ -31,15 +31,15 @@ double drive_of(const Group& g) {
     return drive;
 }
 
-// Whether contacts push more than `times` what drives the group makes over h.
+// Whether contacts push more than `times` the effect over h of what drives the group.
 bool pushes(const Group& g, double h, double times) {
     const double most = times * drive_of(g) * h;
     return std::any_of(g.links.begin(), g.links.end(), [most](const Link& link) { return link.J > most; });
 }
 
-// Whether balls that hardly can move are driven by a friction that is only nearly right: it
-// does work at the end of the interval, where only normals that turn may. Twice the energy
-// of the start, and what the impulses would add at the speeds of the end, per mass.
+// Whether balls that hardly can move are driven by a friction that is only nearly right: it does work at the
+// end of the interval, where only turning normals may. Compares twice the energy of the start with what the
+// impulses would add at the speeds of the end, per mass.
 bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
     double energy = 0.0, power = 0.0;
@@ -52,15 +52,15 @@ bool is_driven(const Group& g, double h) {
 
 bool solve_with(Group& g, double h, const StepOptions& options) {
     if (!options.friction) {
-        // Not from what a step with friction has left: balls between two walls keep any impulse.
+        // Do not start from a step with friction: balls between two walls keep any impulse.
         for (Link& link : g.links) link.friction_z = link.J = 0.0;
     }
     return solve_newton(g, h, options) && !(options.friction && is_driven(g, h));
 }
 
-// Two opposing fixed normals cannot both be stabilised: the forces are then
-// huge and mean nothing. Nor may those be left that a wedge keeps. But a flat
-// wedge also has large ones of its own, which stay about as large without.
+// Two opposing fixed normals cannot both be stabilised: the forces are then huge and mean nothing, and in a
+// wedge they must not remain. But a flat wedge also has large forces of its own, which stay about as large
+// without stabilisation.
 void drop_stabilisation(Group& g, double h, const StepOptions& options) {
     const double most = kLargestStabilised * drive_of(g) * h;
     const auto is_huge = [most](const Link& link) { return link.turning != 0.0 && link.J > most; };
@@ -104,8 +104,7 @@ bool locks(const Group& g, double h) {
 }
 
 bool step(Group& g, double h, StepOptions options) {
-    // An interval of another length is nearly solved already: with
-    // impulses that are as much shorter, but where balls lock each other.
+    // Warm start: scale the last solution by the ratio of the interval lengths, unless balls lock each other.
     const double share = !(g.solved > 0.0) ? 0.0 : locks(g, g.solved) ? 1.0 : h / g.solved;
     for (Link& link : g.links) {
         link.J *= share;
@@ -118,7 +117,7 @@ bool step(Group& g, double h, StepOptions options) {
         b.s_end = b.s + share * (b.s_end - b.s);
     }
     g.solved = 0.0;
-    // Where the last attempt had no solution with friction, one of these is looked for once, not three times.
+    // If the last attempt had no solution with friction, look for one once, not three times.
     const bool again = !std::exchange(g.smooth, false) || !options.friction;
     bool solved = solve_with(g, h, options);
     if (g.cut > 0.0) {
@@ -127,13 +126,13 @@ bool step(Group& g, double h, StepOptions options) {
     }
     options.may_cut = false;
     if (options.stabilise && solved) drop_stabilisation(g, h, options);
-    // Without friction the second try would be the first one again.
+    // Without friction the second try would repeat the first.
     if (options.stabilise && !solved && again && options.friction) solved = solve_with(g, h, options);
     if (solved) {
         g.solved = h;
         return true;
     }
-    // With friction there may be no solution at all (Painleve).
+    // With friction there may be no solution at all (Painlevé's paradox).
     StepOptions less = options;
     less.stabilise = false;
     if (options.stabilise && again && solve_with(g, h, less)) return true;

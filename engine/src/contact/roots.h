@@ -9,8 +9,8 @@ namespace carom {
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// f(t) = c[0] + c[1] t + ... + c[4] t^4 on [0, T], T finite. Returns the first t > 0 at which f reaches 0
-/// from above (f(t) >= 0 at this time up to rounding). If f starts at <= 0 (touching and not closing), a
-/// later maximum with f <= 0, from which f decreases again, counts too. kNever if there is none.
+/// from above (f(t) >= 0 there up to rounding), or kNever. If f starts at <= 0 (touching and not closing), a
+/// later maximum with f <= 0, from which f decreases again, counts too.
 double first_descent(const double (&c)[5], double T);
 
 /// The same for h0 + h1 t + h2 t^2 / 2 (T may be infinite): the root at which it decreases through 0, by the

@@ -1,4 +1,4 @@
-// How a ball approaches what it touches.
+// The motion of a ball relative to what it touches.
 #pragma once
 
 #include "contact/contact.h"
@@ -17,11 +17,12 @@ struct Approach {
 /// The approach of two balls that touch.
 Approach approach_of(const Balls& balls, int one, int two);
 
-/// [m/s^2] Acceleration at which the gap of two balls closes in these motions. Those after an impact tell
-/// what ends a bounce; before it, slow rolling balls are decelerated and seem to separate.
+/// [m/s^2] Acceleration at which the gap between two balls closes during these motions. Pass the motions
+/// after an impact to see whether the bounce ends: before it, slow rolling balls decelerate and seem to
+/// separate.
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two);
 
-/// Coefficient of friction of two balls that touch, at their present slip.
+/// Coefficient of friction of two touching balls, at their present slip.
 double pair_friction(const Plan& plan, const Balls& balls, int one, int two);
 
 }  // namespace carom

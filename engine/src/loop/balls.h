@@ -1,4 +1,4 @@
-// The present motion of every ball. All parts of the loop read it; a motion is changed only through the Log.
+// The present motion of every ball. All parts of the loop read it, but only the Log changes a motion.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace carom {
 
 struct BallsMemory {
     std::vector<Segment> segments_;
-    /// [s] When the fall of a ball into a pocket began, and when its last flight ended.
+    /// [s] When the ball began to fall into a pocket, and when its last flight ended.
     struct Turns {
         double fell, flew;
     };
@@ -39,9 +39,9 @@ class Balls : private Borrowed<BallsMemory> {
         segments_[ball] = segment;
     }
     bool sinks(int ball) const { return segments_[ball].state == MotionState::kFalling; }
-    /// Whether these two meet in space: one of them flies, or has flown since the other
-    /// began to fall into a pocket. From then on they do until one of them is gone, or
-    /// the ball that falls is back on the cloth: in the plane they may overlap.
+    /// Whether these two meet in space rather than in the plane: one of them flies, or has flown since the
+    /// other began to fall into a pocket. That lasts until one of them is gone or the falling ball is back on
+    /// the cloth, because until then they may overlap in the plane.
     bool in_space(int a, int b) const {
         return flies(segments_[a].state) || flies(segments_[b].state) ||
                (sinks(a) && turns_[b].flew >= turns_[a].fell) ||
@@ -57,7 +57,7 @@ class Balls : private Borrowed<BallsMemory> {
     Vec3 velocity(int ball) const { return velocity_at(segments_[ball], now_ - segments_[ball].start); }
     Vec3 spin(int ball) const { return spin_at(segments_[ball], now_ - segments_[ball].start, radius(ball)); }
 
-    /// With the height of a ball that flies or falls.
+    /// Includes the height of a ball that flies or falls.
     Placed placed(int ball) const {
         return placed_at(segments_[ball], now_ - segments_[ball].start, plan_.gravity);
     }

@@ -15,8 +15,8 @@ namespace {
 
 // [-] Most impacts of one contact in one bounce.
 constexpr int kMostImpacts = 200;
-// [-] Cosine of the angle between two normals above which two
-// parts are one: a cushion and the jaw that goes on from it.
+// [-] Two parts count as one if the cosine of the angle between their normals is above this: a cushion and
+// the jaw that continues it.
 constexpr double kOneNormal = 1.0 - 1e-6;
 // [of the energy] What rounding may add to it where two normals are nearly opposite; it is taken off again.
 constexpr double kEnergyRounding = 1e-10;
@@ -39,12 +39,12 @@ double closing(const TableTouch& touch, const Motion& m) {
     return -dot(touch.normal, planar(m.v));
 }
 
-/// Per mass, twice.
+/// Twice the energy, per mass.
 double energy(double R, const Motion& m) {
     return m.v.squaredNorm() + kInertia * R * R * m.w.squaredNorm();
 }
 
-/// All that touches one ball, and the ball.
+/// A ball and all that touches it.
 class Bounce {
   public:
     Bounce(const Plan& plan, const TableTouches& touches)
@@ -56,9 +56,9 @@ class Bounce {
     }
 
   private:
-    // A high nose with a low restitution leaves a ball that still closes (han_2005:
-    // e_c < 1/c^2 - 1), and nothing lies between this impact and the next one: the
-    // bounce is their row, until no closing speed is left that rounding can tell.
+    // After an impact with a high nose and a low restitution, a ball may still approach it (han_2005: e_c <
+    // 1/c^2 - 1). The next impact is at the same instant, so a bounce is a sequence of impacts, until the
+    // closing speed is within rounding.
     bool alone(const TableTouch& touch, Motion& m) const {
         const CushionContact nose = cushion_contact(plan_.balls, size_, touch.height, touch.normal, m.v, m.w);
         const double noise = rounding(size_.R, m);
@@ -66,19 +66,19 @@ class Bounce {
             if (!touch.model->resolve(nose, touch.normal, m.v, m.w)) return false;
             if (!(closing(touch, m) > noise)) return true;
         }
-        // A nose near the top of the ball takes a small share of the speed in each impact: the limit is none.
+        // A nose near the top of the ball takes a small share of the speed in each impact: the limit is 0.
         const Vec2 stopped = planar(m.v) + closing(touch, m) * touch.normal;
         m.v = Vec3(stopped.x(), stopped.y(), m.v.z());
         return true;
     }
 
-    // @return whether two scaled impulses were right; otherwise the motion is as it was
+    // @return whether scaling the two impulses worked; otherwise the motion is unchanged
     bool both(Motion& m) const {
         Motion one = m, two = m;
         const TableTouch &first = touches_[0], &second = touches_[1];
         if (!alone(first, one) || !alone(second, two)) return false;
         const Motion d1{one.v - m.v, one.w - m.w}, d2{two.v - m.v, two.w - m.w};
-        // What each impulse of size 1 changes of either closing speed.
+        // The change of each closing speed by each impulse of size 1.
         const double a11 = -closing(first, d1), a12 = -closing(first, d2);
         const double a21 = -closing(second, d1), a22 = -closing(second, d2);
         const double determinant = a11 * a22 - a12 * a21;
@@ -204,7 +204,7 @@ TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector&
                 std::none_of(touches.begin(), touches.end(), is_one))
                 touches.add(touch);
         });
-    // A tree finds the parts in an order of its own.
+    // A tree finds the parts in another order.
     std::sort(touches.begin() + 1, touches.end(), [](const TableTouch& p, const TableTouch& q) {
         return p.normal.x() < q.normal.x() || (p.normal.x() == q.normal.x() && p.normal.y() < q.normal.y());
     });

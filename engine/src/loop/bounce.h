@@ -1,5 +1,5 @@
-// Impacts of a ball with the table: what touches it, and
-// its motion after it has met all of that at one instant.
+// Impacts of a ball with the table: all that it touches at one instant, and its motion after meeting all of
+// that.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@
 
 namespace carom {
 
-/// A cushion or a nose at a ball.
+/// A cushion or a nose that a ball touches.
 struct TableTouch {
-    Approach approach;     ///< its a_c is that of the motion before the impact
+    Approach approach;     ///< its a_c is that before the impact
     Vec2 normal;           ///< unit, from the part into the table
     double height = 0.0;   ///< [m] of the nose above the cloth
-    double curving = 0.0;  ///< [m/s^2] opening acceleration of a ball that moves round the nose
+    double curving = 0.0;  ///< [m/s^2] separating acceleration of a ball that moves around the nose
     const CushionModelInfo* model = nullptr;
 
-    /// [m/s^2] Closing acceleration of a ball that is accelerated by `pull`.
+    /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.
     double pressing(const Vec2& pull) const {
         return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
     }
 };
 
-/// What a ball touches at one instant.
+/// All that a ball touches at one instant.
 class TableTouches {
   public:
     explicit TableTouches(const TableTouch& first) : count_(1) { list_[0] = first; }
-    /// Beyond the room for four the touch is left out: it is met next, at the same instant.
+    /// Holds at most four. A further touch is left out: the ball meets it next, at the same instant.
     void add(const TableTouch& touch) {
         if (count_ < list_.size()) list_[count_++] = touch;
     }
@@ -50,19 +50,20 @@ class TableTouches {
     std::size_t count_;
 };
 
-/// The touch of this contact with a cushion or nose, in the present state of its ball.
+/// A contact with a cushion or nose, in the present state of its ball.
 TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& contact);
 
-/// The touch of this contact and all others that its ball meets at the same instant: they touch within
-/// kTouchTolerance, close by more than rounding and do not rest. Parts that join smoothly are one.
+/// This contact and all others of its ball at the same instant: those that touch within kTouchTolerance,
+/// close by more than rounding and are not resting contacts. Parts that join smoothly count as one.
 TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector& detector,
                            const RestingContacts& resting, const Contact& contact);
 
 /// Replaces velocity and spin of a ball by those after it has met all touches at once. One touch: its model.
-/// Two: the sum of their impulses, each from the incoming state, scaled so that the ball leaves either with
-/// the speed with which it would leave that one alone. Where this would add energy, and for more than two:
-/// the mean of the states after each, until none closes (docs/reference/physics.md, "Cushion impact").
-/// @return false where a model has no solution
+/// Two touches: the sum of their impulses, each computed from the incoming state, scaled so that the ball
+/// leaves each part at the speed at which it would leave that part alone. If that would add energy, or with
+/// more than two touches: the mean of the states after each, repeated until none closes
+/// (docs/design/hard_cases.md, "Two contacts at one instant").
+/// @return false if a model has no solution
 bool bounce(const Plan& plan, const TableTouches& touches, Vec3& v, Vec3& w);
 
 }  // namespace carom

@@ -10,8 +10,8 @@ namespace {
 
 // [1/m] Box2D enlarges its boxes by 0.1 units; with a unit of one centimetre that is 1 mm.
 constexpr double kUnitsPerMetre = 100.0;
-// [units] Far beyond every table; sums and products of a
-// few such numbers do not overflow in single precision.
+// [units] Far beyond any table, and small enough that sums and products of a few do not overflow in single
+// precision.
 constexpr double kFarthest = 1e15;
 // [-] Margin of the conversion to float, whose relative error is at most 2^-24.
 constexpr double kOutward = 0x1p-23;
@@ -28,9 +28,9 @@ float up(double x) {
     return static_cast<float>(y + kOutward * std::abs(y));
 }
 
-// [-] Share of its circumference by which a block's box is widened in the tree.
+// [-] Margin of a block's box in the tree, as a share of its circumference.
 constexpr float kBlockMargin = 0.05f;
-// [-] Searches per box until the blocks are formed again: sorting costs about 100 ns per box.
+// [-] Searches per box before the blocks are rebuilt: sorting costs about 100 ns per box.
 constexpr long kSearchesPerBox = 4;
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of boxes that are not placed
@@ -87,7 +87,7 @@ void BoxSearch::remove(int index) {
     set(slot(index), {kNowhere, kNowhere, -kNowhere, -kNowhere});
 }
 
-// Passes the present box of a block to the tree, with a margin for motion.
+// Gives the tree the present box of a block, with a margin for motion.
 void BoxSearch::update_block(std::size_t block) {
     Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
     for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
@@ -105,8 +105,7 @@ void BoxSearch::update_block(std::size_t block) {
     tree_->MoveProxy(proxy_[block], aabb, b2Vec2(0.0f, 0.0f));
 }
 
-// Forms blocks of neighbours: strips with equal numbers
-// of boxes, sorted by x, and sorted by y within a strip.
+// Forms blocks of neighbours: strips with equal numbers of boxes, sorted by x, and within a strip by y.
 void BoxSearch::rebuild() {
     const std::size_t count = slot_.size(), blocks = proxy_.size();
     for (std::size_t i = 0; i < count; ++i) sorted_[i] = at(static_cast<std::size_t>(slot_[i]));
@@ -116,8 +115,8 @@ void BoxSearch::rebuild() {
             return p < q || (p == q && i < j);
         };
     };
-    // The sum of a removed box is infinity - infinity. Any
-    // order is correct for it, but NaN must not be compared.
+    // The sum of a removed box is infinity - infinity. Any order will do for it, but NaN must not be
+    // compared.
     const auto finite = [](float sum) { return sum == sum ? sum : 0.0f; };
     const auto middle_x = [finite](const Rounded& r) { return finite(r.low_x + r.high_x); };
     const auto middle_y = [finite](const Rounded& r) { return finite(r.low_y + r.high_y); };
@@ -136,7 +135,7 @@ void BoxSearch::rebuild() {
     for (std::size_t b = 0; b < blocks; ++b) {
         if (proxy_[b] < 0) {
             const b2AABB nothing{b2Vec2(0.0f, 0.0f), b2Vec2(0.0f, 0.0f)};
-            // The user pointer of the tree stores the number of the block; it is never dereferenced.
+            // The user pointer of the tree stores the number of the block, and is never dereferenced.
             void* block = reinterpret_cast<void*>(b);  // NOLINT(performance-no-int-to-ptr): see above
             proxy_[b] = tree_->CreateProxy(nothing, block);
         }

@@ -1,7 +1,7 @@
 // Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude
-// pairs, and the remaining pairs are decided in double precision. The search is either one loop over all
-// boxes, sixteen at a time, or Box2D's dynamic tree, whose leaves are blocks of 64 neighbouring boxes,
-// followed by that loop inside the blocks. Both find the same set.
+// pairs, and the other pairs are decided in double precision. The search is either a loop over all boxes,
+// sixteen at a time, or Box2D's dynamic tree with blocks of 64 neighbouring boxes as leaves, and the loop
+// inside each block. Both find the same set.
 #pragma once
 
 #include <box2d/b2_dynamic_tree.h>
@@ -27,7 +27,7 @@ struct Box {
     double low_x, low_y, high_x, high_y;
 };
 
-/// A box in the form in which boxes are compared.
+/// A box, rounded for comparisons.
 struct RoundedBox {
     float low_x, low_y, high_x, high_y;
 };
@@ -35,15 +35,14 @@ struct RoundedBox {
 class BoxSearch {
   public:
     static RoundedBox outward(const Box& box);
-    /// Boxes are not found until they are placed.
+    /// A box is not found before it is placed.
     void set_up(int count, Search kind);
 
     void place(int index, const Box& box) { place(index, outward(box)); }
     void place(int index, const RoundedBox& box);
     void remove(int index);
-    /// Call between placing and searching: from time to time
-    /// it forms the blocks again from the present neighbours.
-    void settle() {
+    /// Call between placing and searching: it sometimes rebuilds the blocks from the present neighbours.
+    void rebuild_if_due() {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }
 
@@ -57,7 +56,7 @@ class BoxSearch {
     void overlapping(const RoundedBox& box, Found found) const {
         search(box, found);
     }
-    /// The same for a placed box, which is not found itself.
+    /// The same for a placed box, which does not find itself.
     template <class Found>
     void neighbours(int index, Found found) const {
         search(at(slot(index)), [index, &found](int other) {
@@ -66,7 +65,7 @@ class BoxSearch {
     }
 
   private:
-    static constexpr std::size_t kRow = 16;    // [-] boxes that are compared at once
+    static constexpr std::size_t kRow = 16;    // [-] boxes compared at once
     static constexpr std::size_t kBlock = 64;  // [-] boxes per block
     using Rounded = RoundedBox;
     using Bounds = std::array<float, kRow>;
@@ -101,7 +100,7 @@ class BoxSearch {
         bool QueryCallback(int proxy);  // the name that Box2D requires
     };
 
-    // The boxes by slot, padded with some that overlap nothing.
+    // The boxes by slot, padded with boxes that overlap nothing.
     std::vector<Row> rows_;
     // With the tree: the slot of each box, the box in each slot, and the proxy of each block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
@@ -135,8 +134,8 @@ void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Fou
             found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
 }
 
-// A bit for every box of the row that overlaps this one. All are compared
-// before the first bit is looked at: how many overlap cannot be predicted.
+// A bit for every box of the row that overlaps this one. Compares all without a branch, because the number of
+// overlaps cannot be predicted.
 inline unsigned BoxSearch::overlaps(const Row& row, const Rounded& box) {
 #if defined(__SSE2__)
     const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);

@@ -10,13 +10,13 @@ namespace carom {
 
 namespace {
 
-// [reach] Contacts of balls nearer than this turn as the balls do.
+// [reach] Contacts between balls nearer than this follow the motion of the balls: their normals turn.
 constexpr double kNearShare = 0.5;
-// [approach] What closes more slowly after a cluster is rounding.
+// [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
 constexpr double kClosesStill = 1e-12;
 
-/// Gap [m] of two balls, the speed [m/s] at which it closes,
-/// and the unit vector from the first to the second.
+/// Gap [m] between two balls, the speed [m/s] at which it closes, and the unit vector from the first to the
+/// second.
 struct Gap {
     double gap, closing;
     Vec3 n;
@@ -43,7 +43,7 @@ Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q) {
     return {distance - (p.R + q.R), n.x() * closing.x() + n.y() * closing.y(), n};
 }
 
-// Falls smoothly from 1 for near balls to 0 for those that are just not within reach.
+// Falls smoothly from 1 for near balls to 0 at the edge of reach.
 double nearness(double gap, double reach) {
     const double part = reach > 0.0 ? gap / reach : 0.0;
     if (!(part > kNearShare)) return 1.0;
@@ -61,7 +61,7 @@ Clusters::Clusters(const Plan& plan, const Balls& balls, const Detector& detecto
       balls_(balls),
       detector_(detector) {}
 
-// Whether one of two balls falls into a pocket and has no contact with the other in the plane.
+// Whether one of two balls falls into a pocket and cannot touch the other in the plane.
 bool Clusters::passes(int a, int b) const {
     return flights_ && (balls_.sinks(a) || balls_.sinks(b)) && balls_.in_space(a, b);
 }
@@ -77,9 +77,9 @@ ClusterBall Clusters::member(int ball) const {
 }
 
 // Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5),
-// then all contacts between them. The fastest approach among the near ones sets the scale of the map: a pair
-// may touch very slowly while its neighbours are about to collide at full speed. It counts by its nearness,
-// so that nothing jumps where a fast ball comes within reach.
+// then all contacts between them. The fastest approach among near balls sets the scale of the solution: a
+// pair may touch very slowly while its neighbours are about to collide at full speed. Each approach is
+// weighted by nearness, so that the result does not jump when a fast ball comes within reach.
 double Clusters::collect(int a, int b, double v_n) {
     for (;;) {
         collect_at(a, b, v_n);
@@ -95,8 +95,8 @@ double Clusters::collect(int a, int b, double v_n) {
     return v_n;
 }
 
-// Every ball within `gap` of this ball has a box that overlaps the result: the
-// box of a ball contains its present position, and the margin covers rounding.
+// The box of every ball within `gap` of this ball overlaps the result: a ball's box contains its present
+// position, and the margin covers rounding.
 Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     const double x = ball.r.x(), y = ball.r.y();
     const double half =
@@ -132,7 +132,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
         const ClusterBall here = members_[k];
         const double speed = here.v.z() == 0.0 ? length(planar(here.v)) : length3(here.v);
         const double most = time * (speed + detector_.fastest() + v_n);
-        // The order is arbitrary: the members of the cluster do not depend on it, and they are sorted below.
+        // The order is arbitrary: the set of members does not depend on it, and they are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
@@ -162,7 +162,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
                                      nearness(near.gap, reach(near))});
         }
     }
-    // Sort by position; insertion sort preserves the order of equal elements and needs no memory.
+    // Sort by position. Insertion sort keeps the order of equal elements and allocates no memory.
     const auto place = [this](const ClusterContact& c) {
         return Vec2(planar(members_[c.i].r) + planar(members_[c.j].r));
     };
@@ -175,14 +175,14 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// A contact whose balls have no other one is an impact of two balls, and its normal stays as it was at the
-// touch, as in the pair kernel. So that nothing jumps where the last other ball gets out of reach, its normal
-// turns by the nearness of the nearest other contact of its balls, and by its own.
+// A contact whose balls have no other contact is an impact of two balls: its normal stays as it was at the
+// start, as in the pair kernel. So that the result does not jump when the last other ball moves out of reach,
+// a normal turns in proportion to the nearness of the nearest other contact of its balls, and to its own.
 void Clusters::share_turning() {
     nearest_.assign(members_.size(), {});
     for (const ClusterContact& c : contacts_) {
         for (const int ball : {c.i, c.j}) {
-            std::array<double, 2>& two = nearest_[ball];  // the largest and the next
+            std::array<double, 2>& two = nearest_[ball];  // the largest and the second largest
             two[1] = std::max(two[1], std::min(two[0], c.turn));
             two[0] = std::max(two[0], c.turn);
         }
@@ -195,10 +195,11 @@ void Clusters::share_turning() {
     }
 }
 
-// The balls of the map move, and those of the loop stay. A glancing contact with a fast slip opens in the map
-// as its normal turns, with hardly any force, while the balls pass each other; where they stay they close on,
-// and the same cluster would come again, ten thousand times. So what touches has to open where the balls are:
-// the map goes on with normals that stay, which is how two balls without others meet.
+// The solution moves the balls, but the loop leaves them in place. In the solution, a glancing contact with a
+// fast slip opens almost without force, because its normal turns while the balls pass each other. In the
+// loop's positions they still approach, and the same cluster would recur ten thousand times. So every
+// touching contact must open in the loop's positions: solve again with fixed normals, as in an impact of two
+// balls.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
         return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
@@ -207,12 +208,11 @@ bool Clusters::closes_still(double v_n) const {
 
 long Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
-    const double e_b = plan_.ball_ball->reads_friction ? p.e_b : 1.0;
     ClusterSettings settings{
         .R = unlike_ ? p.R : balls_.radius(members_.front().ball),
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
-        .e_b = e_b,
+        .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
         .epsilon = kClusterEpsilon,
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,

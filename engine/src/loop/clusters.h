@@ -1,5 +1,5 @@
-// Ball-ball impacts with a third ball within reach: finds
-// the members of such a cluster and their motion after it.
+// Ball-ball impacts with a third ball within reach: finds the members of such a cluster, and their motion
+// after it.
 #pragma once
 
 #include <array>
@@ -26,21 +26,20 @@ class Clusters : private Borrowed<ClustersMemory> {
 
     /// Finds the cluster of two balls that meet at v_n [m/s]. @return the fastest approach in it [m/s]
     double collect(int a, int b, double v_n);
-    /// Result of the last collect(); without a third ball, two balls and no contacts.
+    /// The result of the last collect(). Without a third ball: two balls and no contacts.
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
-    /// Whether the last collect() found a ball that flies, or
-    /// one that may leave the cloth by the model of the impact.
+    /// Whether a ball found by the last collect() flies, or may leave the cloth in this model of the impact.
     bool in_space() const { return in_space_; }
 
     /// Replaces the velocities and spins of balls() by those after the impact.
     /// @param v_n   [m/s] the fastest approach
     /// @param friction  whether there is friction between the balls
-    /// @return number of steps of the map
+    /// @return number of integration steps
     long resolve(double v_n, bool friction);
 
-    /// Number of balls that collect() has examined besides the two of the impact; used by tests.
+    /// Number of balls that collect() has examined besides the first two; used by tests.
     std::int64_t looks() const { return looks_; }
 
   private:

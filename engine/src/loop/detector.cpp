@@ -7,14 +7,14 @@ namespace carom {
 
 namespace {
 
-// Order of simultaneous events. The end of a cushion counts as the cushion.
+// Order of simultaneous events. The round end of a cushion counts as the cushion.
 int rank(With with) {
     return static_cast<int>(with == With::kNose ? With::kCushion : with);
 }
 
 }  // namespace
 
-// Allocates all memory of the search that earlier runs did not need.
+// Allocates all memory that the search needs and earlier runs did not.
 Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
                    DetectorMemory& memory)
     : Borrowed(memory),
@@ -33,8 +33,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
     set_up_table();
 }
 
-// Measure of the closing speed of a contact at its time: of
-// simultaneous contacts, the one with the greatest is first.
+// Measures the closing speed of a contact at its time: of simultaneous contacts, the fastest comes first.
 double Detector::closing(const Candidate& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
@@ -83,7 +82,7 @@ bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
     return place_x.y() < place_y.y();
 }
 
-// To be called whenever a candidate of the ball or the end of its box has changed.
+// Call whenever a candidate of the ball or the expiry of its box has changed.
 void Detector::requeue(int ball) {
     const Mover& mover = mover_[ball];
     queue_.set(ball,
@@ -106,8 +105,8 @@ bool Detector::must_search_again(int ball) const {
     return c.stamp != mover_[partner].stamp;
 }
 
-// Re-detection: contacts are searched again for balls whose box has expired or whose partner has changed its
-// motion. Of the events at one instant the first is chosen here, from the present motions.
+// Searches again for the contacts of balls whose box has expired or whose partner has changed its motion.
+// Then chooses among simultaneous events, using the present motions.
 Candidate Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
@@ -128,7 +127,7 @@ Candidate Detector::next() {
     }
 }
 
-// Updates the data of one ball after an event that changed its motion: its transition, table contact and box.
+// Updates the data of a ball whose motion an event has changed: its transition, table contact and box.
 void Detector::renew(int ball) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);

@@ -1,7 +1,7 @@
 // Finds the next contact or state transition. Every ball has three candidates: its state transition, its
-// first contact with the table and its first contact with another ball. Boxes exclude what a ball cannot
+// first contact with the table and its first contact with another ball. Boxes exclude all that a ball cannot
 // reach before its own next event (broad phase), closed forms give the times of the other contacts
-// (contact/detect.h), and a queue of the least times orders all balls. Implemented in detector.cpp (the
+// (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in detector.cpp (the
 // order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
 
@@ -23,25 +23,25 @@
 
 namespace carom {
 
-/// An event that will happen unless an earlier event prevents it.
+/// An event that will happen unless an earlier one prevents it.
 struct Candidate {
     double time = kNever;
     Contact contact;          ///< With::kNothing: the state transition of the ball
     std::uint32_t stamp = 0;  ///< for a pair: Mover::stamp of the partner when this was found
 };
 
-/// The data of a ball besides its segment: two cache lines.
+/// The data of a ball besides its segment, in two cache lines.
 struct alignas(64) Mover {
-    double until = kNever;    ///< the box is valid until this time; contacts after it have not been searched
+    double until = kNever;    ///< the box is valid until this time; later contacts have not been searched
     double own = kNever;      ///< time of the ball's transition
     double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
     std::uint32_t stamp = 0;  ///< incremented with every new segment
-    std::uint32_t round = 0;  ///< last search in which the ball was new
-    /// First contact with another ball. It stays until it is the next candidate, even if the motion of the
-    /// partner has changed: it is then not later than the true first contact.
+    std::uint32_t round = 0;  ///< last search in which this ball's motion was new
+    /// First contact with another ball. It is kept until it is the next candidate, even if the partner's
+    /// motion has changed; then it is no later than the true first contact.
     Candidate pair;
     Candidate table;  ///< first contact with the table
-    /// Time at which the box expires; kNever if an event of the ball itself is earlier
+    /// When the box expires; kNever if an event of the ball itself comes first
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
     bool straight = false;
@@ -50,11 +50,11 @@ struct alignas(64) Mover {
 struct DetectorMemory {
     std::vector<Mover> mover_;
     std::vector<int> tied_;  // balls whose next event is at the same instant
-    EventQueue queue_;       // of the balls: the time of the first candidate or of the expiry of the box
-    BoxSearch ball_boxes_,
-        table_boxes_;             // of balls until their own next event, and of the parts of the table
+    EventQueue queue_;       // of the balls: the time of the first candidate, or of the expiry of the box
+    // boxes of balls until their own next event, and boxes of the parts of the table
+    BoxSearch ball_boxes_, table_boxes_;
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
-    Geometry table_;              // those of parts_ and table_boxes_
+    Geometry table_;              // the table of parts_ and table_boxes_
     std::optional<Search> table_search_;
     std::vector<int> near_;  // parts that a ball can reach
 };
@@ -65,8 +65,8 @@ class Detector : private Borrowed<DetectorMemory> {
     Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
              DetectorMemory& memory);
 
-    /// Searches the contacts of the balls whose motion has
-    /// changed, and clears the list. At first it needs all balls.
+    /// Searches the contacts of the balls whose motion has changed, and clears the list. The first call must
+    /// list all balls.
     void update(std::vector<int>& touched);
     /// The next candidate; its time is kNever if there is none.
     Candidate next();
@@ -76,12 +76,13 @@ class Detector : private Borrowed<DetectorMemory> {
     void balls_near(const Box& box, Found found) const {
         ball_boxes_.overlapping(box, found);
     }
-    /// Calls found(contact) for every part of the table whose box overlaps this box; the contact has no ball.
+    /// Calls found(contact) for every part of the table whose box overlaps this box; the contacts have no
+    /// ball.
     template <class Found>
     void parts_near(const Box& box, Found found) const {
         table_boxes_.overlapping(box, [&](int part) { found(parts_[part]); });
     }
-    /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", which needs it).
+    /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", the only user).
     double fastest() const { return fastest_; }
 
   private:
@@ -135,8 +136,8 @@ class Detector : private Borrowed<DetectorMemory> {
     double fastest_ = 0.0;
 };
 
-// Motion of a ball from the time `from` on. Contacts are searched from the start of the segments concerned,
-// not from the present time: the result then depends only on the segments, not on when it is computed.
+// Motion of a ball from the time `from`. Contacts are searched from the start of the segments, not from the
+// present time, so that the result depends only on the segments.
 inline Path Detector::path(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const Mover& mover = mover_[ball];

@@ -1,6 +1,6 @@
-// Finds the players whose next event is first: the least of their times. Groups of sixteen times are compared
-// without a branch, since none could be predicted; the least of a group is one of the times of the next
-// level, as long as a level has more than one group. All memory is allocated by set_up().
+// Finds the players with the earliest next event. Groups of sixteen times are compared without branches,
+// which could not be predicted. The earliest time of each group is an entry in the next level, until a level
+// has only one group. set_up() allocates all memory.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace carom {
 
 class EventQueue {
   public:
-    /// Starts with `count` players, none of whom has an event.
+    /// Starts with `count` players without events.
     void set_up(int count) {
         std::size_t levels = 0;
         auto size = static_cast<std::size_t>(count);
@@ -30,7 +30,7 @@ class EventQueue {
         level_.resize(levels);
     }
 
-    /// Sets the time of the next event of player i; infinite: there is none.
+    /// Sets the time of the next event of player i; infinite if there is none.
     void set(int i, double time) {
         auto place = static_cast<std::size_t>(i);
         for (std::size_t level = 0;; ++level) {
@@ -51,15 +51,15 @@ class EventQueue {
     /// The time of the first event; infinite if there is none.
     double first() const { return least(level_.back()[0]); }
 
-    /// Calls found(player) for all players whose time is the
-    /// given one, the first(), in the order of the players.
+    /// Calls found(player) for every player with this time, which must be first(), in the order of the
+    /// players.
     template <class Found>
     void all_at(double first, Found found) const {
         descend(level_.size() - 1, 0, first, found);
     }
 
   private:
-    static constexpr std::size_t kGroup = 16;  // [-] times that are compared at once
+    static constexpr std::size_t kGroup = 16;  // [-] times compared at once
     struct alignas(64) Group {
         Group() { time.fill(std::numeric_limits<double>::infinity()); }
         std::array<double, kGroup> time;
@@ -80,7 +80,7 @@ class EventQueue {
 #endif
     }
 
-    /// A bit for every time of the group that is this one.
+    /// A bit for every time of the group that equals this one.
     static unsigned equal(const Group& group, double time) {
         unsigned mask = 0;
 #if defined(__SSE2__)

@@ -9,7 +9,7 @@
 
 namespace carom {
 
-// The motion of a ball from the time `from` on, with its height.
+// The motion of a ball from the time `from`, with its height.
 Flight Detector::flight(int ball, double from) const {
     const Segment& s = balls_.segment(ball);
     const double tau = from - s.start;
@@ -21,7 +21,7 @@ Flight Detector::flight(int ball, double from) const {
                 (length3(placed.velocity) + mover_[ball].surface)};
 }
 
-// [s] Time from `from` on until two balls meet, one of which flies, or falls into a pocket.
+// [s] Time from `from` until two balls meet, at least one of which flies or falls into a pocket.
 double Detector::time_to_flight(int a, int b, double from) const {
     const Flight one = flight(a, from), two = flight(b, from);
     const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),
@@ -29,7 +29,7 @@ double Detector::time_to_flight(int a, int b, double from) const {
     return flight_to_ball(relative, balls_.radius(a) + balls_.radius(b));
 }
 
-// [s] Time until a ball that flies over a pocket leaves its circle where there is no cloth.
+// [s] Time until a ball that flies over a pocket leaves its circle on the side without cloth.
 double Detector::time_over_pocket(int index, const Path& path, double R) const {
     const Pocket& pocket = plan_.geometry.pockets[index];
     const double enters = time_to_pocket(path, pocket.center, pocket.radius);
@@ -40,24 +40,35 @@ double Detector::time_over_pocket(int index, const Path& path, double R) const {
     return back || leaves > path.horizon ? kNever : leaves;
 }
 
+namespace {
+
+// [s] Time until the centre is over the disc of a jaw. The search for its nose ends by flight_over_disc(),
+// which also sees a graze that time_to_circle() passes by, and a centre that is over it already.
+double time_over_jaw(const Path& path, const Vec2& center, double radius) {
+    const double over = time_to_circle(path, center, radius);
+    return over < kNever ? over : flight_over_disc(path.r - center, path.v, radius, path.horizon);
+}
+
+}  // namespace
+
 bool Detector::over_pocket(const Vec2& here) const {
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     return std::any_of(pockets.begin(), pockets.end(),
                        [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
 }
 
-// It meets noses at their height, flies over them and is then out (where the table has an end), and meets a
-// pocket only at its far side. Where it lands is its own transition.
+// A flying ball meets noses at their height. Once over them it is out, and it meets a pocket only at its far
+// side. Landing is its own transition. Cloth may lie behind a cushion's line, if the table has a bed; there
+// is none inside a jaw.
 void Detector::search_table_in_air(int ball) {
     Candidate& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);
     const Flight f = flight(ball, start);
     const Path p = path(ball, start);
     const Table& table = plan_.scene.table;
-    const bool ends = !table.bed && table.width > 0.0 && table.length > 0.0;
     const Contact out{ball, With::kOut, -1};
     const auto leaves = [&](double t) {
-        if (ends && t < kNever) take_first({start + t, out}, first);
+        if (t < kNever) take_first({start + t, out}, first);
     };
     if (table.bed) {
         const double t = flight_beyond(*table.bed, p.r, p.v);
@@ -70,13 +81,12 @@ void Detector::search_table_in_air(int ball) {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
             t = flight_to_line(f, {c.from.x(), c.from.y(), c.height}, c.direction, c.length,
                                nose_reach(R, c.height, c.inset));
-            leaves(flight_over_line(f, c.from, c.direction, c.length));
+            if (!table.bed) leaves(flight_over_line(f, c.from, c.direction, c.length));
         } else if (contact.with == With::kNose) {
             const Nose& n = plan_.geometry.noses[contact.other];
             t = flight_to_circle(f, {n.center.x(), n.center.y(), n.height}, n.radius,
                                  nose_reach(R, n.height, n.inset));
-            const double over = n.radius > 0.0 ? time_to_circle(p, n.center, n.radius) : kNever;
-            if (over < kNever && (ends || table.bed)) take_first({start + over, out}, first);
+            if (n.radius > 0.0) leaves(time_over_jaw(p, n.center, n.radius));
         } else {
             t = time_over_pocket(contact.other, p, R);
         }

@@ -17,10 +17,10 @@ namespace carom {
 
 namespace {
 
-// [-] Initial capacity for segments and events: enough for a break. It doubles when it is exceeded.
+// [-] Initial capacity for segments and events: enough for a break. It doubles when full.
 constexpr std::size_t kRoom = 256;
-// [sqrt(2 R/g)] A ball in the air that has not left its place for so long balances: what stands off its
-// support by a rounding slides off within half of it. 5 s of a pool ball.
+// [sqrt(2 R/g)] A ball in the air that has stayed in place for this long balances. If it were off balance
+// only by rounding, it would slide off in half this time. That is 5 s for a pool ball.
 constexpr double kLongestBalance = 65.0;
 
 }  // namespace
@@ -73,7 +73,7 @@ void Log::watch(int ball) {
     if (stays_.empty()) return;
     const Segment& s = balls_.segment(ball);
     Stay& stay = stays_[ball];
-    // It would have to rise by more than the lowest bounce to leave.
+    // To leave, it would have to rise higher than the lowest bounce.
     const double gravity = balls_.motion(ball).gravity, end = bounce_end(balls_.radius(ball), gravity);
     const bool stays =
         flies(s.state) && length3(s.v) < end && 2.0 * gravity * length3(s.r - stay.place) < end * end;
@@ -108,8 +108,8 @@ void Log::end_set_up(double set_up_ns) {
     *costs_ = {};
 }
 
-// An iteration can cause several events: the first one gets
-// the cost. If it causes none, the next event gets it.
+// An iteration can cause several events: the first one gets the cost. If it causes none, its cost goes to the
+// next event.
 void Log::book_costs() {
     event_costs_.resize(events_.size());
     EventCost& cost = costs_->event;
@@ -123,9 +123,9 @@ void Log::book_costs() {
     }
 }
 
-void Log::tell_progress() {
-    if (++rounds_untold_ < options_.progress_rounds && !long_round_) return;
-    rounds_untold_ = 0;
+void Log::report_progress() {
+    if (++rounds_unreported_ < options_.progress_rounds && !long_round_) return;
+    rounds_unreported_ = 0;
     long_round_ = false;
     options_.progress(events_.size(), balls_.now());
 }
@@ -161,7 +161,7 @@ void Log::fail(const std::string& why) {
     throw SimulationError(text, std::make_shared<const Record>(record(StopReason::kEvents)));
 }
 
-// All of the record that no event and no segment of this run says.
+// The parts of the record that precede this run or do not depend on it.
 Record Log::record_so_far() const {
     if (so_far_ != nullptr) {
         Record record = *so_far_;
@@ -174,7 +174,7 @@ Record Log::record_so_far() const {
     return record;
 }
 
-// The record of a run that begins, in the memory that it has.
+// An empty record for this run, in the memory that the record has.
 void Log::begin_record(Record& record) const {
     const Scene& scene = plan_.scene;
     record.clear();
@@ -215,7 +215,7 @@ void Log::finish_record(StopReason why, Record& record) {
     }
     for (const Event& e : events_)
         if (e.type == EventType::kBallPocket) record.tracks[e.a].pocket = e.b;
-    record.events.swap(events_);  // each has memory for the next run
+    record.events.swap(events_);  // both keep memory for the next run
     record.costs = std::move(event_costs_);
     record.setup_detect_ns = setup_detect_ns_;
     record.duration = balls_.now();

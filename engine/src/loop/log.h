@@ -1,4 +1,4 @@
-// The record of the simulation so far, and the reports of progress and errors.
+// The record so far, and the reports of progress and errors.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,7 @@
 
 namespace carom {
 
-/// What a run is for: a record, which has every segment,
-/// an outcome, or an outcome with the hash of the record.
+/// What a run produces: a record with every segment, an outcome, or an outcome with the hash of the record.
 enum class Keep : std::uint8_t { kRecord, kOutcome, kHash };
 
 struct LogMemory {
@@ -26,13 +25,13 @@ struct LogMemory {
         Segment segment;
         int ball;
     };
-    std::vector<Event> events_;  // of a resumed run from its beginning
+    std::vector<Event> events_;  // for a resumed run, from its beginning
     // Segments and clusters of this run in chronological order.
     std::vector<BallSegment> segments_;
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
-    /// Of a ball in the air: where it has been, but for trembling, and since when [s].
+    /// Of a ball in the air: where it has stayed, apart from trembling, and since when [s].
     struct Stay {
         double since;
         Vec3 place;
@@ -41,20 +40,17 @@ struct LogMemory {
     std::vector<Segment> of_struck_;  // by outcome()
 };
 
-/// The ball that the cue strikes, or else the first one that moves at the start; or -1.
-int struck_ball(const Scene& scene);
-
 class Log : private Borrowed<LogMemory> {
-    /// [-] Most consecutive iterations without an event; more are reported as a stalled simulation.
+    /// [-] Most consecutive iterations without an event; with more, the simulation is stalled.
     static constexpr int kQuietCap = 1000000;
 
   public:
     Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep);
 
-    /// Continues after this record; the balls get the last motions in it.
+    /// Continues after this record: the balls get its last motions.
     void resume(const Record& so_far);
 
-    /// Starts a new motion of the ball at the present time.
+    /// Starts a new motion of the ball now.
     void begin(int ball, const Segment& segment) {
         balls_.set(ball, segment);
         if (keep_ != Keep::kOutcome || ball == struck_) segments_.push_back({segment, ball});
@@ -64,8 +60,8 @@ class Log : private Borrowed<LogMemory> {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;
     }
-    /// The ball has begun a motion after an impact, and may fly. @throws SimulationError
-    /// if it trembles in the air on what is under it, and would for ever
+    /// Call when a ball that may fly has begun a motion after an impact. @throws SimulationError if it
+    /// trembles forever in the air on whatever is under it
     void watch(int ball);
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
@@ -75,7 +71,7 @@ class Log : private Borrowed<LogMemory> {
     }
     /// A simultaneous impact of several balls, begun by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls);
-    /// The ball is in the pocket, now.
+    /// The ball drops into the pocket now.
     void fall(int ball, int pocket);
 
     const std::vector<Event>& events() const { return events_; }
@@ -91,23 +87,23 @@ class Log : private Borrowed<LogMemory> {
         events_before_ = events_.size();
         ++quiet_rounds_;
     }
-    /// Books the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many
+    /// Records the costs and calls SimulateOptions::progress. @throws SimulationError if there are too many
     /// events in a short time, or too many iterations without an event
     void end_round() {
         if (is_crowded() || quiet_rounds_ > kQuietCap) fail_crowded();
         if (costs_) book_costs();
-        if (options_.progress) tell_progress();
+        if (options_.progress) report_progress();
     }
-    /// Marks the present iteration as long, so that progress is reported at its end.
+    /// Marks this iteration as long, so that it ends with a report of progress.
     void note_long_round() { long_round_ = true; }
 
-    /// @throws SimulationError with the state of all balls that move, and the record if one is kept. The log
-    /// is empty afterwards.
+    /// @throws SimulationError with the state of all moving balls, and the record if one is kept. The log is
+    /// empty afterwards.
     [[noreturn]] void fail(const std::string& why);
 
     /// The record; the log is empty afterwards.
     Record record(StopReason why);
-    /// The same of a run from the beginning, in the memory that the record has.
+    /// The same for a run from the beginning, in the memory of `record`.
     void record(StopReason why, Record& record);
     void outcome(StopReason why, Outcome& outcome);
 
@@ -125,7 +121,7 @@ class Log : private Borrowed<LogMemory> {
     }
     [[noreturn]] void fail_crowded();
     void book_costs();
-    void tell_progress();
+    void report_progress();
 
     const Plan& plan_;
     const SimulateOptions& options_;
@@ -139,8 +135,8 @@ class Log : private Borrowed<LogMemory> {
     double setup_detect_ns_ = 0.0;
     std::size_t events_before_ = 0;  // number of events before this iteration
     int quiet_rounds_ = 0;           // consecutive iterations without an event
-    int rounds_untold_ = 0;          // iterations since the last call of options_.progress
-    bool long_round_ = false;        // whether one of these was long (note_long_round())
+    int rounds_unreported_ = 0;      // iterations since the last call of options_.progress
+    bool long_round_ = false;        // whether one of these called note_long_round()
 };
 
 }  // namespace carom

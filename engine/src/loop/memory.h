@@ -5,8 +5,8 @@
 
 namespace carom {
 
-/// Takes over memory as long as it lives and then puts it back, so that the next
-/// one finds it. What derives from it has the lists of `Memory` as its own.
+/// Takes memory over for its lifetime and then returns it, for the next run to use. A derived class has the
+/// members of `Memory` as its own.
 template <class Memory>
 class Borrowed : protected Memory {
   public:

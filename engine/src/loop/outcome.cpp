@@ -1,4 +1,4 @@
-// What a log comes to where nobody wants the record.
+// The outcome of a run without a record.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-/// The ball of a cluster that is nearest to one of its members; -1 if that one is no member.
+/// The member of a cluster that is nearest to this ball; -1 if the ball is not in the cluster.
 int nearest(std::span<const ClusterBall> cluster, int ball) {
     const auto self =
         std::find_if(cluster.begin(), cluster.end(), [ball](const ClusterBall& b) { return b.ball == ball; });
@@ -42,7 +42,7 @@ int struck_ball(const Scene& scene) {
     return -1;
 }
 
-/// Whether the struck ball was driven to the cushion or the jaw that it meets in this event.
+/// Whether the struck ball was driven to the cushion or jaw that it meets in this event.
 bool Log::is_driven(const Event& event) {
     if (of_struck_.empty())
         for (const BallSegment& s : segments_)

@@ -33,8 +33,7 @@ void extend(double r, double v, double a, double T, double margin, double& low, 
 
 }  // namespace
 
-// Box that contains the ball from the time `from` until
-// `duration` later; the relative margin covers rounding.
+// Box that contains the ball from `from` to `from` + `duration`; the relative margin covers rounding.
 Box Detector::swept(int ball, double from, double duration) const {
     const Segment& s = balls_.segment(ball);
     const bool whole = from == s.start;
@@ -48,9 +47,8 @@ Box Detector::swept(int ball, double from, double duration) const {
     return box;
 }
 
-// Places the box of a ball, valid from the time `from` until its state
-// transition, its contact with the table, or until the ball may have moved by
-// Mover::travel. `whole`: the box of its whole segment, if that is known.
+// Places the box of a ball. It is valid from `from` until the ball's state transition, its contact with the
+// table, or until it may have moved by Mover::travel. `whole`: the box of its whole segment, if known.
 void Detector::bound(int ball, double from, const RoundedBox* whole) {
     Mover& mover = mover_[ball];
     const Segment& s = balls_.segment(ball);
@@ -70,16 +68,16 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
         ball_boxes_.place(ball, swept(ball, from, mover.until - from));
 }
 
-// First contact of two balls. It may be omitted if it is later than `latest`
-// or than the next own event of one of them, after which its contacts are
-// searched again. `mine` is the path of ball a from the start of its segment.
+// First contact of two balls. May return none if it is later than `latest`, or than the next own event of one
+// of them, after which its contacts are searched again. `mine` is the path of ball a from the start of its
+// segment.
 Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
     const bool in_air = flights_ && balls_.in_space(a, b);
     const double from = std::max(s.start, q.start);
     const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);
-    // Most pairs end here. The parabolas are those of the paths but for rounding, far below the margin of the
-    // rejection, and the sum of the radii is at least the distance at which balls touch.
+    // Most pairs end here. The parabolas equal the paths up to rounding far below the margin of this test,
+    // and the sum of the radii is at least the distance at which the balls touch.
     const double mine_for = from - s.start, other_for = from - q.start;
     const Vec2 r = (planar(q.r) + other_for * (planar(q.v) + 0.5 * other_for * q.a)) -
                    (planar(s.r) + mine_for * (planar(s.v) + 0.5 * mine_for * s.a));
@@ -99,12 +97,12 @@ void Detector::offer(int ball, int partner, Candidate c) {
     requeue(ball);
 }
 
-// Finds the contacts of one ball with others and offers each to both balls.
+// Finds the contacts of one ball with others, and offers each to both balls.
 void Detector::search_pairs(int ball) {
-    ball_boxes_.settle();
+    ball_boxes_.rebuild_if_due();
     const Path mine = path(ball, balls_.segment(ball).start);
     ball_boxes_.neighbours(ball, [this, ball, &mine](int other) {
-        // The pair of two changed balls has already been searched for the one with the smaller index.
+        // If both balls have changed, the one with the smaller index has already searched this pair.
         if (mover_[other].round == round_ && other < ball) return;
         if (resting_.has({ball, With::kBall, other})) return;
         const double latest = std::max(mover_[ball].pair.time, mover_[other].pair.time);
@@ -115,8 +113,8 @@ void Detector::search_pairs(int ball) {
     });
 }
 
-// Updates the upper bound of all speeds, which the search for clusters needs. Within a segment the speed is
-// largest at one of its ends. The bound only increases; no result depends on its value.
+// Updates the upper bound of all speeds, for the search for clusters. The speed in a segment is largest at
+// one of its ends. The bound only increases, and no result depends on its value.
 void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, length(planar(s.v)));
     if (flights_ && flies(s.state))
@@ -125,7 +123,7 @@ void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);
 }
 
-// Re-detection without an event: the box of the ball has expired, or its expected contact does not happen.
+// Searches again without an event: the ball's box has expired, or its expected contact does not happen.
 void Detector::search_again(int ball) {
     const Stopwatch watch(search_ns_);
     Mover& mover = mover_[ball];
@@ -134,8 +132,7 @@ void Detector::search_again(int ball) {
     const bool expired = refresh <= queue_.time(ball);
     mover.pair = {};
     if (expired) {
-        // The distance doubles each time, so that the number
-        // of searches for a ball without contacts is finite.
+        // The distance doubles each time, so that a ball without contacts needs finitely many searches.
         mover.travel *= 2.0;
         bound(ball, refresh);
     }

@@ -15,14 +15,14 @@ namespace carom {
 
 namespace {
 
-// [-] An impact with at least this many steps takes long (about 20 us): progress is reported after it.
+// [-] An impact with at least this many steps is slow (about 20 us): report progress after it.
 constexpr int kLongImpact = 1000;
 
 kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
 }
 
-/// [m^2/s^2] Per mass.
+/// [m^2/s^2] Twice the energy, per mass.
 double energy_twice(double R, const Velocities& ball) {
     return ball.v.squaredNorm() + 0.4 * R * R * ball.w.squaredNorm();
 }
@@ -68,7 +68,7 @@ void Resolver::resolve(const Contact& contact) {
     }
 }
 
-// The motion of a ball after an impact. One that falls goes on falling.
+// The motion of a ball after an impact. A falling ball continues to fall.
 Segment Resolver::after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
     const Segment& before = balls_.segment(ball);
     const MotionParams& motion = balls_.motion(ball);
@@ -89,7 +89,8 @@ void Resolver::ball_ball(int a, int b) {
         free_balls(a, b);
         return;
     }
-    // Ball 1 is the one with the smaller x, then y: the result does not depend on the ids, to the last bit.
+    // Ball 1 is the one with the smaller x, then y, so that the result does not depend on the ids, to the
+    // last bit.
     const Vec3 ra = balls_.position(a), rb = balls_.position(b);
     const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
     const int one = swap ? b : a, two = swap ? a : b;
@@ -99,7 +100,7 @@ void Resolver::ball_ball(int a, int b) {
     if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
 
-    // In the plane, whatever height the fall of one of them began at.
+    // In the plane, at whatever height one of them began to fall.
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
     const double up = plan_.sizes[two].R - plan_.sizes[one].R;
     const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
@@ -123,7 +124,7 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
         .mu_s1 = mu_s,
         .mu_s2 = mu_s,
         .mu_b = plan_.in_force(Effect::kThrow) ? pair_friction(plan_, balls_, one, two) : 0.0,
-        .e_b = model.reads_restitution ? p.e_b : 1.0,
+        .e_b = plan_.e_b(),
         .cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
                           ? kernel::ClothSlip::kAsPublished
                           : kernel::ClothSlip::kConsistent};
@@ -156,8 +157,8 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
     return result;
 }
 
-// A slow cluster may contain another contact that is pressed together, besides the one that met first. As a
-// resting contact it drives that one too; after a common bounce they would meet again and again.
+// A slow cluster may contain another contact that is pressed together, besides the first one. As a resting
+// contact it drives that one too; after a common bounce the two would meet again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
     const auto segment = [this](const ClusterBall& b) {
         return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
@@ -175,16 +176,15 @@ bool Resolver::hold_in_cluster(Pressed when) {
 // @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the
 // pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
-    const double e_b = plan_.ball_ball->reads_restitution ? plan_.balls.e_b : 1.0;
-    const bool parts_slowly = e_b * v_n < parting_speed(balls_.radius(a), plan_.gravity);
+    const bool parts_slowly = plan_.e_b() * v_n < parting_speed(balls_.radius(a), plan_.gravity);
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
     const bool in_space = clusters_.in_space();
-    // Slow contacts of balls in the air part pair by pair, however fast
-    // others are: the cloth would press them together again and again.
+    // Slow contacts of balls in the air separate pair by pair, however fast other contacts are: the cloth
+    // would press them together again and again.
     if (in_space && parts_slowly) return false;
-    // Whether the balls close so slowly that friction alone
-    // could end the rebound within the Hertz contact time.
+    // Whether the balls approach so slowly that friction alone could end the rebound within the Hertz contact
+    // time.
     const bool slow = !in_space && holds(v_n, 2.0 * plan_.motion.front().slide, plan_.balls.e_b);
     if (slow && hold_in_cluster(Pressed::kBefore)) return true;
     log_.note_long_round();
@@ -235,16 +235,16 @@ void Resolver::cushion(const Contact& contact) {
     const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], came) : 0.0;
     if (!bounce(plan_, touches, v, w))
         log_.fail(
-            fmt::format("the cushion model {} found no solution for the impact of ball {}; use another one",
+            fmt::format("the cushion model {} found no solution for the impact of ball {}; use another model",
                         model, log_.id(ball)));
     const MotionParams& motion = balls_.motion(ball);
-    // A model in the plane may keep more of the speed than the law in space that throws the ball up:
-    // the hop takes what has been lost.
+    // A planar model may keep more speed than the law in space that throws the ball up: the hop gets at most
+    // the energy that was lost.
     const double lost = energy_twice(motion.R, came) - energy_twice(motion.R, {v, w});
     v.z() = std::min(up, std::sqrt(std::max(0.0, lost)));
     const Segment after = after_impact(ball, r, v, w);
-    // A ball that rolls in slowly is decelerated before the impact, but the spin that it keeps drives it back
-    // to the cushion and ends the bounce: the acceleration after the impact decides.
+    // A ball that rolls in slowly decelerates before the impact, but the spin that it keeps drives it back to
+    // the cushion and ends the bounce. So the acceleration after the impact decides.
     for (TableTouch& touch : touches) {
         touch.approach.a_c = touch.pressing(after.a);
         held |= holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_begin(touch.approach, e_c);
@@ -283,8 +283,8 @@ void Resolver::pocket(const Contact& contact) {
     log_.event(EventType::kBallEdge, contact);
 }
 
-// Whether another ball is where a ball would come out of
-// a pocket: that one passed above it while it had sunk.
+// Whether another ball is in the place where a ball would leave a pocket: it passed over while the ball was
+// sunk.
 bool Resolver::is_barred(int ball, const Vec3& place) const {
     const double R = balls_.radius(ball), reach = R * (1.0 + kBoxShare);
     bool barred = false;
@@ -297,7 +297,7 @@ bool Resolver::is_barred(int ball, const Vec3& place) const {
     return barred;
 }
 
-// A falling ball comes to the edge from inside.
+// A falling ball reaches the edge from inside.
 void Resolver::leave_pocket(const Contact& contact) {
     const int ball = contact.ball;
     const Pocket& pocket = plan_.geometry.pockets[contact.other];
@@ -306,15 +306,14 @@ void Resolver::leave_pocket(const Contact& contact) {
     const Vec3 r = balls_.position(ball), v = balls_.velocity(ball);
     const Vec2 out = planar(r) - pocket.center, n = out / length(out);
     const double v_n = dot(n, planar(v)), falls = fall_speed(s, balls_.now() - s.start, motion.gravity);
-    // The height at which the fall began is that of a ball
-    // on the cloth, unless another ball has hit it since.
+    // The fall began at the height of a ball on the cloth, unless another ball has hit this one since.
     const double sunk = falls * falls / (2.0 * motion.gravity * motion.R) - (r.z() - motion.R) / motion.R;
     const auto away = climbs(v_n, std::max(0.0, sunk), motion.R, motion.gravity);
     if (!away || !is_bed(plan_.scene.table, pocket, planar(r), motion.R)) {
         log_.fall(ball, contact.other);
         return;
     }
-    // Beyond the edge by a few roundings of the coordinates: inside, it would fall again at once.
+    // Beyond the edge by a few roundings of the coordinates; inside, it would fall again at once.
     const double rounding =
         0x1p-50 * (pocket.radius + std::abs(pocket.center.x()) + std::abs(pocket.center.y()));
     const Vec2 edge = pocket.center + (pocket.radius + rounding) * n;

@@ -1,4 +1,4 @@
-// Computes the effect of a candidate on the balls: impacts and state transitions.
+// The effect of a candidate on the balls: impacts and state transitions.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ class Resolver {
     Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContacts& resting,
              const Detector& detector, ClustersMemory& memory);
 
-    /// The ball moves on as the cue leaves it.
+    /// Starts the motion after the cue's stroke.
     void strike(int ball, const Velocities& struck) { go_on(ball, balls_.segment(ball).r, struck); }
     /// Resolves the event at Balls::now(). @throws SimulationError if a model finds no solution
     void resolve(const Contact& contact);
@@ -27,7 +27,7 @@ class Resolver {
   private:
     void ball_ball(int a, int b);
     bool cluster(int a, int b, double v_n);
-    /// Whether the accelerations before or after the impact decide if balls are pressed together.
+    /// Whether the accelerations before or after the impact decide that balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
     kernel::ImpactResult collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2);

@@ -11,18 +11,19 @@ namespace carom {
 
 namespace {
 
-// [R] A ball that has flown over a pocket and is not higher
-// than this at its far side falls into it. pooltool's value.
+// [R] A ball that has flown over a pocket falls into it if it is no higher than this at the far side.
+// pooltool's value.
 constexpr double kCatchHeight = 1.4;
 
 }  // namespace
 
-/// Whether two balls meet as free ones: in space, and in the model that takes them so.
+/// Whether two balls meet as free bodies: in space, or because the model treats them so.
 bool Resolver::is_free(int a, int b) const {
     return plan_.ball_ball->free || balls_.in_space(a, b);
 }
 
-/// Begins the motion of a ball after an impact. One that lies on the cloth and is pressed down hits it now.
+/// Begins the motion of a ball after an impact. A ball that lies on the cloth and is pressed down hits the
+/// cloth now.
 void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
     const MotionParams& motion = balls_.motion(ball);
     const bool lies = !(r.z() > motion.R);
@@ -34,7 +35,7 @@ void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
     log_.watch(ball);
 }
 
-/// A ball that falls into a pocket has been hit in space.
+/// Continues the fall of a ball into a pocket after a hit in space.
 void Resolver::fall_on(int ball, const Vec3& r, const Velocities& after) {
     const MotionParams& motion = balls_.motion(ball);
     const double falls = -after.v.z(), fallen = falls * falls / (2.0 * motion.gravity);
@@ -43,7 +44,7 @@ void Resolver::fall_on(int ball, const Vec3& r, const Velocities& after) {
 }
 
 void Resolver::free_balls(int a, int b) {
-    // Ball 1 is the one further left, then nearer, then lower.
+    // Ball 1 has the smaller x, then y, then z.
     const Placed pa = balls_.placed(a), pb = balls_.placed(b);
     const auto before = [](const Vec3& p, const Vec3& q) {
         if (p.x() != q.x()) return p.x() < q.x();
@@ -67,7 +68,7 @@ void Resolver::free_balls(int a, int b) {
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
-    if (!plan_.ball_ball->reads_restitution) pair.balls.e_b = 1.0;
+    pair.balls.e_b = plan_.e_b();
     if (!plan_.ball_ball->reads_friction || !plan_.in_force(Effect::kThrow))
         pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
@@ -130,7 +131,7 @@ void Resolver::cushion_in_air(const Contact& contact) {
     go_on(ball, at.position, after);
 }
 
-/// [m/s] How fast a cushion throws a ball up that lay on the cloth.
+/// [m/s] The speed at which a cushion throws up a ball that lay on the cloth.
 double Resolver::hop(const TableTouch& touch, const Velocities& before) const {
     const int ball = touch.approach.contact.ball;
     const MotionParams& motion = balls_.motion(ball);

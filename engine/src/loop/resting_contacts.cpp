@@ -13,10 +13,10 @@ namespace carom {
 
 namespace {
 
-// [s] A contact that bounces again and again within this time
-// chatters: a twentieth of the duration of one contact of two balls.
+// [s] A contact that bounces repeatedly within this time chatters. It is a twentieth of the duration of one
+// contact of two balls.
 constexpr double kChatterSpan = 1e-5;
-// [-] So many bounces are as many as take all but this share of a speed,
+// [-] Treat a contact as resting after the number of bounces that would leave this fraction of the speed,
 // within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
 constexpr double kSpeedLeft = 1e-3;
 constexpr int kFewestBounces = 20, kMostBounces = 200;
@@ -29,7 +29,7 @@ constexpr std::size_t kBouncesKept = 1024;
 // time, and a cluster that begins with this contact: it resolves all bounces of its
 // balls at once. No row of impacts has one, and even a second cluster is rare.
 constexpr int kManyAtOnce = 20;
-// [balls] Room for those of one impact; a larger cluster takes more.
+// [balls] Initial capacity for the balls of one impact; a larger cluster allocates more.
 constexpr std::size_t kMostStruck = 32;
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
@@ -62,7 +62,7 @@ bool lies(MotionState state) {
     return !flies(state) && !is_gone(state) && state != MotionState::kFalling;
 }
 
-// By products: a logarithm has other bits with another library.
+// Uses products, because logarithms differ between libraries in the last bits.
 int most_bounces(double restitution) {
     int bounces = 0;
     for (double left = restitution; left >= kSpeedLeft && bounces < kMostBounces; left *= restitution)
@@ -111,14 +111,13 @@ bool RestingContacts::find(const Contact& contact) const {
 }
 
 // A contact becomes a resting contact if
-//  - the rebound would be shorter than the Hertz contact time (holds()): as it is pressed together or, where
-//  a ball is in a resting
-//    contact already, as friction alone could press it. The bounces within a group lose a share of their
-//    speed each and come ten times for every power of ten down to rounding; their limit is the resting
-//    contact, which the group's solution then keeps or opens. Or if
-//  - it has chattered (Zeno behaviour, as in a wedge with a plastic side, or where an impact goes back and
-//    forth through balls that rest on each other between two rails): the limit of such a sequence is the
-//    resting contact. Elastic bounces count only if the closing speed has in fact fallen.
+//   - the rebound would be shorter than the Hertz contact time (holds()). The acceleration is that of the
+//     contact or, if a ball is already in a resting contact, that which friction alone could cause. Bounces
+//     within a group lose a share of their speed each, so that it takes ten times as many for every power of
+//     ten down to rounding; their limit is the resting contact, which the group's solution keeps or opens.
+//   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or if an impact goes back and
+//     forth through balls that rest on each other between two rails. The limit is again the resting contact.
+//     Elastic bounces count only if the closing speed has in fact fallen.
 bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
@@ -146,7 +145,7 @@ bool RestingContacts::in_contact(int ball) const {
 }
 
 void RestingContacts::start(int ball) {
-    // A contact of a ball that fell has not begun.
+    // The contact of a ball that fell into a pocket did not begin.
     if (in_contact(ball)) solve(ball, Transitions::kNotYet);
 }
 
@@ -188,7 +187,7 @@ void RestingContacts::release(int ball) {
     contacts_.erase(kept, contacts_.end());
     sort_by_place(ended);
     for (const RestingContact& c : ended) end(c);
-    // From here on the ball has a free segment; the caller replaces it.
+    // From here the ball has a free segment, which the caller replaces.
     log_.begin(ball, free_segment(ball));
     for (const RestingContact& c : ended) {
         const int partner = c.contact.ball == ball ? c.contact.partner() : c.contact.ball;
@@ -202,7 +201,7 @@ const RestingContacts::Struck* RestingContacts::find_struck(int ball) const {
     return it != struck_.end() ? &*it : nullptr;
 }
 
-// Whether a contact goes on after an impact of its balls.
+// Whether a contact continues after an impact of its balls.
 bool RestingContacts::goes_on(RestingContact& c) const {
     const int i = c.contact.ball, j = c.contact.partner();
     const Struck *const si = find_struck(i), *const sj = j >= 0 ? find_struck(j) : nullptr;
@@ -240,7 +239,7 @@ void RestingContacts::go_on() {
     for (const Struck& s : struck_) log_.begin(s.ball, s.segment);
     struck_.clear();
     for (const int ball : unsolved) {
-        // The group of another one may have solved it meanwhile.
+        // The group of another ball may already have solved this one.
         const bool is_new = std::find(touched.begin() + before, touched.end(), ball) != touched.end();
         if (is_new && balls_.segment(ball).held) continue;
         if (in_contact(ball))
@@ -258,8 +257,8 @@ bool RestingContacts::has_come_to_transition(const Segment& s) const {
     return s.held && s.ends && s.start + s.duration <= balls_.now();
 }
 
-// The balls that are connected to the ball by resting contacts,
-// in their present states. Removes their contacts from the list.
+// The balls connected to this ball by resting contacts, in their present states. Removes their contacts from
+// the list.
 RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     std::vector<int> members{ball};
     const auto is_member = [&](int b) {
@@ -297,7 +296,7 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     return group;
 }
 
-// Solves the group of the ball again from the present time on.
+// Solves the group of the ball again from now.
 void RestingContacts::solve(int ball, Transitions transitions) {
     log_.note_long_round();
     RestingGroup group = group_of(ball, transitions);
@@ -321,8 +320,8 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     }
 }
 
-// Logs the transitions that really happened: a ball that the group drives on
-// at once has not stopped, and a ball that continues to slide has no event.
+// Logs the transitions that really happened: a ball that the group drives on at once has not stopped, and a
+// ball that keeps sliding has no event.
 void RestingContacts::log_transitions(const RestingGroup& group) {
     for (const RestingBall& member : group.balls) {
         const Segment& s = balls_.segment(member.ball);
@@ -333,8 +332,8 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
     }
 }
 
-// A ball that moves over the end of its cushion leaves it when
-// the remaining time is below the resolution of the clock.
+// A ball that moves past the end of its cushion leaves it once the remaining time is below the resolution of
+// the clock.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
                if (c.contact.with != With::kCushion) return false;
@@ -349,8 +348,7 @@ bool RestingContacts::release_past_ends(RestingGroup& group) {
            }) > 0;
 }
 
-// Sorts contacts by their positions on the table, which depends
-// neither on ids nor on the order in which they began.
+// Sorts contacts by position on the table, which does not depend on ids or on the order in which they began.
 void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const {
     const auto place_of = [this](const RestingContact& c) {
         return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);

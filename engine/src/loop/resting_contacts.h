@@ -1,4 +1,4 @@
-// Resting contacts: when a contact becomes one, how its balls move, and when it ends.
+// Resting contacts: when they begin, how their balls move, and when they end.
 #pragma once
 
 #include <cstdint>
@@ -49,22 +49,23 @@ class RestingContacts : private Borrowed<RestingMemory> {
         start(approach.contact.ball);
         return true;
     }
-    /// try_hold() in two parts, for contacts of one ball that begin together: the ball waits for start().
+    /// try_hold() in two parts, for contacts of one ball that begin together: call start() after the last
+    /// one.
     bool try_begin(const Approach& approach, double restitution);
     void start(int ball);
     /// Ends all resting contacts of a ball before another event
     /// changes its motion; its partners continue without it.
     void release(int ball);
-    /// Notes the motion of a ball after an impact; go_on() begins those that were noted
-    /// together. Of the resting contacts of these balls those go on that now close or open
-    /// so slowly that friction alone could press or close them (holds()); the others end.
+    /// Stores the motion of a ball after an impact; go_on() begins all stored motions together. A resting
+    /// contact of these balls continues if it closes or opens so slowly that friction alone could press or
+    /// close it (holds()); otherwise it ends.
     void strike(int ball, const Segment& after) { struck_.push_back({ball, after}); }
     void go_on();
     /// Ends an interval of the ball's group: applies the state transitions, then starts the next interval.
     void advance(int ball);
 
   private:
-    /// Whether state transitions that are due at the end of an interval are applied first.
+    /// Whether to apply first the state transitions that are due at the end of an interval.
     enum class Transitions : std::uint8_t { kNotYet, kDue };
 
     bool find(const Contact& contact) const;

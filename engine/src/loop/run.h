@@ -21,14 +21,14 @@ struct RunBuffers::Memory {
 
 class Run {
   public:
-    /// @param keep  what becomes of the run: what the log has to keep
+    /// @param keep  what the log must keep, which depends on the result wanted
     Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory,
         Keep keep = Keep::kRecord);
 
     /// @param so_far  the record to continue from, or nullptr
     Record simulate(const Record* so_far);
     void simulate(Outcome& outcome);
-    /// Both, with the record in the memory that it has.
+    /// Both, with the record in the memory that it already has.
     void simulate(Outcome& outcome, Record& record);
 
     const Clusters& clusters() const { return resolver_.clusters(); }
@@ -37,13 +37,14 @@ class Run {
     StopReason run(const Record* so_far);
     void start_balls();
     void check_digits(int ball, double time);
-    /// Whether as many events came as may. @throws SimulationError where nobody asked to stop there
+    /// Whether the run has reached its number of events. @throws SimulationError if [stop] did not ask for
+    /// that
     bool is_full();
     StopReason stop(double next);
 
     const Plan& plan_;
     double stop_;        // [s] end of the simulated time
-    std::int64_t most_;  // events of which none follows
+    std::int64_t most_;  // number of events after which the run ends
     Balls balls_;
     Log log_;
     RestingContacts resting_;

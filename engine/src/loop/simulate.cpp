@@ -1,5 +1,4 @@
-// The event loop: find the next event -> advance -> resolve
-// -> search the contacts of the balls whose motion changed.
+// The event loop: find the next event -> advance -> resolve -> search the contacts of the balls that changed.
 #include "carom/engine/simulate.h"
 
 #include <fmt/format.h>
@@ -18,9 +17,9 @@ namespace carom {
 
 namespace {
 
-// [R] A run ends when the digits of its clock leave more than this open in the place of a ball.
+// [R] A run fails if the resolution of its clock leaves a ball's position uncertain by more than this.
 constexpr double kLostShare = 1e-3;
-// [s] Before this the clock has digits enough for any speed that a scene may have, and nothing is looked at.
+// [s] Before this the clock is fine enough for any speed that a scene allows, and is not checked.
 constexpr double kDigitsAreMany = 1e3;
 
 }  // namespace
@@ -82,8 +81,8 @@ StopReason Run::run(const Record* so_far) {
     return StopReason::kEvents;
 }
 
-// Without friction a slow ball can be under way for longer than
-// the clock has digits for: it would pass through what it meets.
+// Without friction a slow ball can move for so long that the clock's resolution no longer suffices: it would
+// pass through what it meets.
 void Run::check_digits(int ball, double time) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);
@@ -91,8 +90,8 @@ void Run::check_digits(int ball, double time) {
     if (!(time > end)) return;
     balls_.advance_to(end);
     log_.fail(fmt::format(
-        "after so long the place of ball {} is only known to {:.2g} m, and it has yet to meet something; "
-        "end the run before with [stop] time, or let friction do it",
+        "after such a long time the position of ball {} is only known to {:.2g} m, too coarse for its next "
+        "contact; end the run earlier with [stop] time, or add friction",
         log_.id(ball), kLostShare * R));
 }
 
@@ -117,11 +116,13 @@ void Run::start_balls() {
 bool Run::is_full() {
     if (static_cast<std::int64_t>(log_.events().size()) < most_) return false;
     if (plan_.scene.stop.events == most_) return true;
-    log_.fail(plan_.scene.stop.events ? "no run may have more events"
-                                      : "add [stop] with events if more shall come, or with time");
+    log_.fail(
+        plan_.scene.stop.events
+            ? "a run cannot have more events"
+            : "too many events; allow more with [stop] events, or end the run earlier with [stop] time");
 }
 
-// Called if the next event is later than the end of the simulated time, or if there is none.
+// Called if the next event is after the end of the simulated time, or if there is none.
 StopReason Run::stop(double next) {
     bool moves = false;
     for (int i = 0; i < balls_.count(); ++i) {

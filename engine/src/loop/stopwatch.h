@@ -7,14 +7,13 @@
 
 namespace carom {
 
-/// Times since the last event; iterations without an event are added to the next one.
+/// Costs since the last event; those of iterations without an event count towards the next one.
 struct Costs {
     EventCost event;         ///< queue_ns is computed at the end
     double search_ns = 0.0;  ///< part of event.detect_ns: the search for contacts
 };
 
-/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (a
-/// run that is not profiled), it does not read the clock.
+/// Adds its lifetime [ns] to `sum`. If `sum` is nullptr (no profile), it does not read the clock.
 class Stopwatch {
   public:
     explicit Stopwatch(double* sum) : sum_(sum) {

@@ -16,7 +16,7 @@ bool is_inside(const Segment& s, const Pocket& pocket) {
     return length(Vec2(s.r.x(), s.r.y()) - pocket.center) < pocket.radius;
 }
 
-/// Whether the parts are in the same places.
+/// Whether all parts are in the same positions.
 bool same_places(const Geometry& a, const Geometry& b) {
     const auto same = [](const auto& x, const auto& y, auto equal) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
@@ -34,7 +34,7 @@ bool same_places(const Geometry& a, const Geometry& b) {
 
 }  // namespace
 
-// A batch plays most of its shots on one table: its boxes stay.
+// A batch plays most of its shots on one table, so its boxes are kept.
 void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
     if (table_search_ == plan_.table_search && same_places(g, table_)) return;
@@ -60,7 +60,7 @@ void Detector::set_up_table() {
         add(With::kNose, i, around(g.noses[i].center, g.noses[i].radius));
     for (std::size_t i = 0; i < g.pockets.size(); ++i)
         add(With::kPocket, i, around(g.pockets[i].center, g.pockets[i].radius));
-    table_boxes_.settle();
+    table_boxes_.rebuild_if_due();
 }
 
 // Finds the parts of the table that a ball can reach inside a box, in the order of parts_.
@@ -98,8 +98,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         if (t < s.duration) first = {s.start + t, {ball, With::kPocket, under}};
     }
     for (const int part : near_) {
-        // Contacts after the first one found so far are not
-        // needed: it limits the window of the quick rejection.
+        // Contacts after the first one found so far are not needed: it limits the window of the quick
+        // rejection.
         const Contact contact = parts_[part].of(ball);
         if (falls && contact.with == With::kPocket) continue;
         const double t = time_to(contact, p, std::min(p.horizon, span(s.start, first.time)));
@@ -107,8 +107,7 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     }
 }
 
-// [s] Time until the contact; kNever if the ball stays away
-// for the whole window, or is already in this contact.
+// [s] Time until the contact; kNever if the ball stays away for the whole window, or is already in it.
 double Detector::time_to(const Contact& contact, const Path& p, double window) const {
     const double R = balls_.radius(contact.ball);
     switch (contact.with) {

@@ -10,10 +10,10 @@ namespace carom {
 
 namespace {
 
-// [R] Height of the lowest bounce: by so much a ball at rest sinks into the cloth.
+// [R] Height of the lowest bounce: a ball at rest sinks into the cloth by this much.
 constexpr double kBounceApex = 0.0045;
-// [bounce_end] Speed at which a slow contact parts: it happens about
-// 1000 times a second, and raises the energy by at most 1.3e-5 J/kg.
+// [bounce_end] Speed at which a slow contact separates. Such contacts occur about 1000 times a second, and
+// raise the energy by at most 1.3e-5 J/kg.
 constexpr double kPartingShare = 0.1;
 
 }  // namespace
@@ -86,8 +86,7 @@ void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, do
     const double v_n = dot3(ball1.v - ball2.v, n);
     const double level = n.x() * n.x() + n.y() * n.y();
     const double k1 = (lies1 ? level : 1.0) / pair.size1.m, k2 = (lies2 ? level : 1.0) / pair.size2.m;
-    // Two balls that both lie on the cloth one above the other
-    // do not exist, nor does a parting without a way out.
+    // Two balls cannot both lie on the cloth one above the other, nor separate if neither can move.
     if (!(k1 + k2 > 0.0)) return;
     exchange(pair, (v_n + parting) / (k1 + k2) * n, ball1, ball2);
     if (lies1) ball1.v.z() = 0.0;

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t kCacheLine = 64;  // [bytes]
 
-// [L/V] The map goes on while a listed pair would touch within this time.
+// [L/V] The integration continues while a listed pair would touch within this time.
 constexpr double kClusterLookAhead = 2.0;
-// [-] Largest exponent of the unloading law; restitutions below 0.05 are taken as 0.05 inside a cluster.
+// [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
 constexpr long kRigidSweeps = 100000;
@@ -26,8 +26,8 @@ constexpr long kRigidSweeps = 100000;
 
 double fifth_root(double x) {
     if (x == 0.0) return 0.0;
-    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then Newton on y^5 = f with a fixed
-    // number of steps.
+    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then apply a fixed number of Newton
+    // steps to y^5 = f.
     int exponent = static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7FF) - 1023;
     if (exponent == -1023) return fifth_root(x * 0x1p500) * 0x1p-100;  // subnormal
     int q = exponent / 5, left = exponent % 5;
@@ -46,7 +46,7 @@ double fifth_root(double x) {
 }
 
 double contact_length(double V) {
-    // V^4 would underflow, and a contact has a length wherever it has a speed. The scale changes no bit.
+    // V^4 would underflow, but a contact has a length at any speed. The scale changes no bit.
     if (V < 0x1p-200 && V > 0.0) return contact_length(V * 0x1p250) * 0x1p-200;
     const double x = V * V / kContactStiffness;
     return fifth_root(x * x);
@@ -59,7 +59,7 @@ double contact_time(double V) {
 namespace {
 
 // The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force
-// stays a push.
+// remains a push.
 int law_exponent(double e_b) {
     int p = 1;
     while (p < kLargestLawExponent && e_b * e_b < 2.5 / (2.5 + p)) p *= 2;
@@ -72,9 +72,8 @@ kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more, s.mu_b_fall * V};
 }
 
-// The integration reads and writes four numbers at once. From the start of
-// a cache line on, none of these lies across two: where the heap happened
-// to put them elsewhere, the contact phase of a break took a fifth longer.
+// The integration reads and writes four numbers at once. Aligned to a cache line, none of these groups
+// crosses two lines; at other addresses, the contact phase of a break took a fifth longer.
 double* on_cache_line(std::vector<double>& numbers) {
     void* first = numbers.data();
     std::size_t space = numbers.size() * sizeof(double);
@@ -125,8 +124,8 @@ double ClusterMap::energy(int axes) const {
     return e;
 }
 
-// Step error can raise the energy where e = 1 and mu = 0: scale the velocities about their mean so that it
-// does not. Momentum and the signs of relative velocities are kept.
+// Step error can raise the energy if e = 1 and mu = 0: scale the velocities about their mean so that it does
+// not. That keeps the momentum and the signs of relative velocities.
 void ClusterMap::keep_energy(double before, int axes) {
     const double after = energy(axes);
     if (!(after > before)) return;
@@ -161,8 +160,8 @@ double curvature(double L, double R, bool turns) {
     return turns ? std::min(kLargest, L / (2.0 * R)) : 0.0;
 }
 
-// A slow pair can be the first to touch where faster ones are about to: these set the scale, or their
-// forces would need a million steps.
+// A slow pair can be the first to touch when faster ones are about to. The faster ones set the scale, or
+// their forces would need a million steps.
 double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double V) {
     for (const ClusterContact& c : contacts) V = std::max(V, dot3(balls[c.i].v - balls[c.j].v, c.n));
     return V;

@@ -1,7 +1,7 @@
-// Many contacts at once: the compliant map (Hertz contacts of the whole cluster, which turn as the balls
-// move; instantaneous for the engine, which gets velocities and spins) and the rigid symmetric projection.
-// Equations: docs/reference/physics.md; docs/design/hard_cases.md says what such a model can and cannot
-// claim.
+// Many contacts at once: the compliant model (Hertz contacts of the whole cluster, whose normals turn as the
+// balls move; instantaneous for the engine, which receives velocities and spins) and the rigid symmetric
+// projection. Equations: docs/reference/physics.md; docs/design/hard_cases.md says what such a model can and
+// cannot claim.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,20 @@
 
 namespace carom {
 
-/// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself: the
-/// step is made for approaches near V. Above 1 by what the reach may jump where another contact sets it.
+/// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself,
+/// because the step length suits approaches near V. It is above 1 by the amount that the reach may jump if
+/// another contact sets it.
 inline constexpr double kClusterFaster = 1.05;
-/// [share of R] Gaps up to this are rounding of the positions: the balls touch.
+/// [share of R] Smaller gaps are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
-/// [V] and [L/V] Regularisation of the friction in the compliant map, from which its errors come: 6e-4 V in
-/// racks that touch, up to 2.7e-3 V where gaps of 0.3 mm let errors grow
-/// (lab/notes/2026-11-moving_normals.md); and its longest steps, without friction (at the speed V) and with
-/// it.
+/// [V] and [L/V] Regularisation of the friction in the compliant model, which causes its errors: 6e-4 V in
+/// racks that touch, up to 2.7e-3 V if gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md);
+/// and its longest steps, without friction (at the speed V) and with it.
 inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 60.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
-/// [L/V] A cluster that has not parted after this many contact times is resolved as rigid; the slowest of 16
+/// [L/V] A cluster that has not separated after this many contact times is solved as rigid; the slowest of 16
 /// balls takes a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
 
@@ -38,9 +38,9 @@ struct ClusterBall {
 
 struct ClusterContact {
     int i, j;    ///< into the list of balls
-    Vec3 n;      ///< unit, from i to j; level where both lie on the cloth
-    double gap;  ///< [m], >= 0; 0 where the balls touch
-    /// Share of the turning of the balls that the normal follows: kernel::HertzContact.
+    Vec3 n;      ///< unit, from i to j; level if both lie on the cloth
+    double gap;  ///< [m], >= 0; 0 if the balls touch
+    /// Share of the balls' turning that the normal follows (kernel::HertzContact).
     double turn = 1.0;
 };
 
@@ -57,8 +57,8 @@ struct ClusterSettings {
     bool unlike = false;  ///< the balls differ in size; R is that of balls with the mass 1
 };
 
-/// Duration of a Hertz contact at the approach speed V,
-/// t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation 5).
+/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
+/// 5).
 double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.
@@ -67,17 +67,17 @@ double contact_length(double V);
 /// x^(1/5) for x > 0, made of + - * / only, correct to about 1 ulp.
 double fifth_root(double x);
 
-/// The two maps. Scratch memory is kept between calls.
+/// The two models. Scratch memory is kept between calls.
 class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
-    /// triggering pair or of the fastest one. Gives back velocities and spins. Returns the number of steps,
-    /// or -1 if the contacts did not part within kClusterTimeLimit.
+    /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
+    /// -1 if the contacts did not separate within kClusterTimeLimit.
     long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                    const ClusterSettings& settings, double V);
 
-    /// The same in space, where a ball flies or may leave the cloth: without the
-    /// cloth, which answers next. `turn` and the friction of the cloth are not read.
+    /// The same in space, if a ball flies or may leave the cloth: without the cloth, which reacts next.
+    /// Ignores `turn` and the friction of the cloth.
     long compliant_in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                             const ClusterSettings& settings, double V);
 
@@ -101,7 +101,7 @@ class ClusterMap {
     void keep_energy(double before, int axes);
     double energy(int axes) const;
 
-    // Per ball v along two axes or three, and R w along three, in units of V.
+    // Per ball, v along two or three axes and R w along three, in units of V.
     std::vector<double> motion_;
     std::vector<double> mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
@@ -110,7 +110,7 @@ class ClusterMap {
     std::vector<double> inverse_mass_, stiffness_, curvature_;
     std::vector<double> numbers_;
     std::vector<int> places_;
-    // Of rigid(): per ball [m/s], per contact.
+    // For rigid(): per ball [m/s], and per contact.
     std::vector<Vec3> velocity_;
     std::vector<double> impulse_;
 };

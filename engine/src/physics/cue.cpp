@@ -8,7 +8,7 @@ namespace carom {
 
 namespace effects {
 
-// Squirt turns the velocity by -atan2(S, C): a rotation by a ratio. A cue without end mass does not squirt.
+// Squirt turns the velocity by -atan2(S, C), computed as a ratio. A cue without end mass does not squirt.
 [[gnu::noinline]] SinCos squirt(const Cue& cue, const BallSize& ball) {
     const double a = cue.side;
     if (a == 0.0 || cue.end_mass == 0.0) return {0.0, 1.0};
@@ -18,8 +18,8 @@ namespace effects {
     return {-S / h, C / h};
 }
 
-// The same in space: the velocity turns away from the offset by
-// that angle, in the plane of the cue and the point that is hit.
+// The same in space: the velocity turns away from the offset by that angle, in the plane of the cue and the
+// point of contact.
 [[gnu::noinline]] Vec3 spatial_squirt(const Cue& cue, const BallSize& ball, const Vec3& along,
                                       const Vec3& left, const Vec3& up) {
     const double a = cue.side, b = cue.height, r = std::sqrt(a * a + b * b);
@@ -34,7 +34,7 @@ namespace effects {
 
 namespace {
 
-/// The axes of a cue: along it, to its left, and upwards at right angles to both.
+/// The axes of a cue: along it, to its left, and upwards, perpendicular to both.
 struct Axes {
     Vec3 along, left, up;
 };
@@ -63,9 +63,9 @@ StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt, Vertical ve
                  -turn * a * cos_up);
     if (vertical == Vertical::kKeep && cue.elevation_deg > 0.0) {
         const Axes axes = axes_of({sin_aim, cos_aim}, {sin_up, cos_up});
-        const Vec3 way =
+        const Vec3 direction =
             squirt ? effects::spatial_squirt(cue, ball, axes.along, axes.left, axes.up) : axes.along;
-        return {v * way, w, 0.0};
+        return {v * direction, w, 0.0};
     }
     const auto [sin_squirt, cos_squirt] = squirt ? effects::squirt(cue, ball) : SinCos{0.0, 1.0};
     const double speed = v * cos_up;
@@ -78,7 +78,7 @@ bool meets_tip_again(const Cue& cue, const BallSize& ball, const Vec3& v, const 
     const double a = cue.side, b = cue.height;
     const Axes axes = axes_of(sin_cos_deg(cue.aim_deg), sin_cos_deg(cue.elevation_deg));
     const Vec3 tip = ball.R * (a * axes.left + b * axes.up - std::sqrt(1.0 - a * a - b * b) * axes.along);
-    // The cue goes on at what momentum leaves it.
+    // The cue keeps its remaining momentum.
     const double cue_speed = cue.speed - ball.m / cue.mass * struck_speed(cue, ball);
     return !(dot3(v + cross3(w, tip), axes.along) > cue_speed);
 }

@@ -62,9 +62,9 @@ namespace effects {
 
 namespace {
 
-// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither
-// slides nor rolls. Impacts at one instant may each take half of a speed or more, down
-// to numbers whose squares are none, and by which friction cannot be divided.
+// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls.
+// Impacts at one instant may each remove half of a speed or more, down to numbers whose squares underflow, so
+// that the direction of friction is undefined.
 constexpr double kStill = 1e-100;
 
 }  // namespace
@@ -158,7 +158,7 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
     Vec3 v = Vec3::Zero(), w(0.0, 0.0, spin_at(s, tau, p.R).z());
     if (s.state == MotionState::kSpinning) w.z() = 0.0;
     if (s.state == MotionState::kSliding) {
-        // v_f = v - (2/7) u, and the spin that rolls with it.
+        // v_f = v - (2/7) u, and the spin of rolling at v_f.
         const Vec2 u = cloth_slip(s.v, s.w, p.R);
         v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
         w.x() = -v.y() / p.R;

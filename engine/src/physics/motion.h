@@ -1,5 +1,5 @@
-// One ball between two events: closed-form motion and the next own transition. Source: physics, section 1
-// (Leckie and Greenspan, "An event-based pool physics simulator", 2005).
+// One ball between two events: its motion in closed form, and its next transition. Source:
+// docs/reference/physics.md (Leckie and Greenspan, "An event-based pool physics simulator", 2005).
 #pragma once
 
 #include "carom/engine/motion.h"
@@ -17,23 +17,23 @@ Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R);
 /// @param R  radius of the ball
 MotionParams motion_params(const BallParams& balls, double gravity, double R);
 
-/// The segment that starts at time t with these velocities. The motion state follows from them: rolling when
-/// the slip is at most kRollingUlp ulp of |v| + R |w| (spin is then set to the rolling one), and so on.
+/// The segment that starts at time t with these velocities. The motion state follows from them: rolling if
+/// the slip is at most kRollingUlp ulp of |v| + R |w| (the spin is then set to that of rolling), and so on.
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on straight, without
-/// the cloth, until its centre is as low as the cloth.
+/// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on a straight path,
+/// without the cloth, until its centre is as low as the cloth.
 /// @param r  with the height at which the fall began, or would have begun: its centre is falls^2/2g lower
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& params);
 
-/// [m/s] How fast a falling ball falls `tau` after the start of its segment; gravity [m/s^2].
+/// [m/s] Downward speed of a falling ball `tau` after the start of its segment; gravity [m/s^2].
 inline double fall_speed(const Segment& segment, double tau, double gravity) {
     return gravity * tau - segment.v.z();
 }
 
-/// Place and velocity of a ball with the height that a fall or a
-/// flight gives it; position_at and velocity_at leave that out.
+/// Position and velocity of a ball, including the height in a fall or flight, which position_at and
+/// velocity_at leave out.
 struct Placed {
     Vec3 position, velocity;
 };
@@ -51,7 +51,7 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity) {
     return p;
 }
 
-/// The same of a ball of radius R that may have left the table: on the floor it stays.
+/// The same for a ball of radius R that may have left the table: on the floor it stays.
 inline Placed placed_at(const Segment& segment, double tau, double gravity, double R) {
     const double floor = until_floor(segment, R, gravity);
     if (tau < floor) return placed_at(segment, tau, gravity);
@@ -59,21 +59,20 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity, doub
     return {Vec3(there.x(), there.y(), R - kFloorDepth), Vec3::Zero()};
 }
 
-/// The segment of a ball that flies until it comes down on the
-/// cloth: a parabola, without friction. r_z is at least R.
+/// The segment of a flying ball until it lands on the cloth: a parabola, without friction. r_z is at least R.
 Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The segment that starts at time t where balls may leave the cloth: airborne if the ball is above it or
-/// rises faster than bounce_end(), else as start_segment().
+/// The segment that starts at time t if balls may leave the cloth: airborne if the ball is above it or rises
+/// faster than bounce_end(), otherwise as start_segment().
 Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The velocity with which a ball that flies comes down: exact, also for a ball that rose from the cloth.
+/// The velocity with which a flying ball lands: exact, also for a ball that rose from the cloth.
 Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
 /// The segment of a ball that lies in a pocket.
 Segment pocketed_segment(double t, const Pocket& pocket);
 
-/// The ball's own next transition: its state at the end of the segment, as the segment that follows.
+/// The ball's next transition: its state at the end of the segment, as the next segment.
 Segment after_transition(const Segment& segment, const MotionParams& params);
 
 /// The type of that transition; the segment must have a finite duration.

@@ -1,15 +1,16 @@
-// How far from a nose the centre of a ball is that touches it.
+// Distance from a nose to the centre of a ball that touches it.
 #pragma once
 
 #include <cmath>
 
 namespace carom {
 
-/// [R] From farther no ball meets a nose: in the air nose_reach() is up to sqrt(2) R.
+/// [R] No ball farther away touches a nose: in the air, nose_reach() is up to sqrt(2) R.
 inline constexpr double kNoseReach = 1.5;
 
-/// [m] Distance of the centre from the line of a nose at this height, in the plane across it. A ball on the
-/// cloth touches at the horizontal distance R - inset; the nose is the cylinder about its line that does so.
+/// [m] Distance of the centre from the line of a nose at this height, in the plane perpendicular to it. A
+/// ball on the cloth touches at the horizontal distance R - inset; the nose is the cylinder about its line
+/// for which that is so.
 inline double nose_reach(double R, double height, double inset) {
     const double level = R - inset, up = height - R;
     return std::sqrt(level * level + up * up);

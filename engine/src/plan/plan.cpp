@@ -1,4 +1,4 @@
-// Makes the plan of a scene: what must be computed for it, and the table in its final form.
+// Makes the plan of a scene: what to compute for it, and its table in final form.
 #include "carom/engine/plan.h"
 
 #include <fmt/format.h>
@@ -22,11 +22,11 @@ namespace carom {
 
 namespace {
 
-// [share of the jaw radius] A cushion end this close to a jaw's circle is rounded off by it and needs no tip
+// [share of the jaw radius] A jaw rounds off a cushion end this close to its circle, which then needs no tip
 // of its own. The jaw is a full circle, so nothing can slip between the two.
 constexpr double kJawJoinShare = 1e-9;
 
-// An end of a cushion needs a circle of its own unless a jaw rounds it off.
+// An end of a cushion needs its own circle unless a jaw rounds it off.
 bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
     return std::any_of(jaws.begin(), jaws.end(), [&](const Jaw& jaw) {
         return std::abs(length(end - jaw.center) - jaw.radius) <= kJawJoinShare * jaw.radius;
@@ -62,7 +62,7 @@ Geometry geometry_of(const Scene& scene) {
     return geometry;
 }
 
-// The friction that moves a ball of this radius, without the effects that the plan skips.
+// The friction on a ball of this radius, without the effects that the plan skips.
 MotionParams motion_of(const Plan& plan, double R) {
     MotionParams p = motion_params(plan.balls, plan.gravity, R);
     p.sliding = plan.in_force(Effect::kSliding);
@@ -71,7 +71,7 @@ MotionParams motion_of(const Plan& plan, double R) {
     return p;
 }
 
-// Chooses a tree of boxes where it is faster than a loop through all of them.
+// Chooses a tree of boxes if it is faster than a loop over all of them.
 void choose_search(Plan& plan) {
     plan.table_search = plan.ball_search = Search::kDirect;
     plan.box_travel = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ void choose_search(Plan& plan) {
     if (balls >= kShortBoxesFromBalls) plan.box_travel = kBoxTravel;
 }
 
-// Fills in all that follows from the scene of the plan, which has its instruction set.
+// Fills in all that follows from the plan's scene and instruction set.
 void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words& say) {
     const Scene& scene = plan.scene;
     plan.balls = scene.balls;
@@ -124,12 +124,12 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
             cue.elevation_deg));
 }
 
-// What nobody would write who thinks in the units of the format. [m], [m/s]
+// Limits beyond which a value is probably in the wrong unit. [m], [m/s]
 constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
 constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
 
-/// Numbers that are valid, but look like another unit.
+/// Warns of numbers that are valid but look as if they were in another unit.
 void warn_of_units(Plan& plan) {
     const Scene& scene = plan.scene;
     const Table& table = scene.table;
@@ -145,10 +145,10 @@ void warn_of_units(Plan& plan) {
         away = &ball;
     }
     if (away != nullptr)
-        say(fmt::format("ball {} lies {:.3g} m beside the table; positions are in m", in_quotes(away->id),
+        say(fmt::format("ball {} lies {:.3g} m outside the table; positions are in m", in_quotes(away->id),
                         farthest));
     if (scene.cue && scene.cue->speed > kFastestStroke)
-        say(fmt::format("the cue moves at {:.4g} m/s, and a hard break at 10; speeds are in m/s",
+        say(fmt::format("the cue moves at {:.4g} m/s, but a hard break at about 10; speeds are in m/s",
                         scene.cue->speed));
     for (const BallStart& ball : scene.ball) {
         const double speed = length3(ball.velocity);
@@ -158,7 +158,8 @@ void warn_of_units(Plan& plan) {
     }
     for (const BallSize& size : plan.sizes) {
         if (size.R >= kSmallestBall && size.R <= kLargestBall) continue;
-        say(fmt::format("a ball has a radius of {:.4g} m, and one of pool 0.0286; radii are in m", size.R));
+        say(fmt::format("a ball has a radius of {:.4g} m, but a pool ball has 0.0286; radii are in m",
+                        size.R));
         break;
     }
 }
@@ -220,12 +221,12 @@ const Plan& Planner::plan(bool same_table) {
     if (!same_table || !memory_->has_geometry) {
         geometry = geometry_of(plan_.scene);
         memory_->has_geometry = true;
-        // The loop names pockets by their index. A name that the copies of a shot would carry takes memory.
+        // The loop refers to pockets by index. Copying names for every shot would allocate memory.
         for (Pocket& pocket : geometry.pockets) pocket.name.clear();
     }
     try {
         fill(plan_, geometry, memory_->reach, Words(false));
-    } catch (const SceneError&) {  // an effect that is refused; the error has to say why
+    } catch (const SceneError&) {  // an effect is excluded; the error must say why
         fill(plan_, geometry, memory_->reach, Words(true));
         throw;
     }

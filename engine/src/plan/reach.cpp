@@ -14,8 +14,7 @@
 namespace carom {
 namespace {
 
-// [-] Margin on how far a ball can go when the plan decides
-// what it can reach; far above the rounding of the bound.
+// [-] Margin of the distances that balls can travel, far above the rounding of the bound.
 constexpr double kReachMargin = 1e-9;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -29,7 +28,7 @@ class Bounds {
           radius_(memory.radius),
           motion_(motion_params(scene.balls, scene.physics.gravity, scene.balls.R)),
           time_(scene.stop.time.value_or(kUnbounded)) {
-        motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are asked for
+        motion_.sliding = motion_.rolling = motion_.spin_decay = false;  // only the states are needed
         starts_.clear();
         for (const BallStart& ball : scene.ball) {
             Vec3 v = ball.velocity, w = ball.spin;
@@ -71,13 +70,13 @@ class Bounds {
             reach.why = say_("ball {}, the only one that moves, goes no farther than {:.3g} m",
                              scene_.ball[m].id, radius[m]);
         }
-        // The bound of a ball that meets nothing holds as long as it indeed meets nothing.
-        // Nor does the cloth brake it over a pocket.
+        // The bound of a ball that meets nothing holds as long as it indeed meets nothing. Over a pocket, the
+        // cloth does not slow it.
         if (movers > 1 || lifted_ || meets_cushion(radius) || meets_ball(radius) || meets_pocket(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
             reach.why = far < kUnbounded ? say_("no ball goes farther than {:.3g} m until the stop", far)
-                                         : say_("nothing bounds how far a ball can go");
+                                         : say_("nothing limits how far a ball can go");
         }
         reach.pairs = meets_ball(radius);
         reach.cushions = meets_cushion(radius);
@@ -103,13 +102,13 @@ class Bounds {
 
     double by_energy() const {
         const Physics& p = scene_.physics;
-        // An impact can gain energy with the published sign of the
-        // cloth slip, with few steps, and with a loose tolerance.
+        // An impact can gain energy with the published sign of the cloth slip, with few steps, and with a
+        // loose tolerance.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
         const bool gains =
             p.ball_ball->reads_tolerance && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
         if (gains || !(time_ < kUnbounded)) return kUnbounded;
-        // The lightest ball could receive all the energy, so it is taken per mass of that ball.
+        // The lightest ball could receive all the energy, so divide by its mass.
         double lightest = kUnbounded, energy = 0.0;
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
         for (const Start& s : starts_)
@@ -154,7 +153,7 @@ class Bounds {
     std::vector<double>& radius_;
     MotionParams motion_;
     double time_;
-    bool lifted_ = false;         // the cloth does not bound how far a ball goes
+    bool lifted_ = false;         // the cloth does not limit how far a ball goes
     double energy_height_ = 0.0;  // [J] of all balls
 };
 

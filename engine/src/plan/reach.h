@@ -1,4 +1,4 @@
-// What balls of a scene can ever come to: bounds that hold for the whole shot.
+// How far the balls of a scene can ever get: bounds that hold for the whole shot.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace carom {
 
-/// A ball at the start. Where the cue strikes it, the velocities are those after the strike.
+/// A ball at the start. If the cue strikes it, the velocities are those after the stroke.
 struct Start {
     Vec2 place;
     Vec3 v, w;
@@ -18,26 +18,26 @@ struct Start {
     BallSize size;
 };
 
-/// Lists that are filled anew for every scene.
+/// Lists that are refilled for every scene.
 struct ReachMemory {
     std::vector<Start> starts;
-    std::vector<double> radius;  ///< [m] that each ball cannot leave
+    std::vector<double> radius;  ///< [m] how far each ball can get
 };
 
 struct Reach {
-    bool moves = false;     ///< some ball leaves its place
+    bool moves = false;     ///< some ball changes its position
     bool slips = false;     ///< some ball slips on the cloth at the start
     bool pairs = false;     ///< two balls can meet
     bool cushions = false;  ///< a ball can meet a cushion or jaw
     bool pockets = false;   ///< a ball can enter a pocket's circle
-    /// the bound, for people who ask: "ball cue, the only one that moves, rests within 0.81 m"
+    /// the bound, for users: "ball cue, the only one that moves, rests within 0.81 m"
     std::string why;
 };
 
-/// The smaller of two bounds. (1) The only moving ball that meets nothing goes no farther than its
-/// own friction lets it: |v| t + mu_s g t^2/2 while it slides (t = 2|u|/(7 mu_s g)), then v^2/(2 mu_r g) with
-/// v = v - 2u/7. (2) No ball is ever faster than sqrt(2E), E the energy per mass of all balls, in the time
-/// until the scene's stop; for models that do not gain energy.
+/// The smaller of two bounds. (1) A ball that moves alone and meets nothing goes no farther than its friction
+/// allows: |v| t + mu_s g t^2/2 while it slides (t = 2|u|/(7 mu_s g)), then v^2/(2 mu_r g) with v = v - 2u/7.
+/// (2) If the models do not gain energy, no ball is ever faster than sqrt(2E) until the scene's stop time,
+/// where E is the energy of all balls per mass.
 Reach reach_of(const Scene& scene, ReachMemory& memory, const Words& say);
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-// Reasons of a plan in words, where somebody asks for them.
+// Reasons of a plan in words, if wanted.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// Writes a text as fmt::format does, or nothing, which takes no memory.
+/// Formats a text as fmt::format does, or returns "" without allocating memory.
 class Words {
   public:
     explicit Words(bool wanted) : wanted_(wanted) {}

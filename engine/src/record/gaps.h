@@ -1,4 +1,4 @@
-// How far balls are from each other and from noses, as the judge of records sees it.
+// Distances between balls, and from balls to noses, for the checker of records.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace carom {
 
-/// A ball where it is, with its height.
+/// A ball at its position, with its height.
 struct SeenBall {
     Vec3 r;
     double R;
@@ -21,23 +21,23 @@ struct SeenBall {
     double rounding = 0.0;  ///< [m] rounding_of()
 };
 
-/// [m] What a ball with these speeds may have come too far in t [s]: closing speeds that are rounding
-/// (kClosingUlp) are no approach, and a time is rounded.
+/// [m] How far a ball with these speeds may have moved too far in t [s]: closing speeds within rounding
+/// (kClosingUlp) count as no approach, and times are rounded.
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
-/// [m] How deep it may be in something.
+/// [m] Allowed overlap with anything.
 double allowed_depth(const SeenBall& ball);
 
-/// A ball at the place `r` in the segment of this number.
+/// A ball at the position `r`, in its segment of this number.
 /// @param flights  whether balls may leave the cloth
 SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
              bool flights);
 
-/// [m] Between two balls, negative where they overlap. The planar distance,
-/// unless one flies, or has flown since the other began to fall into a pocket.
+/// [m] Between two balls, negative if they overlap. The planar distance, unless one flies, or has flown since
+/// the other began to fall into a pocket.
 double gap_between(const SeenBall& one, const SeenBall& two);
-/// [m] To the nose of a cushion; a large number where the ball is beyond its ends.
+/// [m] To the nose of a cushion; infinite if the ball is beyond its ends.
 double gap_to(const CushionLine& line, const SeenBall& ball);
-/// [m] To a jaw or the end of a cushion; a ball over a jaw's disc is beside it.
+/// [m] To a jaw or the end of a cushion; a ball over a jaw's disc does not touch it.
 double gap_to(const Nose& nose, const SeenBall& ball);
 /// [m] To the cloth: 0 for a ball that lies there.
 double gap_to_cloth(const SeenBall& ball);

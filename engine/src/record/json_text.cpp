@@ -15,13 +15,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// [bytes] It is long enough for any id or method name,
-/// and so short that a hostile file cannot fill messages.
+/// [bytes] Long enough for any id or method name, and short enough that a hostile file cannot fill messages.
 constexpr std::size_t kLongestName = 256;
-/// [bytes] What one byte of a text takes at most, where it is written as an escape: \u0000.
+/// [bytes] The most that one byte of a text can take, as an escape: \u0000.
 constexpr std::size_t kLongestEscape = 6;
-/// The largest number of a record. What a scene may ask for stays far below it, in every unit; products of a
-/// few such numbers, of which states and orientations are made, are still finite.
+/// The largest number in a record. Values in a scene are far smaller, in every unit, and products of a few
+/// such numbers, as in states and orientations, are still finite.
 constexpr double kLargestNumber = 1e25;
 
 bool is_space(char c) {
@@ -33,21 +32,21 @@ std::size_t after_space(std::string_view text, std::size_t at) {
     return at;
 }
 
-/// Returns the place behind the string that begins at `at`.
+/// Returns the position after the string that begins at `at`.
 std::size_t after_string(std::string_view text, std::size_t at) {
     for (++at; at < text.size() && text[at] != '"'; ++at)
         if (text[at] == '\\') ++at;
     return at < text.size() ? at + 1 : text.size();
 }
 
-/// Returns the place behind a number, true, false or null.
+/// Returns the position after a number, true, false or null.
 std::size_t after_word(std::string_view text, std::size_t at) {
     const auto ends = [](char c) { return is_space(c) || c == ',' || c == ']' || c == '}'; };
     while (at < text.size() && !ends(text[at])) ++at;
     return at;
 }
 
-/// Returns the place behind the value that begins at `at`.
+/// Returns the position after the value that begins at `at`.
 std::size_t after_value(std::string_view text, std::size_t at) {
     if (at < text.size() && text[at] != '{' && text[at] != '[')
         return text[at] == '"' ? after_string(text, at) : after_word(text, at);
@@ -65,13 +64,13 @@ std::size_t after_value(std::string_view text, std::size_t at) {
     return at;
 }
 
-/// Returns what a string token says, or "" where it is too long to be any name.
+/// Returns the text of a string token, or "" if it is too long to be any name.
 std::string unescaped(std::string_view token) {
     if (token.size() > 2 + kLongestEscape * kLongestName) return "";
     return Json::parse(token).get<std::string>();
 }
 
-/// Returns line and column of a byte, for a person's editor; one byte more or less does not matter there.
+/// Returns line and column of a byte, for an editor; one byte more or less does not matter there.
 SourceLocation location(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
     const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line
@@ -79,7 +78,7 @@ SourceLocation location(std::string_view text, std::size_t byte) {
             1 + static_cast<int>(before.size() - line_start)};
 }
 
-/// Takes every value and keeps none of them.
+/// Accepts every value and keeps none.
 class Checker final : public nlohmann::json_sax<Json> {
   public:
     Checker(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -125,8 +124,8 @@ std::string JsonValue::where() const {
 }
 
 void JsonValue::fail(const std::string& message) const {
-    const std::string way = where();
-    throw SceneError(source_.file, {}, (way.empty() ? "" : way + ": ") + message);
+    const std::string path = where();
+    throw SceneError(source_.file, {}, (path.empty() ? "" : path + ": ") + message);
 }
 
 void JsonValue::fail_unknown(const std::string& name) const {
@@ -160,7 +159,8 @@ double JsonValue::number() const {
     const std::string_view digits = token();
     double value = 0.0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    // The check of the whole text refuses what is too large, so this is too near to 0 for a double.
+    // The check of the whole text refuses numbers that are too large, so this one is too close to 0 for a
+    // double.
     if (error == std::errc::result_out_of_range) value = c == '-' ? -0.0 : 0.0;
     if (!(std::abs(value) <= kLargestNumber))
         fail("expected a number of at most 1e25, which no shot exceeds");
@@ -180,7 +180,7 @@ double JsonValue::positive() const {
 }
 
 std::int64_t JsonValue::integer(std::int64_t least, std::int64_t most) const {
-    if (most < least) fail("there is nothing that this index could stand for");
+    if (most < least) fail("this index has nothing to refer to");
     const std::string_view digits = token();
     std::int64_t value = 0;
     const char* const last = digits.data() + digits.size();
@@ -217,7 +217,7 @@ JsonObject::JsonObject(const JsonValue& value, std::span<const std::string_view>
     for (std::size_t at = value.first_item(); at != JsonValue::kNone;) {
         const std::size_t end = after_string(text, at);
         std::string_view key = text.substr(at + 1, end - at - 2);
-        std::string other;  // the same key, where it is written with escapes
+        std::string other;  // the same key without escapes
         if (key.find('\\') != std::string_view::npos) key = other = unescaped(text.substr(at, end - at));
         const std::size_t member = after_space(text, after_space(text, end) + 1);  // past the colon
         std::size_t i = 0;
@@ -225,7 +225,7 @@ JsonObject::JsonObject(const JsonValue& value, std::span<const std::string_view>
         if (i == count_)
             note_unknown(key);
         else if (at_[i] != JsonValue::kNone)
-            value.fail("the key " + in_quotes(key) + " is there twice");
+            value.fail("the key " + in_quotes(key) + " appears twice");
         else
             at_[i] = member;
         at = value.next_item(member);
@@ -247,8 +247,8 @@ JsonValue JsonObject::at(std::string_view key) const {
 void JsonObject::note_unknown(std::string_view key) const {
     JsonText& source = value_.source_;
     if (source.unknown_keys++ > 0) return;
-    const std::string way = value_.where();
-    source.first_unknown = (way.empty() ? "" : way + ".") + printable(key);
+    const std::string path = value_.where();
+    source.first_unknown = (path.empty() ? "" : path + ".") + printable(key);
 }
 
 }  // namespace carom::detail

@@ -1,7 +1,6 @@
-// JSON that is read where it stands: the text is checked as a whole, once, and then looked at in place. No
-// tree is built of it, so reading takes no memory beside the text and what is made of it, a file that is one
-// great list of nothing costs what it weighs, and nothing has to be taken apart where memory ran out. Nesting
-// is followed by loops, never by recursion.
+// Reads JSON in place: the text is checked as a whole, once, and then searched. No tree is built, so reading
+// takes no memory in addition to the text and the result, and a huge list of nothing costs no more than its
+// size. Nesting is followed by loops, never by recursion.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,9 +14,9 @@
 
 namespace carom::detail {
 
-/// A text that is JSON, and what its readers share.
+/// A text that is JSON, and the state that its readers share.
 struct JsonText {
-    /// Checks all of it. `file` stands for it in messages. @throws SceneError
+    /// Checks all of it. `file` is its name in messages. @throws SceneError
     JsonText(std::string_view text, const std::string& file);
 
     std::string_view text;
@@ -25,11 +24,11 @@ struct JsonText {
     std::size_t root = 0;  ///< byte at which the value begins
     // Keys that no reader asked for.
     std::size_t unknown_keys = 0;
-    std::string first_unknown;  ///< the way to the first of them
+    std::string first_unknown;  ///< the path to the first of them
 };
 
-/// One value of the text and the way to it ("tracks[3].segments[2].duration"), for messages. It refers to the
-/// value that it is part of, which has to live longer.
+/// One value of the text, and the path to it ("tracks[3].segments[2].duration"), for messages. It refers to
+/// the value that contains it, which must outlive it.
 class JsonValue {
   public:
     explicit JsonValue(JsonText& source) : source_(source), at_(source.root) {}
@@ -82,20 +81,20 @@ class JsonValue {
 
     char first() const { return at_ < source_.text.size() ? source_.text[at_] : '\0'; }
     std::string where() const;
-    std::string_view token() const;                 ///< a number or a string, as it is written
+    std::string_view token() const;                 ///< a number or a string, as written
     std::size_t first_item() const;                 ///< of a list or an object; kNone if it is empty
     std::size_t next_item(std::size_t item) const;  ///< kNone after the last
     [[noreturn]] void fail_unknown(const std::string& name) const;
 
     JsonText& source_;
     const JsonValue* parent_ = nullptr;
-    std::string_view key_;  ///< in an object; else the index counts
+    std::string_view key_;  ///< in an object; otherwise the index counts
     std::size_t index_ = 0;
     std::size_t at_;
 };
 
-/// The members of an object by name. One that is not among `keys` is counted as unknown and left out; one
-/// that is there twice is an error.
+/// The members of an object by name. A key that is not among `keys` is counted as unknown and ignored; a
+/// repeated key is an error.
 class JsonObject {
   public:
     JsonObject(const JsonValue& value, std::span<const std::string_view> keys);

@@ -1,5 +1,5 @@
-// read_record: what write_record wrote, checked item by item.
-// A file comes from anywhere: nothing in it is trusted.
+// read_record: reads what write_record wrote, and checks it item by item. A file may come from anywhere, so
+// nothing in it is trusted.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -24,7 +24,7 @@ using detail::JsonObject;
 using detail::JsonText;
 using detail::JsonValue;
 
-/// What the readers of all parts of a record need to know about the file.
+/// Properties of the file that the readers of all parts of a record need.
 struct Format {
     std::int64_t version;
     bool profiled;
@@ -34,7 +34,7 @@ int index_below(const JsonValue& value, std::int64_t least, std::size_t count) {
     return static_cast<int>(value.integer(least, static_cast<std::int64_t>(count) - 1));
 }
 
-/// Reads a value that the row allows. Only the sign of its range is checked, because nobody types a record.
+/// Reads a value that the row allows. Checks only the sign of its range, because nobody types a record.
 FieldValue read_value(const Key& key, const JsonValue& value) {
     const Interval& range = key.range;
     const bool positive = range.low > 0.0 || (range.low == 0.0 && range.low_open);
@@ -137,13 +137,14 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
     segments.each([&](const JsonValue& item, std::size_t i) {
         track.segments.push_back(read_segment(item));
         if (i > 0 && track.segments[i].start < track.segments[i - 1].start) {
-            item.fail("starts before the segment in front of it");
+            item.fail("starts before the previous segment");
         }
     });
     return track;
 }
 
-/// What an event's b may be: the index of a ball, cushion, jaw or pocket, or -1 for none.
+/// Number of values that an event's b may have: the index of a ball, cushion, jaw or pocket; 0 if it has
+/// none.
 std::int64_t partners(EventType type, const Record& record) {
     switch (kind(type).partner) {
         case Partner::kBall:
@@ -204,7 +205,7 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
                                     "resolve_ns", "kernel_ns", "steps", "method", "queue_ns"});
         record.events.push_back(read_event(all, record));
         if (i > 0 && record.events[i].time < record.events[i - 1].time) {
-            item.fail("happens before the event in front of it");
+            item.fail("happens before the previous event");
         }
         if (format.profiled) record.costs.push_back(read_cost(all, format));
     });
@@ -223,7 +224,7 @@ std::string text_of_file(const std::string& path) {
                          "is larger than " + std::to_string(kMaxRecordSize >> 20) +
                              " MiB; stop the shot earlier ([stop]) and write it in parts");
     }
-    // One byte more than may be, so that a file which grows meanwhile is noticed.
+    // One byte more than allowed, to notice a file that grows meanwhile.
     std::string text(std::min<std::uintmax_t>(error ? kMaxRecordSize : size, kMaxRecordSize) + 1, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -242,20 +243,18 @@ std::int64_t read_version(const JsonObject& all) {
     return version;
 }
 
-/// What the caller should know about a file that was read nevertheless.
+/// Warnings about a file that was read all the same.
 void add_notes(const JsonText& source, std::int64_t version, std::vector<std::string>& notes) {
     if (version == 1) {
         notes.push_back(
-            "version 1 of the format does not keep mu_b_fit (the friction between the balls is taken as the "
-            "same at every slip) nor the names of the table's parts; simulate the scene again for a record "
-            "that does");
+            "version 1 of the format lacks mu_b_fit (friction between balls is then the same at every slip) "
+            "and the names of the table's parts; simulate the scene again for a complete record");
     }
     if (source.unknown_keys == 0) return;
     notes.push_back(source.unknown_keys == 1
-                        ? "the key " + source.first_unknown +
-                              " is none that this program knows; it was left out"
+                        ? "the key " + source.first_unknown + " is unknown to this program and was left out"
                         : std::to_string(source.unknown_keys) +
-                              " keys are none that this program knows; they were left out. The first is " +
+                              " keys are unknown to this program and were left out, the first of them " +
                               source.first_unknown);
 }
 
@@ -267,7 +266,7 @@ Record read_record(const std::string& path, std::vector<std::string>* notes) {
 
 Record parse_record(std::string_view text, const std::string& name, std::vector<std::string>* notes) {
     constexpr const char* kNoRecord =
-        "this is no record of carom; carom simulate SCENE -o shot.json writes one";
+        "this is not a carom record; write one with carom simulate SCENE -o shot.json";
     JsonText source(text, name);
     const JsonValue root(source);
     if (!root.is_object()) root.fail(kNoRecord);

@@ -1,4 +1,4 @@
-// What can be asked of a record: states, orientations and the hash.
+// Queries of a record: states, orientations and the hash.
 #include "carom/engine/record.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ static_assert([] {
 
 namespace {
 
-// Returns the index of the segment in force at time t, which is the last one that starts at or before t.
+// Returns the index of the segment in force at time t: the last one that starts at or before t.
 std::size_t segment_index(const std::vector<Segment>& segments, double t) {
     const auto later = std::upper_bound(segments.begin(), segments.end(), t,
                                         [](double time, const Segment& s) { return time < s.start; });
@@ -35,20 +35,19 @@ std::size_t segment_index(const std::vector<Segment>& segments, double t) {
 Eigen::Quaterniond rotation(const Vec3& turn) {
     const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
     if (angle == 0.0) return Eigen::Quaterniond::Identity();
-    // A ball that spins for years turns farther than sin_cos can reduce; where it then stands is rounding.
+    // A ball that spins for years turns farther than sin_cos can reduce; its orientation is then rounding.
     constexpr double kTwoTurns = 12.566370614359172;
     const auto [s, c] = sin_cos(0.5 * std::fmod(angle, kTwoTurns));
     const double k = s / angle;
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
-// [rad] The largest angle of a step, and [-] the number of steps that all
-// balls of a record may take together. A record that turns them more, which
-// no shot does, is followed in larger steps, so that the work has a bound.
+// [rad] The largest angle of a step, and [-] the most steps that all balls of a record may take together. A
+// record with more rotation, which no shot has, is followed in larger steps, to limit the work.
 constexpr double kLargestStep = 0.2, kMostSteps = 1e6;
 
-// Returns how many steps it takes to follow w from w0 at the rate
-// dw over `time`, if each turns the ball by `largest_step`.
+// Returns how many steps it takes to follow w from w0 at the rate dw over `time`, if each turns the ball by
+// `largest_step`.
 double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
     return steps < kMostSteps ? steps : kMostSteps;
@@ -188,7 +187,7 @@ Scene scene_after(const Scene& scene, const Record& record) {
     if (!std::equal(scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
                     [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
         throw std::invalid_argument(
-            "the scene has other balls than the record; give the scene of the record");
+            "the scene and the record have different balls; pass the scene of the record");
     Scene after = scene;
     after.cue.reset();
     after.ball.clear();
@@ -196,7 +195,7 @@ Scene scene_after(const Scene& scene, const Record& record) {
         const BallState end = record.state_at(static_cast<int>(i), record.duration);
         if (is_gone(end.state)) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);
-        // One that falls into a pocket begins to fall anew.
+        // A ball that falls into a pocket starts its fall again.
         const double R = record.size(static_cast<int>(i)).R;
         const bool in_air = end.state == MotionState::kAirborne;
         ball.height = in_air ? std::max(0.0, end.position.z() - R) : 0.0;

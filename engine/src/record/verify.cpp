@@ -17,7 +17,7 @@ namespace carom {
 
 namespace {
 
-// Returns the mass over that of a ball without a mass of its own: 1 in most scenes.
+// Returns the ball's mass divided by that in [balls]: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
 }
@@ -58,7 +58,7 @@ class Checker {
                 report("U2", "time falls from {:.17g} to {:.17g} s", last_time, e.time);
             last_time = e.time;
             check_crowd();
-            // Where several events have one instant, the laws hold for the state after the last of them.
+            // If several events have the same time, the laws hold for the state after the last of them.
             const bool last_of_instant =
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
@@ -116,7 +116,8 @@ class Checker {
         for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
             const Event& e = record_.events[k];
             if (!e.slow) continue;
-            // Two balls part at the speed of the larger one, and the heavier one may be the one that flies.
+            // Two balls separate at the speed for the larger one, and the heavier one may be the one that
+            // flies.
             const int other = kind(e.type).partner == Partner::kBall ? e.b : e.a;
             const double larger = std::max(record_.size(e.a).R, record_.size(other).R),
                          heavier = std::max(mass(record_, e.a), mass(record_, other)),
@@ -164,7 +165,7 @@ class Checker {
                 if (gap < -allowed_depth(ball) - other.rounding)
                     report("U3", "balls {} and {} overlap by {:.3g} m", id, record_.tracks[j].id, -gap);
             }
-            // A ball may cross a cushion's line only where the cushion is not.
+            // A ball may cross a cushion's line only beyond the cushion's ends.
             for (const CushionLine& line : plan_.geometry.cushions)
                 if (const double gap = gap_to(line, ball); gap < -allowed_depth(ball))
                     report("U3", "ball {} is {:.3g} m deep in a cushion", id, -gap);
@@ -176,7 +177,7 @@ class Checker {
         }
     }
 
-    // The segment itself is checked, because state_at takes the spin of a rolling ball from its velocity.
+    // Checks the segment itself, because state_at derives the spin of a rolling ball from its velocity.
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const std::vector<Segment>& segments = record_.tracks[i].segments;
@@ -190,14 +191,14 @@ class Checker {
         }
     }
 
-    // Compares the velocities before and after a ball-ball
-    // impact, at the ends of the segments that meet there.
+    // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet
+    // there.
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type != EventType::kBallBall) continue;
-            // This is done only where each ball has exactly one segment that starts
-            // here, because two impacts at one instant cannot be told apart.
+            // Only if each ball has exactly one segment that starts here, because two impacts at one instant
+            // cannot be told apart.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const auto is_free = [this](const Segment& s) {
@@ -224,15 +225,14 @@ class Checker {
             const bool lies = !flies(after1->state) || !flies(after2->state);
             if (free && lies) continue;
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
-            // On the cloth's plane: an impact leaves a fall as it is.
+            // In the plane of the cloth, because an impact does not change a fall.
             const double up1 = free ? after1->v.z() - v1.z() : 0.0, up2 = free ? after2->v.z() - v2.z() : 0.0;
             const Vec3 dv1(after1->v.x() - v1.x(), after1->v.y() - v1.y(), up1),
                 dv2(after2->v.x() - v2.x(), after2->v.y() - v2.y(), up2);
             const Vec3 change = m1 * dv1 + m2 * dv2;
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // During the whole impact the friction of the cloth is at most mu_s times the vertical impulse.
-            // That is the vertical friction, at most mu_b times the normal impulse, and the tilt's share of
-            // that impulse.
+            // During the whole impact the friction of the cloth is at most mu_s times the vertical friction,
+            // which is at most mu_b times the normal impulse.
             const double J_n = std::max(m1 * std::abs(dv1.dot(n3)), m2 * std::abs(dv2.dot(n3)));
             const bool cloth = !free && plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double mu_b = plan_.balls.ball_friction().most(), steep = std::abs(S);

@@ -1,4 +1,4 @@
-// What is checked between the events of a record: overlaps, cushions that are passed, energy.
+// Checks between the events of a record: overlaps, cushions passed through, energy.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,16 @@
 
 namespace carom {
 
-/// [J/kg] Energy of a ball over the mass of a ball without a mass of its own; a ball in a pocket has none.
+/// [J/kg] Energy of a ball, divided by the mass in [balls]; a ball in a pocket has none.
 double ball_energy(const Record& record, int ball, const BallState& state);
 
-/// [J/kg] What the rounding of the heights may change it by, of all balls together.
+/// [J/kg] The rounding of the heights may change the energy of all balls together by this.
 double height_rounding(const Record& record);
 
-/// Looks at the start, the quarters and the middle of every piece of motion between two changes of any
-/// segment, so inside the intervals of resting contacts, too. Laws "U3" and "U4". A cushion that a centre
-/// crosses is found exactly, at any speed.
-/// @param energy  whether energy may never rise
+/// Checks the start, the quarters and the middle of every piece of motion between two changes of any segment,
+/// and so also inside the intervals of resting contacts. Laws "U3" and "U4". A centre that crosses a cushion
+/// is found exactly, at any speed.
+/// @param energy  whether energy must never rise
 std::optional<Violation> verify_between(const Record& record, const Plan& plan, bool energy);
 
 }  // namespace carom

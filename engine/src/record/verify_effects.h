@@ -1,4 +1,4 @@
-// Late need: an effect that the plan left out and that the record shows was needed after all.
+// Effects that the plan skipped although the record shows that they were needed.
 #pragma once
 
 #include <optional>
@@ -7,9 +7,9 @@
 
 namespace carom {
 
-/// Looks at every segment: does a ball meet a cushion or jaw, enter a pocket,
-/// or meet another ball that the plan has no detector for; has it vertical
-/// spin, does it slip or roll where the plan left the friction out. Law "E".
+/// Checks every segment: whether a ball meets a cushion or jaw, enters a pocket, or meets another ball for
+/// which the plan has no detector; and whether it has vertical spin, slips or rolls although the plan skipped
+/// that friction. Law "E".
 std::optional<Violation> verify_skipped(const Record& record, const Plan& plan);
 
 }  // namespace carom

@@ -33,7 +33,7 @@ OrderedJson json_of(const Key& key, const FieldValue& value) {
     return std::get<double>(value);
 }
 
-/// Writes the values that are given under the keys of record files.
+/// Writes the values that are set, under the keys of record files.
 template <class T, std::size_t kRows>
 OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
     OrderedJson json;
@@ -92,7 +92,7 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
     return out;
 }
 
-/// What is written to: an OutputFile, or this.
+/// Output of the writer: an OutputFile, or this.
 struct Text {
     std::string all{};
     void write(std::string_view text) { all += text; }
@@ -145,7 +145,7 @@ void write_all(const Record& record, Sink& file) {
     file.write("}\n");
 }
 
-/// @param name  what the message begins with
+/// @param name  the beginning of the message
 void check_costs(const Record& record, const std::string& name) {
     if (!record.costs.empty() && record.costs.size() != record.events.size()) {
         throw std::runtime_error(name + ": the record has costs for " + std::to_string(record.costs.size()) +

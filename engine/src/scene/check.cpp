@@ -1,4 +1,4 @@
-// Rules that tie the sections of a scene together.
+// Rules that involve several sections of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 namespace carom::detail {
 namespace {
 
-// [1] Part of the largest coordinate by which such an overlap may also be explained: far from the origin
-// (1e5 m) the rounding of a typed coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a
-// difference make up to four roundings.
+// [1] Share of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
+// the rounding of a typed coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference
+// make up to four roundings.
 constexpr double kTouchRounding = 0x1p-51;
 
-/// How deep two things may overlap and still count as touching, at this distance from the origin.
+/// The largest overlap that still counts as touching, at this distance from the origin.
 double touch_tolerance(const Vec2& p) {
     return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
 }
@@ -46,7 +46,7 @@ void check_overlaps(const Section& top, const Scene& scene) {
             const bool lie = scene.ball[i].height == 0.0 && scene.ball[j].height == 0.0;
             const double diameter = lie ? contact_distance(R, other) : R + other;
             const double least = diameter - touch_tolerance(p);
-            // The axes are compared first, because most pairs are far apart.
+            // Compare the axes first, because most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j].position);
             if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
             const double up = scene.ball[i].position.z() - scene.ball[j].position.z();
@@ -66,10 +66,10 @@ void check_reach(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
-        // How deep a ball is in a nose at this horizontal distance.
+        // Depth of a ball in a nose at this horizontal distance.
         const auto depth_at = [&](double distance, double height) {
             const double inset = nose_inset(scene.physics.cushion_touch, R, height);
-            // Inside the circle of a jaw there is no cloth to come down on, however high it starts.
+            // Inside the circle of a jaw there is no cloth to land on, however high the ball starts.
             if (ball.height == 0.0 || distance < 0.0) return R - inset - distance;
             return nose_reach(R, height, inset) - length(Vec2(distance, ball.position.z() - height));
         };
@@ -84,7 +84,7 @@ void check_reach(const Section& top, const Scene& scene) {
     }
 }
 
-/// Refuses a nose at or above the top of a ball, which would meet nothing.
+/// Refuses a nose as high as the top of a ball or higher: no ball could meet it.
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
         for (const BallStart& ball : scene.ball) {
@@ -102,8 +102,8 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
 }
 
-/// Refuses a cloth on which a ball would lose more speed by rolling than by sliding: resting contacts have no
-/// answer there. Without sliding friction (mu_s = 0) there is nothing to compare with.
+/// Refuses a cloth on which rolling would cost a ball more speed than sliding: resting contacts have no
+/// solution there. Without sliding friction (mu_s = 0) there is nothing to compare.
 void check_cloth(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     if (p.mu_s == 0.0 || p.mu_r <= p.mu_s) return;
@@ -116,14 +116,14 @@ void check_cloth(const Section& top, const Scene& scene) {
              p.mu_r, p.mu_s);
 }
 
-/// Why the impact that is integrated cannot take two sizes of the scene; "" where it can.
+/// Why the integrated impact cannot handle two sizes of the scene; "" if it can.
 std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSize& two) {
     const double masses = std::max(one.m, two.m) / std::min(one.m, two.m);
     const double radii = std::max(one.R, two.R) / std::min(one.R, two.R);
     if (!(masses <= kernel::kLargestMassRatio))
-        return fmt::format("takes masses of a ratio up to {}", kernel::kLargestMassRatio);
+        return fmt::format("accepts mass ratios up to {}", kernel::kLargestMassRatio);
     if (!(radii <= kernel::kLargestRadiusRatio))
-        return fmt::format("takes radii of a ratio up to {}", kernel::kLargestRadiusRatio);
+        return fmt::format("accepts radius ratios up to {}", kernel::kLargestRadiusRatio);
     const kernel::ImpactParams params{.R = one.R,
                                       .m = one.m,
                                       .mu_s1 = scene.balls.mu_s,
@@ -141,12 +141,12 @@ std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSiz
         params.mu_s1, params.mu_b);
 }
 
-/// Refuses balls of different size where the models of the scene have no formula for them.
+/// Refuses balls of different size if the models of the scene have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
     if (scene.physics.cushion_touch == CushionTouch::kNose)
         top.fail(top.where("physics", "cushion_touch"),
-                 "physics.cushion_touch = \"nose\" takes balls that are alike; leave it out");
+                 "physics.cushion_touch = \"nose\" needs balls of equal size; leave it out");
     const BallBallModelInfo& model = *scene.physics.ball_ball;
     const bool rough = model.reads_friction && scene.balls.ball_friction().any();
     const BallSize first = scene.size_of(scene.ball.front());
@@ -192,7 +192,7 @@ void check_cushion_model(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check(*scene.physics.jaw_model(), "jaw", j.id, j.height);
 }
 
-/// Refuses what a planar scene cannot do.
+/// Refuses all that a planar scene cannot do.
 void check_vertical(const Section& top, const Scene& scene) {
     if (scene.physics.vertical == Vertical::kKeep) return;
     for (const BallStart& ball : scene.ball)
@@ -215,18 +215,42 @@ void check_vertical(const Section& top, const Scene& scene) {
             "remove one of the two");
 }
 
-/// Refuses a bed without a surface, and balls in the air beside it.
+/// Refuses a bed without area, and balls in the air outside it.
 void check_bed(const Section& top, const Scene& scene) {
     if (!scene.table.bed) return;
     const Rectangle& bed = *scene.table.bed;
     if (!(bed[0] < bed[2]) || !(bed[1] < bed[3]))
-        top.fail(top.where("table", "bed"),
-                 "table.bed = [{}, {}, {}, {}] has no surface; give the corner of smallest x and y, then the "
-                 "opposite one",
-                 bed[0], bed[1], bed[2], bed[3]);
+        top.fail(
+            top.where("table", "bed"),
+            "table.bed = [{}, {}, {}, {}] encloses no area; give the corner of smallest x and y, then the "
+            "opposite one",
+            bed[0], bed[1], bed[2], bed[3]);
     for (const BallStart& ball : scene.ball) {
         if (!ball.flies() || is_inside(bed, planar(ball.position))) continue;
-        top.fail(ball.where, "ball {} starts in the air beside table.bed; move it", in_quotes(ball.id));
+        top.fail(ball.where, "ball {} starts in the air outside table.bed; move it", in_quotes(ball.id));
+    }
+}
+
+/// Refuses balls in the air behind the cushions of a table by name: they would come down on its rail.
+void check_rails(const Section& top, const Scene& scene) {
+    const Table& table = scene.table;
+    if (table.preset.empty() || table.bed) return;
+    const Vec2 low = table.corner, high = low + Vec2(table.width, table.length);
+    // Exactly above a nose it is behind it if it moves there.
+    const auto next = [](double x, double v) {
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        return v == 0.0 ? x : std::nextafter(x, v > 0.0 ? kFar : -kFar);
+    };
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 p(next(ball.position.x(), ball.velocity.x()), next(ball.position.y(), ball.velocity.y()));
+        if (!ball.flies() || is_inside(Rectangle(low.x(), low.y(), high.x(), high.y()), p)) continue;
+        // Between two jaws there is cloth, at most R beyond the line of the noses, and then the pocket.
+        const double R = scene.size_of(ball).R;
+        const bool in_mouth = std::any_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& k) {
+            return length(p - k.center) < k.radius + 2.0 * R;
+        });
+        if (in_mouth) continue;
+        top.fail(ball.where, "ball {} starts in the air behind the cushions; move it", in_quotes(ball.id));
     }
 }
 
@@ -245,7 +269,7 @@ bool cushions_twist(const Scene& scene) {
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }
 
-/// Which motions can occur in a scene.
+/// The motions that can occur in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
     bool slip = false;    ///< some ball can slide on the cloth
@@ -267,7 +291,7 @@ Motions possible_motions(const Scene& scene) {
         m.twist = m.twist || ball.spin.z() != 0.0;
     }
     if (!m.travel) return m;
-    // An impact can turn rolling into sliding and, with friction, make vertical spin.
+    // An impact can turn rolling into sliding and, with friction, cause vertical spin.
     const bool cushions = !scene.table.cushions.empty() || !scene.table.jaws.empty();
     const bool pairs = scene.ball.size() > 1;
     m.slip = m.slip || cushions || pairs;
@@ -299,6 +323,7 @@ void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_cloth(top, scene);
     check_vertical(top, scene);
     check_bed(top, scene);
+    check_rails(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);

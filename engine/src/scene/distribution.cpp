@@ -22,7 +22,7 @@ toml::array arguments(std::string_view name, std::string_view text) {
     if (const auto deep = too_deep(line)) fail("values of {}: {}", name, deep->what);
     try {
         const toml::table table = toml::parse(line);
-        // Whatever closes the bracket early could bring keys of its own.
+        // Text that closes the bracket early could add further keys.
         if (const toml::array* array = table["v"].as_array(); array && table.size() == 1) return *array;
     } catch (const toml::parse_error&) {
     }
@@ -34,7 +34,7 @@ toml::array arguments(std::string_view name, std::string_view text) {
 
 namespace {
 
-/// Value `i` of the list, read by a door of toml_number.h.
+/// Value `i` of the list, read by a function of toml_number.h.
 template <class Read>
 auto value(std::string_view name, const toml::array& list, std::size_t i, const Read& read) {
     try {
@@ -85,7 +85,7 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
     if (name == "integer") {
         need(2, 2, "integer(a,b)");
         const std::int64_t low = whole(name, list, 0), high = whole(name, list, 1);
-        // The draw takes 32 bits: up to 2^31 - 1 values.
+        // The draw has 32 bits: up to 2^31 - 1 values.
         constexpr std::int64_t kMost = 1000000000;
         if (low < -kMost || high > kMost || high < low)
             fail("integer(a,b) needs {} <= a <= b <= {}", -kMost, kMost);

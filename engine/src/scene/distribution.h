@@ -21,20 +21,19 @@ template <class... Values>
     throw std::invalid_argument(fmt::format(message, std::forward<Values>(values)...));
 }
 
-/// A drawn value; a node belongs to the distribution.
+/// A drawn value; the distribution owns the node.
 using Drawn = std::variant<double, std::int64_t, const toml::node*>;
 
-/// Draws a value.
 using Distribution = std::function<Drawn(SplitMix64& random)>;
 
-/// What stands between the brackets of `name`(`text`), as TOML values. @throws std::invalid_argument
+/// The text between the brackets of `name`(`text`), as TOML values. @throws std::invalid_argument
 toml::array arguments(std::string_view name, std::string_view text);
 
 /// @param text  "uniform(0,1)" and the like
-/// @param own  the number that the file has, null where there is none; normal(sd) is around it
-/// @throws std::invalid_argument saying what is wrong
+/// @param own  the number in the file, or null; normal(sd) is centred on it
+/// @throws std::invalid_argument that says what is wrong
 Distribution parse_distribution(std::string_view text, const toml::node* own);
-/// What a distribution that can be read draws: a list has whole numbers only where all of it are.
+/// The type of a valid distribution's values. A list has whole numbers only if all its values are whole.
 ValueKind kind_of(std::string_view text);
 
 }  // namespace carom::detail

@@ -1,5 +1,5 @@
-// Balls, cloths and cues that come with the program. "Measured", "published" and how far to trust each
-// number: docs/reference/physics.md, "Where the numbers come from".
+// The balls, cloths and cues that come with the program. Sources of the numbers, and how far to trust them:
+// docs/reference/physics.md, "Where the numbers come from".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct BallPreset {
     BallSize cue = {0.0, 0.0};  ///< of the cue ball; R = 0: as the others
 };
 
-/// What simulators have in common: one set of coefficients for every
-/// game, and a friction between balls that does not depend on their slip.
+/// The values that most simulators share: one set of coefficients for every game, and friction between balls
+/// that does not depend on their slip.
 constexpr BallParams classic(double R, double m) {
     return {.R = R,
             .m = m,
@@ -46,17 +46,17 @@ constexpr BallParams pool() {
     return p;
 }
 
-/// Rolling friction: Mathavan, Jackson, Parkin (2009), 0.124 to 0.126 m/s^2. Cushion:
-/// the same authors' rebounds of a rolling ball, which their model of 2010 meets with
-/// 0.98 and 0.14; the models of an impact in the air lose 27 % of the speed more.
+/// Rolling friction: Mathavan, Jackson, Parkin (2009), 0.124 to 0.126 m/s^2. Cushion: the same authors'
+/// rebounds of a rolling ball, which their model of 2010 reproduces with 0.98 and 0.14. The models of an
+/// impact in the air lose 27 % more of the speed.
 constexpr BallParams snooker() {
     BallParams p = kSnookerClassic;
     p.mu_r = 0.0128, p.e_c = 0.98, p.f_c = 0.14;
     return p;
 }
 
-/// Measured on 182 tracked shots of a three-cushion match:
-/// rolling friction of 1900 stretches, cushion of 54 paths.
+/// Measured on 182 tracked shots of a three-cushion match: rolling friction from 1900 stretches, cushion from
+/// 54 paths.
 constexpr BallParams carom_balls() {
     BallParams p = kCaromClassic;
     p.mu_r = 0.0045, p.e_c = 0.87, p.f_c = 0.26;
@@ -95,9 +95,9 @@ struct CuePreset {
     double restitution;
 };
 
-/// In the order of kCuePresets. End masses: pool ball over the ratios of Alciatore's TP
-/// B.1 (Predator Z 29.2 and similar; Players 20.1; Stinger break cue 12.0). Restitution:
-/// leather 0.71 to 0.75, phenolic 0.81 to 0.87 (Alciatore, physical properties).
+/// In the order of kCuePresets. End masses: the mass of a pool ball divided by the ratios of Alciatore's TP
+/// B.1 (Predator Z 29.2 and similar; Players 20.1; Stinger break cue 12.0). Restitution: leather 0.71 to
+/// 0.75, phenolic 0.81 to 0.87 (Alciatore, physical properties).
 constexpr CuePreset kCues[] = {{"low_deflection", 0.567, 0.00567, 0.73},
                                {"plain", 0.567, 0.00844, 0.73},
                                {"break", 0.567, 0.01417, 0.84},

@@ -37,7 +37,8 @@ std::size_t element_index(std::string_view name) {
     std::size_t index = 0;
     const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), index);
     if (error != std::errc() || rest != name.data() + name.size())
-        fail("{} is no element of an array; use x, y, z, side, height or its number from 0", in_quotes(name));
+        fail("{} is not an element of an array; use x, y, z, side, height or an index from 0",
+             in_quotes(name));
     return index;
 }
 

@@ -8,14 +8,14 @@
 
 namespace carom::detail {
 
-/// Takes "name." from the front of a key; false where the key does not begin so.
+/// Removes "name." from the front of a key; false if the key does not begin with it.
 bool take(std::string_view& key, std::string_view name);
 
-/// Takes the name of a part of the table from the front of a key ("c2" in the list
-/// "cushion"), and returns its place in the list. @throws std::invalid_argument
+/// Removes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns
+/// its index in the list. @throws std::invalid_argument
 std::size_t take_part(std::string_view& key, const std::string& list);
 
-/// Returns the place in an array that "x", "side" or "0" stands for. @throws std::invalid_argument
+/// Returns the index in an array of "x", "side" or "0". @throws std::invalid_argument
 std::size_t element_index(std::string_view name);
 
 }  // namespace carom::detail

@@ -18,7 +18,7 @@ namespace {
 void check_size(std::string_view text, const std::string& name) {
     if (text.size() <= kMaxFileSize) return;
     throw SceneError(name, {},
-                     fmt::format("is larger than {} MiB; a scene file is a few lines", kMaxFileSize >> 20));
+                     fmt::format("is larger than {} MiB; check that it is a scene file", kMaxFileSize >> 20));
 }
 
 [[noreturn]] void cannot_read(const std::string& path, const std::string& why) {
@@ -50,10 +50,9 @@ toml::table toml_from(std::string_view text, const std::string& name) {
     check_size(text, name);
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first != text.npos && text[first] == '{')
-        throw SceneError(
-            name, {1, 1},
-            "this is JSON, and a scene is TOML; if it is a record, carom render, view, export and "
-            "compare take it");
+        throw SceneError(name, {1, 1},
+                         "this is JSON, but a scene is TOML; if it is a record, pass it to carom render, "
+                         "view, export or compare");
     if (const auto deep = too_deep(text)) throw SceneError(name, deep->where, deep->what);
     try {
         return toml::parse(text, name);
@@ -64,9 +63,9 @@ toml::table toml_from(std::string_view text, const std::string& name) {
         if (what.find("redefine") != std::string_view::npos) {
             throw SceneError(
                 name, where,
-                fmt::format("this key or section is there already; keep one of the two ({})", what));
+                fmt::format("this key or section appears twice; keep one of the two ({})", what));
         }
-        throw SceneError(name, where, fmt::format("not valid TOML; correct this place ({})", what));
+        throw SceneError(name, where, fmt::format("not valid TOML; correct it here ({})", what));
     }
 }
 

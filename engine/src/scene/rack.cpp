@@ -13,7 +13,7 @@
 namespace carom {
 namespace {
 
-/// Returns the number of balls in each row, from the apex.
+/// Number of balls in each row, from the apex.
 std::vector<int> rows_of(const Rack& rack) {
     if (rack.game == RackGame::kThreeCushion) return {};
     if (rack.game == RackGame::kNineBall) return {1, 2, 3, 2, 1};
@@ -31,8 +31,8 @@ void shuffle(std::vector<int>& numbers, SplitMix64& random) {
     }
 }
 
-/// By the world standardised rules the 8 lies in the middle of the third row,
-/// one solid and one stripe in the back corners, and the rest at random.
+/// By the world standardised rules, the 8 lies in the middle of the third row, one solid and one stripe in
+/// the back corners, and the rest at random.
 std::vector<int> eight_ball_numbers(SplitMix64& random) {
     const int solid = 1 + random.below(7);
     const int stripe = 9 + random.below(7);
@@ -48,7 +48,7 @@ std::vector<int> eight_ball_numbers(SplitMix64& random) {
     return numbers;
 }
 
-/// The 1 lies at the apex, the last one, 9 or 10, in the middle of the third row, and the rest at random.
+/// The 1 lies at the apex, the last ball (9 or 10) in the middle of the third row, and the rest at random.
 std::vector<int> rotation_numbers(int last, SplitMix64& random) {
     std::vector<int> numbers(static_cast<std::size_t>(last - 2));
     std::iota(numbers.begin(), numbers.end(), 2);
@@ -67,10 +67,10 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     return out;
 }
 
-/// Balls with a spot of their own. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of
-/// the D is 292 mm, and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1).
-/// Three-cushion: white is 182.5 mm to the left of yellow, which is on the head spot (opening position of the
-/// rules of the UMB; measured in the first shot of a match: 178.5 +- 2 mm).
+/// Balls that have spots. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is
+/// 292 mm, and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion:
+/// white is 182.5 mm to the left of yellow, which is on the head spot (opening position of the rules of the
+/// UMB; measured in the first shot of a match: 178.5 +- 2 mm).
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 origin = table.corner;
     const double middle = table.width / 2.0, l = table.length;
@@ -89,7 +89,7 @@ std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
             {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
 }
 
-/// Returns the places without jitter, row by row from left to right.
+/// Positions without jitter, row by row from left to right.
 std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
     const double pitch = 2.0 * R + rack.gap;
     const double row_pitch = rack.game == RackGame::kLine ? pitch : pitch * (std::sqrt(3.0) / 2.0);
@@ -100,8 +100,8 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
         for (int k = 0; k < rows[row]; ++k) {
             const int twice = 2 * k - (rows[row] - 1);  // half pitches from the axis, with sign
             const double aside = std::abs(twice) * (0.5 * pitch);
-            // Rounded to what apex.x + aside can hold, apex.x +- offset are both exact, so left and right
-            // mirror bit for bit.
+            // With the offset rounded to what apex.x + aside can represent, apex.x +- offset are both exact,
+            // so that left and right mirror each other bit for bit.
             const double offset = (std::abs(apex.x()) + aside) - std::abs(apex.x());
             out.emplace_back(twice < 0 ? apex.x() - offset : apex.x() + offset, y);
         }
@@ -109,14 +109,13 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
     return out;
 }
 
-/// Metropolis sampling of hard discs. Every step is a valid rack; the first one is the rack without jitter.
+/// Metropolis sampling of hard discs, starting with the rack without jitter. Every step is a valid rack.
 void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
-    // With a gap of 0 only the balls at the rim can move at
-    // first; after a hundred rounds every ball has moved.
+    // With a gap of 0, only the outer balls can move at first; after a hundred rounds every ball has moved.
     constexpr int kRounds = 100;
     const std::vector<Vec2> slots = places;
     const double contact = 4.0 * R * R;
-    const double reach = 2.0 * R + 3.0 * rack.jitter;  // two corners of two boxes, 2 sqrt(2) jitter
+    const double reach = 2.0 * R + 3.0 * rack.jitter;  // opposite corners of two boxes, 2 sqrt(2) jitter
     std::vector<std::vector<std::size_t>> near(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i) {
         for (std::size_t j = 0; j < slots.size(); ++j) {

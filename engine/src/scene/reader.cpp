@@ -40,7 +40,7 @@ SourceLocation place(const toml::source_region& region) {
 Section::Section(const toml::table& table, const std::string& file, std::string path,
                  const std::vector<std::string_view>& keys)
     : table_(&table), file_(file), path_(std::move(path)), where_(place(table.source())) {
-    // toml++ sorts its keys; report the unknown one that comes first in the file.
+    // toml++ sorts its keys; report the first unknown one in the file.
     const toml::key* unknown = nullptr;
     for (auto&& [key, value] : table) {
         if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;

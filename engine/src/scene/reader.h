@@ -1,5 +1,5 @@
-// A typed reader over toml++: every value is checked where
-// it is read, and every error names its place in the file.
+// A typed reader over toml++: every value is checked when it is read, and every error says where it is in the
+// file.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,16 +21,15 @@ using carom::in_quotes;
 
 SourceLocation place(const toml::source_region& region);
 
-/// A key that a section does not have, or a section that there is not (`section` is "").
+/// A key that a section does not have, or a section that does not exist (`section` is "").
 class UnknownKey : public SceneError {
   public:
     UnknownKey(const std::string& file, SourceLocation where, std::string_view key,
                const std::string& section, const std::vector<std::string_view>& keys);
 };
 
-/// Reads one table of the file. `path` names it in messages ("cue",
-/// "table.cushion"); the file as a whole is "". A section of a scene that was
-/// built in code has no table: it only checks, and its errors have no place.
+/// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); it is "" for the whole
+/// file. A section of a scene built in code has no table: it only checks, and its errors have no location.
 class Section {
   public:
     Section(const std::string& file, std::string path) : file_(file), path_(std::move(path)) {}
@@ -42,9 +41,9 @@ class Section {
     SourceLocation where() const { return where_; }
     const std::string& file() const { return file_; }
     bool has(std::string_view key) const { return table_ != nullptr && table_->contains(key); }
-    /// Where a key's value stands, or the section if the key is absent.
+    /// Location of a key's value, or of the section if the key is absent.
     SourceLocation where(std::string_view key) const;
-    /// The same of a key in a section inside this one.
+    /// The same for a key in a section inside this one.
     bool has(std::string_view section, std::string_view key) const {
         return table_ != nullptr && bool((*table_)[section][key]);
     }
@@ -54,7 +53,7 @@ class Section {
     static SourceLocation where(const toml::node& node) { return place(node.source()); }
     static SourceLocation where(SourceLocation known) { return known; }
 
-    /// Takes over what the section says; where it says nothing, the object stays as it is.
+    /// Reads the values that the section has; the rest of the object stays as it is.
     template <class T, std::size_t kRows>
     void read(const Field<T> (&fields)[kRows], T& object) const {
         for (const Field<T>& f : fields) {
@@ -69,7 +68,7 @@ class Section {
         return table_ != nullptr ? (*table_)[section][key].value<std::string>() : std::nullopt;
     }
 
-    /// Refuses what a file could not say, in the order of the rows.
+    /// Refuses values that a file could not have, in the order of the rows.
     template <class T, std::size_t kRows>
     void check(const Field<T> (&fields)[kRows], const T& object) const {
         for (const Field<T>& f : fields) {
@@ -80,9 +79,9 @@ class Section {
     /// The same for one value.
     void check(const Key& key, const FieldValue& value) const;
 
-    /// A section inside this one, if it is there.
+    /// A section inside this one, if it exists.
     std::optional<Section> section(const char* key, const std::vector<std::string_view>& keys) const;
-    /// The same, taken over into the object.
+    /// The same, and its values are read into the object.
     template <class T, std::size_t kRows>
     std::optional<Section> read(const char* key, const Field<T> (&fields)[kRows], T& object) const {
         std::optional<Section> inner = section(key, keys_of(fields, Files::kScene));
@@ -92,7 +91,7 @@ class Section {
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
 
-    /// Throws a SceneError at a key, a node or a place; the message and its values are as for fmt::format.
+    /// Throws a SceneError at a key, a node or a location; the message and its values are as for fmt::format.
     template <class At, class... Values>
     [[noreturn]] void fail(const At& at, fmt::format_string<Values...> message, Values&&... values) const {
         throw SceneError(file_, where(at), fmt::format(message, std::forward<Values>(values)...));

@@ -24,10 +24,10 @@ using detail::Section;
 using detail::take;
 using detail::take_part;
 
-// [-] Integers beyond this are not all doubles.
+// [-] Larger integers are not all exact as doubles.
 constexpr double kMostWhole = 0x1p53;
 
-/// Takes a number for an integer, as a scene file does.
+/// Reads a number as an integer, as a scene file does.
 std::int64_t whole(const Scene& scene, const Key& row, const char* section, double value) {
     const Section place(scene.file, section);
     if (value != std::floor(value))
@@ -46,8 +46,8 @@ struct Found {
 };
 
 /// The number that `key` names in the rows of a section.
-/// @param at  from a scene to the object with the rows
-/// @param change  what has to be checked after a change within the range
+/// @param at  returns the object with the rows, given a scene
+/// @param change  what must be checked after a change within the range
 template <class T, std::size_t kRows, class At>
 Found find(const Field<T> (&fields)[kRows], const char* section, std::string_view key, Change change, At at) {
     const std::size_t dot = key.find('.');
@@ -73,7 +73,7 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
                     }};
         break;
     }
-    fail("it names no number in [{}]{}", section,
+    fail("there is no such number in [{}]{}", section,
          did_you_mean(key.substr(0, dot), keys_of(fields, Files::kScene)));
 }
 
@@ -106,7 +106,7 @@ Found find_in_ball(const Scene& scene, std::string_view key) {
         };
         return found;
     }
-    fail("it names no ball; write ball.ID.position.x with one of these ids: {}", ids);
+    fail("there is no such ball; write ball.ID.position.x with one of these ids: {}", ids);
 }
 
 Found find_in_balls(std::string_view key) {

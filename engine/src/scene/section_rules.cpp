@@ -1,4 +1,4 @@
-// Rules about the values of one section that no range of a single key says.
+// Rules about the values of one section that go beyond the range of a single key.
 #include <fmt/format.h>
 
 #include <string>
@@ -17,24 +17,24 @@ void check_id(const Section& section, const std::string& id) {
     if (id.empty()) section.fail("id", "a ball's id is empty; give it a name");
     if (id.size() > kMaxIdLength)
         section.fail("id", "the ball id {} is longer than {} bytes; shorten it", in_quotes(id), kMaxIdLength);
-    if (!is_utf8(id)) section.fail("id", "the ball id {} is not UTF-8; write it so", in_quotes(id));
+    if (!is_utf8(id)) section.fail("id", "the ball id {} is not UTF-8; convert it", in_quotes(id));
     if (!is_plain(id) || id.find_first_of(",;\"") != id.npos)
         section.fail(
-            "id", "the ball id {} holds a comma, a semicolon, a quote or a control character; leave it out",
+            "id", "the ball id {} contains a comma, a semicolon, a quote or a control character; remove it",
             in_quotes(id));
-    // A program for tables takes these for formulas, and a shell the last one for an option.
+    // A spreadsheet takes these for formulas, and a shell takes the last one for an option.
     if (id.find_first_of("=+@-") == 0)
         section.fail("id", "the ball id {} begins with {}; begin it with a letter or a digit", in_quotes(id),
                      in_quotes(id.substr(0, 1)));
     const bool numbered = id.size() > 1 && id.find_first_not_of("0123456789", 1) == id.npos;
     if (numbered && (id[0] == 'c' || id[0] == 'j' || id[0] == 'p'))
-        section.fail("id", "the ball id {} is the name of a cushion, a jaw or a pocket; take another one",
+        section.fail("id", "the ball id {} is the name of a cushion, a jaw or a pocket; choose another",
                      in_quotes(id));
 }
 
 void check_fits(const Section& section, const BallParams& balls) {
     if (balls.e_c > 1.0)
-        section.fail("e_c_fit", "balls.e_c_fit starts at a restitution of {}; give 0 to 1", balls.e_c);
+        section.fail("e_c_fit", "balls.e_c_fit starts at a restitution of {}; use 0 to 1", balls.e_c);
 }
 
 void check_cushion(const Section& section, const Cushion& cushion) {
@@ -76,19 +76,19 @@ void check_cue(const Section& section, const Scene& scene, const Cue& cue) {
 void check_kernel(const Section& top, const Scene& scene) {
     if (scene.physics.march == March::kPublished && !scene.physics.substeps)
         top.fail(top.where("physics", "march"),
-                 "physics.march = \"published\" says how substeps are done, and there are none; leave it "
-                 "out, or set "
-                 "physics.substeps = 1000");
+                 "physics.march = \"published\" needs physics.substeps; set physics.substeps = 1000, or "
+                 "leave march out");
     const BallParams& p = scene.balls;
     for (const auto& [key, value] :
          {std::pair{"mu_s", p.mu_s},
           std::pair{p.mu_b_more > 0.0 ? "mu_b_fit" : "mu_b", p.mu_b + p.mu_b_more}}) {
         if (value > kernel::kLargestFriction && scene.physics.ball_ball->reads_tolerance &&
             !scene.physics.substeps)
-            top.fail(top.where("balls", key),
-                     "balls.{} = {}: the impact by tolerance takes frictions up to {}; lower it, or set "
-                     "physics.substeps = 1000",
-                     key, value, kernel::kLargestFriction);
+            top.fail(
+                top.where("balls", key),
+                "balls.{} = {}: an impact solved to a tolerance accepts friction up to {}; lower it, or set "
+                "physics.substeps = 1000",
+                key, value, kernel::kLargestFriction);
     }
 }
 

@@ -31,7 +31,7 @@ BallStart read_ball(const Section& s, const BallSize& common, const std::optiona
     return ball;
 }
 
-/// The keys of a section whose rows stand in two tables.
+/// The keys of a section whose rows are in two tables.
 std::vector<std::string_view> joined(std::vector<std::string_view> keys,
                                      const std::vector<std::string_view>& more) {
     keys.insert(keys.end(), more.begin(), more.end());
@@ -81,17 +81,15 @@ void read_rack(const Section& top, Scene& scene) {
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
     for (const char* key : {"position", "spot_ball", "angle_deg"})
         if (spots && s->has(key))
-            s->fail(
-                key,
-                "rack.{} moves a rack, and the balls of this game stand on spots of the table; leave it out",
-                key);
+            s->fail(key,
+                    "rack.{} moves a rack, but the balls of this game have spots of their own; leave it out",
+                    key);
     if (spots && !(scene.table.length > 0.0)) {
-        s->fail("game",
-                "this layout puts balls on the spots of a table, and the cloth is endless; choose a table");
+        s->fail("game", "this layout needs the spots of a table, but the cloth is endless; choose a table");
     }
     if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
-        s->fail("spot_ball", "rack.spot_ball = {}: the balls of this rack are 1 to {}; name one of them",
-                *rack.spot_ball, balls_of(rack));
+        s->fail("spot_ball", "rack.spot_ball = {} is not in this rack; choose 1 to {}", *rack.spot_ball,
+                balls_of(rack));
     for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
         if (scene.ball.size() == kMaxBalls)
             s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);

@@ -1,4 +1,4 @@
-// One reader per section of a scene file. Each takes the file's top level and fills its part of the scene.
+// One reader per section of a scene file. Each takes the file's top level and reads its part of the scene.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +11,46 @@
 
 namespace carom::detail {
 
-/// Also the cushion model that goes with the balls.
+/// Also sets the cushion model that goes with the balls.
 void read_balls(const Section& top, Scene& scene);
 /// Gives the parts of a table their ids: "c1", "c2", ..., "j1", ..., "p1", ...
 void number_parts(Table& table);
-/// Needs scene.balls (default nose height), and sets their rolling friction where the cloth has a name.
+/// Needs scene.balls (default nose height), and sets their rolling friction if the cloth has a name.
 void read_table(const Section& top, Scene& scene);
-/// Written balls. Needs scene.balls.
+/// Balls placed one by one. Needs scene.balls.
 void read_ball_list(const Section& top, Scene& scene);
-/// Racked balls, after the written ones. Needs scene.balls and scene.table.
+/// Racked balls, after the others. Needs scene.balls and scene.table.
 void read_rack(const Section& top, Scene& scene);
 /// Needs scene.ball.
 void read_cue(const Section& top, Scene& scene);
-/// After the balls.
+/// Call after read_balls().
 void read_physics(const Section& top, Scene& scene);
-/// Checked against what the scene needs when it is planned.
+/// The plan checks these against what the scene needs.
 void read_effects(const Section& top, Scene& scene);
 void read_stop(const Section& top, Scene& scene);
 void read_render(const Section& top, Scene& scene);
 
-/// Rules about one section, for files and for scenes that were built in code. @throws SceneError
+/// Rules about one section, for files and for scenes built in code. @throws SceneError
 void check_id(const Section& section, const std::string& id);
 void check_fits(const Section& section, const BallParams& balls);
 void check_cushion(const Section& section, const Cushion& cushion);
-/// Also that the ball is there and at rest.
+/// Also checks that the ball exists and is at rest.
 void check_cue(const Section& section, const Scene& scene, const Cue& cue);
-/// Whether the kernel takes the friction of the balls, and [physics] asks for one kernel.
+/// Whether the kernel accepts the friction of the balls, and [physics] asks for only one kernel.
 void check_kernel(const Section& top, const Scene& scene);
 void check_camera(const Section& section, const RenderSettings& render);
 
-/// What no single section can see: ids that are used twice, balls that overlap or reach into a cushion, noses
-/// no ball can meet, a run that would never end. @throws SceneError
+/// Rules that no single section can check: repeated ids, balls that overlap or reach into a cushion, noses
+/// that no ball can meet, a run that would never end. @throws SceneError
 void check_scene(const Section& top, const Scene& scene);
-/// All that changed numbers can break, of the rules of sections and of check_scene(). @throws SceneError
+/// All the rules that changed numbers can break, of sections and of check_scene(). @throws SceneError
 void check_again(const Section& top, const Scene& scene, Change change);
 
-/// A file as toml++ reads it. @throws SceneError where it cannot be read or is no TOML
+/// A file as toml++ reads it. @throws SceneError if it cannot be read or is not TOML
 toml::table read_toml(const std::string& path);
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; messages call the file `name`.
 toml::table toml_from(std::string_view text, const std::string& name);
-/// From there to a validated scene; `name` stands for the file in messages. @throws SceneError
+/// The validated scene of a file; messages call the file `name`. @throws SceneError
 Scene scene_from(const toml::table& file, const std::string& name);
 
 }  // namespace carom::detail

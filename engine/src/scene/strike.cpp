@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-/// The least and the greatest value that the row of a number of the cue allows.
+/// The smallest and the largest value that the row of one of the cue's numbers allows.
 std::pair<double, double> ends_of(std::string_view key) {
     const Interval range = std::find_if(std::begin(kCueFields), std::end(kCueFields), [key](const auto& f) {
                                return f.key == key;
@@ -36,7 +36,7 @@ Cue legal_strike(Cue cue) {
     const auto beyond = [&cue] {
         return cue.side * cue.side + cue.height * cue.height > kMiscueOffset * kMiscueOffset;
     };
-    // Divided first, so that no square overflows; a last step of rounding may lie outside, and is taken back.
+    // Divided first, so that no square overflows. Rounding may leave it outside by a bit, so repeat.
     if (const double most = std::max(std::abs(cue.side), std::abs(cue.height)); most > 1.0) {
         cue.side /= most;
         cue.height /= most;

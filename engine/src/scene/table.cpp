@@ -1,4 +1,4 @@
-// The section [table]: a preset, or an outline of its own.
+// The section [table]: a preset or a custom outline.
 #include <fmt/format.h>
 
 #include <limits>
@@ -32,7 +32,7 @@ void read_parts(const Section& outline, const char* key, const Field<Part> (&fie
     }
 }
 
-/// Box around the cushions; around jaws and pockets where there are none.
+/// Box around the cushions, or around jaws and pockets if there are none.
 void set_surface(Table& table) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec2 low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);

@@ -18,10 +18,10 @@
 namespace carom {
 namespace {
 
-/// What defines a table with six pockets. Lengths in m, angles in degrees.
+/// Dimensions of a table with six pockets. Lengths in m, angles in degrees.
 struct PocketTable {
     double length, width;  ///< between nose lines
-    double cushion_width;  ///< the jaw facings reach back this far behind the nose line
+    double cushion_width;  ///< how far the jaw facings extend behind the nose line
     double nose_height;
     double corner_mouth;   ///< between the points where the facings' lines meet the nose lines
     double corner_angle;   ///< facing against the direction into the pocket (45 degrees to the rails)
@@ -33,13 +33,13 @@ struct PocketTable {
     double side_depth;
     double side_radius;
     double side_jaw_radius;
-    double side_run;  ///< how far the side facing closes in, per length of depth: tan(side_angle) when
-                      ///< straight on
+    /// how far the side facing closes in, per length of depth: tan(side_angle) if straight
+    double side_run;
 };
 
-/// Seven-foot table. Numbers of pooltool 0.6.0 for a Showood table; its side facings end at sin(angle)
-/// instead of tan(angle) times the depth, 5e-5 m off the tangent, and that is kept so that the two tables are
-/// the same one.
+/// Seven-foot table. The numbers are those of pooltool 0.6.0 for a Showood table. Its side facings end at
+/// sin(angle) instead of tan(angle) times the depth, 5e-5 m off the tangent; that is kept, so that the two
+/// tables are equal.
 PocketTable seven_foot() {
     constexpr double kSideAngle = 7.14;
     return {.length = 1.9812,
@@ -62,8 +62,7 @@ PocketTable seven_foot() {
 /// [m] Shelf of a corner pocket, from the middle of the mouth to the edge where the ball falls: 1 3/4 in, the
 /// middle of the BCA's 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
 constexpr double kCornerShelf = 1.75 * 0.0254;
-/// [m] How far the point where a nose goes over into a facing is rounded:
-/// the facings of a pool table have none but that of the rubber.
+/// [m] Radius of the point between a nose and a facing: on a pool table only the rubber rounds it.
 constexpr double kPointRadius = 0.003;
 
 /// The depth of the pocket's centre that gives this shelf.
@@ -71,11 +70,11 @@ double depth_of_shelf(const PocketTable& t, double shelf) {
     return shelf + t.corner_radius - t.corner_mouth / 2.0;
 }
 
-/// Nine-foot table. Playing surface 100 x 50 in; the mouths are the middle of what the WPA equipment
-/// specifications allow (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail and
-/// facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
-/// ball's diameter, lies within their 62.5 to 64.5 %. Carried over from the seven-foot table: cushion width,
-/// pocket radii and the depth at the sides, which gives a shelf of 4 mm there (specified: 0 to 9.5 mm).
+/// Nine-foot table. The playing surface is 100 x 50 in. The mouths are the middle of the range in the WPA
+/// equipment specifications (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail
+/// and facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
+/// ball's diameter, is within the specified 62.5 to 64.5 %. Cushion width, pocket radii and the depth at the
+/// sides are those of the seven-foot table; the shelf there is then 4 mm (specified: 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
@@ -91,7 +90,7 @@ PocketTable nine_foot() {
 }
 
 /// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications
-/// (tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table: the
+/// (tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table, because the
 /// specification has one set for both.
 PocketTable eight_foot() {
     PocketTable t = nine_foot();
@@ -100,9 +99,9 @@ PocketTable eight_foot() {
     return t;
 }
 
-/// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40
-/// in (Valley, Diamond), mouths of Valley's (corner 4 7/8, side 4 3/4 in), angles
-/// of the BCA (corner 142, side 103 degrees). The rest as for the nine-foot table.
+/// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond),
+/// mouths of Valley's (corner 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). The
+/// rest is as for the nine-foot table.
 PocketTable bar_table() {
     PocketTable t = nine_foot();
     t.length = 80.0 * 0.0254;
@@ -117,9 +116,9 @@ PocketTable bar_table() {
 
 /// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the
 /// WPBSA, section 1). Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket
-/// templates of the WPBSA are not published: mouths of 89 and 105 mm are the figures commonly quoted
-/// (recalled), and jaw radii, depths and pocket radii are chosen to go with them: large round jaws, and a
-/// ball falls where its centre passes the corner, or the rail line at the side.
+/// templates of the WPBSA are not published: mouths of 89 and 105 mm are commonly quoted (from memory). Jaw
+/// radii, depths and pocket radii are chosen to suit them: the jaws are large and round, and a ball falls
+/// when its centre passes the corner, or the rail line at the side.
 PocketTable snooker_table() {
     constexpr double kSideAngle = 10.0;
     return {.length = 3.569,

@@ -41,7 +41,7 @@ std::string text_of(const FieldValue& value) {
     return fmt::format("{}", std::get<double>(value));
 }
 
-/// A line for each value, under a heading that is there only if a line is.
+/// A line for each value, under a heading that is written only if there is a line.
 template <class T, std::size_t kRows>
 void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows], const T& object) {
     for (const Field<T>& f : fields)
@@ -49,7 +49,7 @@ void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows],
             fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
 }
 
-/// Whether a scene file would say the same of the parts of two tables.
+/// Whether a scene file would describe the parts of both tables in the same way.
 template <class Part, std::size_t kRows>
 bool same_parts(const Field<Part> (&fields)[kRows], const std::vector<Part>& a, const std::vector<Part>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Part& x, const Part& y) {
@@ -68,7 +68,7 @@ bool is_preset(const Table& table) {
                same_parts(kJawFields, table.jaws, preset.jaws) &&
                same_parts(kPocketFields, table.pockets, preset.pockets);
     } catch (const std::invalid_argument&) {
-        return true;  // the reader will say what is wrong with the name
+        return true;  // the reader will report the name
     }
 }
 

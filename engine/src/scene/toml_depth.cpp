@@ -10,14 +10,14 @@
 namespace carom::detail {
 namespace {
 
-// Where the string that begins at `at` is over. One that is not closed in its line is a mistake.
+// Where the string that begins at `at` ends. A string must be closed on its line unless it has three quotes.
 std::size_t string_end(std::string_view toml, std::size_t at) {
     const char quote = toml[at];
     const auto marks = [&] { return std::min(toml.find_first_not_of(quote, at), toml.size()) - at; };
     const bool many_lines = marks() >= 3;
     for (at += many_lines ? 3 : 1; at < toml.size(); ++at) {
         if (toml[at] == '\n' && !many_lines) return at;
-        // Up to two quotation marks may stand in front of the closing three.
+        // Up to two quotation marks may precede the closing three.
         if (toml[at] == quote && (!many_lines || marks() >= 3))
             return at + (many_lines ? std::min<std::size_t>(marks(), 5) : 1);
         if (toml[at] == '\\' && quote == '"') ++at;
@@ -26,7 +26,7 @@ std::size_t string_end(std::string_view toml, std::size_t at) {
 }
 
 SourceLocation location(std::string_view before) {
-    const std::string_view line = before.substr(before.rfind('\n') + 1);  // from 0 where there is none
+    const std::string_view line = before.substr(before.rfind('\n') + 1);  // from 0 if there is none
     const auto characters =
         std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
     return {1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
@@ -45,22 +45,22 @@ std::optional<TooDeep> too_deep(std::string_view toml) {
         else if (c == '#')
             at = std::min(toml.find('\n', at), toml.size()) - 1;
         else if (c == '.' && ++parts > kMaxKeyParts)
-            return TooDeep{location(toml.substr(0, at)),
-                           fmt::format("this key has more than {} parts; no key of a scene has as many, "
-                                       "take dots out of it",
-                                       kMaxKeyParts)};
+            return TooDeep{
+                location(toml.substr(0, at)),
+                fmt::format("this key has more than {} parts, more than any key of a scene; remove some dots",
+                            kMaxKeyParts)};
         if (std::string_view("=,[]{}\n").find(c) == std::string_view::npos) continue;
         parts = 1;
         if (c == '=') in_value = true;
         if (c == ']' || c == '}') depth = std::max(0, depth - 1);
         if ((c == '[' || c == '{') && ++depth > kMaxNesting)
-            return TooDeep{location(toml.substr(0, at)),
-                           fmt::format("brackets are more than {} deep here; close those above, or write "
-                                       "fewer within each other",
-                                       kMaxNesting)};
+            return TooDeep{
+                location(toml.substr(0, at)),
+                fmt::format("brackets are nested more than {} deep here; close some above, or nest fewer",
+                            kMaxNesting)};
         if (c == '\n') {
-            // Only a value goes on in the next line. The bracket of a section that is not closed is a
-            // mistake of its own, which toml++ names better.
+            // Only a value may continue on the next line. An unclosed bracket of a section is another
+            // mistake, which toml++ describes better.
             if (!in_value) depth = 0;
             in_value = depth > 0;
         }

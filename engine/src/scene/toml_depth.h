@@ -1,5 +1,5 @@
-// toml++ bounds how deep values nest, but goes one call deeper for each part of a dotted key: a few kilobytes
-// of text would overflow a thread's stack. What is deeper than any scene is found before it reads the text.
+// toml++ limits how deep values nest, but recurses for each part of a dotted key: a few kilobytes of text
+// would overflow a thread's stack. So anything deeper than any scene is found before toml++ reads the text.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ struct TooDeep {
     std::string what;  ///< what is wrong and what to do
 };
 
-/// The first key with more than kMaxKeyParts parts, or the first array or inline table that stands in
-/// kMaxNesting others. Text that is not TOML gets an answer too; up to its first mistake it is the same.
+/// The first key with more than kMaxKeyParts parts, or the first array or inline table inside kMaxNesting
+/// others. Text that is not TOML gets a result too, which is right up to its first mistake.
 std::optional<TooDeep> too_deep(std::string_view toml);
 
 }  // namespace carom::detail

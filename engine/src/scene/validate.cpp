@@ -1,4 +1,4 @@
-// The check of scenes that were built in code: every rule of the reader, in its order, on the struct itself.
+// Validates scenes built in code: every rule of the reader, in its order, on the struct itself.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,24 +19,23 @@ namespace {
 using detail::in_quotes;
 using detail::Section;
 
-/// Refuses a ball whose centre is not where its height says, which no file can describe.
+/// Refuses a ball whose centre does not match its height, which no file can express.
 void check_heights(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const double R = scene.size_of(ball).R;
         if (ball.position.z() == R + ball.height) continue;
         top.fail(SourceLocation{},
                  "ball {} has its centre at z = {} m, its radius is {} m and its height above the cloth {} "
-                 "m; z has to be "
-                 "the sum of the two",
+                 "m; set z to the sum of the two",
                  in_quotes(ball.id), ball.position.z(), R, ball.height);
     }
 }
 
-/// Refuses models that are missing, which no file can leave out.
+/// Refuses missing models, which no file can leave out.
 void check_models(const Section& top, const Physics& physics) {
     for (const auto& [key, there] : {std::pair{"ball_ball", physics.ball_ball != nullptr},
                                      std::pair{"cushion", physics.cushion != nullptr}})
-        if (!there) top.fail(SourceLocation{}, "physics.{} is no model; choose one", key);
+        if (!there) top.fail(SourceLocation{}, "physics.{} is not a model; choose one", key);
 }
 
 template <class Part, std::size_t kRows>
@@ -52,7 +51,7 @@ void check_parts(const Scene& scene, const char* path, const Field<Part> (&field
     }
 }
 
-/// The parts of a preset are in range, so whether they are still those of the preset does not matter.
+/// The parts of a preset are in range, so it does not matter whether they have been changed.
 void check_table(const Scene& scene) {
     Table named;
     named.cloth = scene.table.cloth;
@@ -88,8 +87,7 @@ void check_effects(const Scene& scene) {
         }
         if (std::any_of(scene.effects.begin(), effect,
                         [&](const EffectOverride& other) { return other.keyword == effect->keyword; }))
-            section.fail(SourceLocation{}, "effects.{} is there already; keep one of the two",
-                         effect->keyword);
+            section.fail(SourceLocation{}, "effects.{} appears twice; keep one of the two", effect->keyword);
     }
 }
 
@@ -119,7 +117,7 @@ void check_all(const Scene& scene) {
     check_scene(top, scene);
 }
 
-// A place that the scene remembers is that of a file which may say something else by now.
+// Drops the location: it is that of a file, which may have changed since.
 [[noreturn]] void throw_without_place(const Scene& scene, const SceneError& error) {
     throw SceneError(scene.file, {}, error.message());
 }

@@ -30,7 +30,7 @@ using detail::fail;
 using detail::take;
 using detail::take_part;
 
-/// One step of a path: into a table by its name, or, where the name is empty, into an array by its index.
+/// One step of a path: into a table by its name, or, if the name is empty, into an array by its index.
 struct Step {
     std::string name;
     std::size_t index = 0;
@@ -42,7 +42,7 @@ struct Rule {
     std::vector<Step> path;
     Distribution distribution;
     ValueKind kind = ValueKind::kNumber;
-    // What the key is where it can be set without the file; neither where it cannot.
+    // The number or rack value of this key, if it can be set without the file.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
 
@@ -70,7 +70,7 @@ toml::node* follow(toml::node& from, const std::vector<Step>& path) {
     return at;
 }
 
-/// Puts a value at the end of the path. All places before the last step exist.
+/// Sets a value at the end of the path. All steps before the last one exist.
 void put_value(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
     toml::node* parent = follow(file, std::vector<Step>(path.begin(), path.end() - 1));
     const auto place = [&](const auto& v) {
@@ -107,7 +107,7 @@ void write(const Drawn& value, std::string& text) {
     text = out.str();
 }
 
-/// The drawn number, if it is one that a double holds.
+/// The drawn number, if a double can hold it.
 std::optional<double> number_of(const Drawn& value) {
     if (const auto* number = std::get_if<double>(&value)) return *number;
     if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
@@ -124,7 +124,7 @@ bool is_whole(const Drawn& value) {
     return std::holds_alternative<std::int64_t>(value) || (node != nullptr && (*node)->is_integer());
 }
 
-/// Takes the id of a written ball from the front of a key, and returns its place in the list.
+/// Removes the id of a ball from the front of a key, and returns its index in the list.
 std::size_t take_ball(toml::table& file, std::string_view& key) {
     const toml::array* balls = file["ball"].as_array();
     std::string ids;
@@ -134,11 +134,11 @@ std::size_t take_ball(toml::table& file, std::string_view& key) {
         if (take(key, id)) return i;
         ids += (ids.empty() ? "" : ", ") + id;
     }
-    fail("it names no [[ball]] of the scene; write ball.ID.position.x with one of these ids: {}",
+    fail("the scene has no such [[ball]]; write ball.ID.position.x with one of these ids: {}",
          ids.empty() ? "none is written" : ids);
 }
 
-/// Finds the section that a key begins with. A missing one that holds only settings is added without a key.
+/// Finds the section that a key begins with. If it is missing and holds only settings, adds it, empty.
 std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     if (take(key, "ball")) return {{"ball"}, {"", take_ball(file, key)}};
     const std::size_t dot = key.find('.');
@@ -162,11 +162,11 @@ std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     return path;
 }
 
-/// From a key to the place in the file that it names.
+/// The path in the file that a key names.
 std::vector<Step> find_path(toml::table& file, std::string_view key) {
     std::vector<Step> path = find_section(file, key);
     const toml::node* holder = follow(file, path);
-    if (holder == nullptr || !holder->is_table()) fail("the scene does not write this part");
+    if (holder == nullptr || !holder->is_table()) fail("the scene file does not contain this part");
     const std::size_t dot = key.find('.');
     if (key.empty() || dot == 0) fail("the name of the value is missing");
     path.push_back({std::string(key.substr(0, dot))});
@@ -174,14 +174,14 @@ std::vector<Step> find_path(toml::table& file, std::string_view key) {
     const std::size_t index = element_index(key.substr(dot + 1));
     const toml::node* array = follow(file, path);
     if (array == nullptr || !array->is_array())
-        fail("the scene does not write this array; write it there, then vary one of its numbers");
+        fail("the scene file does not contain this array; add it, then vary one of its numbers");
     path.push_back({"", index});
-    if (follow(file, path) == nullptr) fail("the array in the scene is shorter");
+    if (follow(file, path) == nullptr) fail("the array in the scene file is shorter");
     return path;
 }
 
-/// Refuses a key that no scene has. Where the file has no value
-/// for it, nothing else tells it from one that was left out.
+/// Refuses a key that no scene has. If the file has no value for it, nothing else distinguishes it from a key
+/// that was left out.
 void check_known(toml::table file, const std::string& name, const std::vector<Step>& path) {
     put_value(file, path, 0.0);
     try {
@@ -210,9 +210,8 @@ bool overlap(const Rule& a, const Rule& b) {
     return std::equal(a.path.begin(), a.path.begin() + static_cast<std::ptrdiff_t>(common), b.path.begin());
 }
 
-/// Whether a key of the file is the same number of the scene, on which nothing
-/// else in the scene depends: noses, racks and balls of a size of their own go
-/// by the size of the balls, and the surface by the parts of the table.
+/// Whether a key of the file is a number of the scene on which nothing else depends. Noses, racks and balls
+/// with their own size depend on the size of the balls, and the surface on the parts of the table.
 bool is_number_alone(std::string_view key) {
     const std::string_view section = key.substr(0, key.find('.')), last = key.substr(key.rfind('.') + 1);
     if (section == "cue" || section == "physics" || section == "stop") return true;
@@ -232,7 +231,7 @@ void find_number(const Scene& scene, Rule& rule) {
             rule.rack = &f;
 }
 
-/// Sets a number of the rack; false where its section would refuse it.
+/// Sets a number of the rack; false if its section would refuse it.
 bool put_in_rack(const Field<Rack>& row, const Drawn& value, Rack& rack) {
     const std::optional<double> number = number_of(value);
     if (!number || !contains(row.range, *number)) return false;
@@ -264,7 +263,7 @@ struct Variation::Parts {
     std::uint64_t seed = 0;
     std::uint64_t fingerprint = 0;
     bool quick = true;  // every rule is a number of the scene or of its rack
-    Rack rack;          // as the file has it
+    Rack rack;          // as in the file
 };
 
 Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed)
@@ -291,7 +290,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         try {
             Rule rule = parse_rule(parts->file, parts->path, text);
             for (const Rule& other : parts->rules)
-                if (overlap(rule, other)) fail("{} varies this value already", other.key);
+                if (overlap(rule, other)) fail("{} already varies this value", other.key);
             find_number(parts->base, rule);
             parts->quick = parts->quick && (rule.number || rule.rack != nullptr);
             parts->keys.push_back(rule.key);
@@ -304,7 +303,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     }
     parts->fingerprint = print.value();
     parts_ = parts;
-    // A mistyped key or a range without valid values spoils every shot: it is reported here, once.
+    // A mistyped key or a range without valid values spoils every shot: report it here, once.
     for (int i = 0; i < kVariationTrials; ++i)
         if (shot(static_cast<std::uint64_t>(i)).scene) return;
     throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}",
@@ -365,7 +364,7 @@ VariedShot Variation::shot(std::uint64_t index) const {
     try {
         shot.scene = detail::scene_from(file, parts_->path);
         if (same_balls(*shot.scene, parts_->base)) return shot;
-        shot.error = "its balls are not those of the scene; sweep each kind of rack by itself";
+        shot.error = "its balls differ from those of the scene file; sweep each kind of rack separately";
         shot.scene.reset();
     } catch (const SceneError& error) {
         shot.error = error.message();

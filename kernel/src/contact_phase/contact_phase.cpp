@@ -1,10 +1,10 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
 // An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their
-// forces in lanes; then it adds all forces to the balls, one contact after the other in the order of their
-// numbers. A lane computes what a scalar program would compute, and every sum has one written order. Only
-// contacts that overlap at that stage take part. Memory is laid out for whole registers: the velocity and the
-// horizontal spin of a ball are one row of four numbers.
+// forces in lanes. Then it adds all forces to the balls, one contact after another in the order of their
+// numbers. A lane computes what a scalar program would, and every sum has one fixed order. Only contacts that
+// overlap at that stage take part. Memory is laid out for whole registers: the velocity and the horizontal
+// spin of a ball are one row of four numbers.
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/flight.h"
 #include "contact_phase/law.h"
@@ -25,7 +25,7 @@ struct Law {
     bool cloth, friction;
 };
 
-// Puts the contacts that overlap in front of the others.
+// Moves the contacts that overlap to the front.
 void reorder(Work& w, const double* d) {
     int open = w.count, closed = 0, overlapping = 0, others = 0;
     while (closed < w.count || open < w.contacts) {
@@ -38,7 +38,7 @@ void reorder(Work& w, const double* d) {
     }
     w.count = overlapping;
     for (int n = 0; n < others; ++n) w.order[overlapping + n] = w.spare[n];
-    int begin = 0, end = w.contacts;  // of those that change places
+    int begin = 0, end = w.contacts;  // range of those that move
     while (begin < end && w.order[begin] == begin) ++begin;
     while (begin < end && w.order[end - 1] == end - 1) --end;
     const auto move = [&w, begin, end](auto* numbers, auto* moved) {
@@ -52,7 +52,7 @@ void reorder(Work& w, const double* d) {
     for (int* array : places) move(array, w.spare);
 }
 
-// Whether a contact overlaps that does not come first.
+// Whether an overlapping contact is not at the front.
 CAROM_INLINE bool out_of_order(const Work& w, const double* d) {
     int first = w.count / 4 * 4, change = -1 << (w.count - first);
     change &= bits_less(broadcast<4>(0.0), load<4>(d + first));
@@ -60,8 +60,7 @@ CAROM_INLINE bool out_of_order(const Work& w, const double* d) {
     return change != 0;
 }
 
-// Whether a whole register could be saved: contacts that open
-// stay among those that come first, where they have no force.
+// Whether a whole register could be saved: contacts that open stay at the front, where they have no force.
 CAROM_INLINE bool gaps_add_up(const Work& w) {
     Four open = broadcast<4>(0.0);
     for (int c = 0; c < w.count; c += 4)
@@ -70,8 +69,8 @@ CAROM_INLINE bool gaps_add_up(const Work& w) {
 }
 
 // The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate` gets
-// the rates of the overlaps. Apart from add_forces(), because a processor that looks a few hundred
-// instructions ahead then has the roots and divisions of all contacts under way at once.
+// the rates of the overlaps. This is separate from add_forces(), so that a processor that looks a few hundred
+// instructions ahead computes the roots and divisions of all contacts in parallel.
 template <bool kFalls, bool kStage>
 CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
                               double time, int first, double* rate) {
@@ -91,7 +90,7 @@ CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const doubl
     const Four turning = pack(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
                               turn[i[3]] + turn[j[3]]);
     const Four overlap = load<4>(d + first), none = broadcast<4>(0.0);
-    // The last four may hold some that do not overlap.
+    // The last four may include some that do not overlap.
     const Four F =
         select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.inverse + first)), none);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
@@ -100,7 +99,7 @@ CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const doubl
     const Four slip2 = s_x * s_x + s_z * s_z + law.epsilon2, slip = square_root(slip2);
     Four minus_mu_b = law.minus_mu_b;
     if (kFalls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
-    const Four k = minus_mu_b * F / slip2 * slip;  // the root and the quotient at the same time
+    const Four k = minus_mu_b * F / slip2 * slip;  // the root and the quotient in parallel
     double* force = w.force + kForce * first;
     store(force, nx);
     store(force + 4, ny);
@@ -130,11 +129,11 @@ CAROM_INLINE void add_forces(const Work& w, int first, double* dy) {
     }
 }
 
-// The friction of the cloth between two steps, under the balls that are pressed down. It answers half of what
-// pressed a ball in the last step and half of what the force at its end would press in the next one if that
-// is as long: so the error is of second order. What was answered ahead (kAhead) is left out the next time.
-// The slip u decays at the rate 3.5 mu_s N / |u|; by the implicit midpoint rule, which is stable for any
-// step, and exact while the ball slides. |u| in the middle comes from half an implicit step.
+// The friction of the cloth between two steps, under the balls that are pressed down. Leapfrog: apply half of
+// the last step's load and half of the load predicted at its end for a next step of equal length, so that the
+// error is of second order. The part applied in advance (kAhead) is subtracted the next time. The slip u
+// decays at the rate 3.5 mu_s N / |u|, by the implicit midpoint rule, which is stable for any step and exact
+// while the ball slides. |u| in the middle comes from half an implicit step.
 template <bool kFalls>
 CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     const Four zero = broadcast<4>(0.0);
@@ -166,8 +165,8 @@ CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     }
 }
 
-// Adds the right-hand side to dy, in units of V and L: forces are
-// d^1.5, masses 1. At a stage `rate` gets the rates of the overlaps.
+// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` gets the
+// rates of the overlaps.
 template <bool kStage, bool kFalls>
 CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
                          double* dy, double* rate) {
@@ -196,9 +195,9 @@ CAROM_INLINE double largest_lane(const Four& v) {
     return largest(largest(each[0], each[1]), largest(each[2], each[3]));
 }
 
-// The state after a step of length h, into y_stage, and its largest
-// difference from the midpoint rule in a velocity or spin if it is watched.
-// The slopes of the later stages become zero, because forces() adds to them.
+// Computes the state after a step of length h, into y_stage. If kWatched, returns its largest difference from
+// the midpoint rule in a velocity or spin. Clears the slopes of the later stages, because forces() adds to
+// them.
 template <bool kWatched>
 CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     double *k0 = w.dy[0], *k1 = w.dy[1], *k2 = w.dy[2], *k3 = w.dy[3];
@@ -206,7 +205,7 @@ CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
                  w3 = h * method.weight[3];
     const Four zero = broadcast<4>(0.0), turn_only = pack(0.0, 1.0, 0.0, 0.0),
                kept = pack(0.0, 1.0, 0.0, 1.0);
-    // Of the second half of a row: see Work.
+    // For the second half of a row (Work).
     const Four two = pack(1.0, 1.0, 0.0, 0.0);
     const Four v0 = w0 * two, v1 = w1 * two, v2 = w2 * two, v3 = w3 * two + h * pack(0.0, 0.0, 0.5, 0.0);
     Four most = zero;
@@ -233,7 +232,7 @@ CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     return h / 6.0 * largest_lane(most);
 }
 
-// The largest sum of friction over slip of both balls of a contact that overlaps.
+// The largest sum of friction divided by slip, over both balls of a contact that overlaps.
 CAROM_INLINE double stiffest(const Work& w, const double* dy) {
     const double* stiffness = dy + kStiffness;
     const Four none = broadcast<4>(0.0);
@@ -247,7 +246,8 @@ CAROM_INLINE double stiffest(const Work& w, const double* dy) {
     return largest_lane(most);
 }
 
-// The square of the fastest contact's speed (slowness()); of what opens, only what overlaps counts.
+// The square of the fastest contact's speed (slowness()). Of contacts that open, only those that overlap
+// count.
 template <bool kFalls>
 CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
     const Four none = broadcast<4>(0.0), first = broadcast<4>(kNoMemory);
@@ -275,9 +275,8 @@ CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& meth
     }
 }
 
-// One Runge-Kutta step; returns its length. At entry rate[0] belongs to the
-// state. `longest` is its limit; the error, which friction makes, sets that
-// of the next step into `next`; without friction `next` is not read.
+// One Runge-Kutta step; returns its length. On entry rate[0] belongs to the state. `longest` limits the step.
+// With friction the error sets the limit of the next step, in `next`; without friction `next` is ignored.
 template <bool kFalls>
 CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
     forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
@@ -319,7 +318,7 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
                             law.p,
                             law.mu_s > 0.0 && has_friction(law),
                             has_friction(law)};
-    look(w);
+    update_rates(w);
     long steps = 0;
     double next = longest_step;
     double time = 0.0;
@@ -327,14 +326,14 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
         if (!(time < time_limit)) return -1;
         const double most =
             lanes.friction ? longest_step : longest_step * slowness(fastest_squared(w, lanes));
-        const double longest = w.shares ? settle(phase, w, most) : most;
+        const double longest = w.shares ? update_turning(phase, w, most) : most;
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
         if (any_pressed(w, law, time_limit - time)) continue;
         const double flight = next_touch(w);
         if (!(flight < look_ahead)) break;
-        // What overlaps and does not push goes on opening.
+        // Contacts that overlap without force continue to open.
         if (any_overlap(w)) continue;
         fly(phase, w, flight, look_ahead);
         time += flight;

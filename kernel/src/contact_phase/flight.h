@@ -1,5 +1,5 @@
-// What happens between the contacts of a contact phase: flights, and
-// contacts that turn less than the balls. Part of contact_phase.cpp.
+// The time between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part
+// of contact_phase.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -10,10 +10,10 @@
 namespace carom::kernel {
 namespace {
 
-// Where a contact closes after a flight, its normal turns with the balls up to this share of the look-ahead;
-// less from there to the end, and so do contacts that close up to so long after it [L/V].
+// If a contact closes after a flight of up to this share of the look-ahead, its normal turns with the balls.
+// Beyond that it turns less, and so do contacts that close up to this much later [L/V].
 constexpr double kFlight = 0.5, kSoonAfter = 0.5;
-// [longest steps] A contact that touches within this time touches at once.
+// [longest steps] A contact that would touch within this time touches at once.
 constexpr double kAtOnce = 1e-3;
 
 CAROM_INLINE bool any_overlap(const Work& w) {
@@ -22,7 +22,7 @@ CAROM_INLINE bool any_overlap(const Work& w) {
     return bits != 0;
 }
 
-// Whether a contact overlaps that has something left to do.
+// Whether a contact overlaps and still acts.
 CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_left) {
     for (int c = 0; c < w.contacts; ++c) {
         const double d = w.d[c];
@@ -35,19 +35,19 @@ CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_le
 
 constexpr double kNever = 1e300;
 
-// The motion of two balls along and across their line of centres,
-// while nothing pushes them. Lengths in L, kappa = L/(2 R).
-struct Way {
-    double closing, across, speed2;  // speeds, and their square together
-    double kappa, gap, apart;        // kappa, and kappa times the distance of the centres
+// The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L,
+// kappa = L/(2 R).
+struct RelativePath {
+    double closing, across, speed2;  // speeds, and their total squared
+    double kappa, gap, apart;        // kappa, the gap, and kappa times the distance of the centres
 
-    // When they touch: |z - v s| = 2 R, without the difference of numbers that are nearly equal.
+    // When they touch: |z - v s| = 2 R, without subtracting nearly equal numbers.
     double touch() const {
         if (!(closing > 0.0)) return kNever;
         const double q = gap * (2.0 + kappa * gap), c = apart * closing, root2 = c * c - kappa * speed2 * q;
         return root2 < 0.0 ? kNever : q / (c + square_root(root2));
     }
-    // When they touch or are nearest, from now on.
+    // When they touch or are nearest, from now.
     double nearest() const {
         const double s = touch();
         if (s < kNever) return s;
@@ -59,7 +59,7 @@ struct Way {
     }
 };
 
-CAROM_INLINE Way way(const Work& w, int c, double nx, double ny, double gap) {
+CAROM_INLINE RelativePath relative_path(const Work& w, int c, double nx, double ny, double gap) {
     const double *i = w.y + w.i[c], *j = w.y + w.j[c];
     const double x = i[0] - j[0], y = i[2] - j[2];
     const double along = x * nx + y * ny, across = y * nx - x * ny;
@@ -67,8 +67,8 @@ CAROM_INLINE Way way(const Work& w, int c, double nx, double ny, double gap) {
 }
 
 // The normal after a flight of length s.
-CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& ny) {
-    const double along = way.apart - way.kappa * way.closing * s, across = -way.kappa * way.across * s;
+CAROM_INLINE void turn_by_flight(const RelativePath& path, double s, double& nx, double& ny) {
+    const double along = path.apart - path.kappa * path.closing * s, across = -path.kappa * path.across * s;
     const double x = nx * along - ny * across, y = ny * along + nx * across;
     const double length = square_root(x * x + y * y);
     nx = x / length;
@@ -79,7 +79,8 @@ CAROM_INLINE void turn_by_flight(const Way& way, double s, double& nx, double& n
 CAROM_INLINE double next_touch(const Work& w) {
     double first = kNever;
     for (int c = 0; c < w.contacts; ++c) {
-        if (w.rate[0][c] > kNothing) first = smallest(first, way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
+        if (w.rate[0][c] > kNothing)
+            first = smallest(first, relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]).touch());
     }
     return first;
 }
@@ -92,14 +93,14 @@ CAROM_INLINE double falling(double x, double from, double to) {
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
-// Moves all balls straight on for `time`, when the first contact closes. Where that takes
-// almost the look-ahead, the caller is almost about to take over, whose balls have not
-// moved during the contacts: such contacts, and those that close soon after, turn less.
+// Moves all balls straight ahead for `time`, when the first contact closes. If that takes almost the whole
+// look-ahead, the caller is about to take over, and for it the balls have not moved during the contacts. So
+// such contacts, and those that close soon after, turn less.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     w.shares = false;
     for (int c = 0; c < w.contacts; ++c) {
-        const Way path = way(w, c, w.nx[c], w.ny[c], -w.d[c]);
+        const RelativePath path = relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]);
         const double late = path.touch() - time;
         w.d[c] = smallest(0.0, -path.gap_after(time));
         if (late <= 0.0) w.d[c] = 0.0;
@@ -108,18 +109,18 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
         w.bend[c] = w.curvature;
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
-    look(w);
+    update_rates(w);
 }
 
-// A contact closes that turns less than the balls do: its normal goes from that
-// of the balls to the one with which the balls would meet if they had moved with
-// their present velocities since the first touch, without any contact before.
+// Closes a contact that turns less than the balls. Its normal moves from that of the balls towards the one
+// with which they would meet if they had moved with their present velocities since the first touch, without
+// earlier contacts.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
-    turn_by_flight(way(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
+    turn_by_flight(relative_path(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
     const HertzContact& first = phase.contact[w.id[c]];
     double x = first.nx, y = first.ny;
-    const Way since = way(w, c, x, y, -first.overlap);
+    const RelativePath since = relative_path(w, c, x, y, -first.overlap);
     turn_by_flight(since, since.nearest(), x, y);
     const double share = w.share[c];
     nx = share * nx + (1.0 - share) * x;
@@ -133,7 +134,7 @@ CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, doubl
 // Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them
 // touches.
 // @return the longest step
-CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
+CAROM_INLINE double update_turning(const ContactPhase& phase, Work& w, double longest) {
     double h = longest;
     bool changed = false;
     for (int c = 0; c < w.contacts; ++c) {
@@ -145,7 +146,7 @@ CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
             changed = true;
             continue;
         }
-        const double time = open ? way(w, c, w.nx[c], w.ny[c], -w.d[c]).touch() : 0.0;
+        const double time = open ? relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]).touch() : 0.0;
         if (time > kAtOnce * longest) {
             h = smallest(h, time);
             continue;
@@ -153,7 +154,7 @@ CAROM_INLINE double settle(const ContactPhase& phase, Work& w, double longest) {
         close_contact(phase, w, c, time);
         changed = true;
     }
-    if (changed) look(w);
+    if (changed) update_rates(w);
     return h;
 }
 

@@ -1,5 +1,4 @@
-// The contact phase in space, one contact at a time: clusters with a ball in the air, or with an odd one, are
-// rare, and few.
+// The contact phase in space, one contact at a time: clusters with a ball in the air are rare and small.
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/law.h"
 #include "numbers.h"
@@ -7,8 +6,8 @@
 namespace carom::kernel {
 namespace {
 
-constexpr int kPerState = 9;   // numbers of a ball in a state: where it has moved to [L], v and R w [V]
-constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the place
+constexpr int kPerState = 9;   // numbers per ball in a state: displacement [L], v and R w [V]
+constexpr int kPerMotion = 6;  // in ContactPhaseInSpace::motion: without the displacement
 constexpr double kNever = 1e300;
 
 struct Vector {
@@ -42,7 +41,7 @@ void add(double* to, const Vector& a) {
 // A contact at one instant.
 struct Now {
     Vector n;              // from i to j
-    double overlap, rate;  // and its slope
+    double overlap, rate;  // and its rate
 };
 
 class InSpace {
@@ -118,7 +117,7 @@ class InSpace {
         const HertzContactInSpace& contact = phase_.contact[c];
         return at(velocity(y, contact.i)) - at(velocity(y, contact.j));
     }
-    Now look(const double* y, int c) const {
+    Now contact_at(const double* y, int c) const {
         if (!turns(c)) {
             const HertzContactInSpace& contact = phase_.contact[c];
             const Vector n = at(contact.n);
@@ -186,7 +185,7 @@ class InSpace {
             for (int k = 3; k < kPerState; ++k) to[k] = 0.0;
         }
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y, c);
+            const Now now = contact_at(y, c);
             if (now.overlap > 0.0) push(y, c, now, slope);
         }
         if (!held_) return;
@@ -205,7 +204,7 @@ class InSpace {
     // One Runge-Kutta step; returns its length.
     double step(double longest) {
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y_, c);
+            const Now now = contact_at(y_, c);
             before_[c] = now.overlap;
             rate_[c] = now.rate;
         }
@@ -258,7 +257,7 @@ class InSpace {
 
     // Updates the largest overlap of a contact.
     void remember(int c, double h) {
-        const Now now = look(y_, c);
+        const Now now = contact_at(y_, c);
         memory_[c] = now.overlap > 0.0 ? largest(memory_[c], now.overlap) : 0.0;
         if (now.overlap > 0.0 && rate_[c] > 0.0 && now.rate < 0.0)
             memory_[c] = largest(memory_[c], peak(before_[c], now.overlap, h * rate_[c], h * now.rate));
@@ -266,27 +265,27 @@ class InSpace {
 
     bool overlaps() const {
         for (int c = 0; c < phase_.contacts; ++c) {
-            if (look(y_, c).overlap > 0.0) return true;
+            if (contact_at(y_, c).overlap > 0.0) return true;
         }
         return false;
     }
 
-    // Whether a contact overlaps that has something left to do.
+    // Whether a contact overlaps and still acts.
     bool presses(double time_left) const {
         for (int c = 0; c < phase_.contacts; ++c) {
-            const Now now = look(y_, c);
+            const Now now = contact_at(y_, c);
             if (now.overlap > 0.0 && !is_over(force(c, now), now.overlap, now.rate, time_left)) return true;
         }
         return false;
     }
 
-    // When the next contact closes, if nothing pushes: |z - v s| =
-    // 2 R, without the difference of numbers that are nearly equal.
+    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without subtracting nearly equal
+    // numbers.
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
             if (!turns(c)) {
-                const Now now = look(y_, c);
+                const Now now = contact_at(y_, c);
                 if (now.rate > kNothing) first = smallest(first, -now.overlap / now.rate);
                 continue;
             }

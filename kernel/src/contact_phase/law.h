@@ -1,5 +1,5 @@
-// The forces of a contact, of one or of four in lanes, and the step
-// that they allow. Part of contact_phase.cpp and in_space.cpp.
+// The forces of one contact, or of four in lanes, and the step that they allow. Part of contact_phase.cpp and
+// in_space.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -14,32 +14,32 @@ using Four = Pack<4>;
 // Slopes that a step keeps: at the state, of the last inner stage, in the middle and at the end.
 constexpr int kStages = 4;
 
-// An explicit Runge-Kutta method. Stage n begins at the state and goes node[n] of the
-// step along the slope of the stage before, the first one along that of the state: `more`
-// inner stages, whose slopes are not kept, the last inner one, the middle and the end.
+// An explicit Runge-Kutta method. Stage n starts at the state and advances by node[n] of the step along the
+// slope of the previous stage (the first one along that of the state). There are `more` inner stages, whose
+// slopes are not kept, then the last inner one, the middle and the end.
 struct RungeKutta {
     double weight[kStages];
     int more;
     double node[kStages + 3];
 
     CAROM_INLINE int stages() const { return more + kStages - 1; }
-    // Where the slope is kept after the first n stages.
+    // Index of the kept slope after the first n stages.
     CAROM_INLINE int slope(int n) const { return n == 0 ? 0 : n > more ? n - more : 1; }
 };
 
-// The classical one, of order 4. Without friction nothing is stiff.
+// The classical method, of order 4. Without friction nothing is stiff.
 constexpr RungeKutta kClassical{{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 0, {0.5, 0.5, 1.0}};
-// With friction, which is stiff in stick: order 3 with the weights of Simpson's rule. The inner stages are
-// spent on stability. With Y the amplification of the middle that of the step is R = 1 + z/3 + z (2/3 + z/6)
-// Y, and order 3 wants Y = 1 + z/2 + z^2/8 + ..., so the last inner node is 1/4. Of four stages R = 1 + z +
-// z^2/2 + z^3/6 + z^4/48 is at most 0.4 from z = -1 to -4.84 along the negative axis, so that what is stiff
-// dies away within a few steps. The classical method gains there beyond -2.78. More inner stages reach
-// further for large friction: chains as those of P. J. van der Houwen and B. P. Sommeijer, "On the internal
-// stability of explicit, m-stage Runge-Kutta methods for large m-values", ZAMM 60, 1980. The nodes are our
-// own: a linear program chose the other coefficients of Y so that the largest |R| from -1.5 to the end is
-// least. It is 0.39 down to -12.2 with six stages, 0.47 down to -24 with eight. No inner stage amplifies by
-// more than 1, and no step where the contacts swing as well (z = x + i y, |y| <= 1) or where z changes by a
-// tenth within it. The nodes want all their digits: R is a sum of terms above 1e4 that cancel.
+// With friction, which is stiff in stick: order 3 with the weights of Simpson's rule. The inner stages
+// provide stability. If Y is the amplification of the middle, that of the step is R = 1 + z/3 + z (2/3 + z/6)
+// Y, and order 3 requires Y = 1 + z/2 + z^2/8 + ..., so the last inner node is 1/4. For four stages R = 1 + z
+// + z^2/2 + z^3/6 + z^4/48 is at most 0.4 from z = -1 to -4.84 along the negative axis, so that stiff
+// components decay within a few steps; the classical method amplifies them beyond -2.78. More inner stages
+// reach further, for large friction: chains like those of P. J. van der Houwen and B. P. Sommeijer, "On the
+// internal stability of explicit, m-stage Runge-Kutta methods for large m-values", ZAMM 60, 1980. The nodes
+// are new: a linear program chose the other coefficients of Y to minimise the largest |R| from -1.5 to the
+// end. It is 0.39 down to -12.2 with six stages, and 0.47 down to -24 with eight. No inner stage amplifies by
+// more than 1, nor does a step if the contacts also oscillate (z = x + i y, |y| <= 1) or if z changes by a
+// tenth within it. The nodes need all their digits, because R is a sum of terms above 1e4 that cancel.
 constexpr RungeKutta kFourStages{{1.0 / 6.0, 0.0, 2.0 / 3.0, 1.0 / 6.0}, 0, {0.25, 0.5, 1.0}};
 constexpr RungeKutta kSixStages{
     {1.0 / 6.0, 0.0, 2.0 / 3.0, 1.0 / 6.0}, 2, {0.03309011, 0.09856416, 0.25, 0.5, 1.0}};
@@ -51,14 +51,13 @@ CAROM_INLINE bool has_friction(const HertzLaw& law) {
     return law.mu_b > 0.0 || law.mu_b_more > 0.0;
 }
 
-// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction over slip, the
-// friction of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two balls
-// adds at most 3.5 times its own k; so by the theorem of Gershgorin no rate of all contacts together exceeds
-// 3.5 times the sums of k over both balls of a contact, where these are largest. A step of four, six and
-// eight stages takes at most 4.8, 12.2 and 24 over it.
+// Stability of the step. The regularised friction is stiff: with k = mu_b F / |s|, friction divided by slip,
+// the friction of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two
+// balls adds at most 3.5 times its own k. By Gershgorin's theorem no rate of all contacts together exceeds
+// 3.5 times the largest sum of k over both balls of a contact. A step of four, six and eight stages may be at
+// most 4.8, 12.2 and 24 divided by that.
 constexpr double kFourReach = 4.8 / 3.5, kSixReach = 12.2 / 3.5, kEightReach = 24.0 / 3.5;
-// Where a longer step is wanted than these, six stages get
-// further an evaluation than four, and eight further than six.
+// For longer steps than these, six stages get further per evaluation than four, and eight further than six.
 constexpr double kFromFour = 6.0 / 4.0 * kFourReach, kFromSix = 8.0 / 6.0 * kSixReach;
 
 // A method with friction, and the length of its step.
@@ -67,8 +66,8 @@ struct Plan {
     double h;
 };
 
-// What takes a step of length `wanted`, or as much of it
-// as is stable, where the largest sum of k is `stiffest`.
+// The method for a step of length `wanted`, or of the longest stable length, if the largest sum of k is
+// `stiffest`.
 CAROM_INLINE Plan plan_step(double stiffest, double wanted) {
     const double stiff = wanted * stiffest;
     const bool six = kFromFour < stiff, eight = kFromSix < stiff;
@@ -78,22 +77,22 @@ CAROM_INLINE Plan plan_step(double stiffest, double wanted) {
 }
 
 // Accuracy of the step, with friction. Its difference from the midpoint rule, whose stages are the same, may
-// be kStepError [V] in any velocity and spin. Where it is more, as where a slip turns to stick, half the step
-// is tried, and so on to a kShortest of the longest one.
+// be kStepError [V] in any velocity and spin. If it is larger, as where a slip turns to stick, half the step
+// is tried, and so on down to kShortest of the longest one.
 constexpr double kStepError = 1e-4, kAimedError = 0.5 * kStepError, kShortest = 1.0 / 64.0;
 
-// How long the step may be after one of length h with this error; `before`, how
-// long that one might have been. The error grows as h^3, and the fourth root
-// follows it with some damping, which needs fewer second tries than the third.
+// Limit of the next step after one of length h with this error; `before` is the limit of that step. The error
+// grows as h^3. The fourth root follows it with some damping, and needs fewer second tries than the third.
 CAROM_INLINE double step_after(double before, double h, double error) {
     if (!(error > kAimedError / 16.0)) return largest(before, 2.0 * h);
     const double ratio = square_root(square_root(kAimedError / error));
     return ratio > 1.0 ? largest(before, ratio * h) : largest(0.5, ratio) * h;
 }
 
-// Accuracy of the step, without friction: that of a contact at the speed v lasts v^(-1/5) times longer, and
-// its errors count v, so that steps may be v^(-1/2) times longer where nothing is faster. The square of v is
-// that of the rate and the energy of the overlap, F d; what closes may be loaded as for the first time.
+// Accuracy of the step, without friction. A contact at the speed v lasts v^(-1/5) times longer, and its
+// errors are proportional to v, so that steps may be v^(-1/2) times longer if nothing is faster. The square
+// of v is that of the rate plus the energy of the overlap, F d; a closing contact may be loaded as for the
+// first time.
 constexpr double kMostSlow = 16.0;
 CAROM_INLINE double slowness(double v2) {
     return v2 < 1.0 ? smallest(kMostSlow, 1.0 / square_root(square_root(v2))) : 1.0;
@@ -108,8 +107,8 @@ CAROM_INLINE T fill(double x) {
         return broadcast<4>(x);
 }
 
-// e^-x for x >= 0, as the 64th power of a Taylor series: within
-// 4e-8 of it (relative) up to x = 10. From 64 on it stays at e^-64.
+// e^-x for x >= 0, as the 64th power of a Taylor series: relative error 4e-8 up to x = 10. From 64 on it
+// stays at e^-64.
 template <class T>
 CAROM_INLINE T falling_exponential(T x) {
     const T part = (1.0 / 64.0) * x, one = fill<T>(1.0), t = select(part < one, part, one);
@@ -120,8 +119,8 @@ CAROM_INLINE T falling_exponential(T x) {
     return power;
 }
 
-// The normal force at the overlap d > 0; `inverse` is 1 over its largest one since the contact opened,
-// kNoMemory before it has one; a, b and p are those of HertzLaw.
+// The normal force at the overlap d > 0. `inverse` is 1 over the largest overlap since the contact opened,
+// kNoMemory before there is one; a, b and p are those of HertzLaw.
 constexpr double kNoMemory = 1e300;
 template <class T>
 CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
@@ -131,12 +130,12 @@ CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
     return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
 
-// What a contact changes in the speeds of its balls from here on, [V], may be left out below this: it is
-// rounding. Balls that move on together close at such speeds without end.
+// [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
+// that move together would close at such speeds forever.
 constexpr double kNothing = 1e-12;
 
-// Whether a contact that overlaps by d has nothing left to do: it closes at kNothing at most, and its force F
-// pushes no more than that until it has opened, or in the time that is left.
+// Whether a contact with the overlap d no longer acts: it closes at kNothing at most, and its force F changes
+// speeds by no more than that until it has opened, or in the remaining time.
 CAROM_INLINE bool is_over(double F, double d, double rate, double time_left) {
     return rate <= kNothing && (F * time_left <= kNothing || F * d <= -rate * kNothing);
 }
@@ -144,8 +143,8 @@ CAROM_INLINE bool is_over(double F, double d, double rate, double time_left) {
 // The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant.
 // Without it the energy of each contact has an error of order h^2.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
-    // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1
-    // - 2 rise) s^3; its slope falls from m0 > 0 to m1 < 0.
+    // d(s) = d0 + m0 s + (3 rise - 2 m0 - m1) s^2 + (m0 + m1 - 2 rise) s^3; its slope falls from m0 > 0 to m1
+    // < 0.
     const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
     const double s = m0 / (square_root(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
     return s > 0.0 && s < 1.0 ? before + s * (m0 + s * (q2 + s * q3)) : 0.0;

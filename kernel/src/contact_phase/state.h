@@ -1,4 +1,4 @@
-// The state of a contact phase, and how its normals turn. Part of contact_phase.cpp.
+// The state of a contact phase, and the turning of its normals. Part of contact_phase.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -9,15 +9,14 @@
 namespace carom::kernel {
 namespace {
 
-constexpr int kPerBall = 5;  // numbers of a ball in ContactPhase::motion
+constexpr int kPerBall = 5;  // numbers per ball in ContactPhase::motion
 
-// Numbers of a ball here. A row holds velocities in the even places and
-// spins in the odd ones: a contact feels the difference of the velocities
-// of its balls and the sum of their spins, which is one subtract_add().
+// Numbers per ball here. A row has velocities at even positions and spins at odd ones: a contact needs the
+// difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
 constexpr int kRow = 8;
-constexpr int kForce = 6;                                        // numbers of a contact in Work::force
+constexpr int kForce = 6;                                        // numbers per contact in Work::force
 constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};                // of v_x, v_y, R w_x, R w_y, R w_z in a row
-constexpr int kLift = 4, kTurn = 5, kAhead = 7, kStiffness = 7;  // of other numbers in a row: see Work
+constexpr int kLift = 4, kTurn = 5, kAhead = 7, kStiffness = 7;  // of other numbers in a row (Work)
 
 CAROM_INLINE int padded(int n) {
     return (n + 3) / 4 * 4;
@@ -26,31 +25,31 @@ CAROM_INLINE int padded(int n) {
 struct Work {
     int balls, contacts;
     int rows, lanes;  // sizes of the arrays per ball and per contact
-    // The state, its stages and their slopes; of each ball a row (v_x, R w_x, v_y, R w_y | lift, R w_z, next,
-    // ahead). In a slope `lift` and `next` are the sum of the vertical forces, and the last number
-    // (kStiffness) is minus the sum of friction over slip. After a step `lift` is the vertical impulse of the
-    // step, `next` the one of half a step with the force at its end; `ahead` belongs to drag().
+    // The state, its stages and their slopes. A row per ball: (v_x, R w_x, v_y, R w_y | lift, R w_z, next,
+    // ahead). In a slope, `lift` and `next` are the sum of the vertical forces, and the last number
+    // (kStiffness) is minus the sum of friction divided by slip. After a step, `lift` is the vertical impulse
+    // of the step, and `next` that of half a step with the force at its end; `ahead` belongs to drag().
     double *y, *y_stage, *dy[kStages];
-    // Of each contact: overlap, its stages and their slopes,
-    // and 1 over the largest overlap since the contact opened.
+    // Per contact: overlap, its stages and their slopes, and 1 over the largest overlap since the contact
+    // opened.
     double *d, *d_stage, *rate[kStages], *inverse;
-    // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) that it turns
-    // by: less than that of the balls where it turns less (see settle()).
+    // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) by which it
+    // turns: less than that of the balls if it turns less (update_turning()).
     double *nx, *ny, *turn, *bend;
     double* share;  // of the turning, while the contact is closed
-    // Of each contact that overlaps: n_x, n_y, F, the friction along t and
-    // upwards, and minus friction over slip; four of each side by side.
+    // Per contact that overlaps: n_x, n_y, F, the friction along t and upwards, and minus friction divided by
+    // slip; four of each next to each other.
     double* force;
     double curvature;
-    bool shares;  // whether one of them is below 1
-    // Where the rows of the two balls begin, and the contact's number in ContactPhase.
-    // The contacts that overlap come first, then the others, either in the order of their
-    // numbers: so four of them lie side by side, and the sums of a ball have one order.
+    bool shares;  // whether some share is below 1
+    // Where the rows of the two balls begin, and the contact's number in ContactPhase. The contacts that
+    // overlap come first, then the others, each in the order of their numbers. So four of them are adjacent,
+    // and the sums of a ball have one order.
     int *i, *j, *id;
-    // contacts that come first: those that overlap, and fewer
-    // than four that opened since they were put into order
+    // contacts at the front: those that overlap, and fewer than four that have opened since the last
+    // reordering
     int count;
-    // To put contacts into another order.
+    // Workspace for reordering contacts.
     double* moved;
     int *order, *spare;
 };
@@ -63,7 +62,7 @@ CAROM_INLINE double* take(double*& from, int count) {
     return taken;
 }
 
-// Contacts that fill up the last register are between one more ball, which rests, and itself.
+// Contacts that fill up the last register connect an additional ball, at rest, with itself.
 CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     Work w;
     w.balls = phase.balls;
@@ -119,7 +118,7 @@ CAROM_INLINE void closing(const Work& w, const double* y, int c, Four (&dv)[4]) 
     transpose(dv[0], dv[1], dv[2], dv[3]);
 }
 
-// d' = (v_i - v_j) . n of the contacts from `first` on, with the normals that have turned for `time`.
+// d' = (v_i - v_j) . n of the contacts from `first`, with normals that have turned for `time`.
 CAROM_INLINE void rates(const Work& w, const double* y, double time, int first, double* rate) {
     for (int c = first; c < w.lanes; c += 4) {
         Four dv[4];
@@ -136,8 +135,8 @@ CAROM_INLINE Four turning(const Work& w, int c, const Four (&dv)[4], const Four&
     return load<4>(w.bend + c) * (dv[0] * ny - dv[2] * nx) / (broadcast<4>(1.0) - w.curvature * d);
 }
 
-// Rates and turning of a state that did not come from a step.
-CAROM_INLINE void look(Work& w) {
+// Rates and turning of a state that is not the result of a step.
+CAROM_INLINE void update_rates(Work& w) {
     for (int c = 0; c < w.lanes; c += 4) {
         Four dv[4];
         closing(w, w.y, c, dv);
@@ -147,9 +146,9 @@ CAROM_INLINE void look(Work& w) {
     }
 }
 
-// The contacts after a step of length h, whose state is there already:
-// overlaps and the largest of each, normals, their turning, and the rates
-// into rate[0]. The normals move by the mean of the speeds at both ends.
+// Updates the contacts after a step of length h, whose state is already computed: overlaps and the largest of
+// each, normals, their turning, and the rates into rate[0]. The normals move by the mean of the speeds at
+// both ends.
 CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
     const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0), none = broadcast<4>(kNoMemory);
     const double w0 = h * method.weight[0], w1 = h * method.weight[1], w2 = h * method.weight[2],
@@ -174,8 +173,8 @@ CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
         store(w.ny + c, ny_now);
         store(w.rate[0] + c, dv[0] * nx_now + dv[2] * ny_now);
         store(w.inverse + c, select(zero < d, smaller(one_over_d, inverse), none));
-        // The overlap may have been larger within the step. Its rate
-        // at the end is that of the normal that the stages had.
+        // The overlap may have been larger within the step. Its rate at the end is for the normal that the
+        // stages used.
         const Four now = dv[0] * x + dv[2] * y;
         const int turned = bits_less(zero, rate) & bits_less(now, zero) & bits_less(zero, d);
         if (turned == 0) continue;

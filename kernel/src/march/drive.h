@@ -1,5 +1,5 @@
-// A march from table coordinates and back. Its loop differs from one kernel variant to the next; what stands
-// around the loop does not: validation, projection into the contact frame, back-projection.
+// An integration from table coordinates and back. The loop differs between kernel variants; the rest does
+// not: validation, projection into the contact frame, back-projection.
 #pragma once
 
 #include "frame.h"
@@ -7,8 +7,8 @@
 namespace carom::kernel {
 namespace {
 
-// March::loop<kSign>(state, params, n) marches a state in the contact frame; kSign is the sign of the cloth
-// slip. It returns the number of steps, or -1 if the march did not end within its bound on steps.
+// March::loop<kSign>(state, params, n) integrates a state in the contact frame; kSign is the sign of the
+// cloth slip. It returns the number of steps, or -1 if it reached the limit of steps.
 template <class March>
 void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
            ImpactResult& result) noexcept {

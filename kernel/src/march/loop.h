@@ -1,4 +1,5 @@
-// The loop of the published march: explicit Euler in the normal impulse, equation by equation in double.
+// The loop of the published integration: explicit Euler in the normal impulse, equation by equation in
+// double.
 //
 // The names are those of the 2014 paper: P is the normal impulse and dP its step; dP1 and dP2 are the
 // horizontal and the vertical friction impulse between the balls; dPix, dPiy, dPjx and dPjy are the impulses
@@ -12,13 +13,13 @@
 namespace carom::kernel {
 namespace {
 
-// [m/s] A slip below this gives no friction, as in the published code. It is an
-// absolute speed and so breaks the homogeneity of the model at extremely low
-// speed (hard case H26), but this file has to agree with the published code.
+// [m/s] A slip below this gives no friction, as in the published code. It is an absolute speed, and so breaks
+// the homogeneity of the model at extremely low speed (hard case H26), but this file has to agree with the
+// published code.
 constexpr double kSlipCutoff = 1e-16;
 
 // kSign is +1 for the cloth slip u = (v_x + R w_y, v_y - R w_x), as published, and -1 for the consistent
-// sign. Returns the number of steps, or -1 at the bound on steps.
+// sign. Returns the number of steps, or -1 at the limit of steps.
 template <int kSign>
 long march_loop(FrameState& s, const ImpactParams& p, int n) {
     const double R = p.R, m = p.m;
@@ -33,7 +34,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
     while (v_n < 0.0 || compressing || W < W_f) {
         CAROM_LOOP_BEGIN("baseline");
         if (++steps > limit) return -1;
-        // The slip at the contact between the balls; below, u is the slip of the pressed ball on the cloth.
+        // The slip at the contact between the balls; u below is the slip of the pressed ball on the cloth.
         const double c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z);
         const double c_z = R * (s.w1x + s.w2x);
         const double c = square_root(c_x * c_x + c_z * c_z);

@@ -1,5 +1,4 @@
-// The published march, the plain reference that every faster
-// variant is compared with. Built once per instruction set.
+// The published integration, the plain reference for every faster variant. Built once per instruction set.
 #include "kernel_set.h"
 #include "march/drive.h"
 #include "march/loop.h"

@@ -1,5 +1,5 @@
-// How far a direction stays smooth along a path that is taken as straight:
-// what decides how wide a block of the summed march may be (summed.h).
+// How far a direction stays smooth along a path that is assumed to be straight, which decides how wide a
+// block of the summed integration may be (summed.h).
 #pragma once
 
 #include "numbers.h"
@@ -10,19 +10,19 @@ namespace {
 
 using Eight = Pack<8>;
 
-// Distance of the poles that a block keeps, relative to the estimate that the tolerance asks for.
+// Distance of the poles that a block keeps, relative to the estimate for the tolerance.
 constexpr double kPoleMargin = 0.35;
 
-// How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) a step. The
-// direction has poles where the length vanishes, at complex t. If the path is taken as straight, they lie on
-// the ellipse around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is
-// the largest effect of the direction on a result, in units of what may be left out.
+// How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) per step. The
+// direction has poles where the length vanishes, at complex t. On a straight path, they are on the ellipse
+// around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is the largest
+// effect of the direction on a result, in units of the tolerance.
 struct Path {
     double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
 };
 
-// With an error of a tenth, which is enough here: the bits of
-// a double, divided by 8, are close to those of the root.
+// Has an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of
+// the root.
 inline double eighth_root(double x) {
     long bits;
     __builtin_memcpy(&bits, &x, sizeof x);
@@ -32,15 +32,15 @@ inline double eighth_root(double x) {
 }
 
 inline Path path(double a, double b, double da, double db, double amplitude) {
-    // A straight path through zero turns round there, between
-    // two nodes where no mode shows it: never quite straight.
+    // On a straight path through zero the direction reverses there, between two nodes, and no mode shows it.
+    // So it is never treated as quite straight.
     const double sine = largest(
         absolute(a * db - b * da) / (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300), 1e-16);
     const double rho = 1.0 + kPoleMargin * eighth_root(amplitude * sine);
     return {a, b, da, db, 0.5 * (rho + 1.0 / rho)};
 }
 
-// The slack of every block size at once: >= 0 where the direction is smooth enough.
+// The slack for every block size at once: >= 0 if the direction is smooth enough.
 inline Eight slack(const Path& p, Eight K) {
     const Eight a = p.a + K * p.da, b = p.b + K * p.db;
     return square_root(p.a * p.a + p.b * p.b) + square_root(a * a + b * b) -

@@ -1,19 +1,18 @@
-// The march in a reduced state. The ten velocities follow from six numbers and the normal impulse, because
-// every change is a sum of five impulses per unit mass: Xi (horizontal friction), T (vertical friction), Q
-// (two of the cloth) and p (normal).
+// The integration in a reduced state. The ten velocities follow from six numbers and the normal impulse,
+// because every change is a sum of five impulses per unit mass: Xi (horizontal friction), T (vertical
+// friction), Q (two of the cloth) and p (normal).
 //
 //   x = v1x - v2x - R (w1z + w2z), z = R (w1x + w2x)     slip between the balls
-//   U[1] = u2, U[0] = -u1                                cloth slips; -u1, so that both sides have the same
-//   equations
+//   U[1] = u2, U[0] = -u1                                cloth slips; -u1 gives both sides the same equations
 //
-// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z|
-// and the pressed ball's q = mu_s t U / |U| one step is
+// With c = |(x, z)|, A = mu_b h / c, xi = A x, t = A |z| and the pressed ball's q = mu_s t U / |U| one step
+// is
 //
 //   x += -7 xi + q_x          |z| += -5 t + 5/2 q_y          v_n += 2 h - q_y
 //   U_pressed += (xi - kappa q_x, h - 5/2 sigma t - kappa q_y)
 //   U_other   += (xi, h + 5/2 sigma t)                       kappa = 1 - 5/2 sigma
 //
-// sigma = +1 as published, -1 consistent. Ball 2 (index 1) is pressed where z < 0.
+// sigma = +1 as published, -1 consistent. Ball 2 (index 1) is pressed if z < 0.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -37,12 +36,12 @@ Reduced reduce(const FrameState& s, double R) {
             {-(s.v1y - kSign * R * s.w1x), s.v2y - kSign * R * s.w2x}};
 }
 
-// The sums over a whole march, from which the outputs follow.
+// The sums over a whole impact, from which the outputs follow.
 struct Sums {
-    double Xi, PZ, QX[2], QY[2], p;  // PZ: vertical friction, positive where it presses ball 2
+    double Xi, PZ, QX[2], QY[2], p;  // PZ: vertical friction, positive if it presses ball 2
 };
 
-// The sums from the first and the last state of the march alone: the invariants are linear.
+// The sums from the first and the last state alone: the invariants are linear.
 template <int kSign>
 Sums sums_between(const Reduced& a, const Reduced& b, double p) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
@@ -133,7 +132,7 @@ struct StopTest {
     }
 };
 
-// Takes exact steps until the march ends or `count` steps are done.
+// Makes exact steps until the impact ends or `count` steps are done.
 template <int kSign>
 void reduced_steps(Reduced& r, StopTest& stop, long& steps, long count, const ReducedConstants& k) {
     for (; count > 0 && stop.goes_on(r.v_n); --count, ++steps) {

@@ -14,11 +14,11 @@ constexpr double kGaussNodes[kNodes] = {
 
 struct alignas(64) SumTable {
     double at[kNodes];            // t of the nodes
-    double sums[kNodes][kNodes];  // [l][i]: the share of F(node l) in the sum at node i
-    double total[kNodes];         // [l]: its share in the sum over the block
-    double double_total[kNodes];  // [l]: its share in the sum over m < K of the sums at m
-    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): of degrees 0 .. 7 by
-    // node, [l][k], and of higher degrees by degree, [k - 8][l].
+    double sums[kNodes][kNodes];  // [l][i]: weight of F(node l) in the sum at node i
+    double total[kNodes];         // [l]: its weight in the sum over the block
+    double double_total[kNodes];  // [l]: its weight in the sum over m < K of the sums at m
+    // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): degrees 0 .. 7 by node,
+    // [l][k], and higher degrees by degree, [k - 8][l].
     double once_low[kNodes][kNodes], once_high[1][kNodes];
     double twice_low[kNodes][kNodes], twice_high[2][kNodes];
     double steps;               // K
@@ -33,7 +33,7 @@ constexpr double evaluate(const double* a, int degree, double x) {
     return sum;
 }
 
-// The same with even and odd powers apart: two chains of half the length.
+// The same with even and odd powers separate: two chains of half the length.
 template <int kDegree>
 double value(const double* a, double x) {
     constexpr int kEven = kDegree - kDegree % 2, kOdd = kDegree - 1 + kDegree % 2;

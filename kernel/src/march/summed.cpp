@@ -1,4 +1,4 @@
-// The summed march, and the published one where rounding decides. Built once per instruction set.
+// The summed integration, or the published one if rounding decides. Built once per instruction set.
 #include "march/summed.h"
 
 #include "kernel_set.h"
@@ -7,7 +7,7 @@
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 namespace {
 
-// Returns false where the published march has to be asked.
+// Returns false if the published integration is needed.
 bool summed(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
     Frame frame;
     FrameState state;

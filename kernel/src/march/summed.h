@@ -1,13 +1,14 @@
-// The result of the march without its steps. The explicit Euler march is the sequence y(m+1) = y(m) + h
-// f(y(m)). Over a block of K steps the rates are a smooth function of m: a polynomial through eight nodes
-// represents them all, and its sums over consecutive m are exact (sum_tables.h). The values at the nodes are
-// found by fixed-point sweeps, eight lanes at once. What is summed is the Euler sequence, not the continuous
-// impact: step count, last step and discretisation error are those of the march. Where the rates are not
-// smooth (a change of the pressed side, a slip near zero, a ball that starts rolling) exact steps are taken.
+// The result of the explicit Euler integration without its steps. The integration is the sequence y(m+1) =
+// y(m) + h f(y(m)). Over a block of K steps the rates are a smooth function of m: a polynomial through eight
+// nodes represents them all, and its sums over consecutive m are exact (sum_tables.h). Fixed-point sweeps
+// find the values at the nodes, eight lanes at once. They sum the Euler sequence, not the continuous impulse,
+// so step count, last step and discretisation error are those of the published integration. If the rates are
+// not smooth (a change of the pressed side, a slip near zero, a ball that starts rolling), exact steps are
+// made.
 //
-// Where rounding decides the published march, no other order of its sums can follow
-// it, and this one gives up: where many exact steps chatter near stick, and where
-// the step that ends compression or the impact is a tie within rounding.
+// If rounding decides the published integration, no other order of summation can reproduce it, and this one
+// gives up: if many exact steps chatter near stick, or if the step that ends compression or the impact is a
+// tie within rounding.
 #pragma once
 
 #include "loop_marks.h"
@@ -20,26 +21,26 @@ namespace carom::kernel {
 namespace {
 
 constexpr int kMostBlockSweeps = 24;
-// Largest change of a node in the last sweep, and largest highest
-// modes of the rates, both relative to the approach speed.
+// Largest change of a node in the last sweep, and largest size of the highest modes of the rates, both
+// relative to the approach speed.
 constexpr double kSweepTolerance = 5e-13, kModeTolerance = 5e-11;
-// After two sweeps the modes may exceed kModeTolerance by
-// this factor; a block in which they are larger is given up.
+// After two sweeps the modes may exceed kModeTolerance by this factor; with larger ones the block is given
+// up.
 constexpr double kEarlySlack = 10.0;
 // Rounding error of a sweep, summed over the nodes, relative to the slips.
 constexpr double kSweepRounding = 4e-15;
 // Exact steps, and the growth of a small difference over them, after which an impact is left to the published
-// march: near stick, or where a cloth slip comes next to zero, rounding may decide the sign of a slip.
+// integration: near stick, or if a cloth slip comes close to zero, rounding may decide the sign of a slip.
 constexpr long kMostExactSteps = 40;
 constexpr double kMostGrowth = 10.0;
 // How close v_n and the work may come to the values that end a phase, relative to the approach speed; in
-// addition the published march rounds v_n by up to half an ulp of the fastest speed in each step.
+// addition the published integration rounds v_n by up to half an ulp of the fastest speed in each step.
 constexpr double kTie = 1e-9, kTieRounding = 0x1p-51;
 
 template <int kSign>
 class SummedMarch {
   public:
-    // `close`: what v_n may differ by from that of the published march.
+    // `close`: possible difference of v_n from that of the published integration.
     SummedMarch(const Reduced& start, const ReducedConstants& constants, double close)
         : r(start),
           k(constants),
@@ -47,7 +48,7 @@ class SummedMarch {
           tie_v(close),
           tie_W(close * absolute(start.v_n)) {}
 
-    // Returns the number of steps, or -1 where the published march has to be asked.
+    // Returns the number of steps, or -1 if the published integration is needed.
     long run() {
         long patience = 1, exact = 0;
         while (stop.goes_on(r.v_n)) {
@@ -55,7 +56,7 @@ class SummedMarch {
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
-            // Exact steps: more of them, the longer no block is smooth.
+            // Exact steps: the longer no block is smooth, the more of them.
             if (level >= 0)
                 patience = 1;
             else
@@ -74,8 +75,8 @@ class SummedMarch {
     bool tied = false;
     double enlarged = 1.0;
 
-    // The factor by which the next step enlarges a difference of a
-    // slip, at most: the step turns with the direction of the slip.
+    // Upper bound of the factor by which the next step enlarges a difference of a slip: the step turns with
+    // the direction of the slip.
     double growth_of_step() const {
         const int pressed = r.z < 0.0;
         const double c = largest(absolute(r.x), absolute(r.z)),
@@ -86,8 +87,7 @@ class SummedMarch {
         return 1.0 + k.mu_h * (of_slip + of_cloth);
     }
 
-    // Takes exact steps until the march ends or `count` are
-    // done; returns how many. Each shows whether it is a tie.
+    // Makes exact steps until the impact ends or `count` are done; returns how many. Checks each for a tie.
     long exact_steps(long count) {
         const long before = steps;
         while (count-- > 0 && stop.goes_on(r.v_n)) {
@@ -99,8 +99,8 @@ class SummedMarch {
         return steps - before;
     }
 
-    // The reciprocal lengths C and U and the rates at the present state.
-    // `cloth`: there is friction between the pressed ball and the cloth.
+    // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between
+    // the pressed ball and the cloth.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;
@@ -157,11 +157,11 @@ class SummedMarch {
         Eight xi, t, q_x, q_y;
     };
 
-    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the
-    // series of (1 - e)^(-1/2). The error 35/128 e^4 is left to the next sweep.
+    // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the series of (1 - e)^(-1/2). The
+    // error 35/128 e^4 remains for the next sweep.
     static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
-    // C and U are the reciprocal lengths of the sweep before on entry and of this sweep on return.
+    // C and U are the reciprocal lengths of the previous sweep on entry, and of this sweep on return.
     Rates rates(Eight x, Eight z, Eight a, Eight b, double mu_s, Eight& C, Eight& U) const {
         const Eight c2 = x * x + z * z, u2 = a * a + b * b;
         const Eight e_c = 1.0 - c2 * (C * C), e_u = 1.0 - u2 * (U * U);
@@ -180,7 +180,7 @@ class SummedMarch {
 
     // start plus the columns weighted by F.
     static Eight combined(const double (&columns)[kNodes][kNodes], Eight start, Eight F) {
-        // Through memory: a load broadcasts a number at no cost, a move between lanes of registers does not.
+        // Through memory: a load broadcasts a number for free, a move between lanes of registers does not.
         alignas(64) double at_node[kNodes];
         store(at_node, F);
         Eight even = start + at_node[0] * load<8>(columns[0]), odd = at_node[1] * load<8>(columns[1]);
@@ -202,7 +202,7 @@ class SummedMarch {
         Rates f{};
         if (!first.slips) return advance(table, f, pressed);
         const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
-        // Without friction of the cloth its slip may be any number but zero.
+        // Without friction of the cloth its slip may be any number except zero.
         const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
         const Eight at = load<8>(table.at), push = k.h * at;
         // First guess: the rates of the first step at all nodes.
@@ -211,7 +211,7 @@ class SummedMarch {
         Eight a = a0 + at * (first.xi - kKappa * first.q_x);
         Eight b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
         Eight C = broadcast<8>(first.C), U = broadcast<8>(first.cloth ? first.U : 1.0 / a0);
-        // The second term is the rounding error, below which no sweep comes.
+        // The second term is the rounding error, below which no sweep can get.
         const double settled =
             kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
         double change_before = scale;
@@ -229,8 +229,7 @@ class SummedMarch {
             a = next_a;
             b = next_b;
             CAROM_LOOP_END("summed sweep");
-            // Sweeps converge faster and faster: the next change
-            // would be smaller by at least the same factor.
+            // Sweeps converge ever faster: the next change would be smaller by at least the same factor.
             const double left =
                 sweep > 2 && change < change_before ? change * change / change_before : change;
             if (left <= settled) {
@@ -249,14 +248,14 @@ class SummedMarch {
     }
 
     bool resolved(const SumTable& table, const Rates& f, double slack) const {
-        // One mixture of the four rates represents them all;
-        // its weights are uneven, so that no symmetry cancels.
+        // One mixture of the four rates represents them all; its weights are uneven, so that no symmetry
+        // cancels.
         const Eight F = (f.xi + 0.7 * f.t) + (1.3 * f.q_x - 0.6 * f.q_y);
         const double missing = absolute(total(table.mode7, F)) + 0.1 * absolute(total(table.mode6, F));
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
-    // Advances by the block, or by as many of its steps as the march needs.
+    // Advances by the block, or by as many of its steps as the impact needs.
     bool advance(const SumTable& table, const Rates& f, int pressed) {
         const double K = table.steps, h = k.h, v0 = r.v_n;
         const double Q = total(table.total, f.q_y), v_end = v0 + 2.0 * h * K - Q;
@@ -274,8 +273,8 @@ class SummedMarch {
         const Profile at(table, f.q_y, v0, h);
         double from = 0.0, v_from = v0, V_from = 0.0;
         if (stop.compressing) {
-            // The first step after which v_n > 0: a secant, because
-            // v grows almost linearly, and one correction.
+            // The first step after which v_n > 0: a secant, because v grows almost linearly, and one
+            // correction.
             const double slope = (v_end - v0) / K;
             double t = -v0 / slope;
             t -= at.v(t) / slope;
@@ -296,10 +295,10 @@ class SummedMarch {
             stop.compressing = false;
         }
         double last = K;
-        if (stop.W >= stop.W_f) {  // without restitution the march ends with compression
+        if (stop.W >= stop.W_f) {  // without restitution the impact ends with compression
             last = from;
         } else if (stop.W + h * (V - V_from) >= stop.W_f) {
-            // The first step with the work to reach: v is taken as linear, and one Newton step follows.
+            // The first step that reaches the work: treats v as linear, then makes one Newton step.
             const double missing = (stop.W_f - stop.W) / h, growth = (v_end - v_from) / (K - from + 1e-300);
             const double root = square_root(v_from * v_from + 2.0 * growth * missing);
             double t = from + 2.0 * missing / (root + v_from);
@@ -319,7 +318,7 @@ class SummedMarch {
         } else {
             stop.W += h * (V - V_from);
         }
-        // The share of the rate of each node in the sum at `last`.
+        // The weight of each node's rate in the sum at `last`.
         const double theta = table.theta0 + table.theta_step * last;
         alignas(64) double powers[kNodes], weight[kNodes];
         powers[0] = 1.0;
@@ -388,23 +387,22 @@ class SummedMarch {
 };
 
 struct Summed {
-    static constexpr int kFewestSubsteps = 100;  // below this the steps themselves cost no more than the sums
+    static constexpr int kFewestSubsteps = 100;  // with fewer the steps themselves cost no more than the sums
 
-    // Frictions beyond these are left to the published march. As published, the cloth feeds the slip, and
-    // beyond them the equations themselves enlarge a difference without limit.
+    // Larger frictions are left to the published integration. With the published sign the cloth adds to the
+    // slip, and beyond these frictions the equations themselves amplify a difference without limit.
     static bool usual(const ImpactParams& p, int sign) {
         const double mu_s = largest(p.mu_s1, p.mu_s2);
         return sign > 0 ? p.mu_b <= 0.2 && mu_s <= 0.5 : p.mu_b <= 1.0 && mu_s <= 1.0;
     }
 
-    // Returns the number of steps, or -1 where the published
-    // march has to be asked; the state is then as it was.
+    // Returns the number of steps, or -1 if the published integration is needed; the state is then unchanged.
     template <int kSign>
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         if (n < kFewestSubsteps || !usual(p, kSign)) return -1;
         ReducedConstants k = reduced_constants<kSign>(s, p, n);
-        // Without friction between the balls the cloth is not
-        // felt, and its slips may not decide how the blocks lie.
+        // Without friction between the balls the cloth has no effect, and its slips must not decide where the
+        // blocks end.
         if (p.mu_b == 0.0) k.mu_s[0] = k.mu_s[1] = 0.0;
         const Reduced start = reduce<kSign>(s, p.R);
         SummedMarch<kSign> march(start, k,

@@ -1,5 +1,6 @@
-// The lanes of a batch by tolerance: impacts are loaded into lanes, brought into their canonical form there,
-// solved by one collocation, and written back. tolerance.cpp says which impacts are solved this way.
+// The lanes of a batch solved to a tolerance: impacts are loaded into lanes, brought into canonical form
+// there, solved by one collocation, and written back. tolerance.cpp chooses the impacts that are solved in
+// this way.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -9,7 +10,7 @@
 namespace carom::kernel {
 namespace {
 
-// The arrays of a batch by number, so that loops can go over them. A vector has three numbers, one for each
+// The arrays of a batch by number, so that loops can iterate over them. A vector has three numbers, one per
 // component.
 enum Input {
     kR1 = 0,
@@ -72,12 +73,13 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
     return v;
 }
 
-// The results of a block of lanes: which lanes are a proper
-// impact, which are solved, and which more nodes may solve.
+// The results of a block of lanes: which lanes are proper impacts, which are solved, and which more nodes may
+// solve.
 struct BlockResult {
     Wide out[kOutputs];
     Wide sweeps;
-    Wide hardness;  // the share of the slip that friction can take per impulse: the larger, the more sweeps
+    // the share of the slip that friction can remove per unit of impulse: the larger, the more sweeps
+    Wide hardness;
     WideMask good, done, resolvable;
 };
 
@@ -85,10 +87,10 @@ struct WideFrame {
     Wide yx, yy, x1, y1, wx1, wy1, wz1, x2, y2, wx2, wy2, wz2;
 };
 
-// As enter_frame(). A lane whose status would not be kOk is not in the mask.
+// As enter_frame(). The mask excludes lanes whose status would not be kOk.
 CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     Wide wrong = {};
-    // This sum is 0, or a NaN where an input is not finite.
+    // This sum is 0, or NaN if an input is not finite.
     for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];  // NOLINT(misc-redundant-expression): see above
     const Wide dx = in[kR2] - in[kR1], dy = in[kR2 + 1] - in[kR1 + 1], dz = in[kR2 + 2] - in[kR1 + 2];
     const Wide d = square_root(dx * dx + dy * dy), by_d = 1.0 / d;
@@ -109,8 +111,8 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
         ((absolute(f.x1) + absolute(f.y1)) + (absolute(f.x2) + absolute(f.y2))) +
         in[kRadius] * ((absolute(f.wx1) + absolute(f.wy1)) + (absolute(f.wz1) + absolute(f.wx2)) +
                        (absolute(f.wy2) + absolute(f.wz2)));
-    // Impacts with an extreme range of speeds are left to the
-    // single kernel, which tells whether they are impacts at all.
+    // Impacts with an extreme range of speeds are left to the single kernel, which decides whether they are
+    // impacts at all.
     return (wrong == 0.0) & (d > 0.0) & (absolute(dz) <= kHeightTolerance * d) & (in[kRadius] > 1e-100) &
            (in[kMass] > 0.0) & (in[kMuS1] >= 0.0) & (in[kMuS2] >= 0.0) & (in[kMuB] > 0.0) &
            (in[kMuS1] <= kLargestFriction) & (in[kMuS2] <= kLargestFriction) &
@@ -118,14 +120,14 @@ CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
            (scale < 1e100) & (approach > 1e-12 * scale);
 }
 
-// As Problem: impacts in their canonical form, scaled by the approach speed.
+// As Problem: impacts in canonical form, scaled by the approach speed.
 struct WidePose {
     WideFrame f;
     WideModel m;
     WideStart start;
     Wide n;                      // approach speed
     WideMask second, from_rest;  // ball 2 is pressed on the cloth; the cloth slip is zero
-    WideMask good;               // an impact between balls with slip between them
+    WideMask good;               // an impact with slip between the balls
 };
 
 // As enter_frame() and pose().
@@ -228,7 +230,7 @@ CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int f
     if (v.method != nullptr) v.method[i] = method;
 }
 
-// Loads the impacts index[0], ..., index[lanes - 1]; the first fills the lanes that are left.
+// Loads the impacts index[0], ..., index[lanes - 1]; the first one fills the remaining lanes.
 CAROM_INLINE void gather(const BatchView& v, const long* index, int lanes, Wide (&in)[kInputs]) {
     long from[kWidth];
     for (int i = 0; i < kWidth; ++i) from[i] = index[i < lanes ? i : 0];

@@ -1,5 +1,5 @@
-// Impacts of a batch that are solved in stretches. Each lane
-// starts the next impact as soon as it has finished one.
+// Impacts of a batch that are solved in stretches. Each lane starts the next impact as soon as it has
+// finished one.
 #pragma once
 
 #include "tolerance/single.h"
@@ -8,19 +8,19 @@
 namespace carom::kernel {
 namespace {
 
-// Impacts that are solved in one go.
+// Impacts that are solved together.
 constexpr int kPool = 128;
 
-// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but
-// a sweep of 8 nodes costs more than twice as much and its values do not fit into the registers.
+// From this tolerance, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a
+// sweep of 8 nodes costs more than twice as much, and its values do not fit into the registers.
 constexpr double kLooseWide = 1e-7;
 
-// Impacts in their canonical form, and their results.
+// Impacts in canonical form, and their results.
 struct HardPool {
     double x[kPool], z[kPool], a[kPool], b[kPool], mu_b[kPool], mu_s[kPool], e_b[kPool];
     double p[kPool], xi[kPool], zeta[kPool], g_a[kPool], g_b[kPool], sweeps[kPool];
     bool from_rest[kPool], solved[kPool];
-    // The first stretch of each, as plan() chooses it.
+    // The first stretch of each, as chosen by plan().
     double S[kPool], shortest[kPool], end[kPool], asked[kPool], root_s[kPool];
     bool last[kPool], vanished[kPool];
 };
@@ -35,7 +35,7 @@ CAROM_INLINE Problem problem_of(const HardPool& pool, int i, double tolerance, C
     return problem;
 }
 
-// The impacts under way, one a lane: Adaptive, with a lane for each.
+// The impacts in progress, one per lane: Adaptive, with a lane for each.
 struct WideRuns {
     WideModel m;
     WideStart at;
@@ -46,7 +46,7 @@ struct WideRuns {
     WideMask busy;  // lanes that have an impact
 };
 
-// Where both scalar forms below and lanes choose, they choose alike, NaN included.
+// The scalar forms below and the lanes choose alike, also for NaN.
 CAROM_INLINE Wide wide_smallest(Wide a, Wide b) {
     return select(a < b, a, b);
 }
@@ -55,7 +55,7 @@ CAROM_INLINE Wide wide_largest(Wide a, Wide b) {
     return select(a > b, a, b);
 }
 
-// As plan(), operation by operation; returns the lanes whose slip has all but vanished.
+// As plan(), operation by operation; returns the lanes whose slip has almost vanished.
 CAROM_INLINE WideMask wide_plan(WideRuns& r, double tolerance) {
     const WideModel& m = r.m;
     const Wide zero = {}, one = broadcast<kWidth>(1.0);
@@ -82,9 +82,9 @@ CAROM_INLINE WideMask wide_plan(WideRuns& r, double tolerance) {
     return vanished;
 }
 
-// As add_stretch() and advance(), for the lanes that converged and for those
-// that can be shortened. Returns the lanes that are through; `frozen` are those
-// that neither converged nor can be shortened, which are left as they were.
+// As add_stretch() and advance(), for the lanes that converged and for those that can be shortened. Returns
+// the lanes that are finished; `frozen` are those that neither converged nor can be shortened, and are
+// unchanged.
 CAROM_INLINE WideMask wide_advance(WideRuns& r, const WideStretchResult& result, WideMask& frozen) {
     const WideModel& m = r.m;
     const WideResult& t = result.t;
@@ -119,7 +119,7 @@ CAROM_INLINE WideMask wide_advance(WideRuns& r, const WideStretchResult& result,
     return through;
 }
 
-// One lane as an impact by itself, and back.
+// Converts one lane to a separate impact, and back.
 inline Adaptive run_of(const WideRuns& r, int i, double tolerance) {
     Adaptive run;
     run.m = {lane(r.m.mu_b, i), lane(r.m.mu_s, i), r.m.sigma, r.m.kappa, lane(r.m.e_b, i)};
@@ -241,7 +241,7 @@ class StretchLanes {
         keep_result(run, impact[i], pool);
     }
 
-    // Plans the first stretch of the impacts from `first` on, a register of them.
+    // Plans the first stretch of a register of impacts, starting at `first`.
     void plan_first(int first) {
         WideRuns q = {};
         q.m = r.m;
@@ -315,8 +315,7 @@ class StretchLanes {
         set_lane(r.busy, i, 0);
     }
 
-    // Steps that are too short to be shortened are taken as
-    // they come. Returns the lanes that are then through.
+    // Accepts steps that are too short to be shortened. Returns the lanes that are then finished.
     WideMask freeze(WideMask lanes) {
         WideMask through = {};
         for (int i = 0; i < kWidth; ++i) {

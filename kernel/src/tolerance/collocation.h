@@ -8,11 +8,11 @@
 //
 // and the equations of motion, with ' = d/dp,
 //
-//     x' = -7 xi + g_a   z' = -5 zeta + 5/2 g_b   a' = xi - kappa g_a   b' = 1 - sigma zeta - kappa g_b   v'
-//     = 2 - g_b
+//     x' = -7 xi + g_a     z' = -5 zeta + 5/2 g_b     a' = xi - kappa g_a
+//     b' = 1 - sigma zeta - kappa g_b                 v' = 2 - g_b
 //
-// with (sigma, kappa = 1 - sigma) = (-5/2, 7/2) for the
-// consistent sign of the cloth slip, (5/2, -3/2) as published.
+// with (sigma, kappa = 1 - sigma) = (-5/2, 7/2) for the consistent sign of the cloth slip, (5/2, -3/2) as
+// published.
 #pragma once
 
 #include "frame.h"
@@ -23,24 +23,23 @@
 namespace carom::kernel {
 namespace {
 
-// Most Picard sweeps of one collocation. One that converges
-// more slowly than this is solved in shorter stretches.
+// Most Picard sweeps of one collocation. One that converges more slowly is solved in shorter stretches.
 constexpr int kMostSweeps = 24;
 
-// Sweeps of 4 nodes before those of 8: each costs half as much, and takes the error of the first guess down
-// as far. What 4 nodes do not resolve is left to the sweeps of 8; with 3, those are hardly fewer.
+// Sweeps of 4 nodes before those of 8. Each costs half as much and reduces the error of the first guess by as
+// much. The part that 4 nodes do not resolve is left to the sweeps of 8; with 3, those are hardly fewer.
 constexpr int kCoarseSweeps = 2;
 
 // The square of the estimated error that the iteration may leave, in tolerances. The estimate is pessimistic,
-// and fitted as the guards are: with 20 the largest error of 360 000 random and hard impacts of the single
-// form is two thirds of the bound, with 48 one misses it. Lanes have narrower margins.
+// and fitted like the guards: with 20 the largest error of 360 000 random and hard impacts of the single form
+// is two thirds of the bound; with 48 one exceeds it. Lanes have narrower margins.
 constexpr double kSweepGoal = 20.0, kSweepGoalOfLanes = 16.0;
 
-// Largest error that the iteration may leave, as a share of the friction between the balls: where that is
-// slight, an error of the tolerance could exceed all that friction takes, and energy would rise.
+// Largest error that the iteration may leave, as a share of the friction between the balls. If friction is
+// slight, an error of the tolerance could exceed all that friction removes, and energy would rise.
 constexpr double kShareOfFriction = 0.03;
 
-// The error of the rows (EndRows) from which on they are computed anew, as a share of the tolerance.
+// The error of the rows (EndRows) above which they are recomputed, as a share of the tolerance.
 constexpr double kRowsGoal = 0.1;
 
 // The constants of one impact.
@@ -59,24 +58,24 @@ struct Impulses {
 
 // Where a collocation ends.
 enum class End : unsigned char {
-    kWhole,  // at the end of restitution, from v = -1; the end of compression lies inside
-    // after a given impulse, or at the end of compression,
-    // v = 0, or at that of restitution, after a given work
+    kWhole,  // at the end of restitution, from v = -1; the end of compression is inside
+    // after a given impulse, or at the end of compression, v = 0, or at that of restitution, after a given
+    // work
     kStretch,
 };
 
-// What a collocation is asked for, and what it found.
+// The task of a collocation, and its result.
 struct Stretch {
     double h;           // impulse: given, or a first guess and then the result
     double work;        // kStretch: the work to do; 0: until v = 0
     double p_c;         // kWhole: impulse at the end of compression, a first guess and then the result
     double done;        // kStretch: work of the normal impulse over the stretch
-    double row_goal;    // largest error of the rows of the end
+    double row_goal;    // largest error of the end's rows
     double sweep_goal;  // square of the largest error that the iteration may leave
     // sixth power of the largest relative error of a carried root before its last correction
     double root_goal;
-    // The square of the highest Legendre coefficient of (xi,
-    // zeta), and of (g_a, g_b): how well the nodes resolve them.
+    // The square of the highest Legendre coefficient of (xi, zeta), and of (g_a, g_b): how well the nodes
+    // resolve them.
     double s_top2, g_top2;
     int sweeps;
     bool given;  // kStretch: the impulse is given
@@ -100,8 +99,8 @@ CAROM_INLINE double dot(const double* weights, Pack<N> f) {
     return sum(load<N>(weights) * f);
 }
 
-// Rows that integrate a force over compression and over
-// restitution, for an end of compression at t_c = 2 p_c/p - 1.
+// Rows that integrate a force over compression and over restitution, for an end of compression at t_c = 2
+// p_c/p - 1.
 template <int N>
 struct EndRows {
     double t;  // the t_c of these rows
@@ -135,23 +134,23 @@ CAROM_INLINE double late_share(Pack<N> f) {
     return dot<N>(Gauss<N>::weights, (1.0 - load<N>(Gauss<N>::nodes)) * f);
 }
 
-// The impulse at which the stretch ends, by quadrature of the cloth force mu_b mu_s g_b. Compression ends
-// where v = 0, restitution where the work of the normal impulse is e_b^2 times that of compression.
+// The impulse at which the stretch ends, by quadrature of the cloth force mu_b mu_s g_b. Compression ends at
+// v = 0, restitution when the work of the normal impulse is e_b^2 times that of compression.
 template <int N, End kEnd>
 CAROM_INLINE void find_end(const Model& m, const State& start, Pack<N> g_b, const EndRows<N>& rows,
                            Stretch& stretch) {
     using G = Gauss<N>;
     const double unit = m.mu_b * m.mu_s;
     if constexpr (kEnd == End::kWhole) {
-        // With p_c = 1/share the work of compression is (share - 1 +
-        // late)/share^2: division and root do not wait for each other.
+        // With p_c = 1/share the work of compression is (share - 1 + late)/share^2: division and root do not
+        // wait for each other.
         const double share = 2.0 - sum(rows.before * g_b), lost = 1.0 - sum(rows.after_late * g_b);
         const double late = sum(rows.before_late * g_b), both = 1.0 / (lost * share);
         stretch.p_c = both * lost;
         stretch.h = both * (lost + m.e_b * square_root(lost * (share - (1.0 - late))));
     } else if (stretch.given) [[likely]] {
-        // One function for all ends of a stretch: with a whole impact
-        // of 4 and of 8 nodes the code only just fits into 32 kB.
+        // One function for all ends of a stretch: with a whole impact of 4 and of 8 nodes the code only just
+        // fits into 32 kB.
         return;
     } else if (stretch.work == 0.0) {
         stretch.h = -start.v / (2.0 - unit * dot<N>(G::weights, g_b));
@@ -170,7 +169,7 @@ struct Nodes {
     Pack<N> xi, zeta, g_a, g_b;  // the forces
 };
 
-// |.|^2 T^2 of the roots T that were carried, before their correction; 1 where they were computed afresh.
+// .|^2 T^2 of the carried roots T, before their correction; 1 if they were computed afresh.
 template <int N>
 struct Carried {
     Pack<N> s, u;
@@ -182,7 +181,7 @@ CAROM_INLINE P inverse_root(P v) {
     return square_root(v) * (1.0 / v);
 }
 
-// Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the sweep before are
+// Forces at the nodes. The reciprocal roots are computed afresh (kExact), or those of the previous sweep are
 // corrected by one cubic step: T f, f = 15/8 - 5/4 q + 3/8 q^2 > 0 with q = |.|^2 T^2. Every sweep waits for
 // this, so the slips are scaled before the factor is known.
 template <int N, bool kExact>
@@ -222,8 +221,8 @@ CAROM_INLINE bool roots_settled(const Carried<N>& q, double goal) {
     return all_below(worst * worst * worst, goal);
 }
 
-// The slips at N nodes from the forces at as many or fewer, by the
-// table of the forces' integrals. Of `n` nothing else changes.
+// The slips at N nodes from the forces at as many or fewer, by the table of the forces' integrals. Changes
+// nothing else in `n`.
 template <int N, class Forces>
 CAROM_INLINE void slips(const Model& m, const State& start, double h, const double* table, const Forces& f,
                         Nodes<N>& n) {
@@ -238,14 +237,13 @@ CAROM_INLINE void slips(const Model& m, const State& start, double h, const doub
           (H * (m.kappa * cloth)) * g_b;
 }
 
-// The slips of one sweep and of the sweep before, and the roots of the latter, for any number of nodes.
+// The slips of one sweep and of the previous one, and the roots of the latter, for any number of nodes.
 template <class P>
 struct Change {
     P x, z, a, b, old_x, old_z, old_a, old_b, root_s, root_u;
 };
 
-// The squares of the changes as shares of |s| and of |u|, the
-// latter weighted by the largest effect that it can have.
+// The squares of the changes relative to |s| and to |u|, the latter weighted by its largest possible effect.
 template <class P>
 CAROM_INLINE P squares(const Change<P>& c, double mu_s) {
     const P dx = c.x - c.old_x, dz = c.z - c.old_z, da = c.a - c.old_a, db = c.b - c.old_b;
@@ -253,8 +251,8 @@ CAROM_INLINE P squares(const Change<P>& c, double mu_s) {
            (mu_s * mu_s) * ((da * da + db * db) * (c.root_u * c.root_u));
 }
 
-// Whether `small` of the sum of the squares of all nodes holds; it must hold for less where it holds for
-// more. All sweeps but the last are told by the later half of the nodes, which change most.
+// Whether `small` holds for the sum of the squares over all nodes; it must be monotone. For all sweeps except
+// the last, the later half of the nodes suffices, because they change most.
 template <class Register, class Small>
 CAROM_INLINE bool changed_little(const Change<Register>& c, double mu_s, Small small) {
     return small(sum(squares(c, mu_s)));
@@ -273,14 +271,14 @@ CAROM_INLINE bool changed_little(const Change<Halves<Half>>& c, double mu_s, Sma
     return small(sum(early + late));
 }
 
-// First guess: the cloth slip goes straight, as if the normal impulse alone moved it, and where it is half
-// way decides about the cloth's force; the slip between the balls turns as the forces of the start turn it.
-// The end of a whole impact is guessed with that cloth force.
+// First guess. The cloth slip moves straight, as if by the normal impulse alone, and its middle determines
+// the cloth's force. The slip between the balls turns under the forces at the start. The end of a whole
+// impact is guessed with that cloth force.
 template <int N, End kEnd>
 CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stretch& stretch, Nodes<N>& n) {
     const double e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
     const double half = start.b + 0.5 * stretch.h;
-    // The direction of a small cloth slip soon turns: it counts less.
+    // The direction of a small cloth slip soon turns, so it counts less.
     const double by_u = m.mu_s * inverse_root((start.a * start.a + half * half) + 0.01);
     const double g_a = (by_u * start.a) * zeta, g_b = (by_u * half) * zeta;
     const double x = g_a - 7.0 * xi, z = 2.5 * g_b - 5.0 * zeta;
@@ -295,9 +293,9 @@ CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stret
     n.b = start.b + p * b;
 }
 
-// The slips, roots and forces that the sweeps begin with. Of a whole impact, returns where compression ends
+// The slips, roots and forces that the sweeps begin with. For a whole impact, returns where compression ends
 // (EndRows::t). The roots of 8 nodes are computed afresh: 1/|u| of a ball that rolled is no polynomial, and
-// carried ones cost up to two sweeps.
+// carried roots cost up to two sweeps.
 template <int N, End kEnd>
 CAROM_INLINE double begin(const Model& m, const State& start, double root_s, Stretch& stretch, Nodes<N>& n) {
     double t_c = 2.0 / (1.0 + m.e_b) - 1.0;
@@ -324,9 +322,9 @@ CAROM_INLINE double begin(const Model& m, const State& start, double root_s, Str
     return t_c;
 }
 
-// Whether the nodes of a stretch of the impulse h resolve its forces, by the
-// squares of their highest Legendre coefficients: 7 h s^2 is at most 3 tolerances
-// times mu_b, and 9 h^2 g^3 at most mu_b mu_s times the square of the tolerance.
+// Whether the nodes of a stretch of the impulse h resolve its forces, by the squares of their highest
+// Legendre coefficients: 7 h s^2 is at most 3 tolerances times mu_b, and 9 h^2 g^3 at most mu_b mu_s times
+// the square of the tolerance.
 template <class T>
 CAROM_INLINE auto resolved(T mu_b, T mu_s, T h, T s_top2, T g_top2, double tolerance) {
     const T g_side = 9.0 * (h * h), side = (tolerance * tolerance) * (mu_b * mu_s);
@@ -348,9 +346,9 @@ CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, I
     total.g_b += t.g_b;
 }
 
-// Solves one stretch. Returns false if the sweeps do not converge; then only
-// `stretch` has changed. `exact`: every sweep computes fresh roots, in place
-// of correcting those of the sweep before. `root_s` is 1/|s| at the start.
+// Solves one stretch. Returns false if the sweeps do not converge; then only `stretch` has changed. `exact`:
+// every sweep computes fresh roots instead of correcting those of the previous sweep. `root_s` is 1/|s| at
+// the start.
 template <int N, End kEnd>
 CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
                             bool exact) {
@@ -359,8 +357,8 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     Nodes<N> n;
     double t_c = begin<N, kEnd>(m, start, root_s, stretch, n);
     const double reach = 7.0 * m.mu_b * stretch.h, cloth = m.mu_b * m.mu_s;
-    // A change of the slips leaves an error of contraction
-    // * change in the next forces, which act over `reach`.
+    // A change of the slips leaves an error of contraction * change in the next forces, which act over
+    // `reach`.
     const double steep = sum(n.root_s * n.root_s + (m.mu_s * m.mu_s) * (n.root_u * n.root_u)),
                  slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (N * N)));
     // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
@@ -382,7 +380,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         }
         const Carried<N> carried = exact ? forces<N, true>(n) : forces<N, false>(n);
         const double dh = stretch.h - h;
-        // Many sweeps mean a contraction near 1: then the error that is left exceeds the last change.
+        // Many sweeps mean a contraction near 1: then the remaining error exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
         const double by_slips = slow * slope, by_end = (slow * end_slope) * (dh * dh);
         const auto small = [&](double change) { return by_slips * change + by_end <= stretch.sweep_goal; };

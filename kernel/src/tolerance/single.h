@@ -1,4 +1,4 @@
-// One impact by tolerance: check, scale, solve, project back.
+// One impact solved to a tolerance: check, scale, solve, project back.
 #pragma once
 
 #include "tolerance/solve.h"
@@ -7,15 +7,15 @@
 namespace carom::kernel {
 namespace {
 
-// The cloth slip of a rolling ball is rounding noise: up to this share of the speeds it counts as zero.
+// The cloth slip of a rolling ball is rounding: up to this share of the speeds it counts as zero.
 constexpr double kSlipNoise = 0x1p-49;
 
-// Loosest tolerance that is solved for. A looser one would save
-// nothing, and the iteration could stop so early that energy rises.
+// Loosest tolerance that is solved for. A looser one would save nothing, and the iteration could stop so
+// early that energy rises.
 constexpr double kLoosestSolved = 1e-3;
 
-// What an impulse does to a ball, as a share of what it does to one of two equal balls of the same reduced
-// mass: 2 m_r/m_i, from 0 to 2 and together 2. Equal balls have exactly 1.
+// Effect of an impulse on a ball, relative to its effect on one of two equal balls with the same reduced
+// mass: 2 m_r/m_i, from 0 to 2, with the sum 2. For equal balls it is exactly 1.
 struct Shares {
     double one, two;
 };
@@ -32,12 +32,12 @@ CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, const Shares& share,
            share.two * p.mu_s2 <= kLargestFriction;
 }
 
-// Brings an impact into its canonical form. Returns whether ball 2 is the one that is pressed on the cloth.
+// Brings an impact into canonical form. Returns whether ball 2 is pressed on the cloth.
 //
-// Impulses are over twice the reduced mass. With the share f of the pressed ball, friction of the cloth acts
-// on its own slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g): so f mu_s, kappa/f and u/f take
-// the places of mu_s, kappa and u in the equations of equal balls, which see of u its direction alone. Their
-// g then is what changes the pressed ball's velocity.
+// Impulses are divided by twice the reduced mass. With the share f of the pressed ball, friction of the cloth
+// acts on its own slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g). So f mu_s, kappa/f and u/f
+// replace mu_s, kappa and u in the equations of equal balls, which use only the direction of u. Their g is
+// then the change of the pressed ball's velocity.
 CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, const Shares& share, double tolerance,
                        Problem& problem) {
     const double R = p.R, n = s.v1y - s.v2y, scale = 1.0 / n;
@@ -99,7 +99,7 @@ CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const Impac
     Problem problem;
     Solution solution;
     const double n = state.v1y - state.v2y;
-    // The lighter ball takes up to twice the impulse's error.
+    // The lighter ball gets up to twice the error of the impulse.
     const double solved = smallest(tolerance, kLoosestSolved) / largest(share.one, share.two);
     const bool second = pose(state, params, share, solved, problem);
     solve(problem, solution);

@@ -1,4 +1,4 @@
-// Which method solves an impact, and the stretches of an impact that no single collocation solves. Legend:
+// Chooses the method for an impact, and solves impacts in stretches if no single collocation can. Symbols:
 // collocation.h.
 #pragma once
 
@@ -16,13 +16,13 @@ constexpr int kMostStretches = 2000;
 // mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
-// The sum of the axes where no singularity is near.
+// The sum of the axes if no singularity is near.
 constexpr double kFarAway = 1e20;
 
-// From this tolerance on, stretches of 4 nodes are hardly shorter than stretches of 8 and cost less.
+// From this tolerance, stretches of 4 nodes are hardly shorter than stretches of 8, and cost less.
 constexpr double kLooseStretches = 1e-4;
 
-// An impact in its canonical form, scaled by the approach speed.
+// An impact in canonical form, scaled by the approach speed.
 struct Problem {
     Model model;
     State start;
@@ -37,8 +37,8 @@ struct Solution {
 };
 
 // Powers of rho, the Bernstein ellipse about [0, 1] on which a singularity lies: the error of N nodes falls
-// as rho^-2N. They come from the sum of its axes rho + 1/rho, 2 or more, without a root, because rho^n +
-// rho^-n is a polynomial of that sum. What is returned is up to 1 less than the power.
+// as rho^-2N. They are computed without a root from the sum of its axes rho + 1/rho, 2 or more, because rho^n
+// + rho^-n is a polynomial of that sum. The values are up to 1 below the powers.
 template <class T>
 struct Powers {
     T five, six, ten, twelve;
@@ -51,7 +51,7 @@ CAROM_INLINE Powers<T> powers(T sum_of_axes) {
     return {five - 1.0, six - 1.0, five * five - 3.0, six * six - 3.0};
 }
 
-// Whether one collocation of 4 or of 8 nodes keeps the tolerance, for the ellipses of the slips s and u.
+// Whether one collocation of 4 or of 8 nodes keeps the tolerance, given the ellipses of the slips s and u.
 template <class T>
 CAROM_INLINE auto four_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, T mu_s, double tolerance) {
     return (tolerance * s.six >= kSizeS * mu_b) & (tolerance * u.five >= kSizeU * (mu_b * mu_s));
@@ -62,13 +62,13 @@ CAROM_INLINE auto eight_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, 
     return (tolerance * s.twelve >= kSizeS * mu_b) & (tolerance * u.ten >= 0.5 * kSizeU * (mu_b * mu_s));
 }
 
-// |s|^2/mu_b times the fastest that |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s mu_b
-// z/|s|.
+// s|^2/mu_b times the fastest rate at which |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s
+// mu_b z/|s|.
 CAROM_INLINE double fall(const Model& m, const State& at, double s) {
     return (7.0 * (at.x * at.x) + 5.0 * (at.z * at.z)) + (2.7 * m.mu_s) * (at.z * s);
 }
 
-// The rest of an impact whose friction has ended.
+// The rest of an impact after friction has ended.
 CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressing, double compressed,
                                       double e_b, Impulses& total) {
     if (compressing) {
@@ -79,9 +79,9 @@ CAROM_INLINE void finish_frictionless(double v, double work_left, bool compressi
     if (work_left > 0.0) total.p += 2.0 * work_left / (v + square_root(v * v + 4.0 * work_left));
 }
 
-// The rest of an impact whose slip has nearly vanished. The slip ends while
-// the cloth slip keeps its direction; where the impulse that is left is too
-// small to end it, the friction impulses are reduced in proportion.
+// The rest of an impact whose slip has nearly vanished. The slip ends while the cloth slip keeps its
+// direction; if the remaining impulse is too small to end it, the friction impulses are reduced in
+// proportion.
 inline void finish_stuck(const Model& m, State at, double left, Impulses& total, double& v) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double ga = u > 0.0 ? m.mu_s * (at.a / u) : 0.0, gb = u > 0.0 ? m.mu_s * (at.b / u) : 0.0;
@@ -95,8 +95,8 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Ellipses of stretches, each 1.125 times the one before: rho^6
-// (4 nodes) or rho^12 (8 nodes), and the sum of the axes.
+// Ellipses of stretches, each 1.125 times the one before: rho^6 (4 nodes) or rho^12 (8 nodes), and the sum of
+// the axes.
 template <int N>
 struct Ellipses {
     static constexpr int kCount = 33;
@@ -114,11 +114,11 @@ struct Ellipses {
 template <int N>
 constexpr Ellipses<N> kEllipses;
 
-// The sum of the axes of the smallest of the ellipses for which N nodes
-// keep an error that is this multiple of the tolerance for rho = 1.
+// The sum of the axes of the smallest of the ellipses for which N nodes keep an error that is this multiple
+// of the tolerance for rho = 1.
 template <int N>
 CAROM_INLINE double needed_axes(double excess) {
-    // The powers rise. All are asked at once: no question waits for another one.
+    // The powers increase. All are compared at once, so that no comparison waits for another.
     unsigned too_small = 0;
     for (int i = 0; i < Ellipses<N>::kCount - 1; i += 8)
         too_small |= static_cast<unsigned>(bits_less(load<8>(kEllipses<N>.power + i), broadcast<8>(excess)))
@@ -126,8 +126,8 @@ CAROM_INLINE double needed_axes(double excess) {
     return kEllipses<N>.sum_of_axes[too_small == ~0u ? Ellipses<N>::kCount - 1 : __builtin_ctz(~too_small)];
 }
 
-// The last resort, which always makes progress: one explicit
-// Euler step over a stretch that is too short to matter.
+// The last resort, which always makes progress: one explicit Euler step over a stretch that is too short to
+// matter.
 inline void frozen_step(const Model& m, double h, State& at, Impulses& total, double& done) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double xi = s > 0.0 ? m.mu_b * (at.x / s) * h : 0.0, zeta = s > 0.0 ? m.mu_b * (at.z / s) * h : 0.0;
@@ -164,8 +164,8 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
     return resolved(m.mu_b, m.mu_s, stretch.h, stretch.s_top2, stretch.g_top2, tolerance);
 }
 
-// An impact that is solved in stretches, each so short that |s| and |u| keep a share of their size over it.
-// `plan` chooses the next stretch; `advance` accepts or rejects the result of its collocation.
+// An impact solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
+// chooses the next stretch; `advance` accepts or rejects the result of its collocation.
 struct Adaptive {
     Model m;
     double tolerance, S, shortest;
@@ -194,7 +194,7 @@ CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
     run.sweeps = run.stretches = 0;
 }
 
-// Returns false if the slip has all but vanished: then only the frictionless rest of the impact is missing.
+// Returns false if the slip has almost vanished: then only the frictionless rest of the impact is missing.
 CAROM_INLINE bool plan(Adaptive& run) {
     const Model& m = run.m;
     State& at = run.at;
@@ -210,7 +210,7 @@ CAROM_INLINE bool plan(Adaptive& run) {
         return false;
     }
     const double S = run.S;
-    // Here and below nothing is divided before the end: the next stretch waits for this.
+    // From here divide only at the end, because the next stretch waits for this.
     double h = 4.0 * (s * ss) / ((m.mu_b * (S + 2.0)) * fall(m, at, s));
     if (!run.from_rest) {
         // (fx, fy) is |s| |u| u'. The cloth force itself speeds up or slows down the approach of u to zero.
@@ -267,7 +267,7 @@ CAROM_INLINE void finish(Adaptive& run) {
     if (run.sweeps == 0) run.sweeps = 1;  // the slip was so small that it ended at once
 }
 
-// Returns false at the bound on stretches: then `solution` is finite but may miss the tolerance.
+// Returns false at the limit of stretches: then `solution` is finite but may miss the tolerance.
 template <int N>
 inline bool solve_adaptive(const Problem& problem, Solution& solution) {
     Adaptive run;
@@ -329,8 +329,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     }
     const double guess = 0.5 * (1.0 + m.e_b);
     const double ss = start.x * start.x + start.z * start.z, s = square_root(ss), root_s = inverse_root(ss);
-    // How far away the singularities are: stick lies straight ahead,
-    // the zero of the cloth slip beside its nearly straight path.
+    // How far away the singularities are: stick is straight ahead, and the zero of the cloth slip is beside
+    // its nearly straight path.
     const double axes_s = 4.0 * (s * ss) / ((guess * m.mu_b) * fall(m, start, s)) - 2.0;
     double axes_u = kFarAway;
     if (!problem.from_rest) {

@@ -1,7 +1,7 @@
-// Impacts by tolerance, single and in batches. Built once per instruction set.
+// Impacts solved to a tolerance, single and in batches. Built once per instruction set.
 //
-// A batch solves its easy impacts in lanes as they come, by one collocation of 4 nodes. Impacts that need 8
-// nodes are gathered until they fill a register; those that need stretches are gathered too, and each lane
+// A batch solves its easy impacts in lanes in their order, by one collocation of 4 nodes. Impacts that need 8
+// nodes are collected until they fill a register. Those that need stretches are collected too, and each lane
 // starts the next one as soon as it has finished one. Special cases are left to the single kernel.
 #include "kernel_set.h"
 #include "tolerance/batch_lanes.h"
@@ -10,12 +10,12 @@
 namespace carom::kernel {
 namespace {
 
-// Impacts between two looks at what has been gathered.
+// Impacts between two checks of the collected ones.
 constexpr long kChunk = 256;
-// Impacts that need 8 nodes, and those that need stretches, are solved when so many have been gathered.
+// Impacts that need 8 nodes, and those that need stretches, are solved when this many have been collected.
 constexpr int kMostResolvable = 256, kMostHard = 256;
 
-// Lane i of a batch by the single kernel.
+// Solves lane i of a batch with the single kernel.
 inline void solve_single(const BatchView& v, long i, double tolerance) {
     Ball ball1, ball2;
     for (int k = 0; k < 3; ++k) {
@@ -48,15 +48,15 @@ inline void solve_single(const BatchView& v, long i, double tolerance) {
     if (v.method != nullptr) v.method[i] = result.method;
 }
 
-// The impacts that are left: those that one collocation of 8 nodes may solve, and those that need stretches.
+// The remaining impacts: those that one collocation of 8 nodes may solve, and those that need stretches.
 struct Remaining {
     long resolvable[kMostResolvable + kChunk], hard[kMostHard + kMostResolvable + kChunk];
     double hardness[kMostResolvable + kChunk];  // of the resolvable
     int resolvables, hards;
 };
 
-// Sorts the resolvable impacts by how many sweeps they will
-// need, roughly: all lanes of a register wait for the slowest.
+// Sorts the resolvable impacts roughly by the number of sweeps that they will need, because all lanes of a
+// register wait for the slowest.
 inline void sort_resolvable(Remaining& rest) {
     constexpr int kBins = 32;
     const auto bin = [&](int i) {
@@ -79,7 +79,7 @@ inline void sort_resolvable(Remaining& rest) {
     }
 }
 
-// Solves the impacts [begin, end) by 4 nodes.
+// Solves the impacts [begin, end) with 4 nodes.
 inline void sweep_easy(const BatchView& v, long begin, long end, double tolerance, Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
@@ -122,7 +122,7 @@ inline void sweep_easy(const BatchView& v, long begin, long end, double toleranc
     }
 }
 
-// Solves the gathered impacts by 8 nodes.
+// Solves the collected impacts with 8 nodes.
 inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
@@ -142,7 +142,7 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& re
     rest.resolvables = 0;
 }
 
-// Solves the gathered impacts that no single collocation solves.
+// Solves the collected impacts that no single collocation solves.
 inline void sweep_hard(const BatchView& v, double tolerance, Remaining& rest) {
     Wide in[kInputs];
     WidePose q;

@@ -1,8 +1,8 @@
-// One collocation of many impacts at once: each lane is an impact,
-// and the nodes are elements of arrays. Legend: collocation.h.
+// One collocation of many impacts at once: each lane is an impact, and the nodes are elements of arrays.
+// Symbols: collocation.h.
 //
-// A lane reads only its own numbers and keeps the impulses of the sweep at which it converged itself. Its
-// bits therefore depend neither on the width of the registers nor on the impacts in the other lanes.
+// A lane reads only its own numbers, and stores the impulses of the sweep at which it converged. Its bits
+// therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
 #include "gauss.h"
@@ -11,7 +11,7 @@
 namespace carom::kernel {
 namespace {
 
-// A pack of impacts: one register, or two where registers hold two doubles.
+// A pack of impacts: one register, or two if registers hold two doubles.
 constexpr int kWidth = kRegisterLanes < 4 ? 4 : kRegisterLanes;
 using Wide = Pack<kWidth>;
 using WideMask = Mask<kWidth>;
@@ -36,7 +36,7 @@ struct WideNodes {
     Wide x[N], z[N], a[N], b[N], root_s[N], root_u[N], xi[N], zeta[N], g_a[N], g_b[N];
 };
 
-// sum_j row[j] f[j], even and odd terms apart
+// sum_j row[j] f[j], even and odd terms separately
 template <int N>
 CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
     Wide even = row[0] * f[0], odd = row[stride] * f[1];
@@ -48,7 +48,7 @@ CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
 }
 
 // Integrals from 0 to every node, for the even and the odd part of f: half the sum and half the difference of
-// mirrored columns. The nodes lie symmetrically, so that each part needs only half a table.
+// mirrored columns. The nodes are symmetric, so that each part needs only half a table.
 struct Mirrored8 {
     double even[4][4], odd[4][4];
     constexpr Mirrored8() : even{}, odd{} {
@@ -86,8 +86,8 @@ CAROM_INLINE void wide_integrals(Wide start, Wide h, const Wide (&f)[N], Wide (&
 
 enum class Roots : unsigned char { kFresh, kCarried, kMixed };
 
-// As forces(). The reciprocal roots are computed afresh (kFresh), or those of the sweep before are corrected
-// (kCarried); kMixed: afresh in the lanes of `exact`.
+// As forces(). The reciprocal roots are computed afresh (kFresh), or those of the previous sweep are
+// corrected (kCarried); kMixed: afresh in the lanes of `exact`.
 template <int N, Roots kRoots>
 CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exact = WideMask{}) {
     Wide worst = {};
@@ -104,8 +104,8 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
             n.root_s[i] = fresh_s;
             n.root_u[i] = fresh_u;
         } else {
-            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. Where a
-            // root is off by much it leads to the negative one, so that its callers look at what is returned.
+            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. If a root
+            // is very wrong, it leads to the negative root, so callers must check the returned value.
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
             n.root_s[i] += n.root_s[i] * (0.5 * rs);
@@ -166,7 +166,7 @@ CAROM_INLINE Wide wide_slips(const WideModel& m, const WideStart& start, Wide h,
     return 2.0 * change;
 }
 
-// As guess(). kWhole: the end of a whole impact is guessed too.
+// As guess(). kWhole: also guesses the end of a whole impact.
 template <int N, bool kWhole>
 CAROM_INLINE void wide_guess(const WideModel& m, const WideStart& start, Wide root_s, Wide& h,
                              WideNodes<N>& n) {
@@ -202,12 +202,11 @@ CAROM_INLINE void wide_refine(const WideModel& m, const WideStart& start, Wide h
     }
 }
 
-// Sweeps that wide_begin() does.
+// Sweeps made by wide_begin().
 template <int N>
 constexpr int kBefore = N == 8 ? kCoarseSweeps : 0;
 
-// As begin(). `end` finds the end from g_b at 4 nodes. A
-// root that goes astray here spoils no more than the guess.
+// As begin(). `end` finds the end from g_b at 4 nodes. A wrong root here spoils only the guess.
 template <int N, bool kWhole, class End4>
 CAROM_INLINE void wide_begin(const WideModel& m, const WideStart& start, Wide root_s, Wide& h,
                              WideNodes<N>& n, End4 end) {
@@ -320,8 +319,8 @@ CAROM_INLINE WideGoals wide_goals(const WideModel& m, double tolerance) {
     return {kSweepGoalOfLanes * left2, (0.035 * left2) / (m.mu_b * m.mu_b)};
 }
 
-// As collocate() of a whole impact, for the lanes `wanted`;
-// lanes that do not converge are not in `out.converged`.
+// As collocate() of a whole impact, for the lanes `wanted`; `out.converged` excludes lanes that do not
+// converge.
 template <int N>
 CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, WideMask wanted, Wide root_s,
                                  double tolerance, WideResult& out) {
@@ -346,7 +345,8 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
-        // The rows change only in the lanes where that matters: the others do not depend on what these do.
+        // The rows change only in the lanes where that matters, so that each lane is independent of the
+        // others.
         const WideMask moved = open & (absolute(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
         if (any(moved)) wide_set_rows<N>(select(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;
@@ -358,7 +358,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0 + kBefore<N>), out.sweeps);
-        open &= ~now & (r < 1.0);  // a root that is off by much may have become negative
+        open &= ~now & (r < 1.0);  // a root that is very wrong may have become negative
     }
     // The rows of a lane do not change after it has converged.
     const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);

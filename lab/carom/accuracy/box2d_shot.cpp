@@ -9,8 +9,8 @@
 namespace carom::tools {
 namespace {
 
-/// Box2D units in a metre. Its constants are sized for things of 0.1 to 10 units: 10 brings its slop down to
-/// 0.5 mm and the speed below which nothing bounces to 0.1 m/s, and still lets a ball move 12 m/s at 60 Hz.
+/// Box2D units per metre. Its constants are sized for objects of 0.1 to 10 units: 10 reduces its slop to 0.5
+/// mm, and the speed below which nothing bounces to 0.1 m/s, and still lets a ball move 12 m/s at 60 Hz.
 constexpr double kScale = 10.0;
 constexpr int kVelocityIterations = 8, kPositionIterations = 3;  // as its manual suggests
 
@@ -18,12 +18,12 @@ b2Vec2 to_world(const Vec2& r) {
     return {static_cast<float>(kScale * r.x()), static_cast<float>(kScale * r.y())};
 }
 
-/// A fixture's user data: ball number + 1, or 0 for what stands still.
+/// A fixture's user data: ball number + 1, or 0 for fixed parts.
 int ball_of(const b2Fixture* fixture) {
     return static_cast<int>(const_cast<b2Fixture*>(fixture)->GetUserData().pointer) - 1;
 }
 
-/// Gives each contact the restitution and friction of its pair, and notes the first ball hit.
+/// Gives each contact the restitution and friction of its pair, and records the first ball hit.
 class Contacts : public b2ContactListener {
   public:
     Contacts(const BallParams& balls, int mover) : balls_(balls), mover_(mover) {}
@@ -65,7 +65,7 @@ b2Body* add_ball(b2World& world, const BallState& state, const BallParams& balls
     definition.linearVelocity = to_world({state.velocity.x(), state.velocity.y()});
     definition.angularVelocity = static_cast<float>(state.spin.z());
     definition.bullet = state.velocity.norm() > 0.0;
-    definition.allowSleep = false;  // whether a ball rests is decided below
+    definition.allowSleep = false;  // rest is decided below
     b2CircleShape circle;
     circle.m_radius = static_cast<float>(kScale * balls.R);
     b2FixtureDef fixture;

@@ -18,11 +18,10 @@ struct Box2dOutcome {
 
 /// Plays the start of a record (table, balls, velocities after the cue) in steps of 1/hz.
 ///
-/// Discs without depth: restitution and friction between discs and against cushions and jaws as in the
-/// record; rolling resistance as linear damping, set anew in every step to mu_r g / speed, which is the
-/// deceleration of rolling. There is no sliding, no top or back spin, no swerve, no height of the cushion;
-/// all numbers are float. Ends when all balls rest, or when twice the record's duration and a second have
-/// passed.
+/// Discs without depth. Restitution and friction between discs, and against cushions and jaws, are those of
+/// the record; rolling resistance is linear damping, set in every step to mu_r g / speed, the deceleration of
+/// rolling. There is no sliding, no top or back spin, no swerve, and no cushion height; all numbers are
+/// float. Ends when all balls rest, or after twice the record's duration and a second.
 Box2dOutcome run_box2d(const Record& record, double hz);
 
 }  // namespace carom::tools

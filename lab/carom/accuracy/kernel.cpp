@@ -27,7 +27,7 @@ namespace {
 
 using namespace kernel;
 
-/// Least processor time of one sample [ns]: much more than reading the clock takes.
+/// Least processor time of one sample [ns]: much more than one reading of the clock.
 constexpr double kSample = 2e6;
 
 /// One method at one setting, for impacts one by one or as arrays.
@@ -36,7 +36,7 @@ struct Subject : KernelCall {
 
     KernelAccuracyRow row;
     int n;  ///< of a march
-    /// Number of impacts in a sample, which are the first ones: a march takes the same time for all.
+    /// number of impacts in a sample, from the start of the list: a march takes the same time for all
     std::size_t timed = 1;
     int calls = 1;
     std::unique_ptr<BatchArrays> arrays;
@@ -93,7 +93,7 @@ Subject march(KernelCall call, const std::string& name, long n) {
     return s;
 }
 
-/// The rung of batches that is fastest here at N = 1000.
+/// The fastest batch rung here at N = 1000.
 const Rung& fastest_batch(Isa isa, const std::vector<Impact>& impacts) {
     const Rung* best = nullptr;
     double least = INFINITY;
@@ -129,7 +129,7 @@ void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vect
 
 void add_tolerances(std::vector<Subject>& list, Isa isa) {
     for (int p = 2; p <= 12; ++p) {
-        // Read from text, so that it is exactly the number that a scene file would give.
+        // Read from text, so that it is exactly the number a scene file would give.
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
         for (const bool batch : {false, true}) {
@@ -158,13 +158,13 @@ void add_formulas(std::vector<Subject>& list) {
 /// The converged solution of every impact, twice: power series in extended precision, and collocation at the
 /// tightest tolerance. They share no code.
 struct Converged {
-    std::vector<Impact> impacts;  ///< those on which the two agree
+    std::vector<Impact> impacts;  ///< those on which both agree
     std::vector<reference::ImpactTruth> truth;
     int disagreeing = 0;
     double worst = 0.0;
 };
 
-/// What rounding may make of an impact, as a share of the approach speed: a fast glancing ball has large
+/// What rounding can do to an impact, as a fraction of the approach speed: a fast glancing ball has large
 /// speeds and a small approach.
 double rounding_share(const Impact& impact, double approach) {
     double most = approach;
@@ -315,7 +315,7 @@ void add_accuracy_kernel(Options& accuracy) {
         "kernel", "One impact: time and error of the march, of the tolerance kernel, of closed forms", run);
     command.option("--count", &args.count, "N", "Seeded random impacts").in(1, 1000000);
     command.option("--seed", &args.seed, "S", "Seed of the random impacts");
-    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
     command.option("--most-substeps", &args.most_substeps, "N", "Largest N of the march").in(10, 100000);
     add_reports(command, args.csv, args.json);
     add_plot(command, args.plot);

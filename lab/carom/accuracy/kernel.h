@@ -1,4 +1,4 @@
-// carom-lab accuracy kernel: what the accuracy of one ball-ball impact costs in time.
+// carom-lab accuracy kernel: accuracy of one ball-ball impact against time.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct AccuracyKernelArgs {
     int repeat = 9;               ///< interleaved rounds
     long most_substeps = 100000;  ///< largest N of the march
     bool json = false;
-    std::string csv, plot, html;  ///< file names; empty: not asked for
+    std::string csv, plot, html;  ///< file names; empty: not written
 };
 
-/// One method at one setting. Times are per impact [ns], processor time of the thread; errors are the largest
-/// component of v and R w, as a share of the approach speed, from the converged solution.
+/// One method at one setting. Times are processor time of the thread per impact [ns]; errors are the largest
+/// component of v and R w relative to the converged solution, as a fraction of the approach speed.
 struct KernelAccuracyRow {
     std::string method;        ///< "march", "march published", "tolerance", ...
     std::string kind;          ///< single, batch
@@ -31,13 +31,13 @@ struct KernelAccuracyRow {
     bool other_model = false;  ///< a formula for simpler physics: its error is the model's, not numerical
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
-    /// Tolerance alone: the largest error as a share of what is promised for that
-    /// impact, which is the tolerance and what rounding makes of its speeds.
+    /// Tolerance only: the largest error as a fraction of the bound for that impact, which is the tolerance
+    /// plus what rounding does to its speeds.
     std::optional<double> share_of_bound;
 };
 
-/// The time that a method needs to reach an error: that of its fastest setting which reaches it for half of
-/// all impacts, and for all of them. Infinite if no setting does.
+/// The time a method needs to reach an error: that of its fastest setting that reaches it for half of all
+/// impacts, and for all of them. Infinite if no setting does.
 struct KernelReach {
     std::string method, kind;
     double error = 0.0, ns_median = 0.0, ns_all = 0.0;
@@ -45,9 +45,10 @@ struct KernelReach {
 
 struct KernelAccuracy {
     std::string isa;
-    int count = 0;                 ///< impacts on which the two converged methods agree: these are judged
+    /// impacts on which the two converged methods agree; only these are judged
+    int count = 0;
     int disagreeing = 0;           ///< the other impacts, for which no error is given
-    double worst_agreement = 0.0;  ///< largest difference of the two, share of the approach speed
+    double worst_agreement = 0.0;  ///< largest difference of the two, as a fraction of the approach speed
     double slope = 0.0;            ///< of log median error over log N, march, N >= 100
     std::vector<KernelAccuracyRow> rows;
     std::vector<KernelReach> reach;
@@ -57,7 +58,7 @@ KernelAccuracy measure_kernel_accuracy(const AccuracyKernelArgs& args);
 
 inline constexpr double kReachedErrors[] = {1e-3, 1e-6, 1e-9, 1e-12};
 
-/// For every method the time to reach each of these errors.
+/// For every method, the time to reach each of these errors.
 std::vector<KernelReach> reach_of(const std::vector<KernelAccuracyRow>& rows);
 
 /// Slope of the straight line through (log x, log y) by least squares; NaN for fewer than two points.

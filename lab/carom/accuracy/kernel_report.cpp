@@ -36,14 +36,14 @@ Table rows_of(const KernelAccuracy& result) {
     return table;
 }
 
-/// A row for each error.
+/// One row per error.
 Table reach_of(const KernelAccuracy& result) {
     Table table(Column("method"), Column("kind"), Column("error"), Column("ns_median"), Column("ns_all"));
     for (const KernelReach& r : result.reach) table.add({r.method, r.kind, r.error, r.ns_median, r.ns_all});
     return table;
 }
 
-/// A row for each method, with a column for each error.
+/// One row per method, one column per error.
 Table reach_by_method(const KernelAccuracy& result) {
     Table table(Column("", "", "<28"), Column("", "", "<8"));
     for (const double error : kReachedErrors)

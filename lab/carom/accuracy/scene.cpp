@@ -1,5 +1,5 @@
-// carom-lab accuracy: the report of `carom accuracy` as a
-// plot or a page, beside Box2D, and that of one impact.
+// carom-lab accuracy: the report of `carom accuracy` as a plot or a page, with Box2D beside it, and the same
+// for one impact.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ namespace {
 
 struct LabAccuracyArgs : AccuracySceneArgs {
     bool box2d = false;
-    /// File names; empty: not asked for.
+    /// File names; empty: not written.
     std::string plot, html;
 };
 
 void measure_box2d(SceneAccuracy& result, const Scene& scene) {
     const Record truth = simulate_plan(with_tolerance(scene, kernel::kTightestTolerance), {});
-    const ShotContacts outcome = contacts_of(truth);
+    const ShotContacts outcome = contacts_of(scene, truth);
     const std::vector<Vec2> end = final_positions(truth);
     constexpr double kRates[] = {60.0, 120.0, 240.0, 1000.0, 10000.0};
     ProgressLine progress("accuracy, Box2D:");

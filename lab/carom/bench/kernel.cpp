@@ -49,12 +49,13 @@ constexpr int kSubsteps = 1000;
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
     ProgressLine warming("bench kernel, warming up");
-    for (TimedKernel& s : list) {  // warm up, and find how many calls take much longer than reading the clock
+    // warms up, and finds how many calls take much longer than reading the clock
+    for (TimedKernel& s : list) {
         throw_if_interrupted();
         warming.show_bar(&s - list.data(), static_cast<long>(list.size()));
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
-        // The same for random impacts. If one call is enough, no run before it is needed to fill the caches.
+        // The same for random impacts. If one call is enough, no earlier run is needed to fill the caches.
         const double all = s.time(random, kSubsteps, 1, results) * static_cast<double>(s.size(random));
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
@@ -70,7 +71,7 @@ void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const Impac
     });
 }
 
-/// Differences from the baseline and errors from the converged solution.
+/// Differences from the baseline, and errors relative to the converged solution.
 class Judge {
   public:
     Judge(const TimedKernel& baseline, const ImpactSet& five, const ImpactSet& random)
@@ -144,8 +145,7 @@ void evict_caches() {
 
 ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns) {
     std::vector<ImpactResult> results(five.impacts.size());
-    // The call for balls that separate ends after validation
-    // and projection, which is the part before the loop.
+    // A call for separating balls ends after validation and projection, the part before the loop.
     ImpactSet apart(five.impacts, five.impacts[0].params.cloth_slip, 8);
     for (Impact& i : apart.impacts) {
         for (double& v : i.ball1.v) v = -v;
@@ -159,7 +159,7 @@ ShareRow shares_of(const TimedKernel& s, const ImpactSet& five, double probe_ns)
     const double before = least(apart, 1000, 400), at_1000 = least(five, 1000, 20),
                  at_2000 = least(five, 2000, 20);
     ShareRow row{s.row.name, s.row.isa, before, 0.0, 0.0, 0.0, at_1000};
-    // The time is linear in N; the part that does not grow with N is spent before and after the loop.
+    // The time is linear in N; the constant part is spent before and after the loop.
     row.loop = std::min(at_2000 - at_1000, at_1000 - before);
     row.after = std::max(0.0, at_1000 - before - row.loop);
     std::vector<double> cold;
@@ -202,8 +202,8 @@ KernelBench measure_kernel(const BenchKernelArgs& options) {
     bench.random = options.random;
     bench.cycle_ns = cycle_ns();
     bench.probe_ns = cost_of_a_probe();
-    // The baseline is the v3 build where there is one, also
-    // under CAROM_ISA=scalar or v4: all ratios mean the same.
+    // The baseline is the v3 build if available, even under CAROM_ISA=scalar or v4, so that all ratios mean
+    // the same.
     const Isa baseline_isa = available(Isa::kV3) ? Isa::kV3 : Isa::kScalar;
     bench.baseline_isa = name(baseline_isa);
     const TimedKernel baseline(

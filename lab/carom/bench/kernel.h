@@ -16,12 +16,12 @@ struct BenchKernelArgs {
     int repeats = 9;     ///< interleaved rounds; minimum and median are over them
     bool growth = true;  ///< N = 100, 1000, 10000
     std::string cloth_slip = "consistent";
-    std::vector<std::string> only;  ///< names, or their beginnings in whole words; empty: all
+    std::vector<std::string> only;  ///< names, or their first whole words; empty: all
 };
 
-/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's
-/// time in the same run over this time; differences (from the baseline) and
-/// errors (from the converged solution) are shares of the approach speed.
+/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's time in the same run divided by
+/// this time; differences (from the baseline) and errors (from the converged solution) are fractions of the
+/// approach speed.
 struct KernelRow {
     std::string name, section, kind;
     kernel::Isa isa;
@@ -29,7 +29,7 @@ struct KernelRow {
     double ratio = 0.0, ratio_random = 0.0, ns_min = 0.0, ns_median = 0.0, ns_random_min = 0.0;
     double diff_five = 0.0, diff_random_max = 0.0, diff_random_p99 = 0.0;
     double error_five = 0.0, error_random_median = 0.0, error_random_max = 0.0;
-    double cycles_per_step = 0.0, steps_mean = 0.0;  ///< steps: over the five states
+    double cycles_per_step = 0.0, steps_mean = 0.0;  ///< steps over the five states
     int same_steps = 0;                              ///< of the random impacts
 };
 
@@ -40,7 +40,7 @@ struct GrowthRow {
     double ns_min, ns_median;
 };
 
-/// The parts of the time of one call [ns], and its time when neither code nor data are in a cache.
+/// The parts of one call's time [ns], and its time when neither code nor data are cached.
 struct ShareRow {
     std::string name;
     kernel::Isa isa;

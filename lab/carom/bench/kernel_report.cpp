@@ -29,15 +29,14 @@ Table rows_of(const KernelBench& bench) {
     return table;
 }
 
-/// A row for each N.
+/// One row per N.
 Table growth_of(const KernelBench& bench) {
     Table table(Column("name"), Column("isa"), Column("n"), Column("ns_min"), Column("ns_median"));
     for (const GrowthRow& g : bench.growth) table.add({g.name, name(g.isa), g.n, g.ns_min, g.ns_median});
     return table;
 }
 
-/// A row for each kernel, with a column for each N: what was
-/// measured comes kernel after kernel for one N after the other.
+/// One row per kernel, one column per N; the measurements come kernel by kernel for each N.
 Table growth_by_kernel(const KernelBench& bench) {
     Table table(Column("", "", "<26"), Column("", "isa", "<7"));
     std::size_t kernels = 0;

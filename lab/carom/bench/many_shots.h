@@ -1,5 +1,4 @@
-// Batches of carom-lab bench shot: shots with random numbers,
-// one after the other, as a search or a learner plays them.
+// Batches of carom-lab bench shot: random shots one after the other, as a search or a learner plays them.
 #pragma once
 
 #include <cstddef>
@@ -12,25 +11,24 @@
 
 namespace carom::tools {
 
-/// One kind of batch. Shot after shot draws its numbers,
-/// sets, checks, plans and plays them, and reads the outcome.
+/// One kind of batch. Each shot draws its numbers, sets, checks, plans and plays them, and reads the outcome.
 class ManyShots {
   public:
-    /// @param name  of many_names() @throws std::invalid_argument for an unknown one
+    /// @param name one of many_names() @throws std::invalid_argument for an unknown one
     ManyShots(const std::string& name, kernel::Isa isa);
 
-    /// The next `shots` shots of an endless sequence, the same in
-    /// every run. @throws std::runtime_error if one has no result
+    /// The next `shots` shots of an endless sequence that is the same in every run. @throws
+    /// std::runtime_error if one has no result
     void play(std::size_t shots);
     /// Starts the sequence again.
     void rewind();
 
     /// Shots in a round of the benchmark: a few milliseconds.
     std::size_t shots_a_round() const { return shots_a_round_; }
-    /// Of a shot, mean since rewind().
+    /// Mean number per shot since rewind().
     double events() const { return static_cast<double>(events_) / static_cast<double>(shots_); }
     double clusters() const { return static_cast<double>(clusters_) / static_cast<double>(shots_); }
-    /// Balls pocketed since rewind(); it makes sure that outcomes are read.
+    /// Balls pocketed since rewind(); this makes sure that outcomes are read.
     long pocketed() const { return pocketed_; }
 
   private:

@@ -1,4 +1,4 @@
-// carom-lab bench render: what a frame costs, stage by stage.
+// carom-lab bench render: the cost of a frame, stage by stage.
 #include "bench/render.h"
 
 #include <fmt/core.h>
@@ -44,7 +44,7 @@ double wall_ms_since(Clock::time_point since) {
     return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
 }
 
-/// Shows how many frames are drawn, in all measurements together. SIGINT ends them.
+/// Shows the progress over the frames of all measurements. SIGINT ends them.
 struct Steps {
     long total, done = 0;
     ProgressLine line{"bench render"};
@@ -58,7 +58,7 @@ struct Steps {
     }
 };
 
-/// What a row is about.
+/// The picture of one row.
 struct Picture {
     const char *name, *camera;
     FrameSize size;
@@ -75,7 +75,7 @@ StageOptions stage_options(const Picture& picture) {
     return options;
 }
 
-// The child of set_up_ms(): its CPU time goes into the pipe.
+// The child of set_up_ms(): it writes its CPU time into the pipe.
 [[noreturn]] void draw_once_and_exit(const Record& record, const Picture& picture, Backend backend,
                                      int pipe_end) {
     int status = 1;
@@ -95,8 +95,8 @@ StageOptions stage_options(const Picture& picture) {
     _exit(status);
 }
 
-// CPU time for one picture, in a process of its own: in this one every row but the first would find the
-// driver ready. To be called before anything is drawn, because a child has none of its parent's threads.
+// CPU time of one picture in a separate process: in this process, every row after the first would find the
+// driver ready. Call it before anything is drawn, because a child has none of its parent's threads.
 double set_up_ms(const Record& record, const Picture& picture, Backend backend) {
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) throw RenderError("no pipe for measuring the set-up");
@@ -111,7 +111,7 @@ double set_up_ms(const Record& record, const Picture& picture, Backend backend) 
     return got ? spent : 0.0;
 }
 
-// Measures one frame after the other, while nothing else runs in the process.
+// Measures frame by frame, while nothing else runs in the process.
 void measure_stages(const Record& record, const Picture& picture, int frames, Backend backend,
                     const std::string& file, Steps& steps, RenderBenchRow& row) {
     const Stage stage(record, stage_options(picture));
@@ -174,7 +174,7 @@ double frames_per_second(const Record& record, const Picture& picture, int frame
 std::vector<RenderBenchRow> bench_render(const Record& record, int frames, Backend backend) {
     if (frames < 3) throw RenderError("measuring takes at least 3 frames");
     const TemporaryFolder folder;
-    // Every row is measured in one thread, and with one thread per core.
+    // Every row is measured with one thread, and with one thread per core.
     Steps steps{static_cast<long>(kPictures.size()) * (2L * frames + 3L)};
     std::vector<RenderBenchRow> rows;
     for (const Picture& picture : kPictures) {

@@ -1,4 +1,4 @@
-// What frames cost: the rows of `carom-lab bench render`.
+// The costs of frames: the rows of `carom-lab bench render`.
 #pragma once
 
 #include <string>
@@ -14,14 +14,15 @@ struct RenderBenchRow {
     /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, so that
     /// the driver's threads count too, except write_ms, which is wall time.
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
-    /// 95th percentile of draw + read back: a frame in which most balls move
+    /// 95th percentile of draw plus readback: a frame in which most balls move
     double slow_ms = 0.0;
     /// Median share of the picture that is encoded anew, 0..1
     double encoded_share = 0.0;
-    /// CPU time of a process of its own from the first call until it has one picture, without shaders that
-    /// Mesa kept from an earlier process: the OpenGL library, shaders, and the table once
+    /// CPU time of a separate process from its first call to its first picture, without shaders that Mesa
+    /// kept from an earlier process: the OpenGL library, the shaders, and the table once
     double setup_ms = 0.0;
-    double fps = 0.0;  ///< frames a second from the first to the last, in files, with a thread per core
+    /// frames per second from the first to the last, written to files, with a thread per core
+    double fps = 0.0;
 };
 
 /// Draws `frames` frames spread over the shot for every row; files go to a temporary folder. SIGINT ends it.

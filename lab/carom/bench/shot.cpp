@@ -23,8 +23,8 @@
 namespace carom::tools {
 namespace {
 
-/// The unit of all costs [ns]: one impact of the published march
-/// at N = 1000, the mean over the five states of the paper.
+/// The unit of all costs [ns]: one impact of the published march at N = 1000, averaged over the five states
+/// of the paper.
 double baseline_impact(kernel::Isa isa) {
     const kernel::MarchFunction march = kernel::march_function(isa);
     kernel::ImpactResult result;
@@ -36,7 +36,7 @@ double baseline_impact(kernel::Isa isa) {
 /// One shot of one seed.
 struct TimedShot {
     Plan plan;
-    std::vector<double> ns{};  ///< one entry a round
+    std::vector<double> ns{};  ///< one entry per round
     double least_profiled = 1e300;
     std::size_t events = 0;
     std::array<double, 5> split{};  ///< detect, resolve, kernel, cluster, queue [ns of the whole run]
@@ -97,7 +97,7 @@ ShotRow row_of(const std::string& name, const TimedShot* first, int seeds, doubl
     return row;
 }
 
-/// A gas under one kind of search.
+/// A gas with one kind of search.
 struct Gas {
     GasRow row;
     Plan plan;
@@ -107,8 +107,7 @@ struct Gas {
         std::size_t first = 0;
         const double before = heap_bytes();
         SimulateOptions options;
-        // The first call comes after the first event, when
-        // the set-up is finished and its memory is allocated.
+        // The first call comes after the first event, when the set-up is finished and its memory allocated.
         options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;
@@ -127,7 +126,7 @@ struct Gas {
     }
 };
 
-/// A shot of a batch, mean over a round; the row has the least and the most of the rounds.
+/// A shot of a batch, averaged over a round; the row has the minimum and maximum of the rounds.
 ShotRow row_of(const ManyShots& many, const std::string& name, const std::vector<double>& ns,
                double baseline_ns) {
     ShotRow row;
@@ -150,7 +149,7 @@ double time_round(ManyShots& many) {
     return (thread_ns() - start) / static_cast<double>(many.shots_a_round());
 }
 
-// For more balls than this the search through all boxes is not measured: it is far slower.
+// With more balls than this, the search through all boxes is not measured: it is far slower.
 constexpr int kMostDirect = 2000;
 
 std::vector<GasRow> growth_of(const BenchShotArgs& options, kernel::Isa isa) {

@@ -1,5 +1,5 @@
-// carom-lab bench shot: whole shots in units of one baseline impact,
-// and how the cost of an event grows with the number of balls.
+// carom-lab bench shot: whole shots in units of one baseline impact, and the growth of an event's cost with
+// the number of balls.
 #pragma once
 
 #include <string>
@@ -17,17 +17,17 @@ struct BenchShotArgs {
     long events = 20000;  ///< of a gas, at each size
 };
 
-/// One shot. Times are of simulate(), set-up and record included.
+/// One shot. Times are those of simulate(), including set-up and record.
 struct ShotRow {
     std::string name;
     double cost_in_impacts = 0.0;  ///< median over the seeds, of time / one baseline impact
-    double shots_per_cpu_s = 0.0;  ///< of a batch, whose row is one shot of it, mean; 0 for a single shot
+    double shots_per_cpu_s = 0.0;  ///< for a batch, whose row is the mean over its shots; 0 for a single shot
     double cost_least = 0.0, cost_most = 0.0;
     double ns_min = 0.0,
            ns_median = 0.0;               ///< of the whole shot: medians over the seeds of minimum and median
-    double events = 0.0, clusters = 0.0;  ///< a shot, medians
+    double events = 0.0, clusters = 0.0;  ///< per shot, medians
     double ns_per_event = 0.0;
-    /// Where a profiled run spends an event [ns]; the clock is read six times an event and counts too.
+    /// Time of a profiled run per event [ns]; it includes the six clock readings of each event.
     double detect_ns = 0.0, resolve_ns = 0.0, kernel_ns = 0.0, cluster_ns = 0.0, queue_ns = 0.0;
 };
 
@@ -38,8 +38,8 @@ struct GasRow {
     int balls = 0;
     Search search = Search::kDirect;
     bool chosen = false;                   ///< by the plan
-    double ns_min = 0.0, ns_median = 0.0;  ///< an event
-    double growth = 0.0;                   ///< ns_min over that of the first row of its name
+    double ns_min = 0.0, ns_median = 0.0;  ///< per event
+    double growth = 0.0;                   ///< ns_min divided by that of the first row with its name
     double bytes_per_ball = 0.0;           ///< on the heap once the run is set up, without scene and plan
 };
 

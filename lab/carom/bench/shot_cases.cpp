@@ -14,7 +14,7 @@ namespace {
 
 using reference::Generator;
 
-// Every coefficient, so that no change of a preset or of a default moves what these shots measure.
+// Every coefficient, so that no changed preset or default moves what these shots measure.
 constexpr const char* kCoefficients = R"(
 [table]
 preset = "nine_foot"

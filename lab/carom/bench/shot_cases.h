@@ -17,12 +17,12 @@ std::vector<std::string> shot_names();
 /// scenes/eight_ball_break.toml. @throws std::invalid_argument for an unknown name
 Scene shot_scene(const std::string& name, std::uint64_t seed);
 
-/// The scene of a batch (many_shots.h), every coefficient
-/// written. @throws std::invalid_argument for an unknown name
+/// The scene of a batch (many_shots.h), with every coefficient written out. @throws std::invalid_argument for
+/// an unknown name
 Scene many_scene(const std::string& name);
 
-/// n balls without friction that move at 1 m/s in random directions in a box of reflecting cushions, elastic,
-/// on a jittered grid: a fifth of the area is balls, whatever n. Stops after `events`.
+/// n frictionless, elastic balls that move at 1 m/s in random directions in a box of reflecting cushions, on
+/// a jittered grid: balls cover a fifth of the area, whatever n is. Stops after `events`.
 Scene gas_scene(int n, long events, std::uint64_t seed);
 
 }  // namespace carom::tools

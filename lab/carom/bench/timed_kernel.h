@@ -22,7 +22,7 @@ using kernel::ImpactResult;
 using reference::BatchArrays;
 using reference::Impact;
 
-/// A list of impacts, once one by one and once as arrays.
+/// A list of impacts, both one by one and as arrays.
 struct ImpactSet {
     ImpactSet(std::vector<Impact> list, ClothSlip slip, int copies) : impacts(std::move(list)) {
         for (Impact& impact : impacts) impact.params.cloth_slip = slip;
@@ -36,7 +36,7 @@ struct ImpactSet {
     std::size_t in_arrays;
 };
 
-/// A kernel for one impact, or for a batch; one of the two is empty. n counts for a march only.
+/// A kernel for one impact or for a batch; the other one is empty. n counts only for a march.
 struct KernelCall {
     std::function<void(const Impact&, int n, ImpactResult&)> one;
     std::function<void(const BatchArrays&, int n)> many;
@@ -50,10 +50,10 @@ struct TimedKernel : KernelCall {
     explicit TimedKernel(KernelCall call) : KernelCall(std::move(call)) {}
 
     KernelRow row{};
-    std::vector<double> five_ns, random_ns;  ///< per impact, one entry a round
+    std::vector<double> five_ns, random_ns;  ///< per impact, one entry per round
     int five_calls = 1, random_calls = 1;
 
-    /// Every impact of the set once.
+    /// Runs every impact of the set once.
     void run(const ImpactSet& set, int n, std::vector<ImpactResult>& results) const {
         if (one) {
             for (std::size_t i = 0; i < set.impacts.size(); ++i) one(set.impacts[i], n, results[i]);
@@ -73,7 +73,7 @@ struct TimedKernel : KernelCall {
 
 /// All forms on the instruction sets of this run (CAROM_ISA, or all that the processor has), or those that
 /// `only` names.
-/// @throws UsageError naming them all where one is unknown
+/// @throws UsageError listing them all if one is unknown
 std::vector<TimedKernel> timed_kernels(const std::vector<std::string>& only);
 
 std::vector<ImpactResult> results_of(const TimedKernel& kernel, const ImpactSet& set, int n);

@@ -27,8 +27,9 @@ int run(const PictureArgs& args) {
 void add_lab_compare(Options& program) {
     auto [command, args] =
         program.command<PictureArgs>("compare", "The paths of two shots in one picture", run);
-    command.argument("A", args.a, "Scene file (TOML), or a record (.json)").required = true;
-    command.argument("B", args.b, "The other one; its paths are dashed").required = true;
+    command.argument("A", args.a, "Scene file (TOML) or record (.json)").required = true;
+    command.argument("B", args.b, "Scene file or record to compare with; its paths are dashed").required =
+        true;
     add_plot(command, args.plot);
     command.rows.back().required = true;
 }

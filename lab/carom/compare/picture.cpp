@@ -16,9 +16,9 @@ namespace carom::tools {
 namespace {
 
 constexpr int kGrey = 7, kBallColours = 7;  // of the palette of plots
-constexpr std::size_t kMostNames = 22;      // in the legend; the frame is not higher
+constexpr std::size_t kMostNames = 22;      // in the legend; the frame has no room for more
 
-/// From the cloth to the paper, and what that has to hold.
+/// Maps the cloth to the paper, and collects what the paper must hold.
 class Paper {
   public:
     explicit Paper(bool turned) : turned_(turned) {}
@@ -31,7 +31,7 @@ class Paper {
         return p;
     }
 
-    /// Both axes, with one metre as long on the one as on the other.
+    /// Both axes to the same scale.
     void set_axes(Plot& plot) const {
         const Vec2 middle = 0.5 * (low_ + high_), span = 1.04 * (high_ - low_);
         const double metre =
@@ -51,7 +51,7 @@ class Paper {
     Vec2 low_ = Vec2(kFar, kFar), high_ = Vec2(-kFar, -kFar);
 };
 
-/// Places on the way: at the ends of its pieces, and between them as close as a line needs.
+/// Times along the path: at the ends of its pieces, and between them as close as a line needs.
 std::vector<double> times_on(const BallWay& way) {
     const double step = std::max(0.02, way.last() / 2000.0);  // [s]
     std::vector<double> times;

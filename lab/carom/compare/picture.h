@@ -1,4 +1,4 @@
-// The ways of two shots in one picture.
+// The paths of two shots in one picture.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace carom::tools {
 
-/// The table of `a` from above, its longer side across, and the way of every ball:
-/// that of `a` solid, that of `b` dashed, of one colour where the ball has the same
-/// name. A dot is the last place. The title names `a` and `b` by `name_a`, `name_b`.
+/// The table of `a` from above, its longer side across, and the path of every ball: solid for `a`, dashed for
+/// `b`, in one colour if the ball has the same name. A dot marks the final position. The title names `a` and
+/// `b` by `name_a`, `name_b`.
 Plot ways_plot(const Record& a, const std::string& name_a, const Record& b, const std::string& name_b);
 
 }  // namespace carom::tools

@@ -12,12 +12,12 @@ namespace carom::tools {
 struct LabMarginArgs : MarginArgs {
     /// Accuracy x frame rate.
     bool sweep = false;
-    /// File names; empty: not asked for.
+    /// File names; empty: not written.
     std::string plot, trace, html;
 };
 
-/// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the one before is done,
-/// as in a loop that simulates, draws and waits for its time.
+/// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the previous one is done,
+/// as in a loop that simulates, draws and waits.
 std::string margin_trace(const MarginRun& run, double fps);
 
 /// --sweep: every accuracy at every frame rate. Returns the exit status.

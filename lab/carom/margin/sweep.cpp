@@ -1,4 +1,4 @@
-// carom-lab margin --sweep: at which accuracy and frame rate does a scene stop being real time?
+// carom-lab margin --sweep: the accuracy and frame rate at which a scene stops being real time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ namespace carom::tools {
 namespace {
 
 constexpr double kRates[] = {30.0, 60.0, 120.0, 240.0, 480.0, 1000.0};
-/// Frames are drawn once, at this rate. At other rates a frame is given the cost of the drawn frame that is
-/// nearest in time, because it shows nearly the same picture.
+/// Frames are drawn once, at this rate. At other rates, a frame has the cost of the drawn frame nearest in
+/// time, because it shows nearly the same picture.
 constexpr double kDrawnRate = 60.0;
 
 struct Setting {
@@ -34,7 +34,7 @@ struct Setting {
     Plan plan;
 };
 
-/// What a setting costs at one frame rate.
+/// The cost of a setting at one frame rate.
 struct RateCost {
     double fps = 0.0;
     long frames = 0, missed = 0;
@@ -60,7 +60,7 @@ std::vector<Setting> settings_of(const Plan& plan) {
     return list;
 }
 
-/// Median over the runs of what every frame's simulation costs [ms].
+/// Simulation cost of every frame, median over the runs [ms].
 std::vector<double> simulate_costs(const std::vector<Record>& runs, double fps) {
     const long frames = checked_frame_count(0.0, runs.front().duration, fps);
     std::vector<std::vector<double>> samples(static_cast<std::size_t>(std::max(frames, 1L)));
@@ -131,7 +131,7 @@ std::vector<SettingRow> sweep(const Plan& plan, const LabMarginArgs& args) {
     return rows;
 }
 
-/// A row for each setting and frame rate.
+/// One row per setting and frame rate.
 Table table_of(const std::vector<SettingRow>& rows) {
     Table table(Column("method"), Column("setting"), Column("fps"), Column("budget_ms", "", "", false),
                 Column("frames"), Column("missed"), Column("p99_ms"), Column("worst_ms"),
@@ -143,7 +143,7 @@ Table table_of(const std::vector<SettingRow>& rows) {
     return table;
 }
 
-/// A row for each setting: the fastest rate up to which no frame was missed.
+/// One row per setting: the fastest rate up to which no frame was missed.
 Table frontier_of(const std::vector<SettingRow>& rows) {
     Table table(Column("method"), Column("setting"), Column("fps"));
     for (const SettingRow& row : rows)
@@ -151,7 +151,7 @@ Table frontier_of(const std::vector<SettingRow>& rows) {
     return table;
 }
 
-/// A row for each setting, with a column for each frame rate.
+/// One row per setting, one column per frame rate.
 Table missed_by_setting(const std::vector<SettingRow>& rows) {
     Table table(Column("", "", "<22"));
     for (const double fps : kRates) table.columns.emplace_back("", fmt::format("{} fps", fps), ">15");

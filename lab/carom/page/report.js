@@ -3,8 +3,8 @@
 
 {
   const page = pageData("page");
-  pageFrame(page,
-    page.notes.length ? make("section", {class: "card"}, ...page.notes.map((note) => make("p", {}, note))) : null,
+  const notes = page.notes.map((note) => make("p", {}, note));
+  pageFrame(page, notes.length ? make("section", {class: "card"}, ...notes) : null,
     ...page.charts.map((spec) => chart({...spec, height: 360}).element), ...page.tables.map(sortedTable));
   document.body.dataset.ready = "true";
 }

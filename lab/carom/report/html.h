@@ -1,4 +1,4 @@
-// Reports as pages: charts that can be read by hovering, tables that sort, and what they come from.
+// Reports as pages: charts that can be read by hovering, tables that sort, and their sources.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@
 
 namespace carom::tools {
 
-/// What page/table.js shows: the columns that have a key. Rows that lack values keep their note.
+/// A table as page/table.js shows it: the columns that have a key. Rows that lack values keep their note.
 nlohmann::ordered_json sorted_table_json(const std::string& title, const Table& table);
 
 /// Adds --html.

@@ -14,7 +14,7 @@
 namespace carom::tools {
 namespace {
 
-// Colours that can be told apart by those who do not see red and green apart (Okabe and Ito).
+// Colours that are also distinct to people who confuse red and green (Okabe and Ito).
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#56b4e9", "#000000", "#999999"};
 constexpr int kColours = 8;
@@ -60,7 +60,7 @@ class Scale {
     }
     double at(double value) const { return from_ + (to_ - from_) * (place(value) - low_) / (high_ - low_); }
 
-    /// Round values, or those that the axis gives, and how to write them.
+    /// Round values, or those that the axis gives, with their texts.
     std::vector<std::pair<double, std::string>> marks() const {
         if (!given_.empty()) return given_;
         std::vector<std::pair<double, std::string>> list;

@@ -20,7 +20,7 @@ SourceLocation place_of(const toml::source_region& region) {
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-/// One table of a case file. Every key has to be known, and of the right kind.
+/// One table of a case file. Every key must be known, and of the right type.
 class Reader {
   public:
     Reader(const toml::table& table, const std::string& file, std::initializer_list<std::string_view> keys)
@@ -46,7 +46,7 @@ class Reader {
         if (!found) fail(*node, fmt::format("{} has a value of another kind", key));
         return *found;
     }
-    /// A number of this type; `what` names it.
+    /// A number of this type; `what` names it in messages.
     template <class T>
     T number(const toml::node& node, std::string_view what) const {
         try {
@@ -62,7 +62,7 @@ class Reader {
     T value(std::string_view key, T otherwise) const {
         return has(key) ? value<T>(key) : std::move(otherwise);
     }
-    /// The number in a list of names of an enumeration.
+    /// The index of the value in an enumeration's names.
     template <class Enum>
     Enum one_of(std::string_view key, std::span<const char* const> names) const {
         const auto text = value<std::string>(key);
@@ -167,7 +167,7 @@ Variant read_variant(const toml::table& table, const std::string& file) {
     return variant;
 }
 
-/// There is a claim for every number; that of a share is a value.
+/// Every number has a claim; the claim of a share is a value.
 void check_claims(const ValidationCase& c, const Variant& variant, const SourceLocation& where) {
     std::size_t at = 0;
     for (const ValidationShot& shot : c.shots)

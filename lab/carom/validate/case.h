@@ -1,5 +1,5 @@
-// Validation cases: shots of real tables, what was measured
-// of them, and what carom is claimed to make of each number.
+// Validation cases: shots on real tables, the measured numbers, and what carom is claimed to compute for
+// each.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace carom::tools {
 
-/// What is measured of one ball; of a share, of many shots.
+/// What is measured: of one ball, or, for a share, of many shots.
 enum class Quantity : std::uint8_t {
     kSpeed,
     kSpeedRatio,
@@ -50,50 +50,51 @@ inline const QuantityInfo& info(Quantity quantity) {
 
 /// When it is measured.
 enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
-/// In case files, and for people: right after the ball's first impact with another ball, right after that
-/// with a cushion, when it rolls (again) after its first impact, and when all is at rest.
+/// In case files, and for people: right after the ball's first impact with another ball, right after its
+/// first impact with a cushion, when it rolls (again) after its first impact, and when everything is at rest.
 inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
 
 /// One measured number.
 struct Measured {
     Quantity quantity = Quantity::kSpeed;
     Instant when = Instant::kStart;
-    double after = 0.0;  ///< [s] later than that
+    double after = 0.0;  ///< [s] after that instant
     std::string ball = "cue";
-    double value = 0.0;        ///< in the unit of the quantity; 0 for a place
-    double uncertainty = 0.0;  ///< the same; what the number is known to, the unknown of the shot included
+    double value = 0.0;  ///< in the unit of the quantity; 0 for a place
+    /// in the same unit; how well the number is known, including the unknowns of the shot
+    double uncertainty = 0.0;
     Vec2 place = Vec2::Zero();
-    // Of a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these
-    // pockets (empty: any) and, if asked for, the cue ball into none.
+    // For a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these
+    // pockets (empty: any) and, if required, the cue ball into none.
     std::vector<std::string> balls, pockets;
     bool cue_stays = false;
     std::string note;
 };
 
-/// One way to play the template: what stands for {name} in it, and what was measured then.
+/// One way to play the template: the values of {name} in it, and what was measured then.
 struct ValidationShot {
     std::string name;
-    std::string group;  ///< shots that one curve joins
+    std::string group;  ///< shots joined by one curve
     std::vector<std::pair<std::string, std::string>> values;
     std::vector<Measured> measured;
 };
 
-/// What a variant is claimed to compute for one number:
-/// nothing, it is within the uncertainty; or the value itself.
+/// What a variant is claimed to compute for one number. Empty: a value within the uncertainty; otherwise the
+/// value itself.
 using Claim = std::optional<double>;
 
-/// Preset and models under which all shots of a case are played.
+/// Preset and models with which all shots of a case are played.
 struct Variant {
     std::string name;              ///< short, for tables and figures; default: the preset
     std::string preset;            ///< of the balls
     std::string keys;              ///< more lines of [balls]
     std::string physics;           ///< lines of [physics]
     bool free_of_fit = false;      ///< no parameter was fitted to these measurements
-    std::vector<Claim> claims;     ///< one a number, in the order of the shots
+    std::vector<Claim> claims;     ///< one per number, in the order of the shots
     std::string own_keys() const;  ///< keys and physics on one line
 };
 
-/// Which model a case is about, for the reports.
+/// The model that a case is about, for the reports.
 enum class About : std::uint8_t { kCushion, kBallBall, kClusters, kCloth, kCue };
 inline constexpr const char* kAbout[] = {"cushion", "ball_ball", "clusters", "cloth", "cue"};
 
@@ -101,7 +102,7 @@ inline constexpr const char* kAbout[] = {"cushion", "ball_ball", "clusters", "cl
 inline constexpr const char* kTrust[] = {"measured", "published", "second hand", "forum"};
 
 /// The figure of a case: the first number of each shot over one of the template's values, or over the shots.
-/// Shots that begin with another quantity than the first one are not in it.
+/// Shots that begin with a different quantity than the first shot are left out.
 struct CasePlot {
     std::string x;        ///< a value of the template; empty: the shots side by side
     std::string over;     ///< a value by which the quantity is divided; empty: none
@@ -126,22 +127,22 @@ struct ValidationCase {
     std::vector<Variant> variants;
 };
 
-/// A file of lab/data/validation. The build puts them into
-/// the program, so that an installed one has them, too.
+/// A file of lab/data/validation. The build embeds them in the program, so that an installed one has them,
+/// too.
 struct CaseFile {
     std::string_view name, text;
 };
 const std::vector<CaseFile>& case_files();
 
-/// @throws SceneError that names the place in the file
+/// @throws SceneError naming the place in the file
 ValidationCase read_case(const CaseFile& file);
 
-/// The case of this id, or all where it is empty, in their order. @throws UsageError that lists the cases
+/// The case with this id, or all if it is empty, in their order. @throws UsageError listing the cases
 std::vector<ValidationCase> chosen_cases(const std::string& id);
 
-/// A template with its {name}s replaced by the shot's values, {preset}, {keys} and {physics} by those of the
-/// variant.
-/// @throws SceneError for a name that has no value
+/// A template with its {name}s replaced by the shot's values, and {preset}, {keys} and {physics} by the
+/// variant's.
+/// @throws SceneError for a name without a value
 std::string filled_in(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
                       const std::string& text);
 

@@ -44,7 +44,7 @@ std::optional<double> first_impact(const Record& record, int ball) {
     return first_impact(record, ball, [](EventType) { return true; });
 }
 
-/// When the ball rolls, at its first impact or later.
+/// When the ball rolls, from its first impact on.
 std::optional<double> rolls(const Record& record, int ball) {
     const double from = first_impact(record, ball).value_or(0.0);
     for (const Segment& s : record.tracks[ball].segments)
@@ -68,7 +68,7 @@ std::optional<double> instant(const Record& record, int ball, Instant when) {
     return std::nullopt;
 }
 
-/// The speed just before the ball's first impact, or at the start where it has none.
+/// The speed just before the ball's first impact, or at the start if it has none.
 double speed_before(const Record& record, int ball) {
     const double impact = first_impact(record, ball).value_or(0.0);
     return record.state_at(ball, std::nextafter(impact, -1.0)).velocity.norm();

@@ -1,4 +1,4 @@
-// What a measurement of a real table reads in a record: every quantity of the cases, in one place.
+// Reads the measured quantities of real tables from a record: every quantity of the cases, in one place.
 #pragma once
 
 #include "carom/engine/record.h"
@@ -6,11 +6,11 @@
 
 namespace carom::tools {
 
-/// The number of one shot that was measured, in the unit of its quantity; nothing that is a share.
-/// @throws std::runtime_error where the shot has no such instant, such as that of a cushion that is not met
+/// The measured number of one shot, in the unit of its quantity; not for shares.
+/// @throws std::runtime_error if the shot has no such instant, such as that of a cushion that is not hit
 double measure(const Record& record, const Measured& what);
 
-/// Whether a shot counts for a share.
+/// Whether a shot counts towards a share.
 bool counts(const Record& record, const Measured& share);
 
 }  // namespace carom::tools

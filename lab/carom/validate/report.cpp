@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// "within", or by how much the claimed value misses: "27 % low", "0.06 m off".
+/// "within", or how far the claimed value misses: "27 % low", "0.06 m off".
 std::string claim_text(const ValidationRow& row) {
     if (!row.claim) return "within";
     const double measured = row.measured->value, off = *row.claim - measured;
@@ -58,7 +58,7 @@ Table case_table(const std::vector<ValidationRow>& rows, const ValidationCase& o
     for (const ValidationRow& row : rows) {
         if (row.of != &of) continue;
         const Measured& m = *row.measured;
-        const bool again = last == &m;  // the number stands in the line of its first variant
+        const bool again = last == &m;  // the number is in the line of its first variant
         last = &m;
         const auto once = [again](const auto& value) { return again ? Cell(" ") : Cell(value); };
         table.add(
@@ -77,7 +77,7 @@ std::vector<const ValidationCase*> cases_of(const std::vector<ValidationRow>& ro
     return cases;
 }
 
-/// The curve that a variant's points of one group make.
+/// The curve through a variant's points of one group.
 Series series_of(const std::string& name, const std::vector<ValidationRow>& rows, const CasePlot& plot,
                  bool measured, const std::function<bool(const ValidationRow&)>& belongs) {
     Series series{name, {}, !measured && !plot.x.empty(), true, false, -1, {}};
@@ -92,7 +92,7 @@ Series series_of(const std::string& name, const std::vector<ValidationRow>& rows
             continue;
         const double over = plot.over.empty() ? 1.0 : number(*row.shot, plot.over);
         const double place = static_cast<double>(row.shot - row.of->shots.data()) + 1.0;
-        // Variants stand side by side where there is room.
+        // Variants are side by side if there is room.
         const double step = 0.08 * static_cast<double>(row.variant - row.of->variants.data() + 1);
         const double x = plot.x.empty() ? place + (measured ? 0.0 : step) : number(*row.shot, plot.x);
         series.points.emplace_back(x, (measured ? row.measured->value : row.computed) / over);
@@ -144,7 +144,7 @@ Plot case_plot(const std::vector<ValidationRow>& rows) {
     return plot;
 }
 
-/// Differences in units of the uncertainty: a column a case, or, of one case, a column a number.
+/// Differences in units of the uncertainty: one column per case or, for a single case, per number.
 Plot overview(const std::vector<ValidationRow>& rows) {
     constexpr double kFarthest = 10.0;
     double edge = 2.0;

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kClaimBand = 0.25;  ///< of the uncertainty
 constexpr double kShareBand = 3.0;   ///< standard deviations
-/// standard deviations to each side that hold 95 % of a normal distribution
+/// standard deviations to each side that contain 95 % of a normal distribution
 constexpr double kNinetyFive = 1.96;
 
 double share_deviation(double share, int count) {
@@ -128,7 +128,7 @@ std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
         progress(++runs);
     };
     std::vector<ValidationRow> rows;
-    std::size_t first = 0;  // number of the shot's first number in the claims
+    std::size_t first = 0;  // index of the shot's first number in the claims
     for (const ValidationShot& shot : of.shots) {
         std::vector<Computed> all;
         for (const Variant& variant : of.variants) all.push_back(computed(of, shot, variant, isa, step));

@@ -16,27 +16,28 @@ struct ValidationRow {
     const ValidationShot* shot;
     const Variant* variant;
     const Measured* measured;
-    std::string model;  ///< that the case is about, as the plan has it
+    std::string model;  ///< that the case is about, as in the plan
     Claim claim;
     double computed;
-    /// That of the measured number; of a share with 1.96 standard deviations of the shots that were played.
+    /// That of the measured number; for a share, including 1.96 standard deviations of the shots that were
+    /// played.
     double uncertainty;
 
     /// computed - measured, in units of the uncertainty
     double deviation() const;
     bool within() const;
-    /// Whether what is claimed holds: within; or outside and within a quarter of the uncertainty of the
-    /// claimed value; or a share within three standard deviations of the claimed one.
+    /// Whether the claim holds: within; or outside, and within a quarter of the uncertainty of the claimed
+    /// value; or a share within three standard deviations of the claimed one.
     bool as_claimed() const;
 };
 
-/// Plays all shots of a case under all variants: rows by shot, number and variant. `progress` is called after
-/// each run of the case with the runs so far.
-/// @throws SceneError, std::runtime_error that names case, variant and shot
+/// Plays all shots of a case with all variants: rows by shot, number and variant. `progress` is called after
+/// each run of the case with the number of runs so far.
+/// @throws SceneError, std::runtime_error naming case, variant and shot
 std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
                                     const std::function<void(long)>& progress);
 
-/// Runs that a case takes.
+/// Number of runs of a case.
 long runs_of(const ValidationCase& of);
 
 }  // namespace carom::tools

@@ -1,4 +1,4 @@
-// carom-lab validate: shots whose outcome was measured on real tables, beside what carom computes.
+// carom-lab validate: shots measured on real tables, beside what carom computes.
 #include <string>
 #include <vector>
 

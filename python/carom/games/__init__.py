@@ -1,7 +1,7 @@
-"""Games on the table: rules, aim help, and the noise of a player's strike.
+"""Games on the table: rules, aiming aids, and the noise of a player's strike.
 
-Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_game`, then for every shot `legal`, `carom.simulate`, `judge`, a choice
-among the options of the verdict, and `next_scene`.
+Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_game`, then for every shot
+`legal`, `carom.simulate`, `judge`, a choice among the verdict's options, and `next_scene`.
 """
 
 from carom.games._aim import Aim, PocketLine, aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines

@@ -1,4 +1,4 @@
-"""Aim help: by geometry where that is exact, and by playing the shot where it is not."""
+"""Aiming aids: by geometry where that is exact, otherwise by playing the shot."""
 
 from __future__ import annotations
 
@@ -14,62 +14,74 @@ if TYPE_CHECKING:
 
 
 class PocketLine(NamedTuple):
-    """The straight ways of a ball into a pocket that touch neither the noses of cushions nor jaws."""
+    """The straight paths of a ball into a pocket that touch neither cushion noses nor jaws."""
 
     pocket: str  # id
-    towards: tuple[float, float]  # unit vector in the middle of these ways
-    width_deg: float  # how far apart the outermost of them are; 0: there is none
-    distance: float  # [m] from the ball to where it begins to fall
-    in_the_way: str  # the nearest ball on the middle way, or ""
+    towards: tuple[float, float]  # unit vector in the middle of these paths
+    width_deg: float  # the angle between the outermost of them; 0 if there is none
+    distance: float  # [m] from the ball to the point where it begins to fall
+    in_the_way: str  # the nearest ball on the middle path, or ""
 
     @property
     def open(self) -> bool:
-        """Whether there is such a way, and no ball on the middle one."""
+        """Whether there is such a path and no ball blocks the middle one."""
         return self.width_deg > 0.0 and not self.in_the_way
 
 
 class Aim(NamedTuple):
-    """An aim that was looked for."""
+    """The result of a search for an aim."""
 
-    aim_deg: float | None  # of the strike, which was played and pots the ball; None: see why
+    aim_deg: float | None  # of a strike that was played and pots the ball; if None, `why` says why
     geometric_deg: float  # aim_pot: at the ghost ball, without throw, squirt and swerve
-    cut_deg: float  # aim_pot: of that aim
+    cut_deg: float  # aim_pot: the cut angle of that aim
     cushion: str  # bank_routes: the cushion that the ball meets
-    shots: int  # that were played to find it
-    why: str  # why there is none; "" where there is one
+    shots: int  # the number of shots played in the search
+    why: str  # why there is no aim; "" if there is one
 
 
 @checked
 def ghost_ball(ball: ArrayLike, towards: ArrayLike, radius: float = 0.028575) -> tuple[float, float]:
-    """Where the cue ball's centre is [m] when it meets a ball of the same radius and sends it along `towards`, a unit vector, without throw."""
+    """The cue ball's centre [m] when it meets a ball of the same radius and, without throw, sends it along
+    `towards`.
+
+    towards: a unit vector
+    """
     return _carom.ghost_ball(_two(ball), _two(towards), 2.0 * radius)
 
 
 @checked
 def cut_angle_deg(cue_ball: ArrayLike, ghost: ArrayLike, towards: ArrayLike) -> float:
-    """Angle between the cue ball's way to the ghost ball and the object ball's way: 0 is straight; from 90 on there is no such cut."""
+    """The angle between the cue ball's path to the ghost ball and the object ball's path.
+
+    0 is a straight shot; from 90 on, the cut is impossible.
+    """
     return _carom.cut_angle_deg(_two(cue_ball), _two(ghost), _two(towards))
 
 
 @checked
 def pocket_lines(scene: SceneLike, ball: str, cue_ball: str = "cue") -> list[PocketLine]:
-    """A line for every pocket of the table. The cue ball is in nobody's way, as it will have moved. Raises ValueError for a ball that is not there."""
+    """One line for every pocket of the table. Raises ValueError for a missing ball.
+
+    The cue ball blocks no path, because it will have moved.
+    """
     return [PocketLine(*line) for line in _carom.pocket_lines(as_scene(scene)._native, ball, cue_ball)]
 
 
 @checked
 def aim_pot(scene: SceneLike, ball: str, pocket: str) -> Aim:
-    """The aim that pots a ball into a pocket ("p1", ...): from the ghost ball, corrected by playing the shot until the ball runs down the middle of
-    its ways.
+    """The aim that pots a ball into a pocket ("p1", ...).
 
-    scene: its cue says how the ball is struck; its aim is not read
+    The search starts at the ghost ball and plays the shot until the ball runs down the middle of its paths.
 
-    Raises ValueError for a ball or a pocket that is not there, a scene without a cue, and a shot that does not end at rest.
+    scene: its cue gives the strike; the cue's aim is ignored
+
+    Raises ValueError for a missing ball or pocket, a scene without a cue, and a shot that does not end at
+    rest.
     """
     return Aim(*_carom.aim_pot(as_scene(scene)._native, ball, pocket))
 
 
 @checked
 def bank_routes(scene: SceneLike, ball: str, pocket: str) -> list[Aim]:
-    """Aims that pot a ball by way of one cushion, at most one for every straight cushion; each was played. Otherwise as aim_pot."""
+    """Aims that pot a ball off one cushion, at most one per straight cushion. Otherwise like `aim_pot`."""
     return [Aim(*aim) for aim in _carom.bank_routes(as_scene(scene)._native, ball, pocket)]

@@ -13,13 +13,13 @@ from carom._arguments import checked
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: What the five numbers of a strike are, in the order of arrays of strikes: the numbers of `Noise`, too.
+#: The five numbers of a strike, in the order of arrays of strikes and of `Noise`.
 STRIKE = ("speed", "aim_deg", "elevation_deg", "side", "height")
 
 
 @checked
 class Noise(NamedTuple):
-    """Standard deviations of independent normal errors of a strike."""
+    """Standard deviations of the independent normal errors of a strike."""
 
     speed: float = 0.0  # [m/s]
     aim_deg: float = 0.0
@@ -29,8 +29,12 @@ class Noise(NamedTuple):
 
     @classmethod
     def named(cls, name: str, radius: float = 0.028575) -> Noise:
-        """"none"; "fastfiz": 0.075 m/s, aim 0.125 and elevation 0.1 degrees, offset 0.5 mm, the default of FastFiz, the simulator of the
-        computational pool championships; or "ai3603": 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii, of the course AI3603.
+        """"none", "fastfiz" or "ai3603".
+
+        "fastfiz": 0.075 m/s, aim 0.125 and elevation 0.1 degrees, offset 0.5 mm. These are the defaults of
+            FastFiz, the
+        simulator of the computational pool championships.
+        "ai3603": 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii, as in the course AI3603.
 
         radius: of the struck ball [m]
 
@@ -44,16 +48,19 @@ def noisy(cue: Mapping[str, Any], noise: Noise | str, seed: int, index: int = 0)
 @overload
 def noisy(cue: ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> NDArray[np.float64]: ...
 @checked
-def noisy(cue: Mapping[str, Any] | ArrayLike, noise: Noise | str, seed: int, index: int = 0) -> dict[str, Any] | NDArray[np.float64]:
-    """The strike that a player makes who means `cue`.
+def noisy(
+    cue: Mapping[str, Any] | ArrayLike, noise: Noise | str, seed: int, index: int = 0
+) -> dict[str, Any] | NDArray[np.float64]:
+    """The strike of a player who intends `cue`.
 
-    cue: a mapping, as for `Scene`, where a number that is left out is that of scene files; or an array (5,) of `STRIKE`, or (n, 5) for the shots
-        index, index + 1, ...
-    noise: standard deviations, or a name of `Noise.named`
-    seed, index: the same ones give the same errors; they are those of `carom sweep --vary cue.speed=normal(sd)` and so on
+    cue: a mapping, as for `Scene`, with the defaults of scene files; or an array (5,) of `STRIKE`; or (n, 5)
+        for the shots index, index + 1, ...
+    noise: standard deviations, or a name for `Noise.named`
+    seed, index: equal ones give equal errors, the same as `carom sweep --vary cue.speed=normal(sd)` and so on
 
-    Returns what the cue was, a mapping or an array. It is always a strike that a scene takes: a negative speed becomes 0, an elevation below 0 a
-    level cue, and an offset of more than half a radius goes straight towards the centre until it is no more. "none" does only that.
+    Returns a mapping or an array, as cue was. The result is always valid in a scene: a negative speed becomes
+    0, an elevation below 0 becomes a level cue, and an offset of more than half a radius moves straight
+    towards the centre until it is half a radius. "none" changes nothing else.
 
     Raises ValueError for a number that is not finite, a negative deviation, or an array of another shape.
     """

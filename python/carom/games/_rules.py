@@ -1,4 +1,4 @@
-"""Rules: what is legal, and what came of a shot."""
+"""Rules: what is legal, and how a shot is judged."""
 
 from __future__ import annotations
 
@@ -19,82 +19,89 @@ GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
 
 
 class State(NamedTuple):
-    """All that a game remembers between two shots, beside where the balls lie. Players are 0 and 1. Immutable; `_replace` changes it."""
+    """Everything a game remembers between shots, except the positions of the balls.
+
+    Players are 0 and 1. Immutable; `_replace` makes a changed copy.
+    """
 
     game: str  # one of GAMES
     turn: int  # whose shot it is
-    opening: bool  # the break, or the first shot of a game of carom
+    opening: bool  # this is the break, or the first shot of a carom game
     in_hand: str  # the cue ball: "no", "anywhere", "head string" (behind it) or "D"
     points: tuple[int, int]
-    target: int  # points that win a game of carom; 0: no end
+    target: int  # points that win a carom game; 0: no end
     over: bool
     winner: int  # -1: none, or not yet
-    group: tuple[str, str]  # eight-ball, of each player: "open", "solids" or "stripes"
+    group: tuple[str, str]  # eight-ball, for each player: "open", "solids" or "stripes"
     may_push_out: bool  # nine-ball: this is the shot after the break
-    fouls: tuple[int, int]  # nine-ball: of each player, without a legal shot between
+    fouls: tuple[int, int]  # nine-ball, for each player: consecutive fouls
     on: str  # snooker: "red", "colour" (any), "yellow", ..., "black"
     free_ball: bool  # snooker: any ball may be nominated as the ball on
 
     @property
     def cue_ball(self) -> str:
-        """The ball that the player strikes: "cue", of three-cushion "white" or "yellow"."""
+        """The ball that the player strikes: "cue", or in three-cushion "white" or "yellow"."""
         return _carom.cue_ball(self)
 
 
 class Call(NamedTuple):
-    """What a player says before a shot."""
+    """What a player calls before a shot."""
 
-    ball: str = ""  # eight-ball: that will fall; snooker: the nominated colour or free ball, "" for the one that is hit first
+    # eight-ball: the ball that will fall; snooker: the nominated colour or free ball, "" for the ball hit
+    # first
+    ball: str = ""
     pocket: str = ""  # eight-ball: "p1", ...
     safety: bool = False  # eight-ball: the turn ends whatever falls
     push_out: bool = False  # nine-ball
 
 
 class Legal(NamedTuple):
-    """What the next shot may do."""
+    """What the rules allow for the next shot."""
 
-    cue_balls: list[str]  # what may be struck: one id
-    first: list[str]  # what the cue ball may meet first
-    callable: list[str]  # what may be called; empty where the game has no calls
+    cue_balls: list[str]  # the balls that may be struck: one id
+    first: list[str]  # the balls that the cue ball may meet first
+    callable: list[str]  # the balls that may be called; empty if the game has no calls
     in_hand: str  # as State.in_hand
     may_push_out: bool
 
 
 class Foul(NamedTuple):
-    """A foul, and the rule that it breaks, such as "WPA 6.1"."""
+    """A foul, and the rule it breaks, such as "WPA 6.1"."""
 
     name: str
     rule: str
 
 
 class Respot(NamedTuple):
-    """A ball that comes back to the table, and where [m]."""
+    """A ball that returns to the table, and its place [m]."""
 
     ball: str
     place: tuple[float, float]
 
 
 class Option(NamedTuple):
-    """How the game may go on."""
+    """One way for the game to continue."""
 
-    decision: str  # "play on", "take in hand", "pass back", "rerack", "rerack for other", "spot the eight", "spot touching balls"
-    state: State  # of the next shot
-    respots: list[Respot]  # what comes back before it
+    # "play on", "take in hand", "pass back", "rerack", "rerack for other", "spot the eight", "spot touching
+    # balls"
+    decision: str
+    state: State  # for the next shot
+    respots: list[Respot]  # the balls that return before it
 
     @property
     def rerack(self) -> bool:
-        """Whether the balls are racked anew."""
+        """Whether the balls are racked again."""
         return self.decision.startswith("rerack")
 
 
 class Verdict(NamedTuple):
-    """What came of a shot."""
+    """How a shot is judged."""
 
     fouls: list[Foul]  # empty for a fair shot
     points: int  # scored by the shot
-    penalty: int  # snooker: what the other player receives
-    options: list[Option]  # at least one; where there are several, the first is what happens unless `chooser` takes another
-    chooser: int  # the player who chooses; -1 where there is one option, and where lots decide (snooker)
+    penalty: int  # snooker: the points that the other player receives
+    options: list[Option]  # at least one; the first applies unless `chooser` picks another
+    chooser: int  # the player who chooses; -1 if there is only one option, or if lots are drawn (snooker)
 
     @property
     def next(self) -> State:
@@ -103,7 +110,7 @@ class Verdict(NamedTuple):
 
     @property
     def respots(self) -> list[Respot]:
-        """What comes back, by the first option."""
+        """The balls that return under the first option."""
         return self.options[0].respots
 
 
@@ -111,10 +118,10 @@ class Verdict(NamedTuple):
 def new_game(game: str, first: int = 0, target: int = 0) -> State:
     """The state before the first shot.
 
-    game: "eight_ball", "nine_ball" (World Pool-Billiard Association), "three_cushion" (Union Mondiale de Billard), "snooker" (World Professional
-        Billiards and Snooker Association) or "sum_to_three"
+    game: "eight_ball", "nine_ball" (World Pool-Billiard Association), "three_cushion" (Union Mondiale de
+        Billard), "snooker" (World Professional Billiards and Snooker Association) or "sum_to_three"
     first: the player who begins
-    target: points that win a game of carom; 0: no end
+    target: points that win a carom game; 0: no end
 
     Raises ValueError for another game.
     """
@@ -123,29 +130,32 @@ def new_game(game: str, first: int = 0, target: int = 0) -> State:
 
 @checked
 def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
-    """What the next shot may do.
+    """What the rules allow for the next shot.
 
-    balls: a scene, or the ids of the balls on the table. Ids are those of racks: "cue", "1" to "15"; "white", "yellow", "red"; snooker has reds
-        with numbers and colours with names.
+    balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
+        "yellow", "red"; in snooker, numbered reds and colours by name
 
-    Raises ValueError where the game is over, or has no ball left to play at.
+    Raises ValueError if the game is over or no ball is left to play at.
     """
     return Legal(*_carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls)))
 
 
 @checked
 def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
-    """What came of a shot.
+    """Judges a shot.
 
     state: before the shot
-    call: what the player said
+    call: what the player called
 
-    Not judged is what no record shows: feet, touched balls, double hits, pushes, time, misses of snooker.
+    What no record shows is not judged: feet on the floor, touched balls, double hits, push shots, time, and
+    misses in snooker.
 
-    Raises ValueError for a record that does not end at rest, in which no cue strikes, that lacks the game's balls, and for a game that is over.
+    Raises ValueError if the game is over, or the record does not end at rest, has no cue strike, or lacks the
+    game's balls.
     """
     fouls, points, penalty, options, chooser = _carom.judge(state, record._native, call)
-    return Verdict([Foul(*foul) for foul in fouls], points, penalty, [_option(*option) for option in options], chooser)
+    listed = [_option(*option) for option in options]
+    return Verdict([Foul(*foul) for foul in fouls], points, penalty, listed, chooser)
 
 
 def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
@@ -154,31 +164,41 @@ def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, flo
 
 @checked
 def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
-    """Whether the cue ball may be placed there [m] before the next shot: it is in hand there, lies between the cushions, and overlaps no ball."""
+    """Whether the cue ball may be placed there [m] before the next shot.
+
+    It must be in hand there, lie between the cushions, and overlap no ball.
+    """
     return _carom.may_place(record._native, option, _two(place))
 
 
 @checked
 def next_scene(
-    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None, *, place: ArrayLike | None = None, scene: SceneLike | None = None
+    record: Record, option: Option | Verdict, cue: Mapping[str, Any] | str | None = None,
+    *, place: ArrayLike | None = None, scene: SceneLike | None = None,
 ) -> Scene:
-    """The next shot: what is gone is gone, what is respotted is back, the cue ball is placed, the cue strikes.
+    """The scene of the next shot: pocketed balls are removed, respotted ones are back, the cue ball is
+    placed, and the cue strikes.
 
-    option: one of the verdict's, not one that racks anew; a verdict stands for its first one
-    cue: what strikes, as for Scene; without "ball" it strikes the cue ball. None: nothing does
-    place: of the cue ball [m]: needed where it is gone, allowed where it is in hand
-    scene: the one that was played; needed for a record that was loaded from a file
+    option: one of the verdict's that does not rack again; a verdict stands for its first option
+    cue: the strike, as for Scene; without "ball" it strikes the cue ball; None for none
+    place: of the cue ball [m]; needed if the cue ball is gone, allowed if it is in hand
+    scene: the scene that was played; needed if the record was loaded from a file
 
-    Raises ValueError for a place that is missing or not allowed, for a new rack and for a game that is over; SceneError where the result is no scene.
+    Raises ValueError for a missing or forbidden place, a new rack, or a finished game, and SceneError if the
+    result is not a valid scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
     played, at = None if scene is None else as_scene(scene)._native, None if place is None else _two(place)
-    return scene_with_cue(cue, lambda section: _carom.next_table(record._native, played, taken, at, section), ball=taken.state.cue_ball)
+
+    def make(section: str) -> _carom.Scene:
+        return _carom.next_table(record._native, played, taken, at, section)
+
+    return scene_with_cue(cue, make, ball=taken.state.cue_ball)
 
 
 @checked
 def spots(record: Record) -> dict[str, tuple[float, float]]:
-    """The spots of a table [m]: "head", "center" and "foot", and those of the snooker colours."""
+    """The spots of a table [m]: "head", "center" and "foot", and in snooker those of the colours."""
     return dict(_carom.spots(record._native))
 
 

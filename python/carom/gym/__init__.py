@@ -1,7 +1,7 @@
-"""Learning environments: `import carom.gym` registers them with Gymnasium. Needs the extra [gym].
+"""Learning environments: `import carom.gym` registers them with Gymnasium. It needs the extra [gym].
 
-`gymnasium.make("carom/Pot-v0")` is one table, `gymnasium.make_vec("carom/Pot-v0", num_envs=256)` a batch of them. The guide is
-docs/guide/learning.md.
+`gymnasium.make("carom/Pot-v0")` makes one table, `gymnasium.make_vec("carom/Pot-v0", num_envs=256)` a batch.
+See docs/guide/learning.md.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ except ImportError as error:
 
 from carom._arguments import checked
 from carom.gym._env import FeaturePlanes, TableEnv
-from carom.gym._games import EightBallRun, Game, Judged, NineBallRun, Position, Pot, States, SumToThree, ThreeCushion
+from carom.gym._games import (
+    EightBallRun, Game, Judged, NineBallRun, Position, Pot, States, SumToThree, ThreeCushion)
 from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout
 from carom.gym._vector import TableVectorEnv
@@ -40,7 +41,7 @@ __all__ = [
     "make_vector_env",
 ]
 
-#: The games by their names in "carom/NAME-v0", and the options that are the game's own.
+#: The games by their names in "carom/NAME-v0".
 GAMES: dict[str, type[Game]] = {
     "Pot": Pot,
     "Position": Position,
@@ -49,23 +50,24 @@ GAMES: dict[str, type[Game]] = {
     "NineBallRun": NineBallRun,
     "EightBallRun": EightBallRun,
 }
+#: The options that belong to the game rather than the environment.
 _OWN = ("table", "scene")
 
 
 def _game(name: str, options: dict[str, Any]) -> Game:
-    """Takes the game's own options out of the others."""
+    """Makes the game from its own options, which it removes from the others."""
     return GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
 
 
 @checked
 def make_env(game: str, **options: Any) -> TableEnv:
-    """What `gymnasium.make(f"carom/{game}-v0", ...)` makes, without its wrappers."""
+    """`gymnasium.make(f"carom/{game}-v0", ...)` without Gymnasium's wrappers."""
     return TableEnv(_game(game, options), **options)
 
 
 @checked
 def make_vector_env(game: str, num_envs: int = 1, **options: Any) -> TableVectorEnv:
-    """What `gymnasium.make_vec(f"carom/{game}-v0", ...)` makes."""
+    """The same as `gymnasium.make_vec(f"carom/{game}-v0", ...)`."""
     return TableVectorEnv(_game(game, options), num_envs, **options)
 
 

@@ -1,4 +1,4 @@
-"""One table as an environment of Gymnasium."""
+"""One table as a Gymnasium environment."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-Observation = Any  # an array, or with observation="dict" a dict of two
+Observation = Any  # an array, or a dict of two arrays with observation="dict"
 
 
 @checked
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Options:
-    """What all environments have: how strikes are made, and how tables are drawn."""
+    """Options of all environments: how actions become strikes, and how tables are drawn."""
 
     aim: str = "angle"
     speed: tuple[float, float] = (0.3, 6.0)
@@ -42,16 +42,17 @@ class Options:
             raise ValueError(f"render_mode={self.render_mode!r}: expected 'rgb_array' or None")
 
     def strikes(self) -> Strikes:
-        """Lists are taken as pairs, as specs of JSON have them."""
+        """The strikes of these options. Pairs may be lists, as they are in JSON specs."""
         one = isinstance(self.elevation_deg, (int, float))
         return Strikes(self.aim, _pair(self.speed), self.elevation_deg if one else _pair(self.elevation_deg))
 
     def noise_in(self, game: Game) -> Noise:
-        """A name of `carom.games.Noise.named`, or five standard deviations."""
+        """The noise: a name for `carom.games.Noise.named`, or five standard deviations."""
         if isinstance(self.noise, str):
             return Noise.named(self.noise, float(game.radii[game.cue_ball]))
         if len(self.noise) != len(Noise._fields) or not all(0 <= sd < np.inf for sd in self.noise):
-            raise ValueError(f"noise={self.noise!r}: expected a name, or standard deviations of {', '.join(Noise._fields)}, at least 0")
+            wanted = f"a name, or standard deviations of {', '.join(Noise._fields)}, at least 0"
+            raise ValueError(f"noise={self.noise!r}: expected {wanted}")
         return Noise(*map(float, self.noise))
 
     def picture(self, game: Game, xy: NDArray[np.float64]) -> NDArray[np.uint8]:
@@ -67,7 +68,7 @@ def _pair(numbers: Any) -> tuple[float, float]:
 @checked
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class TableOptions(Options):
-    """And those of one player's games."""
+    """`Options`, and those of games for one player."""
 
     observation: str = "box"
     most_shots: int | None = None
@@ -76,25 +77,27 @@ class TableOptions(Options):
 
 @checked
 class TablesEnv:
-    """What one table and many of them share as environments."""
+    """What the environments of one table and of many have in common."""
 
     _rules: Rules
     _options: TableOptions
     _tables: Tables
 
-    def _open(self, game: Game, tables: int, threads: int, options: dict[str, Any]) -> tuple[spaces.Space[Any], spaces.Box]:
-        """What is observed of each table, and what is done."""
-        self._options = TableOptions(**options)
+    def _open(
+        self, game: Game, tables: int, threads: int, options: dict[str, Any]
+    ) -> tuple[spaces.Space[Any], spaces.Box]:
+        """The observation and action spaces of one table."""
+        self._options = own = TableOptions(**options)
         if threads < 0:
             raise ValueError(f"threads={threads}: expected at least 0")
-        self._rules = Rules(game, self._options.strikes(), self._options.noise_in(game), threads=threads, hashes=self._options.hashes)
-        self._tables = Tables(tables, self._rules, game.SHOTS if self._options.most_shots is None else self._options.most_shots)
+        self._rules = Rules(game, own.strikes(), own.noise_in(game), threads=threads, hashes=own.hashes)
+        self._tables = Tables(tables, self._rules, game.SHOTS if own.most_shots is None else own.most_shots)
         places = len(game.ids) + game.points(self._tables.states).shape[1]
         balls: spaces.Space[Any] = spaces.Box(-1.0, 1.0, (places, 3), np.float32)
-        if self._options.observation == "dict":
+        if own.observation == "dict":
             balls = spaces.Dict({"balls": balls, "legal": spaces.MultiBinary(len(game.ids))})
-        elif self._options.observation != "box":
-            raise ValueError(f"observation={self._options.observation!r}: expected 'box' or 'dict'")
+        elif own.observation != "box":
+            raise ValueError(f"observation={own.observation!r}: expected 'box' or 'dict'")
         return balls, spaces.Box(-1.0, 1.0, (self._rules.strikes.size,), np.float32)
 
     @property
@@ -104,14 +107,18 @@ class TablesEnv:
 
     @property
     def states(self) -> States:
-        """The tables as they are, a copy; of a `TableEnv` one row."""
+        """The tables as they are, a copy; one row for a `TableEnv`."""
         return self._tables.states.take(slice(None))
 
-    def rollout(self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1) -> Rollout:
-        """Plays n actions on n tables at once, as many as you like, for search; this environment does not change. `env.states.take([0] * n)` is the
-        first table n times.
+    def rollout(
+        self, states: States, actions: ArrayLike, *, noise_seed: int | None = None, threads: int = 1
+    ) -> Rollout:
+        """Plays n actions on n tables at once, for search; this environment does not change.
 
-        noise_seed: None plays the strikes as they are meant; otherwise shot i has the errors of shot i of this seed
+        n is any number; `env.states.take([0] * n)` repeats the first table n times.
+
+        noise_seed: None plays the strikes without errors; otherwise shot i has the errors of shot i under
+            this seed
         """
         n, rules = len(states.xy), self._rules
         seeds = None if noise_seed is None else np.full(n, noise_seed, np.uint64)
@@ -119,40 +126,46 @@ class TablesEnv:
         return search.rollout(states, actions, seeds, np.arange(n))
 
     def _observe_all(self) -> Observation:
-        """Of all tables, in arrays of their own."""
+        """The observations of all tables, in new arrays."""
         game, states = self._rules.game, self._tables.states
         balls = game.observe(states)
-        return balls if self._options.observation == "box" else {"balls": balls, "legal": game.legal(states).astype(np.int8)}
+        if self._options.observation == "box":
+            return balls
+        return {"balls": balls, "legal": game.legal(states).astype(np.int8)}
 
 
 def row(observation: Observation, table: int) -> Observation:
-    """What is observed of one of the tables."""
-    return {key: values[table] for key, values in observation.items()} if isinstance(observation, dict) else observation[table]
+    """The observation of one table."""
+    if isinstance(observation, dict):
+        return {key: values[table] for key, values in observation.items()}
+    return observation[table]
 
 
 def plain(value: Any) -> Any:
-    """A value of one table out of an array of many: of the types that Gymnasium's own vectors put together again."""
-    return bool(value) if isinstance(value, np.bool_) else value.copy() if isinstance(value, np.ndarray) else value
+    """One table's value from an array of many, as a type that Gymnasium's own vectors can combine again."""
+    if isinstance(value, np.bool_):
+        return bool(value)
+    return value.copy() if isinstance(value, np.ndarray) else value
 
 
 @checked
 class TableEnv(TablesEnv, gymnasium.Env[Observation, Any]):
-    """One table. The subclasses in carom.gym say which game.
+    """One table with a game.
 
-    aim="angle", speed=(0.3, 6.0), elevation_deg=0.0: how an action is a strike (`carom.gym.Strikes`)
-    noise="none": errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard deviations
-    observation="box": or "dict" with the mask of the balls that may be hit first beside it
-    most_shots=None: an episode with as many shots is truncated; None leaves it to the game
-    hashes=False: info["hash"] is that of the shot's record
-    render_mode=None: or "rgb_array"
+    aim="angle", speed=(0.3, 6.0), elevation_deg=0.0: how an action becomes a strike (`carom.gym.Strikes`)
+    noise="none": errors of the strike: "fastfiz", "ai3603" (`carom.games.Noise.named`) or five standard
+    deviations observation="box": or "dict", which adds the mask of the balls that may be hit first
+    most_shots=None: an episode with this many shots is truncated; None leaves the number to the game
+    hashes=False: put the hash of the shot's record into info["hash"] render_mode=None: or "rgb_array"
     size=(640, 360): width and height of pictures [pixels]
 
-    Info of a step: "status" (a number of `carom.ShotStatus`), "events", "duration" [s], "first_hit" (a ball's place in `ids`, or -1), "pocket"
-    and "cushions" of every ball, "cue" (the strike that was made: speed, aim_deg, elevation_deg, side, height), "foul" (its name, or ""), and "message" for a shot
-    without an end, which is truncated.
+    Info of a step: "status" (a number of `carom.ShotStatus`), "events", "duration" [s], "first_hit" (the
+    ball's index in `ids`, or -1), "pocket" and "cushions" of every ball, "cue" (the strike that was made:
+    speed, aim_deg, elevation_deg, side, height), and "foul" (its name, or ""). A shot that does not end is
+    truncated and also has "message".
 
-    Options of reset: "xy" (balls, 2) [m], NaN for a ball that is not there; or "scene", a `carom.Scene` with these places; and what the game
-    remembers, by name.
+    Options of reset: "xy" (balls, 2) [m], NaN for an absent ball, or "scene", a `carom.Scene` with these
+    positions; and the columns of the game's `EXTRA`, by name.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1}
@@ -162,7 +175,9 @@ class TableEnv(TablesEnv, gymnasium.Env[Observation, Any]):
         self.render_mode = self._options.render_mode
         self._seeded = False
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if seed is not None or not self._seeded:
             self._tables.seed(0, self.np_random)
@@ -176,17 +191,20 @@ class TableEnv(TablesEnv, gymnasium.Env[Observation, Any]):
         played, info = self._tables.step(slice(None), np.asarray(action)[None])
         said = {key: plain(values[0]) for key, values in info.items()}
         said |= {"message": text for text in played.shots.messages.values()}
-        return self._observe(), float(played.reward[0]), bool(played.terminated[0]), bool(played.truncated[0]), said
+        ended = bool(played.terminated[0]), bool(played.truncated[0])
+        return self._observe(), float(played.reward[0]), *ended, said
 
     def record(self) -> Record:
-        """The last shot with everything that happened, for pictures and pages. Raises RuntimeError before the first shot."""
+        """The record of the last shot, for pictures and pages. Raises RuntimeError before the first shot."""
         if np.isnan(self._tables.cue[0, 0]):
-            raise RuntimeError("there was no shot since reset")
+            raise RuntimeError("there has been no shot since reset; call step first")
         return self._rules.game.record(self._tables.before.xy[0], self._tables.cue[0])
 
     def render(self) -> NDArray[np.uint8] | None:
         """The table as it is, from above: (height, width, 3) bytes."""
-        return None if self.render_mode is None else self._options.picture(self._rules.game, self._tables.states.xy[0])
+        if self.render_mode is None:
+            return None
+        return self._options.picture(self._rules.game, self._tables.states.xy[0])
 
     def _observe(self) -> Observation:
         return row(self._observe_all(), 0)
@@ -194,17 +212,21 @@ class TableEnv(TablesEnv, gymnasium.Env[Observation, Any]):
 
 @checked
 class FeaturePlanes(gymnasium.ObservationWrapper[Any, Any, Any]):
-    """Observes a `TableEnv` as planes for a convolution: float32 (4, height, width), y of the table along the width. One each for the cue ball, the balls that may be hit
-    first, the other balls, and what the game shows beside them (a target). A ball is a cone over two radii.
+    """Observes a `TableEnv` as planes for a convolution: float32 (4, height, width), with the table's y along
+    the width.
 
-    `planes(env.states)` makes those of any number of tables: (n, 4, height, width). For pixels there is Gymnasium's own wrapper AddRenderObservation.
+    The planes show the cue ball, the balls that may be hit first, the other balls, and the game's own points
+    (a target). A ball is a cone with a radius of two ball radii.
+
+    `planes(env.states)` makes the planes of any number of tables: (n, 4, height, width). For pixels, use
+    Gymnasium's own wrapper AddRenderObservation.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], height: int = 32, width: int = 64) -> None:
         super().__init__(env)
         table = env.unwrapped
         if not isinstance(table, TableEnv):
-            raise ValueError(f"FeaturePlanes: expected an environment of carom.gym, not {table!r}")
+            raise ValueError(f"FeaturePlanes: expected a carom.gym environment, not {table!r}")
         if height < 1 or width < 1:
             raise ValueError(f"FeaturePlanes: height={height}, width={width}: expected at least 1")
         self._table, self._game = table, table._rules.game
@@ -223,10 +245,12 @@ class FeaturePlanes(gymnasium.ObservationWrapper[Any, Any, Any]):
         kind[:, game.cue_ball] = 0
         marks = game.points(states)
         kind = np.concatenate((kind, np.full(marks.shape[:2], 3)), axis=1)
-        # As wide as two pixels at least, so that no ball falls between them.
-        reach = max(2 * float(game.radii.max()), 2 * game.table.width / len(self._x), 2 * game.table.length / len(self._y))
+        # At least as wide as two pixels, so that no ball falls between them.
+        pixel = max(game.table.width / len(self._x), game.table.length / len(self._y))
+        reach = 2 * max(float(game.radii.max()), pixel)
         for ball, place in enumerate(np.moveaxis(np.concatenate((states.xy, marks), axis=1), 1, 0)):
-            far = np.sqrt((self._x[:, None] - place[:, 0, None, None]) ** 2 + (self._y - place[:, 1, None, None]) ** 2)
+            across, along = self._x[:, None] - place[:, 0, None, None], self._y - place[:, 1, None, None]
+            far = np.sqrt(across**2 + along**2)
             cone = np.nan_to_num(np.maximum(1.0 - far / reach, 0.0)).astype(np.float32)
             rows = np.arange(len(cone))
             out[rows, kind[:, ball]] = np.maximum(out[rows, kind[:, ball]], cone)

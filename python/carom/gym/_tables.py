@@ -1,4 +1,4 @@
-"""Tables side by side: what one environment and a vector of them share, so that both do the same to the bit."""
+"""Tables side by side, shared by single and vector environments so that both give the same bits."""
 
 from __future__ import annotations
 
@@ -17,56 +17,65 @@ from carom.gym._strikes import Strikes
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: Numbers of tables, or all of them, `slice(None)`.
+#: Indices of tables, or all tables with `slice(None)`.
 Rows = Any
-#: More events than any shot has: one that reaches it is truncated.
+#: More events than any real shot has; a shot that reaches it is truncated.
 _MOST_EVENTS = 100_000
 
 
 class Rollout(NamedTuple):
-    """n shots that were tried: none of them changes the environment."""
+    """n trial shots that do not change the environment."""
 
-    states: States  # behind the shots; as before for a shot without an end
+    states: States  # after the shots; unchanged for a shot without an end
     reward: NDArray[np.float64]  # (n,)
     terminated: NDArray[np.bool_]  # (n,)
     truncated: NDArray[np.bool_]  # (n,) the shot has no end; `shots.status` and `shots.messages` say why
     foul: NDArray[np.object_]  # (n,) its name, or ""
-    cue: NDArray[np.float64]  # (n, 5) the strikes, as `simulate_many(cue=...)` takes them
+    cue: NDArray[np.float64]  # (n, 5) the strikes, as for `simulate_many(cue=...)`
     shots: Shots
 
 
 class Rules:
-    """A game, and how actions are strikes."""
+    """A game, and how actions become strikes."""
 
     def __init__(self, game: Game, strikes: Strikes, noise: Noise, *, threads: int, hashes: bool) -> None:
-        self.game, self.strikes, self.noise, self.threads, self.hashes = game, strikes, noise, threads, hashes
+        self.game, self.strikes, self.noise = game, strikes, noise
+        self.threads, self.hashes = threads, hashes
 
-    def rollout(self, states: States, actions: ArrayLike, seeds: NDArray[np.uint64] | None, indices: NDArray[np.int64] | None = None) -> Rollout:
-        """Plays one action on each of the tables, with the errors of these shots of these seeds, or with none."""
+    def rollout(
+        self, states: States, actions: ArrayLike, seeds: NDArray[np.uint64] | None,
+        indices: NDArray[np.int64] | None = None,
+    ) -> Rollout:
+        """Plays one action on each table, with the errors of these seeds and shot indices, or without
+        errors."""
         act = np.asarray(actions)
         wanted = (len(states.xy), self.strikes.size)
         if act.shape != wanted or not np.issubdtype(act.dtype, np.floating):
-            raise ValueError(f"actions: expected floating-point numbers in the shape {wanted}, not {act.dtype} in {act.shape}")
+            got = f"{act.dtype} in {act.shape}"
+            raise ValueError(f"actions: expected floating-point numbers in the shape {wanted}, not {got}")
         game = self.game
         legal = game.legal(states) if self.strikes.aim == "ball" else np.zeros(states.xy.shape[:2], bool)
         cue = self.strikes.cue(act, states.xy, game.cue_ball, legal, game.radii)
         if seeds is not None and any(self.noise):
-            _carom.add_noise_each(cue.reshape(-1), tuple(self.noise), seeds, np.zeros(len(cue), np.int64) if indices is None else indices)
+            which = np.zeros(len(cue), np.int64) if indices is None else indices
+            _carom.add_noise_each(cue.reshape(-1), tuple(self.noise), seeds, which)
         return self.play(states, cue)
 
     def play(self, states: States, cue: NDArray[np.float64]) -> Rollout:
-        """Plays one strike on each of the tables."""
-        shots, judged = self.game.play(states, cue, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
+        """Plays one strike on each table."""
+        shots, judged = self.game.play(
+            states, cue, max_events=_MOST_EVENTS, threads=self.threads, hashes=self.hashes)
         bad = failed(shots)
         if bad.any():
             kept = States(judged.states.xy.copy(), judged.states.extra.copy())
             kept.put(bad, states.take(bad))
-            judged = Judged(kept, np.where(bad, 0.0, judged.reward), judged.terminated & ~bad, np.where(bad, "", judged.foul))
+            reward, foul = np.where(bad, 0.0, judged.reward), np.where(bad, "", judged.foul)
+            judged = Judged(kept, reward, judged.terminated & ~bad, foul)
         return Rollout(judged.states, judged.reward, judged.terminated, bad, judged.foul, cue, shots)
 
 
 class Tables:
-    """n tables in the middle of their episodes, and what reset and step do to some of them."""
+    """n tables in the middle of their episodes, some of which `reset` and `step` change."""
 
     def __init__(self, n: int, rules: Rules, most_shots: int) -> None:
         balls, k = len(rules.game.ids), len(rules.game.EXTRA)
@@ -75,14 +84,15 @@ class Tables:
         self.generators, self.noise_seeds = np.zeros(n, np.uint64), np.zeros(n, np.uint64)
         self.shots = np.zeros(n, np.int64)  # of this episode
         self.played = np.zeros(n, np.int64)  # since the table was seeded
-        self.before, self.cue = self.states.take(slice(None)), np.full((n, 5), np.nan)  # of the last shot of this episode
+        # Of this episode's last shot.
+        self.before, self.cue = self.states.take(slice(None)), np.full((n, 5), np.nan)
 
     def seed(self, row: int, generator: np.random.Generator) -> None:
         self.generators[row], self.noise_seeds[row] = generator.integers(0, 2**64, 2, dtype=np.uint64)
         self.played[row] = 0
 
     def reset(self, rows: Rows, options: Mapping[str, Any] | None) -> None:
-        """New episodes on these tables. Raises ValueError for options that are none."""
+        """Starts new episodes on these tables. Raises ValueError for unknown or invalid options."""
         generators = self.generators[rows].copy()
         states = self.rules.game.start(generators)
         self.generators[rows] = generators
@@ -93,7 +103,7 @@ class Tables:
         self.cue[rows] = np.nan
 
     def step(self, rows: Rows, actions: NDArray[np.floating]) -> tuple[Rollout, dict[str, NDArray[Any]]]:
-        """One shot on each of these tables, and what an environment says about it."""
+        """Plays one shot on each of these tables and returns the result with its info."""
         before = self.states.take(rows)
         played = self.rules.rollout(before, actions, self.noise_seeds[rows], self.played[rows])
         self.before.put(rows, before)
@@ -123,9 +133,9 @@ class Tables:
         known = {"xy", "scene", *game.EXTRA}
         wrong = set(options) - known
         if wrong:
-            raise ValueError(f"options: there is no {sorted(wrong)[0]!r}; there are {', '.join(sorted(known))}")
+            raise ValueError(f"options: {sorted(wrong)[0]!r} is unknown; use {', '.join(sorted(known))}")
         if "scene" in options and "xy" in options:
-            raise ValueError("options: both xy and scene say where the balls are; give one")
+            raise ValueError("options: both xy and scene place the balls; give one")
         xy, extra = states.xy, states.extra
         if "scene" in options:
             xy = _repeated("scene", _places_of(options["scene"], game), n)
@@ -140,21 +150,24 @@ class Tables:
         return States(np.array(xy), extra)
 
 
-def _repeated(name: str, values: NDArray[np.float64], n: int, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
-    """The same for every table, or one for each."""
+def _repeated(
+    name: str, values: NDArray[np.float64], n: int, shape: tuple[int, ...] | None = None
+) -> NDArray[np.float64]:
+    """One value per table; a single value is repeated."""
     if shape is None or values.shape == shape:
         return np.repeat(values[None], n, axis=0)
     if values.shape == (n, *shape):
         return values
-    raise ValueError(f"options: {name} has the shape {values.shape}; expected {shape}, or {(n, *shape)}")
+    raise ValueError(f"options: {name} has the shape {values.shape}; expected {shape} or {(n, *shape)}")
 
 
 def _places_of(scene: Any, game: Game) -> NDArray[np.float64]:
     if not isinstance(scene, Scene):
-        raise ValueError(f"options: scene is no carom.Scene but {scene!r}")
+        raise ValueError(f"options: expected scene to be a carom.Scene, not {scene!r}")
     stranger = [ball for ball in scene.ids if ball not in game.ids]
     if stranger:
-        raise ValueError(f"options: the scene has a ball {stranger[0]!r}; this game has {', '.join(game.ids)}")
+        balls = ", ".join(game.ids)
+        raise ValueError(f"options: the scene has a ball {stranger[0]!r}; this game has {balls}")
     xy = np.full((len(game.ids), 2), np.nan)
     xy[[game.ids.index(ball) for ball in scene.ids]] = scene.positions
     return xy

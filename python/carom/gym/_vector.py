@@ -1,4 +1,4 @@
-"""Many tables as one vector environment of Gymnasium: all shots of a step are one batch."""
+"""Many tables as one Gymnasium vector environment; all shots of a step are one batch."""
 
 from __future__ import annotations
 
@@ -25,14 +25,17 @@ _Step = tuple[Observation, "NDArray[np.float64]", "NDArray[np.bool_]", "NDArray[
 
 @checked
 class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
-    """n tables. Table i does what a `TableEnv` does that was seeded with its seed: the same bits. The other options are those of `TableEnv`.
+    """n tables. Table i gives the same bits as a `TableEnv` with its seed. Other options are those of
+    `TableEnv`.
 
-    autoreset_mode: when a table whose episode is over is reset: at its next step, which plays no shot then ("NextStep"); in the same step ("SameStep",
-        what it ended with is in info["final_obs"] and info["final_info"]); or by `reset(options={"reset_mask": ...})` ("Disabled")
-    threads: that play a step's shots; 0 takes one for each core that the process may use
+    autoreset_mode: when to reset a table whose episode is over: at its next step, which then plays no shot
+        ("NextStep"); in the same step ("SameStep", with the end of the episode in info["final_obs"] and
+        info["final_info"]); or by `reset(options={"reset_mask": ...})` ("Disabled")
+    threads: the number of threads that play a step's shots; 0 uses every core available to the process
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.NEXT_STEP}
 
     def __init__(
         self,
@@ -56,13 +59,17 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
         self._seeded = np.zeros(num_envs, bool)
         self._over = np.zeros(num_envs, bool)
 
-    def reset(self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         n = self.num_envs
-        seeds = [None] * n if seed is None else [seed + i for i in range(n)] if isinstance(seed, (int, np.integer)) else list(seed)
+        if isinstance(seed, (int, np.integer)):
+            seed = [seed + i for i in range(n)]
+        seeds = [None] * n if seed is None else list(seed)
         if len(seeds) != n:
             raise ValueError(f"seed: {len(seeds)} seeds for {n} environments; give one for each")
-        rest: Mapping[str, Any] = dict(options or {})
-        mask = _mask(rest.pop("reset_mask"), n) if "reset_mask" in rest else np.ones(n, bool)  # type: ignore[attr-defined]
+        rest: dict[str, Any] = dict(options or {})
+        mask = _mask(rest.pop("reset_mask"), n) if "reset_mask" in rest else np.ones(n, bool)
         rows = np.flatnonzero(mask)
         for row in rows.tolist():
             if seeds[row] is not None or not self._seeded[row]:
@@ -80,25 +87,31 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
             raise gymnasium.error.ResetNeeded("call reset before step")
         over, mode = self._over, self.autoreset_mode
         if mode == AutoresetMode.DISABLED and over.any():
-            raise gymnasium.error.ResetNeeded(f'the episode of environment {np.argmax(over)} is over: reset(options={{"reset_mask": ...}})')
+            again = 'call reset(options={"reset_mask": ...})'
+            which = np.argmax(over)
+            raise gymnasium.error.ResetNeeded(f"the episode of environment {which} is over; {again}")
         act = np.asarray(actions)
         if act.shape != self.action_space.shape:
             raise ValueError(f"actions: expected the shape {self.action_space.shape}, not {act.shape}")
-        some_over = over.any()  # only with NEXT_STEP, which resets them
+        some_over = over.any()  # only with NEXT_STEP, which resets them here
         rows = np.flatnonzero(~over) if some_over else slice(None)
-        reward, terminated, truncated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
+        reward = np.zeros(self.num_envs)
+        terminated, truncated = np.zeros(self.num_envs, bool), np.zeros(self.num_envs, bool)
         infos: dict[str, Any] = {}
         if some_over:
             self._tables.reset(np.flatnonzero(over), None)
         if not over.all():
             played, info = self._tables.step(rows, act[rows])
-            reward[rows], terminated[rows], truncated[rows] = played.reward, played.terminated, played.truncated
+            reward[rows], terminated[rows] = played.reward, played.terminated
+            truncated[rows] = played.truncated
             ended = terminated | truncated
             if mode == AutoresetMode.SAME_STEP and ended.any():
                 infos = self._same_step(played, info, ended)
             else:
-                infos = self._infos(~over, {key: self._whole(rows, values) for key, values in info.items()}, self._messages(rows, played))
-        self._over = terminated | truncated if mode != AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
+                whole = {key: self._whole(rows, values) for key, values in info.items()}
+                infos = self._infos(~over, whole, self._messages(rows, played))
+        same_step = mode == AutoresetMode.SAME_STEP
+        self._over = np.zeros(self.num_envs, bool) if same_step else terminated | truncated
         return self._observe_all(), reward, terminated, truncated, infos
 
     def render(self) -> tuple[Any, ...] | None:
@@ -108,10 +121,10 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
         return tuple(self._options.picture(self._rules.game, xy) for xy in self._tables.states.xy)
 
     def _same_step(self, played: Rollout, info: dict[str, Any], ended: NDArray[np.bool_]) -> dict[str, Any]:
-        """Resets the tables whose episode is over. The info of the others, and how these ended."""
+        """Resets the tables whose episode is over. Returns the info of the others, and how these ended."""
         said = played.shots.messages
         infos = {} if ended.all() else self._infos(~ended, info, said)
-        last = self._observe_all()  # nobody else's, so that its rows need no copies
+        last = self._observe_all()  # new arrays, so their rows need no copies
         final = np.full(self.num_envs, None, object)
         which = np.flatnonzero(ended)
         for table in which.tolist():
@@ -121,8 +134,13 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
         self._tables.reset(slice(None) if len(which) == self.num_envs else which, None)
         return infos
 
-    def _infos(self, mask: NDArray[np.bool_], info: Mapping[str, NDArray[Any]], messages: Mapping[int, str]) -> dict[str, Any]:
-        """As `VectorEnv._add_info` puts the info of these environments together. `info` and `messages` are of all tables."""
+    def _infos(
+        self, mask: NDArray[np.bool_], info: Mapping[str, NDArray[Any]], messages: Mapping[int, str]
+    ) -> dict[str, Any]:
+        """The info of the masked environments, in the form of `VectorEnv._add_info`.
+
+        `info` and `messages` are those of all tables.
+        """
         infos: dict[str, Any] = {}
         others = ~mask
         some = others.any()
@@ -133,13 +151,14 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
             infos[key], infos[f"_{key}"] = values, mask.copy()
         told = [row for row in messages if mask[row]]
         if told:
-            infos["message"], infos["_message"] = np.full(self.num_envs, None, object), np.zeros(self.num_envs, bool)
+            infos["message"] = np.full(self.num_envs, None, object)
+            infos["_message"] = np.zeros(self.num_envs, bool)
             for row in told:
                 infos["message"][row], infos["_message"][row] = messages[row], True
         return infos
 
     def _whole(self, rows: Any, values: NDArray[Any]) -> NDArray[Any]:
-        """Values of some tables in an array of all of them."""
+        """Spreads the values of some tables over an array for all of them."""
         if isinstance(rows, slice):
             return values
         whole = np.empty((self.num_envs, *values.shape[1:]), values.dtype)
@@ -147,20 +166,22 @@ class TableVectorEnv(TablesEnv, VectorEnv[Observation, Any, "NDArray[Any]"]):
         return whole
 
     def _messages(self, rows: Any, played: Rollout) -> dict[int, str]:
-        """Messages of shots by their tables."""
+        """The shots' messages by table."""
         said = played.shots.messages
         return said if isinstance(rows, slice) else {int(rows[shot]): text for shot, text in said.items()}
 
 
 def _mask(mask: Any, n: int) -> NDArray[np.bool_]:
     if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (n,) or not mask.any():
-        raise ValueError(f"options: reset_mask has to be an array of {n} truth values, at least one of them true, not {mask!r}")
+        wanted = f"an array of {n} bools with at least one True"
+        raise ValueError(f"options: expected reset_mask to be {wanted}, not {mask!r}")
     return mask
 
 
 def _cut(options: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """Options with one value for every environment, of the ones that are reset."""
-    whole = {"xy": 3}
-    return {
-        key: np.asarray(value)[mask] if key != "scene" and np.ndim(value) == whole.get(key, 1) else value for key, value in options.items()
-    }
+    """Selects, from options with one value per environment, the values of those that are reset."""
+
+    def each(key: str, value: Any) -> bool:
+        return key != "scene" and np.ndim(value) == (3 if key == "xy" else 1)
+
+    return {key: np.asarray(value)[mask] if each(key, value) else value for key, value in options.items()}

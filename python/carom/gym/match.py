@@ -1,4 +1,7 @@
-"""Games of two players as environments of PettingZoo (AEC): `carom.gym.match.env("EightBall")`. Needs pettingzoo, which the extra [gym] has."""
+"""Games for two players as PettingZoo environments (AEC): `carom.gym.match.env("EightBall")`.
+
+They need pettingzoo, which is part of the extra [gym].
+"""
 
 from __future__ import annotations
 
@@ -25,44 +28,50 @@ from carom.gym._games import Game, States
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-#: By the names of PettingZoo's kind: the rules, the table, and the cue ball's place at the break as parts of width and length.
+#: By the game's name here: its rules, its table, and the cue ball's place at the break in fractions of width
+#: and length.
 _GAMES = {
     "EightBall": ("eight_ball", "nine_foot", (0.5, 0.2)),
     "NineBall": ("nine_ball", "nine_foot", (0.35, 0.2)),
     "Snooker": ("snooker", "snooker", (0.43, 0.19)),
 }
 _MOST_EVENTS = 1_000_000
-#: What observation["phase"] says.
+#: The values of observation["phase"].
 _PHASES = ("strike", "place")
 
 
 @checked
 def env(game: str, **options: Any) -> MatchEnv:
-    """A game by its name: "EightBall", "NineBall" or "Snooker". Raises ValueError for another one."""
+    """A game by name: "EightBall", "NineBall" or "Snooker". Raises ValueError for any other."""
     return MatchEnv(game, **options)
 
 
 @checked
 class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # PettingZoo has no types
-    """A game of two players by the rules of `carom.games`, from the break to its end: 1 for who wins, -1 for who loses.
+    """A game for two players under the rules of `carom.games`, from the break to the end.
 
-    aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`; speed is (0.3, 8.0)
-    called=False: eight-ball: two more numbers of an action choose the ball, among those that may be called, and the pocket. Without it the first of your balls that
-        falls is taken as called, so luck counts
-    most_shots=1000: a game with as many shots is truncated
+    The winner gets 1, the loser -1.
+
+    aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`, except that speed is (0.3, 8.0)
+    called=False: eight-ball: two more numbers of an action call the ball, among those that may be called, and
+    the pocket. Otherwise your first ball to fall counts as called, so luck helps most_shots=1000: a game with
+    this many shots is truncated
     render_mode, size: as for `carom.gym.TableEnv`
 
-    An action is Box(-1, 1): a strike as for the other environments. A cue ball in hand is an action of its own: while observation["phase"] is 1 the first two
-    numbers are its place, across the area where it may lie; where a ball is in the way, the nearest free place is taken. The same player strikes then. A break
-    begins at a fixed place. Where the rules let a player choose how to go on, the first way of `carom.games.Verdict.options` is taken.
+    An action is Box(-1, 1): a strike, as for the other environments. Placing a cue ball in hand is a separate
+    action: while observation["phase"] is 1, the first two numbers are its place across the allowed area, or
+    the nearest free place if a ball blocks it. The same player strikes next. The break is played from a fixed
+    place. If the rules offer a choice, the first of `carom.games.Verdict.options` is taken.
 
-    An observation is a dict: "balls" as in the other environments, "legal" (which balls may be hit first), "phase", "points" (of the one who looks, and of the
-    other one). Info: "status", "foul", "message", and of the last shot "cue".
+    An observation is a dict: "balls" as in the other environments, "legal" (which balls may be hit first),
+    "phase", and "points" (the observer's and the opponent's). Info: "status", "foul", "message", and the last
+    shot's "cue".
 
     A shot without an end truncates the game; it never raises.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1, "is_parallelizable": False, "name": "carom_match_v0"}
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"], "render_fps": 1, "is_parallelizable": False, "name": "carom_match_v0"}
 
     def __init__(
         self,
@@ -76,7 +85,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         if game not in _GAMES:
             raise ValueError(f"game={game!r}: expected {', '.join(_GAMES)}")
         if called and game != "EightBall":
-            raise ValueError("called: only eight-ball has calls")
+            raise ValueError("called: only eight-ball has calls; leave it out")
         self._rules, self._table, self._break_from = _GAMES[game]
         self._options = Options(**{"speed": (0.3, 8.0)} | options)
         self._strikes = self._options.strikes()
@@ -94,8 +103,9 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
                 "points": spaces.Box(0.0, np.inf, (2,), np.float32),
             }
         )
-        size_of_action = self._strikes.size + 2 * called
-        self._action_spaces = {agent: spaces.Box(-1.0, 1.0, (size_of_action,), np.float32) for agent in self.possible_agents}
+        shape = (self._strikes.size + 2 * called,)
+        self._action_spaces = {
+            agent: spaces.Box(-1.0, 1.0, shape, np.float32) for agent in self.possible_agents}
         self.agents = self.possible_agents[:]
         self.np_random: np.random.Generator | None = None
 
@@ -106,7 +116,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     @property
     def state_of_the_game(self) -> games.State:
-        """What the rules remember."""
+        """What the rules remember between shots."""
         return self._state
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
@@ -146,7 +156,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             return
         act = np.asarray(action, np.float64)
         if act.shape != self._action_spaces[agent].shape:
-            raise ValueError(f"action: expected the shape {self._action_spaces[agent].shape}, not {act.shape}")
+            wanted = self._action_spaces[agent].shape
+            raise ValueError(f"action: expected the shape {wanted}, not {act.shape}")
         self._cumulative_rewards[agent] = 0.0
         self._clear_rewards()
         self.infos = {name: {} for name in self.agents}
@@ -161,9 +172,9 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         return None if self.render_mode is None else self._options.picture(self._game, self._xy)
 
     def record(self) -> Record:
-        """The last shot. Raises RuntimeError before the first one of a rack."""
+        """The record of the last shot. Raises RuntimeError before the first shot of a rack."""
         if self._record is None:
-            raise RuntimeError("there was no shot since the balls were racked")
+            raise RuntimeError("there has been no shot since the balls were racked; call step first")
         return self._record
 
     def close(self) -> None:
@@ -172,7 +183,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
     # From one shot to the next.
 
     def _begin(self, state: games.State) -> None:
-        """A new rack, whose break is next."""
+        """Racks the balls for a break."""
         assert self.np_random is not None
         scene = self._rack(int(self.np_random.integers(1, 2**31)))
         self._state = state
@@ -183,7 +194,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         self._set_turn()
 
     def _set_turn(self) -> None:
-        # The break begins where the rack was made.
+        # The rack has already placed the cue ball for the break.
         self._placing = self._record is not None and self._state.in_hand != "no" and self._place_at is None
         self.agent_selection = self.possible_agents[self._state.turn]
 
@@ -195,7 +206,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     def _strike(self, act: NDArray[np.float64]) -> None:
         legal = self._legal()
-        cue = self._strikes.cue(act[None, : self._strikes.size], self._xy[None], self._game.cue_ball, legal[None], self._game.radii)[0]
+        struck, act_cue = self._game.cue_ball, act[None, : self._strikes.size]
+        cue = self._strikes.cue(act_cue, self._xy[None], struck, legal[None], self._game.radii)[0]
         call = self._call(act) if self._called else None
         self._shots += 1
         if not np.isfinite(cue).all():
@@ -214,8 +226,9 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         if record.stopped != "at_rest":
             return self._stop(ShotStatus.EVENTS, f"the shot ended by {record.stopped}")
         verdict = games.judge(self._state, record, call or self._lucky_call(scene, record))
+        foul = verdict.fouls[0].name if verdict.fouls else ""
         for agent in self.agents:
-            self.infos[agent] = {"status": int(ShotStatus.AT_REST), "cue": cue.copy(), "foul": verdict.fouls[0].name if verdict.fouls else ""}
+            self.infos[agent] = {"status": int(ShotStatus.AT_REST), "cue": cue.copy(), "foul": foul}
         self._go_on(record, verdict)
 
     def _go_on(self, record: Record, verdict: games.Verdict) -> None:
@@ -229,12 +242,13 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         if self._state.over:
             for k, agent in enumerate(self.possible_agents):
                 self.terminations[agent] = True
-                self.rewards[agent] = 0.0 if self._state.winner < 0 else 1.0 if self._state.winner == k else -1.0
+                won = 1.0 if self._state.winner == k else -1.0
+                self.rewards[agent] = 0.0 if self._state.winner < 0 else won
         elif self._shots >= self._most_shots:
             self.truncations = dict.fromkeys(self.agents, True)
 
     def _stop(self, status: ShotStatus, why: str) -> None:
-        """A shot without an end: the game is truncated, and the table stays as it was."""
+        """Ends a game after a shot without an end: the game is truncated, and the table stays as it was."""
         for agent in self.agents:
             self.truncations[agent] = True
             self.infos[agent] = {"status": int(status), "message": why, "foul": ""}
@@ -258,7 +272,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         return out
 
     def _call(self, act: NDArray[np.float64]) -> games.Call:
-        may = games.legal(self._state, [ball for ball, place in zip(self.ids, self._xy) if place[0] == place[0]]).callable
+        on_table = [ball for ball, place in zip(self.ids, self._xy) if place[0] == place[0]]
+        may = games.legal(self._state, on_table).callable
         pockets = [pocket[0] for pocket in self._game.table.pockets]
         part = np.nan_to_num(np.clip(0.5 * (act[-2:] + 1), 0, 1 - 1e-9))
         return games.Call(may[int(part[0] * len(may))] if may else "", pockets[int(part[1] * len(pockets))])
@@ -267,14 +282,17 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         if self._rules != "eight_ball":
             return games.Call()
         may = games.legal(self._state, scene).callable
-        fell = ((event.a, event.b) for event in record.event_list() if event.type == "ball_pocket" and event.a in may)
+        down = (event for event in record.event_list() if event.type == "ball_pocket")
+        fell = ((event.a, event.b) for event in down if event.a in may)
         return games.Call(*next(fell, ("", "")))
 
     def _free_place(self, part: NDArray[np.float64]) -> tuple[float, float]:
-        """The place of the cue ball in hand nearest to where the action wants it, in steps of a quarter of its radius."""
+        """The free place nearest to the one the action wants, in steps of a quarter of the cue ball's
+        radius."""
         assert self._record is not None and self._option is not None
         table, radius = self._game.table, float(self._game.radii[self._game.cue_ball])
-        low, high = np.array(table.corner) + radius, np.array(table.corner) + [table.width - radius, table.length - radius]
+        low = np.array(table.corner) + radius
+        high = np.array(table.corner) + [table.width - radius, table.length - radius]
         if self._state.in_hand == "head string":
             high[1] = games.spots(self._record)["head"][1]
         elif self._state.in_hand == "D":
@@ -292,15 +310,20 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     def _rack(self, seed: int) -> Scene:
         balls = "snooker" if self._rules == "snooker" else "pool"
-        plain = simulate(Scene(table=self._table, balls=balls, ball=[{"id": "cue", "position": [0.5, 0.5]}]), until=0.0).table
-        place = [plain.corner[0] + self._break_from[0] * plain.width, plain.corner[1] + self._break_from[1] * plain.length]
+        anywhere = Scene(table=self._table, balls=balls, ball=[{"id": "cue", "position": [0.5, 0.5]}])
+        plain, (x, y) = simulate(anywhere, until=0.0).table, self._break_from
+        place = [plain.corner[0] + x * plain.width, plain.corner[1] + y * plain.length]
         rack = {"game": self._rules} | ({} if self._rules == "snooker" else {"seed": seed})
-        return Scene(table=self._table, balls=balls, rack=rack, ball=[{"id": "cue", "position": place}], cue={"speed": 4.0, "aim_deg": 90.0})
+        cue = {"speed": 4.0, "aim_deg": 90.0}
+        return Scene(
+            table=self._table, balls=balls, rack=rack, ball=[{"id": "cue", "position": place}], cue=cue)
 
 
 def _ring(number: int) -> NDArray[np.float64]:
-    """Whole numbers (n, 2) that are farther than number - 1 from the origin and not farther than number, the nearest first. Sine and cosine of numpy have other bits on
-    other processors."""
+    """Integer points (n, 2) whose distance from the origin is in (number - 1, number], the nearest first.
+
+    Whole numbers because numpy's sine and cosine have different bits on different processors.
+    """
     side = np.arange(-number, number + 1)
     all_of = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
     far = (all_of * all_of).sum(1)

@@ -1,1 +1,1 @@
-"""Shots of other programs: `carom.io.pooltool`."""
+"""Shots for and from other programs: `carom.io.pooltool`."""

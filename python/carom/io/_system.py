@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 STATES = ("stationary", "spinning", "sliding", "rolling", "pocketed")
 #: Pockets in the order of carom's p1 to p6.
 POCKETS = ("lb", "lc", "lt", "rt", "rc", "rb")
-#: Seconds between two states where pooltool has no formula for the motion.
+#: Seconds between two states while pooltool has no formula for the motion.
 _STEP = 0.005
 #: How deep a pocket is in pooltool's pictures [m].
 _DEPTH = 0.08
@@ -45,7 +45,7 @@ _BALLSETS = {
 
 def write(record: Record, name: str) -> None:
     if np.ptp(record.radii) > 0 or np.ptp(record.masses) > 0:
-        raise ValueError(f"{name}: the balls differ in radius or mass, and pooltool has none that do")
+        raise ValueError(f"{name}: the balls differ in radius or mass; save a record with equal balls")
     text = json.dumps(_Writer(record).system(), allow_nan=False)
     with whole_file(name) as file:
         file.write(text.encode())
@@ -57,7 +57,8 @@ class _Writer:
         self.file: dict[str, Any] = json.loads(record._native.text())
         scene = record._scene()
         self.scene: dict[str, Any] = {} if scene is None else tomllib.loads(scene.text())
-        self.states_of = {name: number for number, name in enumerate(STATES)} | {"falling": 2, "airborne": 2, "out": 4}
+        self.states_of = {name: number for number, name in enumerate(STATES)}
+        self.states_of |= {"falling": 2, "airborne": 2, "out": 4}
         self.table = self._table()
         self.balls = [self._ball(i) for i in range(len(record.ids))]
         self.cue = self._cue()
@@ -70,7 +71,7 @@ class _Writer:
         cushions, jaws, pockets = table["cushions"], table["jaws"], table["pockets"]
         pool = (len(cushions), len(jaws), len(pockets)) == (18, 12, 6)
         carom = (len(cushions), len(jaws), len(pockets)) == (4, 0, 0)
-        if pool:  # a facing has one round end, and is numbered as in pooltool
+        if pool:  # a facing has one round end, and the numbers are pooltool's
             self.cushion_ids = [str(i + 1) for i in range(18)]
             self.jaw_ids = [f"{i}t" for i in (1, 2, 4, 5, 7, 8, 10, 11, 13, 14, 16, 17)]
             self.pocket_ids = list(POCKETS)
@@ -78,22 +79,23 @@ class _Writer:
             self.cushion_ids = ["3", "9", "12", "18"] if carom else [part["id"] for part in cushions]
             self.jaw_ids = [part["id"] for part in jaws]
             self.pocket_ids = [part["id"] for part in pockets]
-        linear = {
-            name: {"id": name, "p1": [*part["from"], part["height"]], "p2": [*part["to"], part["height"]], "direction": 2}
-            for name, part in zip(self.cushion_ids, cushions)
-        }
         circular = {
-            name: {"id": name, "center": [*part["center"], part["height"]], "radius": part["radius"]} for name, part in zip(self.jaw_ids, jaws)
+            name: {"id": name, "center": [*part["center"], part["height"]], "radius": part["radius"]}
+            for name, part in zip(self.jaw_ids, jaws)
         }
-        holes = {
-            name: {"id": name, "center": [*part["center"], 0.0], "radius": part["radius"], "depth": _DEPTH, "contains": []}
-            for name, part in zip(self.pocket_ids, pockets)
-        }
+        linear: dict[str, Any] = {}
+        holes: dict[str, Any] = {}
+        for name, part in zip(self.cushion_ids, cushions):
+            ends = {f"p{i + 1}": [*part[end], part["height"]] for i, end in enumerate(("from", "to"))}
+            linear[name] = {"id": name, **ends, "direction": 2}
+        for name, part in zip(self.pocket_ids, pockets):
+            place = {"center": [*part["center"], 0.0], "radius": part["radius"], "depth": _DEPTH}
+            holes[name] = {"id": name, **place, "contains": []}
         return {
             "cushion_segments": {"linear": linear, "circular": circular},
             "pockets": holes,
             "table_type": "snooker" if table["preset"] == "snooker" else "billiard" if carom else "pocket",
-            # Only this table is the one of a model that pooltool has.
+            # This is the only table that matches one of pooltool's models.
             "model_descr": {"name": "seven_foot_showood" if table["preset"] == "seven_foot" else "null"},
             "height": 0.708,
             "lights_height": 1.99,
@@ -127,8 +129,9 @@ class _Writer:
         }
 
     def _cue(self) -> dict[str, Any]:
-        # Without a cue: one that does not move, at the first ball.
-        own = self.scene.get("cue", {"speed": 0.0, "aim_deg": 0.0, "elevation_deg": 0.0, "offset": [0.0, 0.0], "mass": 0.567, "end_mass": 0.0, "restitution": 1.0})
+        # A record without a cue gets one at rest, at the first ball.
+        own = self.scene.get("cue", {"speed": 0.0, "aim_deg": 0.0, "elevation_deg": 0.0, "offset": [0.0, 0.0],
+                                     "mass": 0.567, "end_mass": 0.0, "restitution": 1.0})
         specs = {
             "brand": "carom",
             "M": own["mass"],
@@ -140,7 +143,7 @@ class _Writer:
         }
         return {
             "id": "cue_stick",
-            # The tip of pooltool's cue loses nothing: 2 V0 there is (1 + restitution) speed here.
+            # pooltool's tip loses no energy: 2 V0 there is (1 + restitution) speed here.
             "V0": own["speed"] * (1 + own["restitution"]) / 2,
             "phi": own["aim_deg"],
             "theta": own["elevation_deg"],
@@ -156,59 +159,60 @@ class _Writer:
         return {"rvw": rvw.tolist(), "s": self.states_of[self.record.MOTIONS[motion]], "t": time}
 
     def _states(self, time: float) -> list[dict[str, Any]]:
-        """Of all balls, after what happens at that time."""
+        """The states of all balls, after everything that happens at that time."""
         rvw, motion = self.record.states(time), self.record.motion(time)
         return [self._state(time, rvw[i], int(motion[i])) for i in range(len(self.balls))]
 
     def _first(self) -> list[dict[str, Any]]:
-        """Of all balls, before the cue strikes."""
+        """The states of all balls before the cue strikes."""
         states = self._states(0.0)
         for event in self.record.events[:1]:
             if self.record.EVENT_TYPES[event["type"]] == "cue_strike":
                 ball = int(event["a"])
                 segment = self.record.segments[ball][0]
-                states[ball] = self._state(0.0, np.array([segment["r"], segment["v"], segment["w"]]), int(segment["state"]))
+                rvw = np.array([segment["r"], segment["v"], segment["w"]])
+                states[ball] = self._state(0.0, rvw, int(segment["state"]))
         return states
 
     # Events.
 
     def _agent(self, ball: int, before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
         part = self.balls[ball]
-        return {"id": part["id"], "agent_type": "ball", "initial": part | {"state": before}, "final": part | {"state": after}}
+        initial, final = part | {"state": before}, part | {"state": after}
+        return {"id": part["id"], "agent_type": "ball", "initial": initial, "final": final}
 
     def _partner(self, kind: str, event: np.void) -> dict[str, Any] | None:
-        """What a ball meets that is no ball."""
+        """The cue, cushion, jaw or pocket that a ball meets; None for a ball."""
         if kind == "stick_ball":
             return {"id": "cue_stick", "agent_type": "cue", "initial": self.cue, "final": None}
         segments = self.table["cushion_segments"]
-        if kind == "ball_linear_cushion":
-            part = segments["linear"][self.cushion_ids[event["b"]]]
-            return {"id": part["id"], "agent_type": "linear_cushion_segment", "initial": part, "final": None}
-        if kind == "ball_circular_cushion":
-            part = segments["circular"][self.jaw_ids[event["b"]]]
-            return {"id": part["id"], "agent_type": "circular_cushion_segment", "initial": part, "final": None}
+        if kind in ("ball_linear_cushion", "ball_circular_cushion"):
+            shape, ids = ("linear", self.cushion_ids) if "linear" in kind else ("circular", self.jaw_ids)
+            part, agent = segments[shape][ids[event["b"]]], f"{shape}_cushion_segment"
+            return {"id": part["id"], "agent_type": agent, "initial": part, "final": None}
         if kind == "ball_pocket":
             name = self.pocket_ids[event["b"]]
             part, inside = self.table["pockets"][name], self.in_pockets[name]
             before = part | {"contains": list(inside)}
             inside.append(self.record.ids[event["a"]])
-            return {"id": name, "agent_type": "pocket", "initial": before, "final": part | {"contains": list(inside)}}
+            after = part | {"contains": list(inside)}
+            return {"id": name, "agent_type": "pocket", "initial": before, "final": after}
         return None
 
     def _groups(self, event: np.void, kind: str) -> list[list[int]]:
-        """The balls of an event, of a cluster as pairs."""
+        """The balls of an event; those of a cluster as pairs."""
         if self.record.EVENT_TYPES[event["type"]] == "ball_cluster":
             first, *others = self.record.clusters[event["detail"]]
             return [[first, other] for other in others]
         return [[int(event["a"]), int(event["b"])]] if kind == "ball_ball" else [[int(event["a"])]]
 
     def _happenings(self) -> list[tuple[float, str, list[int], np.void | None]]:
-        """Time, type and balls of every event, and of every state that pooltool has to be told besides, in order."""
+        """Time, type and balls of every event, and of every extra state that pooltool needs, in order."""
         listed: list[tuple[float, str, list[int], np.void | None]] = []
         told: set[tuple[float, int]] = set()
         for event in self.record.events:
             kind = _TYPES.get(self.record.EVENT_TYPES[event["type"]])
-            if kind is None:  # seen by its new segments
+            if kind is None:  # its new segments show it
                 continue
             for balls in self._groups(event, kind):
                 listed.append((float(event["time"]), kind, balls, event))
@@ -218,7 +222,8 @@ class _Writer:
         return sorted(listed, key=lambda happening: happening[0])
 
     def _needed(self, ball: int) -> list[float]:
-        """Times at which pooltool has to be told a ball's state: where a segment starts, and on the way where it has no formula."""
+        """Times at which pooltool needs a ball's state: at every segment's start, and often while it has no
+        formula."""
         times: list[float] = []
         segments = self.record.segments[ball]
         stops = np.append(segments["start"][1:], self.record.duration)
@@ -227,7 +232,8 @@ class _Writer:
             if not start < stop:
                 continue
             motion = self.record.MOTIONS[segment["state"]]
-            foreign = motion in ("falling", "airborne") or (segment["held"] and motion in ("sliding", "rolling"))
+            held = segment["held"] and motion in ("sliding", "rolling")
+            foreign = motion in ("falling", "airborne") or held
             count = int(np.ceil((stop - start) / _STEP)) if foreign else 1
             times += [start + k * (float(stop) - start) / count for k in range(count)]
         return [time for time in times if time > 0.0]
@@ -241,23 +247,26 @@ class _Writer:
             after = self._states(time)
             earlier = first if time == 0.0 else self._states(float(np.nextafter(time, -1.0)))
             before = [state | {"t": time} for state in earlier]
-            if not kind:  # pooltool has no such event: that which ends in this state
-                kind = {0: "rolling_stationary", 1: "rolling_spinning", 3: "sliding_rolling"}.get(after[balls[0]]["s"], "sliding_rolling")
+            if not kind:  # pooltool has no such event: use the one that ends in this state
+                ends = {0: "rolling_stationary", 1: "rolling_spinning"}
+                kind = ends.get(after[balls[0]]["s"], "sliding_rolling")
             agents = [self._agent(ball, before[ball], after[ball]) for ball in balls]
             partner = None if event is None else self._partner(kind, event)
             if partner is not None:
                 agents.insert(0 if kind == "stick_ball" else 1, partner)
             events.append({"event_type": kind, "agents": agents, "time": time})
-            # pooltool keeps all balls at every event; of what it has no event for, the ball alone does.
+            # pooltool keeps all balls at each of its events; other times are kept for their own ball only.
             for ball in balls if event is None else range(len(after)):
                 histories[ball].append(after[ball])
-        # pooltool 0.6.0 stops with an assertion where the end is a multiple of its frame's time, as of a run that was cut off.
+        # pooltool 0.6.0 fails an assertion if the end is a multiple of its frame time, as in a run that was
+        # cut off.
         end = self.record.duration + (0.0 if self.record.stopped == "at_rest" else 1e-9)
         last = self._states(end)
         events.append({"event_type": "none", "agents": none, "time": end})
         for name, inside in self.in_pockets.items():
             self.table["pockets"][name] = self.table["pockets"][name] | {"contains": inside}
         ended = {
-            ball["id"]: ball | {"state": state, "history": {"states": [*history, state]}} for ball, state, history in zip(self.balls, last, histories)
+            ball["id"]: ball | {"state": state, "history": {"states": [*history, state]}}
+            for ball, state, history in zip(self.balls, last, histories)
         }
         return {"cue": self.cue, "table": self.table, "balls": ended, "t": end, "events": events}

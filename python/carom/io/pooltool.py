@@ -1,7 +1,7 @@
 """pooltool's files, both ways: the System of pooltool 0.6.0 as JSON.
 
-`load` gives the scene that a System plays, with pooltool's models; `save` writes a record so that pooltool plays it. pooltool itself is
-not needed. What agrees, and what does not, was measured: lab/notes/2026-11-pooltool.md.
+`load` returns the scene that a System plays, with pooltool's models. `save` writes a record so that pooltool
+plays it. Neither needs pooltool. lab/notes/2026-11-pooltool.md measures what agrees and what does not.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from carom.io._system import POCKETS, STATES
 
 __all__ = ["load", "save"]
 
-#: The friction of balls in pooltool, a + b exp(-c u), which is part of its models and not of a file.
+#: The friction between balls in pooltool, a + b exp(-c u). It belongs to pooltool's models, not to its files.
 FRICTION = (0.009951, 0.108, 1.088)
+_SAVE_AS_JSON = "pooltool writes JSON if the name of the file ends in .json"
 
 
 class _Tree:
@@ -31,7 +32,8 @@ class _Tree:
         self.file, self.value, self.path = file, value, path
 
     def fail(self, what: str) -> NoReturn:
-        raise SceneError(f"{self.path or 'the file'} {what}; expected a System as pooltool 0.6.0 saves it in .json", self.file)
+        wanted = "expected a System as pooltool 0.6.0 saves it in .json"
+        raise SceneError(f"{self.path or 'the file'} {what}; {wanted}", self.file)
 
     def at(self, key: str) -> _Tree:
         part = _Tree(self.file, None, f"{self.path}.{key}" if self.path else key)
@@ -41,20 +43,26 @@ class _Tree:
         return part
 
     def items(self) -> list[tuple[str, _Tree]]:
-        """The members of an object, those with numbers as names in their order."""
+        """The members of an object, those with numbers as names sorted by number."""
         if not isinstance(self.value, dict):
-            self.fail("is no object")
-        order = sorted(self.value, key=lambda name: (0, int(name.rstrip("t")), "") if name.rstrip("t").isdecimal() else (1, 0, name))
+            self.fail("is not an object")
+
+        def place(name: str) -> tuple[int, int, str]:
+            number = name.rstrip("t")
+            return (0, int(number), "") if number.isdecimal() else (1, 0, name)
+
+        order = sorted(self.value, key=place)
         return [(name, self.at(name)) for name in order]
 
     def parts(self) -> list[_Tree]:
         if not isinstance(self.value, list):
-            self.fail("is no list")
+            self.fail("is not a list")
         return [_Tree(self.file, value, f"{self.path}[{i}]") for i, value in enumerate(self.value)]
 
     def number(self) -> float:
-        if isinstance(self.value, bool) or not isinstance(self.value, (int, float)) or not math.isfinite(self.value):
-            self.fail("is no number")
+        number = isinstance(self.value, (int, float)) and not isinstance(self.value, bool)
+        if not number or not math.isfinite(self.value):
+            self.fail("is not a number")
         return float(self.value)
 
     def numbers(self, count: int) -> list[float]:
@@ -65,21 +73,23 @@ class _Tree:
 
     def text(self) -> str:
         if not isinstance(self.value, str):
-            self.fail("is no text")
+            self.fail("is not a string")
         return str(self.value)
 
 
 @checked
 def load(path: str | os.PathLike[str]) -> Scene:
-    """The scene of a System, from its start; of one that was simulated, what was simulated.
+    """The scene of a System at its start; of a simulated System, the scene that was simulated.
 
-    The models are pooltool's defaults as far as carom has them: `inelastic` impacts of balls with the friction of Alciatore's TP A.14,
-    `stronge` cushions and jaws, pair by pair, `pocket = "at_once"`, `vertical = "drop"`, a cue that loses nothing. pooltool takes the
-    normal impulse of two balls for the limit of friction as e v m and not (1 + e) v m/2, and the normal of a jaw from the centre of its
-    circle; friction and the jaws' heights are scaled so that impacts agree.
-    Balls in pockets are left out. Cushions, jaws and pockets are c1, ..., j1, ..., p1, ... in pooltool's order.
+    The models are pooltool's defaults as far as carom has them: `inelastic` impacts of balls with the
+    friction of Alciatore's TP A.14, `stronge` cushions and jaws, `sequential` clusters, `pocket = "at_once"`,
+    `vertical = "drop"`, and a cue without losses. Two of pooltool's formulas differ: it limits the friction
+    between balls by a normal impulse of e v m instead of (1 + e) v m/2, and it takes the normal of a jaw from
+    the centre of the jaw's circle. Friction and the heights of jaws are scaled so that impacts agree.
+    Pocketed balls are left out. Cushions, jaws and pockets are named c1, ..., j1, ..., p1, ... in pooltool's
+    order.
 
-    Raises SceneError where the file is no such System, and where carom refuses what is in it.
+    Raises SceneError if the file is not such a System, or if carom refuses its contents.
     """
     name = os.fspath(path)
     try:
@@ -88,9 +98,10 @@ def load(path: str | os.PathLike[str]) -> Scene:
     except OSError as error:
         raise SceneError(f"cannot be read: {error.strerror}", name) from None
     except json.JSONDecodeError as error:
-        raise SceneError(f"is no JSON: {error.msg}; pooltool writes it where the name of a file ends in .json", name, error.lineno, error.colno) from None
+        what = f"is not JSON: {error.msg}; {_SAVE_AS_JSON}"
+        raise SceneError(what, name, error.lineno, error.colno) from None
     except UnicodeDecodeError:
-        raise SceneError("is no JSON: it is not UTF-8; pooltool writes it where the name of a file ends in .json", name) from None
+        raise SceneError(f"is not JSON because it is not UTF-8; {_SAVE_AS_JSON}", name) from None
     balls = _balls(root)
     tree = {"table": _table(root.at("table"), balls), **balls}
     cue = _cue(root)
@@ -108,12 +119,15 @@ def _table(table: _Tree, balls: dict[str, Any]) -> dict[str, Any]:
         cushions.append({"from": [x1, y1], "to": [x2, y2], "height": height})
     for _, part in segments.at("circular").items():
         (x, y, height), radius = part.at("center").numbers(3), part.at("radius").number()
-        # The height at which carom's normal, from the nose to the ball, is as steep as pooltool's, from the centre of the circle.
+        # At this height carom's normal, from the nose to the ball, is as steep as pooltool's, from the
+        # circle's centre.
         height = ball_radius + (height - ball_radius) * ball_radius / (ball_radius + radius)
         jaws.append({"center": [x, y], "radius": radius, "height": height})
     pockets = dict(table.at("pockets").items())
     order = [name for name in POCKETS if name in pockets] + [name for name in pockets if name not in POCKETS]
-    holes = [{"center": pockets[name].at("center").numbers(3)[:2], "radius": pockets[name].at("radius").number()} for name in order]
+    holes = []
+    for part in (pockets[name] for name in order):
+        holes.append({"center": part.at("center").numbers(3)[:2], "radius": part.at("radius").number()})
     return {"cushion": cushions} | ({"jaw": jaws} if jaws else {}) | ({"pocket": holes} if holes else {})
 
 
@@ -126,7 +140,7 @@ def _balls(root: _Tree) -> dict[str, Any]:
         state = history[0] if history else part.at("state")
         kind = state.at("s").number()
         if kind not in range(len(STATES)):
-            state.at("s").fail(f"is {kind:g}, and states of motion are 0 to {len(STATES) - 1}")
+            state.at("s").fail(f"is {kind:g}, but states of motion are 0 to {len(STATES) - 1}")
         if STATES[int(kind)] == "pocketed":
             continue
         rows = state.at("rvw").parts()
@@ -135,7 +149,7 @@ def _balls(root: _Tree) -> dict[str, Any]:
         position, velocity, spin = (row.numbers(3) for row in rows)
         radius, mass, rest = _parameters(part.at("params"))
         if common is not None and rest != common:
-            part.at("params").fail("differ from those of other balls in more than R and m, which carom does not have")
+            part.at("params").fail("differs from other balls in more than R and m, which carom cannot play")
         common = rest
         ball = {"id": name, "position": position[:2], "radius": radius, "mass": mass}
         if STATES[int(kind)] != "stationary" and not struck:
@@ -152,7 +166,7 @@ def _balls(root: _Tree) -> dict[str, Any]:
 
 
 def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]:
-    """Radius, mass, and what all balls have to share."""
+    """Radius, mass, and the parameters that all balls must share."""
     radius = params.at("R").number()
     restitution = params.at("e_b").number()
     scale = 2 * restitution / (1 + restitution)
@@ -177,7 +191,8 @@ def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]
 
 
 def _struck(root: _Tree) -> bool:
-    """Whether the shot begins with the cue: of a System that was simulated, as it was; of another, as pooltool would."""
+    """Whether the shot begins with the cue: in a simulated System, whether it did; otherwise, whether it
+    would."""
     events = [event.at("event_type").text() for event in root.at("events").parts()]
     if events:
         return "stick_ball" in events
@@ -203,16 +218,19 @@ def _cue(root: _Tree) -> dict[str, Any] | None:
 
 @checked
 def save(record: Record, path: str | os.PathLike[str]) -> None:
-    """Writes a record as a simulated System, whole or not at all, which pooltool 0.6.0 loads, shows and evaluates.
+    """Writes a record as a simulated System, which pooltool 0.6.0 loads, shows and evaluates.
 
-    Between events pooltool computes the motion anew, from the state after each event and the coefficients. Where a record has more
-    than that (balls that fly, fall or rest on each other), states in between stand there as transitions, 200 a second. pooltool's
-    viewer wants a table of its own layout: pool and snooker tables with 18 cushions and 6 pockets, carom tables with 4. The cue is that
-    of the record's scene; its speed is that which gives the ball the same velocity in pooltool. A record from a file has no cue.
+    The file appears complete or not at all. Between events pooltool computes the motion again, from the state
+    after each event and the coefficients. It has no formula for balls that fly, fall, or rest on each other;
+    for these, the file holds 200 intermediate states per second as transitions. pooltool's viewer needs a
+    table of its own layout: pool and snooker tables with 18 cushions and 6 pockets, carom tables with 4
+    cushions. The cue is that of the record's scene, with the speed that gives the ball the same velocity in
+    pooltool. A record loaded from a file has no cue.
 
-    Raises ValueError for a name that does not end in .json and for balls that are not alike, OSError where the file cannot be written.
+    Raises ValueError if the name does not end in .json or the balls differ in size or mass, and OSError if
+    the file cannot be written.
     """
     name = os.fspath(path)
     if not name.endswith(".json"):
-        raise ValueError(f"{name}: a System is saved as .json")
+        raise ValueError(f"{name}: a System is saved as .json; use a name that ends in .json")
     _system.write(record, name)

@@ -1,4 +1,4 @@
-// The skins of balls as pictures that are wrapped around a sphere.
+// The surfaces of balls as pictures that are wrapped around a sphere.
 #include "carom/render/ball_texture.h"
 
 #include <cmath>

@@ -26,7 +26,7 @@ class Tiles {
           rows_((size.height + kTile - 1) / kTile),
           busy_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {}
 
-    // Greatest difference of the bytes from those that are so many bytes farther on.
+    // Largest difference between bytes this far apart.
     static int contrast(const std::uint8_t* bytes, std::size_t count, std::size_t farther) {
         std::uint8_t most = 0;
         for (std::size_t i = 0; i < count; ++i) {
@@ -59,12 +59,12 @@ class Tiles {
 
     void look_at(const std::vector<TableEdge>& edges, const View& view) {
         for (const TableEdge& edge : edges) {
-            // Where a curved surface turns away from the eye, contrast tells.
+            // Contrast shows where a curved surface turns away from the eye.
             if (!edge.smooth) mark_line(project(edge.a, view), project(edge.b, view), view);
         }
     }
 
-    // Lines of chalk are thin, and no edges of the mesh.
+    // Chalk lines are thin, and not edges of the mesh.
     void look_at_chalk(const std::vector<MeshVertex>& triangles, const View& view) {
         for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
             if (triangles[i].material != static_cast<float>(Material::kChalk)) continue;
@@ -101,7 +101,7 @@ class Tiles {
         return {row(0), row(1), row(3)};
     }
 
-    // Marks what lies within a pixel of a line.
+    // Marks everything within a pixel of a line.
     void mark_line(ScreenPoint a, ScreenPoint b, const View& view) {
         const float near = view.planes[0];
         if (std::max(a.w, b.w) <= near) return;
@@ -116,7 +116,7 @@ class Tiles {
                     ay = (0.5F + 0.5F * a.y / a.w) * view.size[1];
         const float dx = (0.5F + 0.5F * b.x / b.w) * view.size[0] - ax,
                     dy = (0.5F + 0.5F * b.y / b.w) * view.size[1] - ay;
-        // The shares of the line between which it is in the picture.
+        // The part of the line that is in the picture, as fractions of its length.
         float from = 0.0F, to = 1.0F;
         const auto clip = [&](float start, float step, float limit) {
             constexpr float kBeyond = 4.0F;  // [pixels]
@@ -131,7 +131,7 @@ class Tiles {
         clip(ax, dx, view.size[0]);
         clip(ay, dy, view.size[1]);
         if (!(from <= to)) return;
-        // Boxes around points of the line, so close that they leave nothing out.
+        // Boxes around points of the line, close enough to leave nothing out.
         constexpr float kStep = 4.0F, kAround = 0.5F * kStep + 1.0F;  // [pixels]
         const int steps = static_cast<int>(std::max(std::abs(dx), std::abs(dy)) * (to - from) / kStep) + 1;
         for (int i = 0; i <= steps; ++i) {

@@ -1,4 +1,4 @@
-// Where one sample a pixel does not tell what a pixel shows.
+// Where one sample per pixel is not enough.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace carom::render {
 
-/// Boxes outside of which one sample in the middle of a pixel is as good as many: no edge or line of the
-/// table passes within a pixel, and each pixel differs from its neighbours by few levels. (A wall that cuts
-/// into another one, the border of a hole and grain are seen by their contrast.)
-/// @param rgba a picture with one such sample. Its alpha tells cloth from the rest.
+/// Boxes outside which one sample in the middle of a pixel is as good as many: no edge or line of the table
+/// passes within a pixel, and each pixel differs from its neighbours by few levels. (Walls that cut into each
+/// other, borders of holes and grain show by their contrast.)
+/// @param rgba a picture with one such sample, whose alpha distinguishes cloth from the rest.
 std::vector<PixelBox> busy_tiles(const std::vector<std::uint8_t>& rgba, FrameSize size,
                                  const TableMesh& table, const View& view);
 

@@ -1,4 +1,4 @@
-// Where the painters paint: a picture of the table, with what hides and lights the things in front of it.
+// What painters paint on: a picture of the table, and what hides and lights the things in front of it.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace carom::render {
 
-// Painters take copies of what they read for every pixel: a byte that is written to an image might be any
-// object, so that the compiler would read all of them again behind every pixel.
+// Painters copy what they read for every pixel: a byte written to an image might alias any object, so the
+// compiler would otherwise read everything again after every pixel.
 class Canvas {
   public:
     /// @param table of the same size as the image
@@ -28,7 +28,7 @@ class Canvas {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
 
-    /// The directions from the eye through the centres of pixels, 1 along the view.
+    /// The directions from the eye through the centres of pixels, with length 1 along the view direction.
     class Rays {
       public:
         explicit Rays(const View& view)
@@ -38,12 +38,12 @@ class Canvas {
               per_x_(2.0F / view.size[0]),
               per_y_(2.0F / view.size[1]) {}
 
-        /// Of the left border of a row of the image.
+        /// At the left border of a row of the image.
         lanes::Vec row(int y) const {
             return forward_ - right_ - up_ * lanes::all((static_cast<float>(y) + 0.5F) * per_y_ - 1.0F);
         }
 
-        /// Of four neighbours in that row.
+        /// For four neighbours in that row.
         lanes::Vec at(const lanes::Vec& row, int x) const {
             return row + right_ * ((lanes::Floats{0.5F, 1.5F, 2.5F, 3.5F} + static_cast<float>(x)) * per_x_);
         }
@@ -67,7 +67,7 @@ class Canvas {
         }
     }
 
-    /// The table as it hides things and is shaded.
+    /// The table as it hides things, and where it takes shadows.
     class Background {
       public:
         Background(const TablePicture& table, const View& view)
@@ -85,7 +85,7 @@ class Canvas {
             return sum * (1.0F / static_cast<float>(count_));
         }
 
-        /// Share of each pixel at which nothing of the table is nearer than `depth` along the view direction.
+        /// Share of each pixel at which no part of the table is nearer than `depth` along the view direction.
         lanes::Floats seen(std::size_t first, int count, lanes::Floats depth) const {
             lanes::Floats sum{};
             for (int i = 0; i < count_; ++i)
@@ -97,7 +97,7 @@ class Canvas {
         lanes::Floats cloth(std::size_t first, int count) const {
             const lanes::Floats alpha =
                 lanes::channel(lanes::load<lanes::Ints>(rgba_ + 4 * first, count), 24);
-            // The mark of a face is no share: either the pixel has that of the cloth, 255, or not.
+            // The mark of a face is not a share: a pixel either has the cloth's mark, 255, or not.
             if (count_ == 1) return lanes::choose(alpha > 254.5F, lanes::all(1.0F), lanes::all(0.0F));
             return alpha * (1.0F / 255.0F);
         }
@@ -120,8 +120,8 @@ class Canvas {
       public:
         explicit Brush(std::uint8_t* image) : image_(image) {}
 
-        /// Paints screen values 0..1 over four pixels; `cover` is the share that they
-        /// cover. Alpha falls to 0 under paint: no edge of the table is seen there.
+        /// Paints screen values 0..1 over four pixels; `cover` is the share that they cover. Alpha falls to 0
+        /// under paint, because no edge of the table is visible there.
         void blend(std::size_t first, int count, const lanes::Vec& color, lanes::Floats cover) const {
             using namespace lanes;
             const auto there = load<Ints>(image_ + 4 * first, count);

@@ -19,7 +19,7 @@ float linear(float srgb) {
     return srgb * srgb;  // the same conversion as from_screen() in shaders/common.glsl
 }
 
-// [radii] How far the shading around a ball reaches: farther from one in the air.
+// [radii] How far the shading around a ball reaches: farther if it is in the air.
 double shadow_reach(const DrawBall& ball) {
     return shaders::kShadowReach * std::max(1.0, ball.center.z() / ball.radius);
 }
@@ -46,7 +46,7 @@ BallInstance make_instance(const DrawBall& ball, BallPlace place, const Vec3& or
             {}};
 }
 
-// The nearest balls, which keep light from this one. The weight falls to 0 before a ball is left out.
+// The nearest balls, which block light from this one. The weight falls to 0 before a ball is dropped.
 void add_neighbours(BallInstance& instance, const DrawBall& ball, const std::vector<DrawBall>& all) {
     constexpr double kNear = 2.1, kFar = 2.5;  // [radii]
     std::vector<std::pair<double, Vec3>> near;
@@ -68,7 +68,7 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// The pixels between two places, and a soft edge around them.
+// The pixels between two points, and a soft edge around them.
 PixelBox clipped(const Vec2& low, const Vec2& high, FrameSize size) {
     const auto inside = [](double value, int limit) {
         return static_cast<int>(std::clamp(value, 0.0, double(limit)));
@@ -77,8 +77,8 @@ PixelBox clipped(const Vec2& low, const Vec2& high, FrameSize size) {
             inside(high.x() + 3.0, size.width), inside(high.y() + 3.0, size.height)};
 }
 
-// Pixels that show a place within `reach` of the centre on either side, `down`
-// below it and a radius above; the whole image if part of that is behind the eye.
+// Pixels that may show points within `reach` of the centre to either side, `down` below it and a radius
+// above; the whole image if part of that is behind the eye.
 PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reach, double down) {
     const PixelBox all = whole(camera.size);
     Vec2 low(1e9, 1e9), high(-1e9, -1e9);
@@ -93,11 +93,11 @@ PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reac
     return clipped(low, high, camera.size);
 }
 
-// Pixels that a disc with these two radii may cover, as far as it is in front of the eye.
+// Pixels that a disc with these two radii may cover, where it is in front of the eye.
 PixelBox box_of_disc(const Vec3& center, const Vec3& right, const Vec3& up, const Camera& camera) {
     constexpr double kNear = 0.01;  // [m]
     constexpr int kCorners = 8;
-    std::array<Vec3, kCorners> corners;  // of an octagon around it
+    std::array<Vec3, kCorners> corners;  // of an octagon around the disc
     for (int i = 0; i < kCorners; ++i) {
         const double angle = (i + 0.5) * std::numbers::pi / 4.0, out = 1.0823922;  // 1 / cos(pi / 8)
         corners[static_cast<std::size_t>(i)] =
@@ -137,7 +137,7 @@ PixelBox box_of_sphere(const Vec3& center, double radius, const Camera& camera) 
 // Pixels that the ball and its shadow may cover.
 PixelBox box_of(const DrawBall& ball, const Camera& camera) {
     if (ball.in_pocket) return box_around_ball(ball, camera, ball.radius, ball.radius);
-    // Down to the shadow of one in the air.
+    // Down to the shadow, if the ball is in the air.
     return box_around_ball(ball, camera, shadow_reach(ball) * ball.radius,
                            std::max(ball.radius, ball.center.z()));
 }
@@ -192,7 +192,7 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 }
 
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
-    // Smoothing reaches one pixel beyond what moved, and takes place in a picture that was read as a whole.
+    // Smoothing reaches one pixel beyond what moved, and needs a picture that was read as a whole.
     if (!before.table || before.table != after.table || after.edges) return {whole(size)};
     std::vector<PixelBox> boxes;
     const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {

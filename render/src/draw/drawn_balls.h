@@ -1,5 +1,5 @@
-// What a picture shows over the table. Comparing two pictures tells which
-// pixels can differ, so that the time of a frame depends only on what moved.
+// What a picture shows over the table. Comparing two pictures gives the pixels that can differ, so that the
+// time of a frame depends only on what moved.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace carom::render {
 enum class BallPlace : std::uint8_t {
     kCloth,
     kPocket,   ///< it casts no shadow
-    kCushion,  ///< near a cushion, which gets a shadow, too
+    kCushion,  ///< near a cushion, which also gets a shadow
 };
 
 /// What a ball looks like, in single precision.
@@ -36,9 +36,9 @@ struct BallInstance {
 struct DrawnBall {
     BallInstance instance;
     PixelBox box;        ///< pixels that the ball and its shadow may cover
-    PixelBox body;       ///< those that the ball may cover
-    PixelBox shadow;     ///< those that its shadow on the cloth may cover
-    PixelBox beside;     ///< those of what stands around it and is darkened
+    PixelBox body;       ///< pixels that the ball may cover
+    PixelBox shadow;     ///< pixels that its shadow on the cloth may cover
+    PixelBox beside;     ///< pixels of what stands around it and is darkened
     bool plain = false;  ///< its box shows only cloth: nothing hides it
 
     bool operator==(const DrawnBall&) const = default;
@@ -84,15 +84,15 @@ class ClothMap {
 /// The visible balls of a list, with their boxes.
 std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth);
 
-/// Boxes outside of which the two pictures are equal; the whole image if nothing better is known.
+/// Boxes outside which the two pictures are equal; the whole image if nothing better is known.
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size);
 
 /// What must be redrawn to refill some boxes: a flag for each ball, and for each line or box.
 struct Inside {
     std::vector<bool> balls, shapes;
 };
-/// The box of each ball and shape that overlaps one of the boxes is added to them, and so on until none is
-/// partly inside. If that comes to half of the image, it is everything.
+/// Adds the box of each ball and shape that overlaps one of the boxes, and so on until none is partly inside.
+/// If that comes to half of the image, everything is redrawn.
 Inside inside(const DrawnPicture& picture, std::vector<PixelBox>& boxes, FrameSize size);
 
 }  // namespace carom::render

@@ -27,13 +27,13 @@ DrawnShape shape_of(const DrawLine& line, const Camera& camera) {
     DrawnShape shape = everywhere(camera.size);
     shape.what = line;
     const std::optional<Vec2> a = camera.project(line.a), b = camera.project(line.b);
-    // Such a line is cut off near the eye, and may cover anything.
+    // A line this near to the eye is cut off, and may cover anything.
     constexpr double kNear = 0.02;  // m, twice what the shader cuts off at
     if (!a || !b || !a->allFinite() || !b->allFinite()) return shape;
     if (!(camera.depth(line.a) > kNear && camera.depth(line.b) > kNear)) return shape;
     shape.from = *a;
     shape.to = *b;
-    // Round ends, the soft edge, and what the shader's single precision may add.
+    // For round ends, the soft edge, and the shader's single precision.
     shape.reach = 0.5 * static_cast<double>(line.width) + 3.0;
     shape.box = box_around(*a, *b, shape.reach, camera.size);
     return shape;
@@ -46,7 +46,7 @@ DrawnShape shape_of(const DrawBox& box, FrameSize size) {
     return shape;
 }
 
-// A slanting line is in a small part of the box around it.
+// A slanting line covers a small part of the box around it.
 void add_boxes_of(const DrawnShape& shape, std::vector<PixelBox>& boxes) {
     constexpr double kPart = 64.0, kMost = 1000.0;  // pixels of a part; parts
     const double parts = std::ceil((shape.to - shape.from).cwiseAbs().minCoeff() / kPart);

@@ -12,15 +12,15 @@ namespace carom::render {
 struct DrawnShape {
     std::variant<DrawLine, DrawBox> what;
     PixelBox box;         ///< pixels that it may cover
-    Vec2 from, to;        ///< the ends of a line [pixels]; of anything else two corners of the box
+    Vec2 from, to;        ///< the ends of a line [pixels]; for anything else, two corners of the box
     double reach = -1.0;  ///< [pixels] beyond the line between them; negative: the whole box
 };
 
 /// The lines of a list, then its boxes, in the order of drawing within each kind.
 std::vector<DrawnShape> drawn_shapes(const DrawList& list);
 
-/// Adds boxes outside of which two lists of shapes look the same: those of shapes that only one of them has,
-/// or that are drawn in another order. A long line has several boxes.
+/// Adds boxes outside which two lists of shapes look the same: those of shapes that are in only one of them,
+/// or drawn in another order. A long line has several boxes.
 void add_differing(const std::vector<DrawnShape>& before, const std::vector<DrawnShape>& after,
                    std::vector<PixelBox>& boxes);
 

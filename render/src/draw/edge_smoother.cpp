@@ -42,15 +42,15 @@ class Smoother {
         Clip a = project(edge.a), b = project(edge.b);
         const float near = view_.planes[0];
         if (std::max(a.w, b.w) <= near) return;
-        // The faces on each side of the edge, as seen: below[0]
-        // for the left-hand side of the way from a to b.
+        // The faces on each side of the edge, as seen: below[0] for the left-hand side of the direction from
+        // a to b.
         faces_ = {};
         for (const TableEdge::Side& side : edge.sides) {
             if (side.face == 0) continue;
             auto& seen = faces_[determinant(a, b, project(side.corner)) > 0.0F ? 1 : 0];
             (seen[0] == 0 ? seen[0] : seen[1]) = side.face;
         }
-        // A curved surface that goes on across the edge does not end there.
+        // A curved surface that continues across the edge does not end there.
         if (edge.smooth && faces_[0][0] != 0 && faces_[1][0] != 0) return;
         if (a.w < near) a = toward(a, b, near);
         if (b.w < near) b = toward(b, a, near);
@@ -160,7 +160,7 @@ class Smoother {
     Image& image_;
     const View& view_;
     const std::vector<PixelBox>& skip_;
-    std::array<std::array<std::uint8_t, 2>, 2> faces_{};  // of the edge in question, on both sides
+    std::array<std::array<std::uint8_t, 2>, 2> faces_{};  // of the current edge, on both sides
     std::vector<Fix> fixes_;
 };
 
@@ -170,8 +170,7 @@ void smooth_edges(Image& image, const std::vector<TableEdge>& edges, const View&
                   const std::vector<PixelBox>& skip) {
     Smoother smoother(image, view, skip);
     for (const TableEdge& edge : edges) smoother.look_at(edge);
-    // All colours were taken from the picture as it was drawn,
-    // so that an edge does not spread along another one.
+    // All colours were taken from the picture as drawn, so that an edge does not spread along another one.
     smoother.apply();
 }
 

@@ -10,9 +10,9 @@
 
 namespace carom::render {
 
-/// Projects every edge and gives each pixel that it cuts the colour of the far side in exact proportion to
+/// Projects every edge, and gives each pixel that it cuts the colour of the far side in exact proportion to
 /// the area beyond the edge, in linear light (after E. Persson, geometric post-process antialiasing, 2011).
-/// An edge counts only where the fourth channel of the picture shows its faces: it is then not hidden.
+/// An edge counts only where the fourth channel of the picture shows its faces, so that it is not hidden.
 /// `skip`: boxes that are left alone.
 void smooth_edges(Image& image, const std::vector<TableEdge>& edges, const View& view,
                   const std::vector<PixelBox>& skip);

@@ -1,8 +1,9 @@
-// Four pixels at a time: vectors of floats and what GLSL calls vec3, for painting on pictures in memory.
+// Four pixels at a time: vectors of floats, and the equivalent of GLSL's vec3, for painting on pictures in
+// memory.
 //
-// The vector extensions of gcc and clang give + - * / and comparisons on every
-// processor; a comparison has all bits set where it holds. Every lane is computed
-// alike, so a pixel has the same bits whichever pixels are painted with it.
+// The vector extensions of gcc and clang give + - * / and comparisons on every processor; a comparison sets
+// all bits where it holds. Every lane is computed alike, so a pixel has the same bits whichever pixels are
+// painted with it.
 #pragma once
 
 #ifdef __SSE2__
@@ -109,7 +110,7 @@ inline Vec mix(const Vec& a, const Vec& b, Floats t) {
     return a + (b - a) * t;
 }
 
-/// Values of four neighbours, of four bytes each; fewer at the end of a row.
+/// Values of four neighbours, four bytes each; fewer at the end of a row.
 template <class Four>
 Four load(const void* from, int count) {
     static_assert(sizeof(Four) == 16);
@@ -121,12 +122,12 @@ Four load(const void* from, int count) {
     return four;
 }
 
-/// One of the bytes of each of four pixels: 0..255.
+/// One byte of each of four pixels: 0..255.
 inline Floats channel(Ints pixels, int shift) {
     return __builtin_convertvector((pixels >> shift) & 255, Floats);
 }
 
-/// The other way: rounded; the values must be within 0..255.
+/// The inverse, rounded; the values must be within 0..255.
 inline Ints pixels_of(Floats r, Floats g, Floats b, Floats a) {
     const auto rounded = [](Floats value) { return __builtin_convertvector(value + 0.5F, Ints); };
     return rounded(r) | rounded(g) << 8 | rounded(b) << 16 | rounded(a) << 24;

@@ -11,26 +11,25 @@ namespace carom::render {
 
 class MeanPicture {
   public:
-    /// @param rgba the first of the pictures, four bytes a pixel; it becomes the mean. It must outlive this
-    /// object.
-    /// @param boxes where the others count, none of them twice; elsewhere the mean is the first picture
+    /// @param rgba the first picture, four bytes per pixel; it becomes the mean. It must outlive this object.
+    /// @param boxes where the other pictures count, without overlap; elsewhere the mean is the first picture
     MeanPicture(std::vector<std::uint8_t>& rgba, int width, std::vector<PixelBox> boxes);
 
-    /// One more picture of the same size.
+    /// Adds a picture of the same size.
     void add(const std::vector<std::uint8_t>& rgba);
 
-    /// Turns the first picture into the mean of all: of radiance, and of alpha as it is.
+    /// Turns the first picture into the mean of all: of radiance, and of the alpha values themselves.
     void finish();
 
   private:
-    // Calls at(byte, sum) for every pixel of the boxes, with the places of its first byte and of its sums.
+    // Calls at(byte, sum) for every pixel of the boxes, with the positions of its first byte and of its sums.
     template <class At>
     void each_pixel(const At& at) const;
 
     std::vector<std::uint8_t>& rgba_;
     std::size_t row_;  // [bytes]
     std::vector<PixelBox> boxes_;
-    std::vector<float> beyond_;  // sum of what the others have more than the first one; box after box
+    std::vector<float> beyond_;  // sums of the differences from the first picture, box after box
     int count_ = 1;
 };
 

@@ -32,8 +32,8 @@ struct LampOnBalls {
         half_y = endless ? 0.5F * height : view.lamp_half[1];
     }
 
-    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 stands for its size, light past the
-    // terminator; the square lets the light end without an edge.
+    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 accounts for its size, which lights
+    // a little beyond the terminator; the square lets the light end without an edge.
     Floats light(const Vec& p, const Vec& n) const {
         const Vec to = endless ? Vec{all(0.0F), all(0.0F), all(height)} : Vec{x - p.x, y - p.y, height - p.z};
         const Floats inverse = inversesqrt(dot(to, to));
@@ -57,8 +57,7 @@ struct LampOnBalls {
     float x, y, half_x = 0.0F, half_y = 0.0F;
 };
 
-// Share of the light at normal n that reaches the ball past its neighbours: each hides (r / d)^2 cos of the
-// sky.
+// Share of the light at normal n that passes the ball's neighbours: each hides (r / d)^2 cos of the sky.
 Floats past_neighbours(const BallInstance& ball, const Vec& n) {
     const float R = ball.center_radius[3];
     Floats open = all(1.0F);
@@ -72,14 +71,14 @@ Floats past_neighbours(const BallInstance& ball, const Vec& n) {
     return open;
 }
 
-// Below the cloth light comes only through the mouth of the pocket, as on its wall.
+// Below the cloth, light comes only through the mouth of the pocket, as on its wall.
 Floats light_in_pocket(Floats z) {
     Floats fade{};
     for (int i = 0; i < kLanes; ++i) fade[i] = std::exp(std::min(z[i], 0.0F) / 0.035F);
     return 0.06F + (1.0F - 0.06F) * fade;
 }
 
-// On cushions and wood, which have any direction: a soft darkening around the ball, down to the cloth.
+// On cushions and wood, which face any direction: a soft darkening around the ball, down to the cloth.
 void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float strength) {
     const float *center = ball.instance.center_radius, *eye = canvas.view().eye;
     const Vec from_ball{all(eye[0] - center[0]), all(eye[1] - center[1]), all(eye[2] - center[2])};
@@ -102,9 +101,8 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     if (place == BallPlace::kPocket) return;
     const View& view = canvas.view();
     const float *center = ball.instance.center_radius, R = center[3];
-    const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a ball that falls has no shadow left
-    // The shadow of a ball in the air is wider, in proportion to the height of its centre, and so farther
-    // off.
+    const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a falling ball has no shadow left
+    // A ball in the air has a wider shadow, in proportion to the height of its centre, and farther away.
     const float lift = std::max(center[2] / R, 1.0F), unit = 1.0F / (R * lift);
     // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the
     // whole shadow lies within the reach.
@@ -123,15 +121,15 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
                                  std::size_t first, int count, const Vec& ray) {
         const Floats way = -eye_z / ray.z;  // to the plane of the cloth
         const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
-        // Share of the sky hidden by a sphere that rests on a plane: (1 + d^2)^(-3/2) at d radii from the
-        // contact. The polynomial differs by less than 0.03 up to 2 radii and ends.
+        // Share of the sky hidden by a sphere resting on a plane: (1 + d^2)^(-3/2) at d radii from the
+        // contact. The polynomial differs by less than 0.03 up to 2 radii, and reaches 0.
         const Floats near = max(1.0F - (px * px + py * py) * (1.0F / (kReach * kReach)), 0.0F);
         if (!any(near > 0.0F)) return;
         const Floats hidden = near * near * near;
         // The lamp is wide, so its shadow has no sharp edge.
         const Floats dx = px - away_x, dy = py - away_y;
         const Floats inner = max(1.0F - (dx * dx + dy * dy) * (1.0F / 3.4F), 0.0F);
-        // From higher up a ball hides less of the sky and of the wide lamp.
+        // A ball higher up hides less of the sky and of the wide lamp.
         Floats dark = (1.0F - (1.0F - hidden * of_sky) * (1.0F - inner * inner * of_lamp)) * strength;
         dark = choose(way > 0.0F, dark, all(0.0F));
         if (!plain) dark *= background.cloth(first, count);
@@ -163,7 +161,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
                                std::size_t first, int count, const Vec& ray) {
         const Floats per_depth = inversesqrt(dot(ray, ray));
         const Vec dir = ray * per_depth;
-        // Foot of the perpendicular from the centre to the ray: this avoids the difference of large squares.
+        // Foot of the perpendicular from the centre to the ray, which avoids the difference of large squares.
         const Floats along = dot(dir, oc);
         const Vec perpendicular = dir * along - oc;
         const Floats miss2 = dot(perpendicular, perpendicular), miss = sqrt(miss2);
@@ -171,7 +169,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         Floats cover = clamp(0.5F + (R - miss) / pixel, 0.0F, 1.0F);
         if (!any(cover > 0.0F)) return;
         const Floats rise = sqrt(max(R * R - miss2, 0.0F));
-        // R long inside, outside as far as the ray is from the centre
+        // inside: length R; outside: the distance of the ray from the centre
         const Vec n = (perpendicular - dir * rise) * (1.0F / max(miss, R));
         const Vec p = middle + n * all(R);
         if (!plain) cover *= background.seen(first, count, (along - rise) * per_depth - 0.001F);

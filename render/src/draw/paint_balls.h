@@ -9,7 +9,7 @@
 
 namespace carom::render {
 
-/// Darkens what is around a ball: the cloth, and cushions and wood if they are near.
+/// Darkens the surroundings of a ball: the cloth, and cushions and wood if they are near.
 void paint_shadow(const Canvas& canvas, const DrawnBall& ball);
 
 /// Paints a ball. @param glyphs the atlas of glyph_atlas(), for its number

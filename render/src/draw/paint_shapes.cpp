@@ -13,7 +13,7 @@ namespace {
 
 using namespace lanes;
 
-// An end of a line: its pixel, and the distance along the view direction.
+// An end of a line: its pixel, and its distance along the view direction.
 struct LineEnd {
     double x, y, depth;
 };
@@ -58,7 +58,7 @@ void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box,
     const Canvas::Background background = canvas.background();
     const Canvas::Brush brush = canvas.brush();
     for (int y = box.y0; y < box.y1; ++y) {
-        // In this row a line that is not level covers little of its box.
+        // In one row, a line that is not level covers little of its box.
         const double down = y + 0.5 - a.y;
         double low = box.x0, high = box.x1;
         if (std::abs(along_y) > 1e-3) {

@@ -30,7 +30,7 @@ struct Renderer::Impl {
     std::vector<std::uint8_t> glyphs = glyph_atlas();
     GLuint view_buffer = 0;
     Image image;                                                                   // the last draw()
-    std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();  // what is in it
+    std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();  // what the image shows
     FrameSize size{0, 0};
     std::shared_ptr<const TableMesh> table;  // the mesh that the static layer shows
     Camera camera;
@@ -74,12 +74,12 @@ struct Renderer::Impl {
         camera_moves = list.camera_moves;
         drawn_table = std::make_shared<TableDrawing>();
         cloth = ClothMap();
-        // With a camera that moves, the cloth map would be valid for one frame only: it is not made.
+        // With a moving camera, the cloth map would be valid for one frame only, so it is not made.
         if (camera_moves) return;
         cloth = ClothMap(table_layer->picture().rgba, size);
     }
 
-    // Copies what is in the boxes.
+    // Copies the contents of the boxes.
     static void copy_boxes(const std::vector<std::uint8_t>& from, const std::vector<PixelBox>& boxes,
                            Image& image) {
         for (const PixelBox& box : boxes) {
@@ -109,7 +109,7 @@ struct Renderer::Impl {
         shows = std::move(next);
     }
 
-    // Paints what a picture shows over the table, as far as it is to be redrawn.
+    // Paints what a picture shows over the table, where it must be redrawn.
     void paint(const DrawnPicture& picture, const Inside& redrawn, const Canvas& canvas,
                const Vec2& origin) const {
         const auto each_ball = [&](const auto& paint_one) {

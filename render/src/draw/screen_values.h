@@ -25,7 +25,7 @@ inline const std::array<float, 256>& radiance_of_screen() {
 inline std::uint8_t screen_of_radiance(float linear) {
     const float over = 1.0F + std::max(linear - 0.5F, 0.0F);
     const float square = std::min(linear, 0.5F) + 0.5F - 0.5F / (over * over);
-    constexpr float kToNearest = 0.5F;  // std::lround would be a call for each channel
+    constexpr float kToNearest = 0.5F;  // std::lround would be a call per channel
     return static_cast<std::uint8_t>(255.0F * std::sqrt(square) + kToNearest);
 }
 

@@ -23,10 +23,10 @@ inline constexpr const char* kFloorOnly = "#define FLOOR\n";
 inline constexpr const char* kChalkOnly = "#define CHALK\n";
 inline constexpr const char* kShadeOnly = "#define SHADE\n";
 inline constexpr const char* kTheRest = "#define REST\n";
-/// Added to one of these where a hole may be: what lies in a hole is not drawn.
+/// Added to one of these if there may be a hole: pixels in a hole are not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 
-/// One stage of a program (gl::make_stage()): the source after the version of the language, the shared
+/// One stage of a program (gl::make_stage()): the source, preceded by the language version, the shared
 /// numbers, `defines` (whole lines) and shaders/common.glsl. @throws RenderError with the compiler's log
 GLuint make_stage(const gl::Api& api, GLenum stage, const char* source, const std::string& defines = "");
 

@@ -1,4 +1,4 @@
-// What a ball shows at four places of its surface at a time, for frames and for textures.
+// The surface of a ball, four places at a time, for frames and for textures.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline Floats inside(Floats x, Floats w) {
     return clamp(0.5F - x / w, 0.0F, 1.0F);
 }
 
-/// Of one ball, as they are to be mixed: what is reflected, or screen values.
+/// The colours of one ball in the form in which they are mixed: reflectances or screen values.
 struct SkinColors {
     Vec base, dots, ivory;
     Floats ink;
@@ -42,8 +42,8 @@ class Skin {
           number_(number),
           glyphs_(glyphs) {}
 
-    // At the normal n; w is the width of a pixel in radii. shine: how much of the mirror image of the lamp is
-    // seen; print must stay legible.
+    // At the normal n; w is the width of a pixel in radii. shine: how much of the lamp's mirror image is
+    // visible; print must stay legible.
     Vec albedo(const Vec& n, Floats w, Floats& shine) const {
         const Vec b = n + cross(axis_, cross(axis_, n) + n * turn_) * all(2.0F);
         Vec base = colors_.base;
@@ -76,7 +76,7 @@ class Skin {
         return inside(from_axis - radius, w);
     }
 
-    // Coverage by the digits; x and y are in radii of the ball, upright. Of two digits side by side each
+    // Coverage by the digits; x and y are in radii of the ball, upright. With two digits side by side, each
     // pixel reads one.
     Floats number_ink(Floats x, Floats y, Floats w) const {
         const bool two = number_ > 9;

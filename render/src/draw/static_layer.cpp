@@ -17,7 +17,8 @@ namespace {
 
 constexpr float kRoom = 0.004F;  // radiance of the dark room around the table
 
-// Sample position of pass i in the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every count.
+// Sample position of pass i in the pixel, in (-1/2, 1/2)^2: the R2 sequence, evenly spread for every number
+// of passes.
 double r2(int i, double step) {
     const double x = 0.5 + step * i;
     return x - static_cast<double>(static_cast<long>(x)) - 0.5;
@@ -106,7 +107,7 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
                    static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
-// @param depths what the depth buffer begins with; null: the far plane
+// @param depths initial contents of the depth buffer; null: the far plane
 void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* depths) {
     api_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     api_.Viewport(0, 0, size_.width, size_.height);
@@ -127,7 +128,7 @@ void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* dept
     api_.UseProgram(vertex_program_);
     api_.Uniform2f(jitter_, static_cast<float>(2.0 * jitter_x / size_.width),
                    static_cast<float>(2.0 * jitter_y / size_.height));
-    api_.UseProgram(0);  // the pipelines are in force
+    api_.UseProgram(0);  // so that the pipelines take effect
     std::size_t first = 0;
     for (std::size_t i = 0; i < kPartCount; ++i) {
         const auto part = static_cast<Part>(i);
@@ -178,7 +179,7 @@ void StaticLayer::draw(const TableMesh& table, const View& view, FrameSize size,
     read_color(picture_.rgba);
     read_depths(picture_.depths[0]);
     const std::vector<PixelBox> busy = busy_tiles(picture_.rgba, size, table, view);
-    // Everywhere else the depth buffer begins with the near plane, so that nothing is drawn there.
+    // Everywhere else the depth buffer starts with the near plane, so that nothing is drawn there.
     std::vector<float> begin(picture_.depths[0].size(), 0.0F), depths;
     const auto each_row = [&](const auto& at) {
         for (const PixelBox& box : busy) {

@@ -1,5 +1,5 @@
-// Draws the table by OpenGL as seen by one camera: with many
-// samples per pixel, or with one for a camera that moves.
+// Draws the table by OpenGL as seen by one camera: with many samples per pixel, or with one for a moving
+// camera.
 #pragma once
 
 #include <array>
@@ -24,8 +24,9 @@ class StaticLayer {
     StaticLayer(const StaticLayer&) = delete;
     StaticLayer& operator=(const StaticLayer&) = delete;
 
-    /// Draws the table in `samples` jittered passes, averaged in linear light; after the first one only what
-    /// is busy (busy_tiles.h). `on_pass`, if set, is called after every finished pass; it may throw.
+    /// Draws the table in `samples` jittered passes, averaged in linear light; passes after the first draw
+    /// only the busy parts (busy_tiles.h). `on_pass`, if set, is called after every finished pass; it may
+    /// throw.
     void draw(const TableMesh& table, const View& view, FrameSize size, int samples,
               const std::function<void(int done, int total)>& on_pass);
 
@@ -35,7 +36,7 @@ class StaticLayer {
     /// The edges of the table of the last draw_once().
     const std::shared_ptr<const TableEdges>& edges() const { return edges_; }
 
-    /// What the last of them drew.
+    /// The picture that the last of these drew.
     const TablePicture& picture() const { return picture_; }
 
   private:

@@ -15,14 +15,13 @@ namespace carom::render {
 
 namespace {
 
-// Cosines of the angles between two triangles up to which
-// they are one face, and up to which they are one plane.
+// Cosines of the largest angles between two triangles of one face, and of one plane.
 constexpr double kOneFace = 0.94, kOnePlane = 0.999998;
 
 struct Triangle {
     std::array<std::size_t, 3> corners;  // indices of welded positions
     Vec3 normal;
-    bool flat;  // without area: it is not drawn
+    bool flat;  // without area, so it is not drawn
 };
 
 Vec3 place(const MeshVertex& vertex) {
@@ -47,7 +46,7 @@ class EdgeFinder {
         return found;
     }
 
-    // The rims of the holes on the cloth, which the mesh does not have: the cloth is on their outer side.
+    // The rims of the holes in the cloth, which the mesh does not have; the cloth is on their outer side.
     static void add_rim(TableEdges& found, const Hole& hole, const Vec2& origin) {
         constexpr int kPieces = 96;
         const auto at = [&](int piece, double radius) {
@@ -101,7 +100,7 @@ class EdgeFinder {
         if (material != vertices_[3 * b].material) return false;
         if (std::abs(triangles_[a].normal.dot(triangles_[b].normal)) < kOneFace) return false;
         if (static_cast<Material>(static_cast<int>(material)) != Material::kWood) return true;
-        // Boards that meet in one plane have different grain.
+        // Boards in one plane have different grain.
         for (const std::size_t corner : triangles_[a].corners) {
             const MeshVertex &here = vertex(a, corner), &there = vertex(b, corner);
             if (place(here).isApprox(place(there)) && std::hypot(here.u - there.u, here.v - there.v) > 1e-3)
@@ -148,8 +147,8 @@ class EdgeFinder {
         found.edges.push_back(edge);
     }
 
-    // Where a cushion ends at the wood, both have an edge, and a pixel would be smoothed twice: the part of
-    // the line that lies within a longer edge is left out.
+    // Where a cushion ends at the wood, both have an edge, and a pixel would be smoothed twice: the part of a
+    // line that lies within a longer edge is dropped.
     static void drop_doubled(std::vector<TableEdge>& edges) {
         const auto point = [](const std::array<float, 3>& p) { return Vec3(p[0], p[1], p[2]); };
         constexpr double kLong = 0.2, kSame = 1e-5;  // [m]
@@ -158,8 +157,8 @@ class EdgeFinder {
             double length;
         };
         std::vector<Long> longest;
-        // Of each cell of the table the long edges that may
-        // come near it, so that an edge looks at few of them.
+        // For each cell of the table, the long edges that may come near it, so that an edge is compared with
+        // few of them.
         double size = 0.0;
         for (const TableEdge& edge : edges) size = std::max(size, point(edge.a).cwiseAbs().maxCoeff());
         const double side = std::max(0.25, size / 32.0);

@@ -1,4 +1,4 @@
-// The edges of a table mesh at which two surfaces of different look can meet in a picture.
+// The edges of a table mesh at which two surfaces of different look may meet in a picture.
 #pragma once
 
 #include <array>
@@ -24,9 +24,8 @@ struct TableEdge {
     bool smooth = false;  ///< inside a curved surface: visible only where the surface turns away from the eye
 };
 
-/// A face is a set of triangles of one material that join without a crease
-/// and without a seam of the grain. Faces that share a mark because a table
-/// has more than kLastFace of them get no smooth edge where they meet.
+/// A face is a set of triangles of one material that join without a crease and without a seam in the grain.
+/// If a table has more than kLastFace faces, some share a mark and get no smooth edge where they meet.
 struct TableEdges {
     std::vector<std::uint8_t> faces;  ///< the mark of every triangle of TableMesh::solid
     std::vector<TableEdge> edges;

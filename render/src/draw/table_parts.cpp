@@ -11,8 +11,8 @@ namespace carom::render {
 
 namespace {
 
-// [-] With more holes than this the mesh is not cut: every line goes through the whole table, so that
-// neighbouring triangles keep their corners in common, and there would be too many pieces.
+// [-] With more holes than this, the mesh is not cut. Every cut goes through the whole table, so that
+// neighbouring triangles still share their corners, and there would be too many pieces.
 constexpr std::size_t kMostCutHoles = 16;
 
 class PartSorter {
@@ -96,7 +96,7 @@ class PartSorter {
             y0 = std::min(y0, corner.y);
             y1 = std::max(y1, corner.y);
         }
-        // A piece beside a square has a side on its border, and no more than that.
+        // A piece next to a square has a side on its border, but nothing more.
         return std::any_of(squares_.begin(), squares_.end(), [&](const Square& square) {
             return x0 < square.x1 && square.x0 < x1 && y0 < square.y1 && square.y0 < y1;
         });
@@ -122,7 +122,7 @@ TableParts sort_parts(const TableMesh& table, const std::vector<std::uint8_t>& f
         const int face = faces.empty() ? (cloth ? 255 : 0) : faces[i / 3];
         sorter.add(&table.solid[i], static_cast<float>(face) / 255.0F);
     }
-    // These leave the fourth channel as it is, or are painted on the playing surface.
+    // These do not write the fourth channel, or are painted on the playing surface.
     for (std::size_t i = 0; i + 2 < table.blended.size(); i += 3) sorter.add(&table.blended[i], 1.0F);
     return sorter.sorted();
 }

@@ -9,8 +9,8 @@
 
 namespace carom::render {
 
-/// In the order of drawing. kCut...: the triangles that meet
-/// the square around a hole, where each pixel is tested.
+/// In the order of drawing. kCut...: the triangles that meet the square around a hole, where each pixel is
+/// tested.
 enum class Part : std::uint8_t {
     kCloth,
     kWood,
@@ -26,7 +26,7 @@ inline constexpr std::size_t kPartCount = 9;
 
 struct PartVertex {
     MeshVertex vertex;
-    float face;  ///< what its pixels get as their fourth channel, 0..1
+    float face;  ///< the fourth channel of its pixels, 0..1
 };
 
 struct TableParts {
@@ -34,9 +34,9 @@ struct TableParts {
     std::array<std::size_t, kPartCount> ends{};  ///< one past the last vertex of each part
 };
 
-/// Cuts the cloth, the wood and the shading along the squares around the holes, so that
-/// only the little that is left in these squares has to be tested. @param faces the mark
-/// of each triangle of table.solid; empty: 255 for the playing surface and 0 for the rest
+/// Cuts the cloth, the wood and the shading along the squares around the holes, so that only the little
+/// inside these squares has to be tested. @param faces the mark of each triangle of table.solid; empty: 255
+/// for the playing surface and 0 for the rest
 TableParts sort_parts(const TableMesh& table, const std::vector<std::uint8_t>& faces);
 
 }  // namespace carom::render

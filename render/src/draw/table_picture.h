@@ -11,11 +11,11 @@ namespace carom::render {
 
 struct TablePicture {
     FrameSize size{0, 0};
-    /// Four bytes a pixel. Alpha: the share of the pixel that is cloth, or,
-    /// under a camera that moves, the mark of the face (table_edges.h).
+    /// Four bytes per pixel. Alpha: the share of the pixel that is cloth or, with a moving camera, the mark
+    /// of the face (table_edges.h).
     std::vector<std::uint8_t> rgba;
-    /// Depth buffers, 0 at the near clip plane to 1 at the far one: of four
-    /// positions in the pixel, or, under a camera that moves, of one.
+    /// Depth buffers, from 0 at the near clip plane to 1 at the far one: for four positions in the pixel or,
+    /// with a moving camera, for one.
     std::array<std::vector<float>, 4> depths;
     int depth_count = 0;
 };

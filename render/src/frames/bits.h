@@ -8,8 +8,8 @@
 
 namespace carom::render {
 
-/// [bytes] A reader of bits may look so far behind the last
-/// one, and a writer writes so far: their buffers are longer.
+/// [bytes] A reader may read this far past the last bit, and a writer writes this far: their buffers are
+/// longer.
 inline constexpr std::size_t kBitsSlack = 8;
 
 inline std::uint64_t load_little(const std::uint8_t* at) {
@@ -30,7 +30,7 @@ inline void store_little(std::uint8_t* at, std::uint64_t value) {
     }
 }
 
-/// Some bits that go out together, the first one lowest.
+/// Bits that are written together, the first one lowest.
 struct Bits {
     std::uint64_t value = 0;
     unsigned count = 0;  ///< at most 56
@@ -51,9 +51,9 @@ class BitWriter {
         count_ %= 8;
     }
 
-    /// Appends `count` bits of `from`, which begin at its bit `first`.
+    /// Appends `count` bits of `from`, starting at its bit `first`.
     void copy(const std::uint8_t* from, std::size_t first, std::size_t count) {
-        constexpr unsigned kStep = 56;  // what is sure to be in 64 bits that begin at a byte
+        constexpr unsigned kStep = 56;  // bits that a 64-bit read at a byte is sure to contain
         const auto bits_at = [from](std::size_t bit) { return load_little(from + bit / 8) >> (bit % 8); };
         for (; count > kStep; count -= kStep, first += kStep)
             put({bits_at(first) & ((std::uint64_t{1} << kStep) - 1), kStep});
@@ -61,14 +61,14 @@ class BitWriter {
             put({bits_at(first) & ((std::uint64_t{1} << count) - 1), static_cast<unsigned>(count)});
     }
 
-    /// Bits since the start.
+    /// Number of bits since the start.
     std::size_t count() const { return static_cast<std::size_t>(at_ - start_) * 8 + count_; }
 
   private:
     std::uint8_t* start_;
     std::uint8_t* at_;  // the byte that is not full yet
     std::uint64_t waiting_ = 0;
-    unsigned count_ = 0;  // bits of it
+    unsigned count_ = 0;  // bits already in it
 };
 
 }  // namespace carom::render

@@ -14,14 +14,14 @@ namespace carom::render {
 
 namespace {
 
-// The text of a chunk: a keyword of the PNG specification,
-// and what `identify -verbose` and exiftool then show.
+// The text of a chunk: a keyword of the PNG specification, and the text that `identify -verbose` and exiftool
+// then show.
 constexpr std::string_view kBefore("tEXtComment\0frame of picture ", 29);
 constexpr std::string_view kAfter = ", drawn by carom render";
 constexpr std::size_t kMark = 46;  // of mark_at()
 constexpr std::size_t kText = kBefore.size() + kMark + kAfter.size();
-/// The last chunk of a PNG file is empty. A frame gets its name
-/// when it is complete: only a power cut leaves one without.
+/// The last chunk of a PNG file is empty. A frame gets its name when it is complete, so only a power cut
+/// leaves one without.
 constexpr std::string_view kEnd("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
 
@@ -30,7 +30,7 @@ std::string big_endian(std::uint32_t x) {
             static_cast<char>(x)};
 }
 
-/// The end of a marked frame: the chunk with its length and its check, and the last chunk.
+/// The end of a marked frame: the chunk with its length and checksum, and the last chunk.
 std::string tail_of(const std::string& mark) {
     const std::string text = std::string(kBefore) + mark + std::string(kAfter);
     const uLong check = crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size()));
@@ -46,7 +46,7 @@ void add_text(Fnv& all, const std::string& text) {
 template <class T, std::size_t kRows>
 void add_rows(Fnv& all, const Field<T> (&fields)[kRows], const T& object) {
     for (const Field<T>& field : fields) {
-        if (!field.in(Files::kRecord)) continue;  // a record from a file is the same picture
+        if (!field.in(Files::kRecord)) continue;  // a record from a file gives the same picture
         const FieldValue value = field.value(object);
         all.add(std::uint64_t{value.index()});
         if (const auto* number = std::get_if<double>(&value)) all.add(*number);

@@ -1,5 +1,5 @@
-// Of which picture a frame is: a line of text in the PNG
-// file itself, that anyone can read and that no copy loses.
+// Which picture a frame belongs to: a line of text in the PNG file itself, which anyone can read and every
+// copy keeps.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace carom::render {
 
-/// What stands for all that decides the pixels of the frames of a run, but for the time of each: the record,
-/// the table, the view, the overlay and the size. 16 digits.
+/// Identifies everything that decides the pixels of a run's frames except their times: the record, the table,
+/// the view, the overlay and the size. 16 digits.
 std::string picture_of(const Record& record, const SequenceOptions& options);
 
 /// The mark of the frame at this time [s].
@@ -21,7 +21,7 @@ std::string mark_at(const std::string& picture, double time);
 /// Adds a comment with the mark to the bytes of a PNG file.
 void add_mark(std::vector<std::uint8_t>& png, const std::string& mark);
 
-/// The mark of a frame; "" where the file is no whole frame with a mark.
+/// The mark of a frame; "" if the file is not a complete frame with a mark.
 std::string mark_of(const std::string& path);
 
 }  // namespace carom::render

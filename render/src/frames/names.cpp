@@ -13,13 +13,12 @@ double frame_time(double from, long k, double fps) {
 }
 
 long frame_count(double from, double to, double fps) {
-    if (!(fps > 0.0) || !std::isfinite(fps)) throw RenderError("fps must be a number above 0");
+    if (!(fps > 0.0) || !std::isfinite(fps)) throw RenderError("fps must be a number greater than 0");
     if (!std::isfinite(from) || !std::isfinite(to))
         throw RenderError("the first and last time must be finite");
     if (to < from) return 0;
     if (to + 1.0 / fps == to)
-        throw RenderError(
-            "at that time the instants of frames cannot be told apart; lower --fps, --from or --to");
+        throw RenderError("at that time frames are too close to tell apart; lower --fps, --from or --to");
     const double frames = (to - from) * fps;
     if (frames > 1e9) throw RenderError("more than 1e9 frames; lower --fps or give --to");
     // The product above is rounded; the time that frame_time() gives for each frame decides.
@@ -63,7 +62,7 @@ bool is_numbered(const std::string& pattern) {
 std::string frame_path(const std::string& pattern, long k) {
     const auto refuse = [&] {
         throw RenderError("bad frame pattern '" + pattern +
-                          "'; give exactly one %d or %0Nd, like frames/%05d.png");
+                          "'; give exactly one %d or %0Nd, as in frames/%05d.png");
     };
     std::string path;
     int conversions = 0;

@@ -12,7 +12,7 @@ std::size_t index(int value) {
     return static_cast<std::size_t>(value);
 }
 
-// The boxes may overlap, so that the sum may exceed the picture.
+// The boxes may overlap, so the sum may exceed the picture.
 double share_of(const std::vector<PixelBox>& boxes, FrameSize size) {
     double pixels = 0.0;
     for (const PixelBox& box : boxes) pixels += double(box.x1 - box.x0) * (box.y1 - box.y0);
@@ -20,8 +20,8 @@ double share_of(const std::vector<PixelBox>& boxes, FrameSize size) {
 }
 
 // Weights of red, green and blue in 65536ths: Y = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B) / 255, and for
-// the differences 128 + 224 (B - Y') / 1.8556 / 255 and 128 + 224 (R - Y') / 1.5748 / 255 with Y' before it
-// is scaled. Rounding is such that the weights of a difference add up to 0: grey stays grey.
+// the differences 128 + 224 (B - Y') / 1.8556 / 255 and 128 + 224 (R - Y') / 1.5748 / 255, with Y' before it
+// is scaled. They are rounded so that the weights of a difference add up to 0: grey stays grey.
 struct Weights {
     int red, green, blue;
 };
@@ -77,7 +77,7 @@ const std::vector<std::uint8_t>& PackedYuv::pack(const KeptImage& image) {
             std::uint8_t* out = y_plane + (in - from.rgbx.data()) / 4;
             for (int x = box.x0; x < box.x1; ++x, in += 4) *out++ = luma(in);
         }
-        // Every square that has a pixel in the box; at odd ends the last column or row counts twice.
+        // Every square with a pixel in the box; at odd ends the last column or row counts twice.
         for (int y = box.y0 & ~1; y < box.y1; y += 2) {
             const std::uint8_t* const row = from.pixel(0, y);
             const std::uint8_t* const next = from.pixel(0, std::min(y + 1, height - 1));

@@ -1,4 +1,4 @@
-// Frames without compression, of which only what changed is converted.
+// Frames without compression; only what changed is converted.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace carom::render {
 class PackedRgb {
   public:
     const std::vector<std::uint8_t>& pack(const KeptImage& image);
-    double share() const { return share_; }  ///< of the last picture that was converted, 0..1
+    double share() const { return share_; }  ///< of the last converted picture, 0..1
 
   private:
     ChangedBoxes changed_;
@@ -21,9 +21,9 @@ class PackedRgb {
     double share_ = 0.0;
 };
 
-/// A frame of a Y4M stream: a line, the brightness of every pixel, two colour
-/// differences of every square of 2 x 2 pixels. Colours as in ITU-R BT.709,
-/// limited range (16 to 235, and 16 to 240); a square has the mean of its pixels.
+/// A frame of a Y4M stream: a line, the luma of every pixel, and two chroma values for every square of 2 x 2
+/// pixels. Colours as in ITU-R BT.709, limited range (16 to 235, and 16 to 240); a square has the mean of its
+/// pixels.
 class PackedYuv {
   public:
     const std::vector<std::uint8_t>& pack(const KeptImage& image);

@@ -61,7 +61,7 @@ void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes)
     if (info == nullptr) {
         png_destroy_write_struct(&png, nullptr);
         throw RenderError(
-            "libpng cannot start: out of memory, or another version than the one carom was built with");
+            "libpng cannot start: it is out of memory, or not the version that carom was built with");
     }
     png_set_write_fn(png, &bytes, append_bytes, flush_nothing);
     const bool good = encode_rows(png, info, image, level);

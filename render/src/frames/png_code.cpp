@@ -4,13 +4,13 @@ namespace carom::render::png_code {
 
 namespace {
 
-constexpr int kEnd = 256, kFirstRun = 257;  // of deflate (RFC 1951, 3.2.5)
-constexpr int kCount = 284;                 // codes up to the one of the longest run
+constexpr int kEnd = 256, kFirstRun = 257;  // in deflate (RFC 1951, 3.2.5)
+constexpr int kCount = 284;                 // codes up to that of the longest run
 
 struct Repeated {
     unsigned length, codes;
 };
-// Lengths of the codes [bits], and how many codes in a row have each; 0: no run of whole pixels has this
+// Lengths of the codes [bits], and how many consecutive codes have each; 0: no run of whole pixels has this
 // code. By lab/measure/png_code_lengths.py from 1080p frames of five tables and seven cameras.
 constexpr Repeated kLengthsInRows[] = {
     {1, 1},  {3, 1},  {5, 1}, {6, 1}, {7, 1}, {8, 1}, {9, 1}, {10, 3}, {11, 7}, {12, 223},
@@ -31,7 +31,7 @@ constexpr Lengths make_lengths() {
 
 constexpr Lengths kLengths = make_lengths();
 
-// Decoders refuse codes that leave room or need more than there is: the shares 2^-length must add up to 1.
+// Decoders refuse incomplete and oversubscribed codes: the shares 2^-length must add up to 1.
 constexpr bool is_complete() {
     unsigned sum = 0;
     for (const unsigned length : kLengths)
@@ -46,7 +46,7 @@ constexpr std::uint32_t reversed(std::uint32_t value, unsigned count) {
     return result;
 }
 
-// RFC 1951, 3.2.2: shorter codes first, and those of one length in the order of their symbols.
+// RFC 1951, 3.2.2: shorter codes first; codes of the same length in the order of their symbols.
 constexpr std::array<Code, kCount> make_codes() {
     std::array<Code, kCount> codes{};
     std::uint32_t next = 0;
@@ -57,8 +57,8 @@ constexpr std::array<Code, kCount> make_codes() {
     return codes;
 }
 
-// RFC 1951, 3.2.5: 8 lengths have codes of their own; then
-// every group of four codes has one more bit behind them.
+// RFC 1951, 3.2.5: 8 lengths have their own codes; after them, every group of four codes has one more extra
+// bit.
 constexpr Code run_code(const std::array<Code, kCount>& codes, unsigned bytes) {
     unsigned code = kFirstRun, least = 3, extra = 0;
     for (; least + (1U << extra) <= bytes; ++code) {
@@ -67,7 +67,7 @@ constexpr Code run_code(const std::array<Code, kCount>& codes, unsigned bytes) {
     }
     const Code& found = codes.at(code);
     const std::uint32_t length = found.value | ((bytes - least) << found.count);
-    // Two distances have codes of one bit, so that they are complete too; ours is the second.
+    // Two distances have one-bit codes, so that these are complete too; ours is the second.
     return {length | (1U << (found.count + extra)), found.count + extra + 1};
 }
 
@@ -89,8 +89,8 @@ void write_head(BitWriter& out) {
     constexpr unsigned kLast = 1, kOwnCodes = 2, kDistances = 3;
     out.put({kLast | (kOwnCodes << 1), 3});
     out.put({(kCount - kFirstRun) | ((kDistances - 1) << 5) | (15U << 10), 14});
-    // The lengths themselves are written in four bits: codes of 4 bits for the lengths 0 to 15, none for
-    // repetitions (16 to 18), whose three places come first.
+    // The lengths themselves are written in four bits: 4-bit codes for the lengths 0 to 15, none for
+    // repetitions (16 to 18), whose three entries come first.
     constexpr unsigned kRepetitions = 3, kPlain = 16;
     for (unsigned i = 0; i < kRepetitions; ++i) out.put({0, 3});
     for (unsigned i = 0; i < kPlain; ++i) out.put({4, 3});

@@ -1,6 +1,6 @@
-// The Huffman codes of every PNG file that carom writes itself. Codes that are the same
-// in all files make the bits of a piece of a picture depend on its pixels alone, so
-// that they can be kept from one frame to the next. They cost 1 to 4 % of the size.
+// The Huffman codes of every PNG file that carom writes itself. Since all files use the same codes, the bits
+// of a piece of a picture depend on its pixels alone and can be kept from one frame to the next. This costs 1
+// to 4 % of the size.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace carom::render::png_code {
 
 /// [pixels] The longest run of equal pixels: 192 bytes, and deflate allows 258.
 inline constexpr int kLongestRun = 64;
-/// [bits] The longest code of a byte: noise becomes 12/8 times as large as it is.
+/// [bits] The longest code of a byte: noise grows by a factor of 12/8.
 inline constexpr unsigned kLongestCode = 12;
 
 struct Code {
@@ -26,17 +26,17 @@ struct Code {
 struct Codes {
     std::array<Code, 256> byte{};
     Code end;
-    /// [n]: n more pixels like the one before (its code, the
-    /// bits that complete the length, the distance of 3 bytes)
+    /// [n]: n more pixels like the previous one (its code, the bits that complete the length, the distance of
+    /// 3 bytes)
     std::array<Code, kLongestRun + 1> run{};
 };
 
 extern const Codes kCodes;
 
-/// Begins the one deflate block of a file: it holds the lengths of the codes.
+/// Begins the only deflate block of a file, which holds the lengths of the codes.
 void write_head(BitWriter& out);
 
-/// [bits] More than write_head() writes.
+/// [bits] At least what write_head() writes.
 inline constexpr std::size_t kHeadBits = 2048;
 
 }  // namespace carom::render::png_code

@@ -18,7 +18,7 @@ void put_big(std::uint8_t*& at, std::uint32_t value) {
     for (unsigned shift = 32; shift > 0; shift -= 8) *at++ = static_cast<std::uint8_t>(value >> (shift - 8));
 }
 
-// A chunk is the length of its data, its type, the data, and a check sum of the last two.
+// A chunk consists of the length of its data, its type, the data, and a checksum of the last two.
 std::uint8_t* begin_chunk(std::uint8_t*& at, const char* type) {
     std::uint8_t* const begin = at;
     at = std::copy_n(type, 4, at + 4);
@@ -59,7 +59,7 @@ void PngPieces::resize(FrameSize wanted) {
     joined_.resize((kRowStartBits + segments_ * kSegmentBits) / 8 + 2 * kBitsSlack);
 }
 
-// A pixel has a say in the row below it, too, and in the pixels to its right.
+// A pixel also affects the row below it, and the pixels to its right.
 void PngPieces::mark(const PixelBox& box) {
     if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
     const auto first = static_cast<std::size_t>(box.x0 / kSegment);
@@ -76,7 +76,7 @@ void PngPieces::update_row(const Image& image, std::size_t y) {
     Row& row = rows_[y];
     BitWriter out(joined_.data());
     out.put(png_code::kCodes.byte[kRowFilter].bits());
-    std::size_t old = out.count(), kept = 0;  // where the next piece stood; bits before it that stay
+    std::size_t old = out.count(), kept = 0;  // position in the old row; bits before it that stay
     std::uint64_t left = row_bytes();         // bytes from here to the end
     row.plain = kRowFilter;
     row.weighted = kRowFilter * left--;
@@ -106,8 +106,8 @@ void PngPieces::update_row(const Image& image, std::size_t y) {
     row_marks_[y] = 0;
 }
 
-// Adler-32 of all rows, from their sums: the second of its two
-// sums weighs a byte with the number of bytes from it to the end.
+// Adler-32 of all rows, from their sums: the second of its two sums weights a byte by the number of bytes
+// from it to the end.
 std::uint32_t PngPieces::adler() const {
     std::uint64_t below = row_bytes() * rows_.size();
     std::uint64_t a = 1, b = below % kAdlerBase;
@@ -121,7 +121,7 @@ std::uint32_t PngPieces::adler() const {
 
 // The data of the one IDAT chunk, a zlib stream.
 std::uint8_t* PngPieces::write_data(std::uint8_t* at) const {
-    *at++ = 0x78;  // deflate with a window of 32 kB; not compressed hard
+    *at++ = 0x78;  // deflate with a window of 32 kB, fast compression
     *at++ = 0x01;
     BitWriter out(at);
     png_code::write_head(out);
@@ -135,7 +135,7 @@ std::uint8_t* PngPieces::write_data(std::uint8_t* at) const {
 void PngPieces::assemble(std::vector<std::uint8_t>& bytes) const {
     std::size_t most = png_code::kHeadBits;
     for (const Row& row : rows_) most += row.bits;
-    constexpr std::size_t kAround = 100;  // signature, header, what stands around the chunks
+    constexpr std::size_t kAround = 100;  // signature, header, and the frames of the chunks
     bytes.resize(most / 8 + kAround + kBitsSlack);
     std::uint8_t* at = bytes.data();
     for (const unsigned byte : {0x89U, 0x50U, 0x4EU, 0x47U, 0x0DU, 0x0AU, 0x1AU, 0x0AU})
@@ -143,7 +143,7 @@ void PngPieces::assemble(std::vector<std::uint8_t>& bytes) const {
     std::uint8_t* chunk = begin_chunk(at, "IHDR");
     put_big(at, static_cast<std::uint32_t>(size_.width));
     put_big(at, static_cast<std::uint32_t>(size_.height));
-    // 8 bits a channel, RGB, the only methods of compression and of filters, not interlaced.
+    // 8 bits per channel, RGB, the only methods of compression and of filtering, not interlaced.
     for (const unsigned byte : {8U, 2U, 0U, 0U, 0U}) *at++ = static_cast<std::uint8_t>(byte);
     end_chunk(at, chunk);
     chunk = begin_chunk(at, "IDAT");

@@ -11,14 +11,14 @@
 
 namespace carom::render {
 
-/// Every row is filtered in the same way and cut into segments; the whole file is
-/// one deflate block with codes that are built in. So the bits of a segment depend
-/// on its pixels and their neighbours alone. They are kept, and joined by shifting.
+/// Every row has the same filter and is cut into segments; the whole file is one deflate block with built-in
+/// codes. So the bits of a segment depend only on its pixels and their neighbours. They are kept, and joined
+/// by shifting.
 class PngPieces {
   public:
-    /// Writes the file of an image. Outside of the boxes it must show what the image
-    /// of the last call did, which must have had the same size; the first call needs
-    /// a box around everything. @throws RenderError for an image without pixels
+    /// Writes the file of an image. Outside the boxes it must show the same as the image of the last call,
+    /// which must have had the same size; the first call needs a box around everything. @throws RenderError
+    /// for an image without pixels
     void encode(const Image& image, const std::vector<PixelBox>& changed, std::vector<std::uint8_t>& bytes);
 
     /// The share of the segments that the last call encoded, 0..1.
@@ -33,7 +33,7 @@ class PngPieces {
     struct Row {
         std::vector<std::uint8_t> bytes;
         std::size_t bits = 0;
-        std::uint64_t plain = 0, weighted = 0;  // as those of a segment, over the whole row
+        std::uint64_t plain = 0, weighted = 0;  // sums as those of a segment, over the whole row
     };
 
     void resize(FrameSize wanted);
@@ -47,10 +47,10 @@ class PngPieces {
     FrameSize size_{0, 0};
     std::size_t segments_ = 0;  // in a row
     std::vector<Piece> pieces_;
-    std::vector<std::uint8_t> marks_;      // by piece: 1 if it has to be encoded
-    std::vector<std::uint8_t> row_marks_;  // by row: 1 if it has a marked piece
+    std::vector<std::uint8_t> marks_;      // per piece: 1 if it must be encoded
+    std::vector<std::uint8_t> row_marks_;  // per row: 1 if it has a marked piece
     std::vector<Row> rows_;
-    std::vector<std::uint8_t> joined_;  // a row while it is made
+    std::vector<std::uint8_t> joined_;  // a row while it is built
     std::size_t encoded_ = 0;           // pieces of the last picture
 };
 

@@ -12,18 +12,18 @@ namespace carom::render {
 
 namespace {
 
-static_assert(kSegment == png_code::kLongestRun && kSegment == 64, "a bit for every pixel");
+static_assert(kSegment == png_code::kLongestRun && kSegment == 64, "one bit for every pixel");
 static_assert(kSegmentBits == std::size_t{png_code::kLongestCode} * 3 * kSegment);
 
-// Loops over these arrays become vector instructions, and so they begin with four pixels that are left of the
-// segment, of which one is needed. A row has one more, to the left of these.
+// Loops over these arrays become vector instructions, so they begin with four pixels left of the segment, of
+// which one is needed. A row has one more, left of these.
 constexpr int kLeft = 4;
 constexpr std::size_t kBytes = 4 * std::size_t{kLeft + kSegment};
 using Row = std::array<std::uint8_t, kBytes + 4>;
 using Rest = std::array<std::uint8_t, kBytes>;
 
 // The bytes of a row from four pixels before the segment and one more: in the image itself or, at an end of a
-// row, in `copy`. Outside of the picture everything is 0.
+// row, in `copy`. Outside the picture everything is 0.
 const std::uint8_t* row_at(const Image& image, int x, int y, Row& copy) {
     const int begin = x - kLeft - 1, end = x + kSegment;
     const int first = std::max(0, begin), behind = std::min(end, image.size.width);
@@ -42,8 +42,7 @@ constexpr auto kUsed = [] {
     return used;
 }();
 
-// Sixteen bytes at once: what a register of every processor
-// holds (an extension of the language that gcc and clang know).
+// Sixteen bytes at once: the register size of every processor (a language extension of gcc and clang).
 using Lanes = std::uint8_t __attribute__((vector_size(16)));
 using Wide = std::uint16_t __attribute__((vector_size(32)));
 
@@ -57,7 +56,7 @@ std::uint8_t less(std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(std::max(a, b) - b);  // a - b, or 0
 }
 
-// What the filter leaves: the difference to that one of three neighbours (left, above, left above) which is
+// What the filter leaves: the difference from the one of three neighbours (left, above, left above) that is
 // nearest to left + above - corner (PNG specification, 9.4). Written with bytes and without branches: the
 // lower of left and above is nearest if the corner is nearer to the higher one by a factor of 2, and the
 // other way round.
@@ -89,7 +88,7 @@ SegmentSums sums_of(const std::uint8_t* rest, int pixels) {
     return sums;
 }
 
-// Bit p is set if pixel p is like the one before it.
+// Bit p is set if pixel p equals the previous one.
 std::uint64_t repeated(const std::uint8_t* rest) {
     std::array<std::uint32_t, kSegment + 1> pixels;
     std::memcpy(pixels.data(), rest - 4, sizeof pixels);
@@ -113,7 +112,7 @@ SegmentSums write_segment(const Image& image, int x, int y, BitWriter& out) {
               std::uint8_t{0});  // right of the picture
     const std::uint8_t* const rest = all.data() + std::ptrdiff_t{4} * kLeft;
     std::uint64_t same = repeated(rest);
-    if (x == 0) same &= ~std::uint64_t{1};  // in front of a row stands the number of its filter, no pixel
+    if (x == 0) same &= ~std::uint64_t{1};  // a row begins with the number of its filter, not with a pixel
     BitWriter local = out;                  // in registers
     for (int p = 0; p < count;) {
         const std::uint8_t* const pixel = rest + std::ptrdiff_t{4} * p;

@@ -10,14 +10,14 @@ namespace carom::render {
 
 /// [pixels] Length of a segment; the last one of a row may be shorter.
 inline constexpr int kSegment = 64;
-/// [bits] The longest segment: no byte of it is part of a run.
+/// [bits] The longest segment: one without runs.
 inline constexpr std::size_t kSegmentBits = std::size_t{12} * 3 * kSegment;
-/// The bits of a segment depend on so many pixels to the left of it, and on the same ones of the row above.
+/// The bits of a segment depend on this many pixels to its left, and on the same pixels of the row above.
 inline constexpr int kReachLeft = 2;
-/// The number of the filter that every row begins with: Paeth.
+/// The filter of every row: Paeth.
 inline constexpr unsigned kRowFilter = 4;
 
-/// Two sums over a segment's bytes d0 to d(n-1), from which the check sum of the file (Adler-32) is made.
+/// Two sums over a segment's bytes d0 to d(n-1), from which the checksum of the file (Adler-32) is made.
 struct SegmentSums {
     std::uint32_t plain = 0;     ///< sum of d(i)
     std::uint32_t weighted = 0;  ///< sum of (n - i) d(i)

@@ -35,7 +35,7 @@ void make_folder(const std::string& pattern) {
     std::filesystem::create_directory(folder, error);
     if (!std::filesystem::is_directory(folder)) {
         throw RenderError(folder.string() + ": cannot make the folder: " +
-                          (error ? error.message() : std::string("something else has this name")));
+                          (error ? error.message() : std::string("another file has this name")));
     }
 }
 
@@ -51,21 +51,21 @@ long frame_of(const std::string& pattern, const std::string& name) {
     return -1;
 }
 
-/// The frames in files of one run. No other run writes them meanwhile, and frames of other pictures go before
-/// the first one is written, so that a film which is interrupted and resumed is of one picture.
+/// The frame files of one run. No other run writes them meanwhile, and frames of other pictures are removed
+/// before the first one is written, so that a film that was interrupted and resumed shows one picture.
 class FrameFiles {
   public:
-    /// @param count  of frames; one by itself leaves the others alone, and others may be drawn meanwhile
+    /// @param count of frames; a single one leaves the others alone, and others may be drawn meanwhile
     FrameFiles(const SequenceOptions& options, std::string picture, long count)
         : options_(options),
           count_(count),
           picture_(std::move(picture)),
           lock_(options.pattern + ".lock", count > 1) {}
 
-    /// Whether frame k is there.
+    /// Whether frame k is finished.
     bool is_done(long k) const { return mark_of(frame_path(options_.pattern, k)) == mark(k); }
 
-    /// @throws RenderError where frames are there, and none of them is of this picture
+    /// @throws RenderError if frames exist but none of them belongs to this picture
     void check() const {
         bool some = false, marked = false;
         for (long k = 0; k < count_; ++k) {
@@ -76,12 +76,12 @@ class FrameFiles {
         }
         if (some)
             throw RenderError(options_.pattern + ": " +
-                              (marked ? "the frames there are of another shot, camera, overlay or size"
-                                      : "nothing says which shot the frames there are of") +
+                              (marked ? "the existing frames show another shot, camera, overlay or size"
+                                      : "nothing says which shot the existing frames show") +
                               "; render without --resume");
     }
 
-    /// Removes what this run will write, and behind it what carom drew of other pictures.
+    /// Removes what this run will write, and frames with higher numbers that carom drew of other pictures.
     void remove_old() const {
         if (count_ <= 1) return;
         std::error_code error;
@@ -140,8 +140,6 @@ StageOptions stage_options(const SequenceOptions& options) {
 }
 
 void check_options(const SequenceOptions& options) {
-    if (options.libpng_level && (*options.libpng_level < 0 || *options.libpng_level > 9))
-        throw RenderError("the PNG level must be 0 to 9");
     if (options.size.width < 1 || options.size.height < 1)
         throw RenderError("an image needs at least one pixel");
     if (options.resume && (options.pattern.empty() || options.raw || !is_numbered(options.pattern)))
@@ -186,8 +184,7 @@ class FrameLoop {
         return stage_.at(frames_[i].time, cost);
     }
 
-    // The time of the frame itself is not known while it is
-    // drawn; the times of the latest frames are used instead.
+    // A frame's own time is not known while it is drawn; the times of the latest frames are used instead.
     double last_cost_ms(std::size_t i) {
         const double encode_ms = writer_.last_encode_ms();
         return (options_.simulate_ms ? options_.simulate_ms(frames_[i].frame) : 0.0) +
@@ -244,9 +241,9 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
     const bool numbered = files && is_numbered(options.pattern);
     if (files && count > 1 && !numbered)
         throw RenderError("bad frame pattern '" + options.pattern +
-                          "'; give exactly one %d or %0Nd, like frames/%05d.png");
+                          "'; give exactly one %d or %0Nd, as in frames/%05d.png");
     if (files) make_folder(options.pattern);
-    // One picture with a name of its own is no part of a film: its bytes depend on its pixels alone.
+    // A single picture with its own name is not part of a film: its bytes depend on its pixels alone.
     const std::string picture = numbered ? picture_of(record, options) : "";
     std::optional<FrameFiles> kept;
     try {
@@ -270,7 +267,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
     const bool possible = columns >= 1 && rows >= 1 && columns <= options.size.width / 16;
     if (possible) {
         cell.size.width = (options.size.width - kGap * (columns - 1)) / columns;
-        // A picture keeps the shape that was asked for; another one would be filled up with black.
+        // A picture keeps the requested shape; another one would be padded with black.
         cell.size.height =
             static_cast<int>(static_cast<long>(cell.size.width) * options.size.height / options.size.width);
     }
@@ -303,7 +300,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
         if (options.progress) options.progress(i + 1, last + 1);
     }
     std::vector<std::uint8_t> bytes;
-    options.libpng_level ? encode_png(sheet, *options.libpng_level, bytes) : KeptPng().encode(sheet, bytes);
+    options.libpng ? encode_png(sheet, kFrameLevel, bytes) : KeptPng().encode(sheet, bytes);
     write_file(path, bytes);
 }
 

@@ -28,8 +28,8 @@ const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image, const s
         share_ = rgb_.share();
         return bytes;
     }
-    if (options_.libpng_level) {
-        encode_png(image.image(), *options_.libpng_level, bytes_);
+    if (options_.libpng) {
+        encode_png(image.image(), kFrameLevel, bytes_);
         share_ = 1.0;
     } else {
         png_.encode(image, bytes_);
@@ -44,8 +44,7 @@ namespace {
 // [bytes] Limit for all images in flight together; it bounds the memory of a run with many threads.
 constexpr double kMemory = 64e6;
 
-// For each thread one image in work and one waiting, and
-// one image being filled; fewer if the images are large.
+// One image in work and one waiting per thread, and one being filled; fewer if the images are large.
 std::size_t image_limit(FrameSize size, int threads) {
     const double fit = kMemory / (4.0 * size.width * size.height);
     return static_cast<std::size_t>(std::max(2.0, std::min(2.0 * threads + 1.0, fit)));

@@ -19,13 +19,13 @@
 
 namespace carom::render {
 
-/// What makes the bytes of a frame. It keeps what it made of the last one: every thread has its own.
+/// Makes the bytes of a frame. It keeps those of the last one, so every thread has its own.
 class Encoder {
   public:
     explicit Encoder(const SequenceOptions& options) : options_(options) {}
 
-    /// @param mark  of a PNG file (frame_mark.h); "" for none
-    /// @returns the bytes, which stay until the next call
+    /// @param mark of a PNG file (frame_mark.h), or ""
+    /// @returns the bytes, valid until the next call
     const std::vector<std::uint8_t>& encode(const KeptImage& image, const std::string& mark = "");
 
     /// The share of the last picture that was encoded anew, 0..1.
@@ -42,8 +42,8 @@ class Encoder {
 
 class FrameWriter {
   public:
-    /// @param picture  of the marks (frame_mark.h); "" for none
-    /// @param threads  0: submit() does the work itself. Raw frames need exactly one thread, which preserves
+    /// @param picture of the marks (frame_mark.h), or ""
+    /// @param threads 0: submit() does the work itself. Raw frames need exactly one thread, which preserves
     /// their order.
     /// @throws RenderError if the system cannot start that many threads
     FrameWriter(const SequenceOptions& options, const std::string& picture, int threads);

@@ -11,7 +11,7 @@
 namespace carom::render {
 
 std::string y4m_header(FrameSize size, double fps) {
-    // Continued fractions: the first ratio that is near enough has the smallest numbers.
+    // Continued fractions: the first ratio that is close enough has the smallest numbers.
     constexpr double kNear = 1e-9, kMost = std::numeric_limits<std::int32_t>::max();
     double rest = fps, p = 1.0, q = 0.0, p_before = 0.0, q_before = 1.0;
     while (std::isfinite(rest)) {
@@ -29,8 +29,9 @@ std::string y4m_header(FrameSize size, double fps) {
         }
         rest = 1.0 / (rest - whole);
     }
-    throw RenderError(
-        fmt::format("{} frames per second is no ratio of two whole numbers that Y4M can hold", fps));
+    throw RenderError(fmt::format(
+        "Y4M cannot express {} frames per second as a ratio of two whole numbers; choose another --fps",
+        fps));
 }
 
 }  // namespace carom::render

@@ -32,7 +32,7 @@ class Context {
 std::unique_ptr<Context> make_osmesa_context();
 std::unique_ptr<Context> make_egl_context();
 std::unique_ptr<Context> make_context(Backend backend);
-/// Whether the library of OSMesa is there and complete.
+/// Whether the OSMesa library is installed and complete.
 bool has_osmesa();
 
 }  // namespace carom::render::gl

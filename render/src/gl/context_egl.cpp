@@ -63,8 +63,8 @@ class EglContext final : public Context {
         context_ = egl().create_context(shared, nullptr, nullptr, attributes.data());
         if (context_ == nullptr) {
             throw RenderError(
-                "EGL gives no OpenGL 3.3 core context; install the Debian package libgl1-mesa-dri, or "
-                "use --gl osmesa");
+                "EGL cannot create an OpenGL 3.3 core context; install the Debian package libgl1-mesa-dri, "
+                "or use --gl osmesa");
         }
     }
     ~EglContext() override { egl().destroy_context(display(), context_); }

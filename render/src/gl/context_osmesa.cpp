@@ -43,7 +43,8 @@ class OsmesaContext final : public Context {
             kFormat,    kRgba, kProfile, kOsmesaCoreProfile, kOsmesaContextMajor, 3, kOsmesaContextMinor, 3,
             kDepthBits, 0,     0};
         context_ = osmesa().create(attributes.data(), nullptr);
-        if (context_ == nullptr) throw RenderError("OSMesa gives no OpenGL 3.3 core context; use --gl egl");
+        if (context_ == nullptr)
+            throw RenderError("OSMesa cannot create an OpenGL 3.3 core context; use --gl egl");
     }
     ~OsmesaContext() override { osmesa().destroy(context_); }
 

@@ -14,7 +14,7 @@ GLuint make_stage(const Api& api, GLenum stage, std::span<const char* const> sou
     GLint linked = 0;
     api.GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (linked == 0) {
-        // The log of the compiler stands in it, too.
+        // This also holds the compiler's log.
         std::string log(2048, '\0');
         GLsizei length = 0;
         api.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());

@@ -9,11 +9,11 @@
 namespace carom::render::gl {
 
 /// Compiles and links a program of one stage (GL_VERTEX_SHADER or GL_FRAGMENT_SHADER), which make_pipeline()
-/// joins with one of the other stage: several pipelines may share it, so that the driver translates it once.
+/// joins with one of the other stage. Several pipelines may share it, so that the driver translates it once.
 /// @throws RenderError with the compiler's log
 GLuint make_stage(const Api& api, GLenum stage, std::span<const char* const> sources);
 
-/// Joins two stages. It is in force when no program is in use.
+/// Joins two stages. It takes effect when no program is in use.
 GLuint make_pipeline(const Api& api, GLuint vertex, GLuint fragment);
 
 /// A texture without mipmaps, with nearest (or linear) filtering, clamped at the edges.

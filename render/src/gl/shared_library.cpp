@@ -22,7 +22,7 @@ SharedLibrary::SharedLibrary(std::initializer_list<const char*> names, std::stri
 
 SharedLibrary::Function SharedLibrary::operator[](const char* symbol) const {
     if (void* address = dlsym(library_, symbol)) return {address};
-    throw RenderError("the library of the Debian package " + package_ + " has no " + symbol);
+    throw RenderError("the library of the Debian package " + package_ + " lacks " + symbol);
 }
 
 }  // namespace carom::render

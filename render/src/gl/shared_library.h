@@ -12,7 +12,7 @@ class SharedLibrary {
     /// Tries the names in order. @throws RenderError "cannot load NAME (reason); install the package PACKAGE"
     SharedLibrary(std::initializer_list<const char*> names, std::string package);
 
-    /// A function of the library, which becomes a pointer of the type that it is assigned to.
+    /// A function of the library, which converts to the pointer type it is assigned to.
     struct Function {
         void* address;
         template <class F>
@@ -20,7 +20,7 @@ class SharedLibrary {
             return reinterpret_cast<F*>(address);
         }
     };
-    /// @throws RenderError that names the function if it is missing
+    /// @throws RenderError naming the function if it is missing
     Function operator[](const char* symbol) const;
 
   private:

@@ -50,8 +50,8 @@ bool Camera::operator==(const Camera& other) const {
 }
 
 Camera top_camera(const Bounds& bounds, FrameSize size) {
-    // [deg] Narrow, so that balls at the rails are hardly seen
-    // from the side, but not so narrow that the depth is lost.
+    // [deg] Narrow, so that balls at the rails are hardly seen from the side, but wide enough to keep the
+    // depth.
     constexpr double kFov = 16.0;
     const Vec2 extent = (bounds.high - bounds.low).cwiseMax(1e-3);
     const Vec2 centre = 0.5 * (bounds.low + bounds.high);

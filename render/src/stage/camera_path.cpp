@@ -46,7 +46,7 @@ Camera player_camera(const Record& record, FrameSize size) {
 }
 
 int ball_by_id(const Record& record, const std::string& id) {
-    constexpr std::size_t kListed = 40;  // [-] most ids in the message
+    constexpr std::size_t kListed = 40;  // [-] most ids in a message
     std::string known;
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         if (record.tracks[i].id == id) return static_cast<int>(i);
@@ -54,7 +54,7 @@ int ball_by_id(const Record& record, const std::string& id) {
     }
     if (record.tracks.size() > kListed)
         known += " and " + std::to_string(record.tracks.size() - kListed) + " more";
-    throw RenderError("no ball '" + printable(id) + "' to follow; there are " + known);
+    throw RenderError("no ball '" + printable(id) + "' to follow; expected one of " + known);
 }
 
 // The position of a followed ball; the place of capture for a ball in a pocket.
@@ -132,7 +132,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
     if (free.eye) {
         const Vec3 view = *free.target - *free.eye;
         if (!free.eye->allFinite() || !free.target->allFinite() || !(view.norm() > 1e-6)) {
-            throw RenderError("the eye and the target of a free camera must be different, finite places");
+            throw RenderError("the eye and the target of a free camera must be different, finite points");
         }
         if (!(free.fov_deg > 0.0 && free.fov_deg < 170.0))
             throw RenderError("the field of view must be 0 to 170 degrees");

@@ -29,12 +29,12 @@ std::vector<Vec2> visited_places(const Record& record) {
     return places;
 }
 
-// [s] How long a ball that was pocketed is seen to sink.
+// [s] How long a pocketed ball is shown sinking.
 constexpr double kSinkTime = 0.15;
 
-// The place of a ball that was pocketed at `when`, sinking from where it was then to where it lies.
+// The position of a ball that was pocketed at `when`, sinking from where it was to where it lies.
 Vec3 sinking_place(const Record& record, int ball, double when, double t, const Vec3& rest) {
-    constexpr double kGravity = 9.81;  // [m/s^2] for the look only
+    constexpr double kGravity = 9.81;  // [m/s^2] only for the look
     const double age = t - when;
     if (age >= kSinkTime || when <= 0.0) return rest;
     const BallState before = record.state_at(ball, std::nextafter(when, -1.0));
@@ -85,7 +85,7 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;
-        // One that has left the table falls out of sight.
+        // A ball that has left the table falls out of sight.
         if (state.state == MotionState::kOut && state.position.z() < 0.0) continue;
         DrawBall ball;
         ball.in_pocket = state.state == MotionState::kPocketed;

@@ -85,8 +85,7 @@ void MeshBuilder::sweep(const Chain& outline, const std::vector<ProfileRow>& row
         const std::size_t before = row == 0 ? 0 : row - 1, after = row + 1 == rows.size() ? row - 1 : row;
         return 0.5 * (slope(before) + slope(after));
     };
-    // The grain of wood starts anew at each corner that is
-    // sharper than 20 degrees, which makes a mitre there.
+    // The grain of wood restarts at each corner sharper than 20 degrees, which makes a mitre there.
     constexpr double kMitre = 0.94, kOtherBoard = 0.617;  // cosine; m of grain between two boards
     double along = 0.0, board = 0.0;
     Vec2 before = Vec2::Zero();

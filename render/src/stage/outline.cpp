@@ -13,8 +13,8 @@ namespace {
 // a pixel, far above the rounding of given coordinates.
 constexpr double kJoin = 1e-5;
 
-// [m] An end lies on a jaw if it is this close to its circle:
-// this includes tangent points given with four decimals.
+// [m] An end lies on a jaw if it is this close to the jaw's circle; this includes tangent points given with
+// four decimals.
 constexpr double kOnJaw = 2e-4;
 
 // [rad] Length of one straight piece of a drawn arc.
@@ -52,7 +52,7 @@ std::vector<Link> link_ends(const Table& table) {
                 join(a, b, -1);
         }
     }
-    std::vector<int> jaws(static_cast<std::size_t>(ends), -1);  // at which a free end lies
+    std::vector<int> jaws(static_cast<std::size_t>(ends), -1);  // on which a free end lies
     for (int a = 0; a < ends; ++a)
         if (free(a)) jaws[a] = jaw_at(table, point_of(table, a));
     for (int a = 0; a < ends; ++a) {
@@ -113,7 +113,7 @@ std::vector<Chain> join_outline(const Table& table) {
     const std::vector<Link> links = link_ends(table);
     std::vector<char> used(table.cushions.size(), 0);
     std::vector<Chain> chains;
-    // Open chains start at a free end; the cushions that remain after them form closed chains.
+    // Open chains start at a free end; the remaining cushions form closed chains.
     for (int pass = 0; pass < 2; ++pass) {
         for (std::size_t end = 0; end < links.size(); ++end) {
             const bool start = pass == 1 || links[end].end < 0;
@@ -182,9 +182,9 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
         }
         return true;
     };
-    // A point that is no ear becomes one only by a cut beside it: as long as its triangle
-    // is the same, the innermost of the points in there is not convex, so it is not cut
-    // off. An outline of n points takes n^2 steps, where asking all anew takes n^3.
+    // A point that is not an ear becomes one only through a cut next to it. As long as its triangle is the
+    // same, the innermost point inside it is not convex, so it is not cut off. An outline of n points takes
+    // n^2 steps, instead of n^3 if every point were checked again.
     std::vector<char> no_ear(polygon.size(), 0);
     while (left.size() >= 3) {
         const std::size_t n = left.size();
@@ -197,8 +197,8 @@ std::vector<int> triangulate(const std::vector<Vec2>& polygon) {
                 no_ear[left[i]] = 1;
         }
         if (ear == n) {
-            // No ear: the remaining points are collinear, or the
-            // outline crosses itself. Any cut then ends the loop.
+            // No ear: the remaining points are collinear, or the outline crosses itself. Any cut then ends
+            // the loop.
             ear = 0;
             std::fill(no_ear.begin(), no_ear.end(), 0);
         }

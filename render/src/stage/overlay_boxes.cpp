@@ -21,8 +21,8 @@ double text_height(const DrawList& list) {
     return std::clamp(std::min(list.camera.size.height / 48.0, list.camera.size.width / 36.0), 5.0, 28.0);
 }
 
-// [pixels] From the sides of the image to the panels, so that
-// they leave the corner pockets of a table free that fills it.
+// [pixels] From the sides of the image to the panels, which leaves the corner pockets free if the table fills
+// the image.
 double side_room(const DrawList& list) {
     return 0.11 * list.camera.size.width;
 }

@@ -39,7 +39,7 @@ int pieces_of(const Camera& camera, const Segment& segment, double lasts) {
     // acceleration across the first direction
     const double across = std::abs(cross(v, segment.a)) / v.norm();
     if (!(across > 1e-9 * segment.a.norm())) return 1;
-    // A piece of duration h is a h^2 / 8 away from its chord at most.
+    // A piece of duration h is at most a h^2 / 8 away from its chord.
     double scale = 0.0;
     for (const double at : {0.0, 0.5, 1.0}) {
         const Vec3 place = position_at(segment, at * lasts);
@@ -93,7 +93,7 @@ void add_events(DrawList& list, const Record& record, double t) {
         if (event.time > t) break;
         const EventPhase phase = kind(event.type).phase;
         if ((phase != EventPhase::kImpact && phase != EventPhase::kStrike) || event.a < 0) continue;
-        const double when = std::nextafter(event.time, -1.0);  // before the ball is moved into a pocket
+        const double when = std::nextafter(event.time, -1.0);  // before the ball moves into a pocket
         Vec3 place = record.state_at(event.a, when).position;
         const bool pair = event.b >= 0 && balls_collide(event.type);
         if (pair) place = 0.5 * (place + record.state_at(event.b, when).position);
@@ -118,8 +118,8 @@ void add_arrow_head(DrawList& list, const Vec3& tip, const Vec3& along, double s
     }
 }
 
-// Adds a dark copy under the lines from `first` on; a yellow
-// line on a yellow ball would otherwise not be visible.
+// Adds a dark copy under the lines from `first` on; a yellow line on a yellow ball would otherwise be
+// invisible.
 void add_outline(DrawList& list, std::size_t first, float wider) {
     std::vector<DrawLine> dark(list.lines.begin() + static_cast<std::ptrdiff_t>(first), list.lines.end());
     for (DrawLine& line : dark) {

@@ -7,7 +7,7 @@
 
 namespace carom::render {
 
-/// Adds the selected overlays at time t [s]. cost: that of this frame, for the margin bar.
+/// Adds the selected overlays at time t [s]. cost: this frame's, for the margin bar.
 void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, double t,
                  std::optional<FrameBudget> cost);
 

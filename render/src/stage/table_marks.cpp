@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kAboveCloth = 0.0005;  // [m] height of painted marks above the cloth
 
-// [m] The shader draws the edge of a mark as wide as a pixel; the triangles reach this far beyond the mark.
+// [m] The shader draws the edge of a mark one pixel wide; the triangles reach this far beyond the mark.
 constexpr double kEdge = 0.008;
 
 void line(MeshBuilder& builder, const std::vector<Vec2>& points, double width, double opacity) {
@@ -35,7 +35,7 @@ void diamond(MeshBuilder& builder, const Vec2& center, double z, bool along_y) {
 void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builder, double rail) {
     const double z = mesh.wood_top + 0.0006;
     for (int i = 1; i < 8; ++i) {
-        if (i == 4 && !table.pockets.empty()) continue;  // the side pocket is there
+        if (i == 4 && !table.pockets.empty()) continue;  // the side pocket is here
         const double y = table.length * i / 8.0;
         diamond(builder, {-rail, y}, z, true);
         diamond(builder, {table.width + rail, y}, z, true);

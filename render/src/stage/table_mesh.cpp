@@ -73,8 +73,8 @@ class TableMaker {
         if (played_.empty()) played_.add(Vec2::Zero());
         const Box& whole = outline_.empty() ? played_ : outline_;
         mesh_.origin = 0.5 * (whole.low + whole.high);
-        // With sharp edges the wood is level with the cushions:
-        // its inner side would be a strip of a pixel at most.
+        // With sharp edges the wood is level with the cushions: its inner side would be a strip of at most a
+        // pixel.
         mesh_.wood_top = nose_ + (sharp_ ? 0.0 : kWoodRise);
     }
 
@@ -84,8 +84,8 @@ class TableMaker {
                std::any_of(chains.begin(), chains.end(), [](const Chain& chain) { return chain.has_jaw; });
     }
 
-    // The side of an open chain on which the balls are: +1:
-    // all left; -1: all right; 0: on both sides, or no balls.
+    // The side of an open chain on which the balls are: +1: all left; -1: all right; 0: on both sides, or no
+    // balls.
     int side_of_balls(const Chain& chain) const {
         bool left = false, right = false;
         for (const Vec2& ball : visited_) {
@@ -132,7 +132,7 @@ class TableMaker {
         }
     }
 
-    // [m] What is further behind the nose than half the radius of a jaw would fold over itself there.
+    // [m] Anything farther behind the nose than half the radius of a jaw would fold over itself there.
     double largest_inset() const {
         double largest = 1.0;
         for (const Jaw& jaw : table_.jaws)
@@ -172,9 +172,9 @@ class TableMaker {
         shade_cloth(chain);
     }
 
-    // A cushion whose back is known: its outline, closed by a straight line if
-    // it is open. The caller chooses a wooden top for a body that is
-    // free-standing on the cloth, where a top of cloth would hardly be visible.
+    // A cushion whose back is known: its outline, closed by a straight line if it is open. For a body that
+    // stands alone on the cloth, the caller chooses a wooden top, because a top of cloth would hardly be
+    // visible.
     void add_body(const Chain& chain, Material top = Material::kCushion) {
         const double inset = std::min(0.006, largest_inset());
         add_nose(chain, inset);
@@ -291,7 +291,7 @@ class TableMaker {
     void add_pocket(const Pocket& pocket) {
         const double bottom = -(pocket.depth + R_ + 0.03);
         mesh_.holes.push_back({pocket.center, pocket.radius});
-        // Above the cloth, the wall of the hole and its rim stand only where the wooden frame is.
+        // Above the cloth, the wall of the hole and its rim exist only where the wooden frame is.
         const Bounds inner{mesh_.inner_low, mesh_.inner_high, 0.0};
         const double rim = mesh_.wood_top + 0.0015;
         builder_.well(pocket.center, pocket.radius, rim, 0.0, Material::kPocket, &inner);

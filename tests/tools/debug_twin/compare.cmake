@@ -1,7 +1,7 @@
 # cmake -DPROGRAM=carom -DSOURCE=repository -DBINARY=folder -DCOMPILER=c++ -P compare.cmake
 #
-# Builds the debug twin and runs every scene with both: the release on the widest instruction set, the twin on the
-# narrowest and the widest. One hash per scene.
+# Builds the debug twin and runs every scene with both: the release on the widest instruction set, the twin on
+# the narrowest and the widest. All must give the same hash.
 function(run_or_fail)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -11,7 +11,8 @@ endfunction()
 
 function(hash_of result isa)
   set(ENV{CAROM_ISA} "${isa}")
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output OUTPUT_STRIP_TRAILING_WHITESPACE)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output
+    OUTPUT_STRIP_TRAILING_WHITESPACE)
   string(LENGTH "${output}" length)
   if(NOT status EQUAL 0 OR NOT length EQUAL 16)
     message(FATAL_ERROR "no hash from: ${ARGN}\n${output}")

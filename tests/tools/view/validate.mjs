@@ -1,5 +1,5 @@
-// node validate.mjs MODULES FILE.glb ...: what the Khronos validator of glTF, installed in the folder MODULES, says about each file; nothing, if
-// there is nothing to say. Exit status 1: it says something.
+// node validate.mjs MODULES FILE.glb ...: prints what the Khronos glTF validator, installed in the folder
+// MODULES, finds in each file. Exit status 1: it finds something.
 import {readFileSync} from "node:fs";
 import {createRequire} from "node:module";
 import {resolve} from "node:path";

@@ -1,5 +1,5 @@
-// Time for benchmarks: the processor time of this thread, so
-// that other work of the machine counts as little as possible.
+// Time for benchmarks: this thread's processor time, so that other work on the machine counts as little as
+// possible.
 #pragma once
 
 #include <time.h>
@@ -17,8 +17,8 @@ inline double thread_ns() {
     return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
-/// Length of a cycle [ns]: in a chain of dependent additions each one takes a cycle. A register is added,
-/// because some processors execute several additions of constants at once when they rename registers.
+/// Length of a cycle [ns]: each addition in a dependent chain takes one cycle. The chain adds a register,
+/// because some processors fold additions of constants when they rename registers.
 inline double cycle_ns() {
     constexpr int kAdds = 100000;
     double best = 1e30;

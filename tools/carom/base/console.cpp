@@ -19,12 +19,12 @@
 namespace carom::tools {
 namespace {
 
-/// Work that takes less time than this shows no progress line.
+/// Shorter work shows no progress line.
 constexpr std::chrono::milliseconds kPatience(300);
 
 /// Written by the handler, read by every thread that works.
 std::atomic<int> g_interrupts = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait");
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not block");
 volatile std::sig_atomic_t g_signal = SIGINT;
 
 void on_interrupt(int signal) {
@@ -35,26 +35,26 @@ void on_interrupt(int signal) {
 }
 
 void catch_interrupt(int signal) {
-    // A shell starts background jobs with SIGINT ignored; then it remains ignored.
+    // A shell starts background jobs with SIGINT ignored; keep it ignored.
     struct sigaction before {};
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler == SIG_IGN) return;
-    // SA_RESTART is not set, because a read that waits for input must return.
+    // SA_RESTART is not set: a read that waits for input must return.
     struct sigaction action {};
     action.sa_handler = on_interrupt;
     ::sigaction(signal, &action, nullptr);
 }
 
-/// Whether a progress line is on the terminal: there is one at most, whichever object wrote it.
+/// Whether the terminal shows a progress line. There is at most one, whichever object wrote it.
 std::atomic<bool> g_line_stands = false;
 
 void wipe_line() {
     if (g_line_stands.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
-/// Columns that a progress line may have now; the window may have been resized. A
-/// terminal that does not tell its width is taken to have 80. Three columns stay
-/// free: a line that is wrapped could not be removed, and Ctrl-C is shown as "^C".
+/// Columns available to a progress line now; the window may have been resized. A terminal that does not
+/// report its width counts as 80 columns wide. Three columns stay free: a wrapped line could not be removed,
+/// and Ctrl-C is echoed as "^C".
 std::size_t columns() {
     struct winsize size {};
     constexpr std::size_t kUsual = 80, kFree = 3;
@@ -62,7 +62,7 @@ std::size_t columns() {
     return all - std::min(all, kFree);
 }
 
-/// The command line and the program's version, as prepare_process() was given them.
+/// The command line and the version that prepare_process() was given.
 std::string& kept_command_line() {
     static std::string line;
     return line;
@@ -114,14 +114,14 @@ void prepare_process(int argc, char** argv, const char* version, const char* pro
     kept_program() = program;
     kept_command_line() = program;
     for (int i = 1; i < argc; ++i) kept_command_line() += " " + shell_word(argv[i]);
-    // If a standard stream is closed, the first file that is opened would get its number. So /dev/null is
-    // opened in its place, in the wrong direction, so that using the stream fails as if it were closed.
+    // If a standard stream is closed, the next file opened would take its number. Open /dev/null in its
+    // place, in the wrong direction, so that using the stream fails as if it were still closed.
     for (int fd = 0; fd <= 2; ++fd) {
         if (::fcntl(fd, F_GETFD) != -1) continue;
         if (::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) < 0) ::_exit(kFailed);
     }
     std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is seen as a failed write
-    std::signal(SIGXFSZ, SIG_IGN);  // so is the limit of a file's size; the incomplete file is removed
+    std::signal(SIGXFSZ, SIG_IGN);  // so is the file size limit; the incomplete file is removed
     catch_interrupt(SIGINT);
     catch_interrupt(SIGTERM);
 }
@@ -131,8 +131,8 @@ std::string counted(std::size_t count, std::string_view what) {
 }
 
 void print(std::string_view text) {
-    // Output to a file or a pipe does not remove the line: it
-    // may be the very work whose progress the line shows.
+    // If output goes to a file or a pipe, keep the line: the output may be the very work whose progress it
+    // shows.
     static const bool on_terminal = ::isatty(1) == 1;
     if (on_terminal) wipe_line();
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();
@@ -193,7 +193,7 @@ void ProgressLine::show_bar(long done, long total) {
     const double part =
         total > 0 ? std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0) : 1.0;
     const std::string numbers = fmt::format("{} of {}", done, total);
-    // The line consists of the title, a blank, the bar in brackets, a blank, and the numbers.
+    // The line is the title, a space, the bar in brackets, a space, and the numbers.
     const std::size_t other = title_.size() + numbers.size() + 4, all = columns();
     const std::size_t width = std::min(kWidest, all - std::min(all, other));
     if (width < kNarrowest) {

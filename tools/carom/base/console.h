@@ -1,4 +1,4 @@
-// What every command uses to talk to the person or program that called it: output, progress, interruption.
+// What every command needs to talk to its caller, person or program: output, progress, interruption.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ inline constexpr int kFailed = 1;
 inline constexpr int kBadUsage = 2;
 // A run that a signal interrupted returns 128 + the number of the signal: interrupted_status().
 
-/// An option is wrong, or input other than a scene is. The exit status is 2.
+/// An option is wrong, or an input other than a scene. The exit status is 2.
 class UsageError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -23,43 +23,40 @@ class UsageError : public std::runtime_error {
 /// SIGINT or SIGTERM was received. The exit status is 130 or 143.
 class Interrupted : public std::exception {};
 
-/// The reader of standard output has ended (`carom ... | head
-/// -1`). The exit status is 1, and no message is printed.
+/// The reader of standard output has gone away (`carom ... | head -1`). The exit status is 1, and no message
+/// is printed.
 class OutputClosed : public std::exception {};
 
-/// Sets up signals and the three standard streams, and keeps the command line.
-/// Must be called once, before anything else. `program`: how messages begin.
+/// Sets up signals and the three standard streams, and keeps the command line. Call it once, before anything
+/// else. Every message begins with `program`.
 void prepare_process(int argc, char** argv, const char* version, const char* program = "carom");
 
-/// How the program was called, as it can be typed again;
-/// empty in a test that has not called prepare_process().
+/// The command line in a form that can be typed again; empty in a test that has not called prepare_process().
 const std::string& command_line();
 const std::string& program_version();
 
-/// An argument as a shell takes it: in quotes where it has to be.
+/// Quotes an argument for a shell if it needs quotes.
 std::string shell_word(const std::string& argument);
 
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Writes results to standard output. A progress line on the terminal is removed first. A failure to write is
-/// an error.
-/// @throws OutputClosed, std::runtime_error
+/// Writes results to standard output, after removing a progress line from the terminal.
+/// @throws OutputClosed, std::runtime_error if writing fails
 void print(std::string_view text);
 void flush_output();
 
-/// Writes one line to standard error, which begins with the name of the program.
+/// Writes one line to standard error, prefixed with the program's name.
 void message(std::string_view text);
 
-/// SIGINT and SIGTERM only set a flag, so that no incomplete
-/// file is left. Long work must ask for it regularly.
+/// SIGINT and SIGTERM only set a flag, so that no incomplete file is left behind. Long work must check it
+/// regularly.
 bool interrupted() noexcept;
 void throw_if_interrupted();
 int interrupted_status() noexcept;
 
-/// A line on standard error that is renewed while work goes on. Nothing is
-/// written if standard error is not a terminal. The line is not longer than
-/// the terminal is wide, and it is removed before anything else is written.
+/// A line on standard error that is updated while work goes on. It is never wider than the terminal, and it
+/// is removed before anything else is written. If standard error is not a terminal, nothing is written.
 class ProgressLine {
   public:
     explicit ProgressLine(std::string title);
@@ -67,8 +64,8 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether it is time to renew the line; if so, the next true answer comes 0.1 s later. The call is
-    /// cheap, so that callers can make their text only when it is needed.
+    /// Whether it is time to update the line; the next true answer comes 0.1 s later. Cheap, so that callers
+    /// can ask before they build the text.
     bool due();
     void show_text(std::string_view text);
 

@@ -17,26 +17,25 @@ long frame_of(double t, double from, double fps, long frames);
 
 /// What the simulation cost during one frame [ms].
 struct FrameCost {
-    double detect_ms = 0.0;           ///< finding its events, and looking for new ones after each
-    double resolve_ms = 0.0;          ///< advancing and resolving, without the two below
+    double detect_ms = 0.0;           ///< finding its events, and searching again after each
+    double resolve_ms = 0.0;          ///< advancing and resolving, without the next two
     double kernel_ms = 0.0;           ///< inside the kernel of ball-ball impacts
     double cluster_ms = 0.0;          ///< inside the map of impacts of three balls and more
     std::vector<std::size_t> events;  ///< indices into Record::events
     double simulate_ms() const { return detect_ms + resolve_ms + kernel_ms + cluster_ms; }
 };
 
-/// Sums the costs of a profiled record by frame. The first detection of all pairs, made before any event,
-/// belongs to frame 0. The sums over all frames are equal to the sums over all events.
+/// Sums the costs of a profiled record by frame. The first search of all pairs, made before any event,
+/// belongs to frame 0. The sums over all frames equal the sums over all events.
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames);
 
-/// Percentile by nearest rank: the smallest value such that at least p percent of all values are not above
+/// Percentile by nearest rank: the smallest value such that at least p percent of all values do not exceed
 /// it.
-/// @param sorted  ascending, not empty   @param p  0..100
+/// @param sorted ascending, not empty @param p 0..100
 double percentile(const std::vector<double>& sorted, double p);
 
-/// Measures the wall time of frames that are made one after the other, from the times at
-/// which each one was finished. What the caller does between them (a progress bar, removing
-/// files) does not count. The caller gives the clock, so that a test can replace it.
+/// Measures the wall time of frames made one after the other. What the caller does between them (progress
+/// bar, removing files) does not count. The caller supplies the clock, so that a test can replace it.
 class FrameWalls {
   public:
     explicit FrameWalls(std::function<double()> now_ms) : now_ms_(std::move(now_ms)) {}

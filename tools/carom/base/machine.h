@@ -1,4 +1,4 @@
-// What a benchmark says about the machine that it ran on.
+// What a benchmark reports about the machine it runs on.
 #pragma once
 
 #include <fstream>

@@ -61,7 +61,7 @@ void draw(MarginRun& run, const FrameSettings& drawn, double fps, const std::str
     }
 }
 
-/// The cost of a frame that is shown but not written to a file.
+/// The cost of a frame that is shown but not written.
 double shown_ms(const Margin& margin, std::size_t frame) {
     return margin.total[frame] - margin.stage[kEncode][frame] - margin.stage[kWrite][frame];
 }
@@ -143,7 +143,7 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
                 if (k < run.stage[s].size()) samples.push_back(run.stage[s][k]);
             margin.stage[s].push_back(samples.empty() ? 0.0 : median(samples));
         }
-        // What is encoded is the same in every run.
+        // Every run encodes the same share.
         if (rendered && k < runs.front().encoded_share.size())
             margin.encoded_share.push_back(runs.front().encoded_share[k]);
         double ms = margin.stage[kSimulate][k];

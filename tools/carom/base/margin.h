@@ -1,4 +1,4 @@
-// What every frame costs, stage by stage.
+// The cost of every frame, stage by stage.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ namespace carom::tools {
 
 /// How the frames of a margin are drawn.
 struct FrameSettings {
-    /// Default: that of the scene.
+    /// Default: the scene's.
     std::optional<FrameSize> size;
     std::string gl = "auto";
 };
 
-/// What is measured of a frame. simulate is the sum of the four behind it; a frame costs simulate and the
-/// five after kCluster.
+/// The stages of a frame. kSimulate is the sum of the next four; a frame costs kSimulate plus the four after
+/// kCluster.
 enum MarginStage : std::size_t {
     kSimulate,
     kDetect,
@@ -36,22 +36,23 @@ enum MarginStage : std::size_t {
 const char* name(MarginStage stage);
 bool is_part_of_simulate(std::size_t stage);
 
-/// One run: costs of every frame in ms, one list per stage; without rendering those from kDraw on are empty.
+/// One run: the cost of every frame [ms], one list per stage. Without rendering, the lists from kDraw on are
+/// empty.
 struct MarginRun {
     Record record;
     std::vector<FrameCost> frames;
     std::vector<double> stage[kMarginStages];
-    // Wall time of the same work, which is done one frame after the other [ms].
+    // Wall time of the same work [ms], done one frame after the other.
     double simulate_wall_ms = 0.0;
-    /// By frame: the share of its picture that was encoded anew; empty if nothing was drawn.
+    /// Per frame: the share of the picture that was encoded anew; empty if nothing was drawn.
     std::vector<double> encoded_share;
-    /// Of drawing to writing [ms], for every frame except the first.
+    /// From drawing to writing [ms], for every frame except the first.
     std::vector<double> frame_walls;
     double total(std::size_t frame) const;
 };
-/// Appends what simulating one frame cost.
+/// Appends the cost of simulating one frame.
 void add_simulation(MarginRun& run, const FrameCost& frame);
-/// Simulates once, with the clock on. @param drawn  how the frames are drawn; null: they are not
+/// Simulates once with timing on. @param drawn how to draw the frames; null: not drawn
 MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, const std::string& title);
 
 /// Compares the sum of the parts with the wall time, over
@@ -72,33 +73,33 @@ struct Range {
     double low = 0.0, high = 0.0;
 };
 
-/// What the measurement itself costs: runs with and without it, in alternation.
+/// What the measurement itself costs, from alternating runs with and without it.
 struct TimingCost {
-    double clock_ns = 0.0;                     ///< of reading the clock once
-    double plain_ms = 0.0, profiled_ms = 0.0;  ///< the whole simulation, minima
+    double clock_ns = 0.0;                     ///< one reading of the clock
+    double plain_ms = 0.0, profiled_ms = 0.0;  ///< the whole simulation; minimum over the runs
     double share() const { return profiled_ms / plain_ms - 1.0; }
 };
 TimingCost cost_of_timing(const Plan& plan);
 
-/// All runs together: every frame with its median over them.
+/// All runs combined: each frame has its median over the runs.
 struct Margin {
     double fps = 60.0, budget_ms = 0.0;
     FrameSize size{};
     bool rendered = true;
     std::vector<double> stage[kMarginStages];
     std::vector<double> total;
-    std::vector<double> encoded_share;  ///< as of a run
+    std::vector<double> encoded_share;  ///< as in MarginRun
     long missed = 0;
     long missed_shown = 0;  ///< if only simulate, draw and readback counted, and no file were written
     std::size_t worst = 0;
     Range p50_runs, p99_runs, missed_runs;  ///< over the runs
     double frame_spread = 0.0;              ///< median over the frames of (max - min) / median over the runs
     int runs = 0;
-    Accounting accounting;  ///< of all runs
+    Accounting accounting;  ///< over all runs
     TimingCost timing;
 
     bool has(std::size_t s) const { return rendered || s <= kCluster; }
-    /// The part of the budget that is left [%]; negative for a frame that was missed.
+    /// The share of the budget that is left [%]; negative for a missed frame.
     double slack(std::size_t frame) const { return 100.0 * (1.0 - total[frame] / budget_ms); }
 };
 Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered);

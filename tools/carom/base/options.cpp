@@ -28,12 +28,12 @@ constexpr bool kIsList = false;
 template <class T>
 constexpr bool kIsList<std::vector<T>> = true;
 
-/// Shows options in --help in one form with every release of
-/// CLI11, whose own forms differ (2.1: "S=0", 2.4: "S [0]").
+/// Formats options in --help the same with every release of CLI11, whose own formats differ (2.1: "S=0", 2.4:
+/// "S [0]").
 class HelpFormatter : public CLI::Formatter {
   public:
-    /// The text after the name: type and choices, default, whether
-    /// it may be repeated, which options it needs or excludes.
+    /// The text after the name: type and choices, default, whether it may be repeated, and which options it
+    /// needs or excludes.
     std::string make_option_opts(const CLI::Option* option) const override {
         if (option->get_type_size() == 0) return "";
         std::string text;
@@ -47,12 +47,12 @@ class HelpFormatter : public CLI::Formatter {
     }
 };
 
-/// CLI::IsMember, with the nearest choice in the message.
+/// CLI::IsMember, but the message suggests the nearest choice.
 CLI::Validator is_choice(const std::vector<std::string>& choices) {
     const std::string all = fmt::format("{{{}}}", fmt::join(choices, ","));
     const auto problem = [choices, all](const std::string& text) {
         if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
-        return fmt::format("{} not in {}{}", printable(text), all,
+        return fmt::format("{}: expected one of {}{}", printable(text), all,
                            did_you_mean(text, {choices.begin(), choices.end()}));
     };
     return {problem, all};
@@ -67,7 +67,7 @@ void restrict(CLI::Option& option, CLI::App& app, const Option& row) {
     option.default_str(row.default_text());
 }
 
-/// What is wrong with a number that must be whole and not negative; CLI11 takes -1 for the largest one.
+/// Checks for a whole, non-negative number; CLI11 would read -1 as the largest one.
 std::string is_count(const std::string& text) {
     std::uint64_t number = 0;
     const char* const end = text.data() + text.size();
@@ -78,7 +78,7 @@ std::string is_count(const std::string& text) {
 template <class T>
 void add_option(CLI::App& app, const Option& row, const std::string& names, T& variable) {
     CLI::Option* option = app.add_option(names, variable, row.text);
-    if constexpr (kIsList<T>) option->allow_extra_args(false);
+    if constexpr (kIsList<T>) option->allow_extra_args(row.by_place());
     if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<double>>)
         option->delimiter(',');
     if constexpr (std::is_same_v<T, std::uint64_t>) option->check(is_count);
@@ -93,10 +93,10 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
     restrict(*option, app, row);
 }
 
-/// Gives a command's table to CLI11. `named` becomes the command that the command line names.
+/// Hands a command's table to CLI11. `named` becomes the command named on the command line.
 void fill(CLI::App& app, const Options& command, const Options*& named) {
     if (!command.footer.empty()) app.footer(command.footer);
-    // if none is named, run_command_line reports it with a better message than that of CLI11
+    // if no command is named, run_command_line reports it better than CLI11
     app.require_subcommand(0, 1);
     for (const Option& row : command.rows) {
         const auto names = fmt::format("{}", fmt::join(row.names, ","));
@@ -125,15 +125,14 @@ std::string listed(const std::list<Options>& commands) {
     return text;
 }
 
-/// The program and the commands that the command line names: "carom-lab bench".
+/// The program and the commands named on the command line: "carom-lab bench".
 std::string path_of(const CLI::App& app) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return app.get_name() + (named.empty() ? "" : " " + path_of(*named.front()));
 }
 
-/// The arguments in the order that CLI11 wants, the last one first. `carom help
-/// [COMMAND]` and `carom version` are `--help` and `--version`, and a first
-/// word that is no command is told apart from an option. @throws UsageError
+/// The arguments in CLI11's order, last first. Turns `carom help [COMMAND]` and `carom version` into `--help`
+/// and `--version`, and reports a first word that is neither a command nor an option. @throws UsageError
 std::vector<std::string> with_spelled_help(const Options& program, int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const auto named = [&program](const std::string& word) {
@@ -147,19 +146,19 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
         words[0] = "--version";
     } else if (!words.empty() && !words[0].starts_with('-') && !named(words[0])) {
         if (std::filesystem::exists(words[0]))
-            throw UsageError(fmt::format("{}: name a command before the file, as in carom simulate {}",
-                                         words[0], words[0]));
+            throw UsageError(
+                fmt::format("{}: no command before the file; try carom simulate {}", words[0], words[0]));
         std::vector<std::string_view> names;
         for (const Options& command : program.commands) names.emplace_back(command.name);
         const std::string near = did_you_mean(words[0], names);
-        throw UsageError(fmt::format("there is no command {}{}", in_quotes(words[0]),
-                                     near.empty() ? "; there are " + listed(program.commands) : near));
+        throw UsageError(fmt::format("unknown command {}{}", in_quotes(words[0]),
+                                     near.empty() ? "; expected " + listed(program.commands) : near));
     }
     std::reverse(words.begin(), words.end());
     return words;
 }
 
-/// Refuses files without a name, and two uses of one file: what is written last would be all that is left.
+/// Refuses empty file names, and a file that is named twice: the last write would replace the rest.
 void check_files(const Options& command, const CLI::App& app) {
     struct Used {
         std::string option, path;
@@ -173,10 +172,11 @@ void check_files(const Options& command, const CLI::App& app) {
         const bool written = row.value.starts_with("FILE") || row.value == "PATTERN";
         if (path == nullptr || !(written || row.by_place())) continue;
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
-            throw UsageError(row.names.front() + ": a file without a name; give it one");
+            throw UsageError(row.names.front() + ": empty file name; name a file");
         if (written && **path == "-" && !row.to_stdout)
-            throw UsageError(row.names.front() +
-                             " -: give a name; /dev/stdout is standard output, summary included");
+            throw UsageError(
+                row.names.front() +
+                " -: expected a file name; /dev/stdout writes to standard output, together with the summary");
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {
@@ -192,7 +192,7 @@ void check_files(const Options& command, const CLI::App& app) {
                 throw UsageError(
                     fmt::format("{} and {} name the same file; give each its own", one.option, two.option));
             const Used& out = one.written ? one : two;
-            throw UsageError(fmt::format("{} {} would replace what is read; give it another name", out.option,
+            throw UsageError(fmt::format("{} {} would overwrite the input; choose another name", out.option,
                                          in_quotes(out.path)));
         }
     }
@@ -279,7 +279,7 @@ int run_command_line(Options& program, int argc, char** argv) {
         return named->run();
     }
     throw UsageError(
-        fmt::format("a command is missing: {}; see {} --help", listed(named->commands), path_of(app)));
+        fmt::format("no command given: expected {}; see {} --help", listed(named->commands), path_of(app)));
 }
 
 }  // namespace carom::tools

@@ -1,6 +1,6 @@
-// The commands of the program and their options as one table. From it the
-// command line is parsed, and --help, the man page and the completions are
-// written. Only options.cpp includes CLI11, which takes seconds to compile.
+// The program's commands and their options as one table. The command line is parsed from it, and --help, the
+// man page and the completions are written from it. Only options.cpp includes CLI11, which takes seconds to
+// compile.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@
 
 namespace carom::tools {
 
-/// The variable that an option sets; nothing for --help and --version. An option
-/// for a list of strings may be repeated; a list of numbers is written with commas.
+/// The variable that an option sets; nothing for --help and --version. A list of strings comes from a
+/// repeated option; a list of numbers is separated by commas.
 using OptionTarget = std::variant<std::monostate, bool*, int*, long*, std::uint64_t*, double*, std::string*,
                                   std::optional<int>*, std::optional<long>*, std::optional<double>*,
                                   std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
 
-/// One row of the table: an option, a flag, or an argument that is known by its place.
+/// One row of the table: an option, a flag, or a positional argument.
 struct Option {
-    std::vector<std::string> names;  ///< "-o", "--output"; of an argument "SCENE"
+    std::vector<std::string> names;  ///< "-o", "--output"; "SCENE" for an argument
     OptionTarget target;
     std::string value;  ///< what the option takes, "FILE.csv"; empty for flags and arguments
     std::string text;
-    std::vector<std::string> choices;                ///< all values that are allowed; empty: any
-    std::optional<std::pair<double, double>> range;  ///< of the value, both ends included
+    std::vector<std::string> choices;                ///< all allowed values; empty: any
+    std::optional<std::pair<double, double>> range;  ///< allowed values, both ends included
     bool required = false;
-    bool to_stdout = false;       ///< a FILE that is - is standard output
-    std::string needs, excludes;  ///< the name of another option, whose row stands before this one
+    bool to_stdout = false;       ///< FILE may be -, standard output
+    std::string needs, excludes;  ///< names of other options, whose rows come before this one
 
     Option& in(double least, double most);
     Option& one_of(std::vector<std::string> values);
@@ -46,7 +46,7 @@ struct Options {
     Options(std::string command_name, std::string description);
 
     std::string name, text;
-    std::string footer;   ///< stands after the options in --help; empty: that of the program
+    std::string footer;   ///< printed after the options in --help; empty: the program's
     std::string version;  ///< of the program
     std::vector<Option> rows;
     std::list<Options> commands;
@@ -66,8 +66,8 @@ struct Options {
         return {added, *args};
     }
 
-    // These add a row and return it, so that the members that few options use
-    // can be set. The next row may move it. A flag negates its variable.
+    // Each adds a row and returns it, so that its rarely used members can be set; the next call may move it.
+    // A flag negates its variable.
     Option& argument(const std::string& place, std::string& variable, std::string description);
     Option& flag(const std::string& names, bool& variable, std::string description);
     Option& option(const std::string& names, OptionTarget variable, std::string value,

@@ -1,5 +1,5 @@
-// Interleaved rounds: things that are compared are measured in alternation, in a new order each round, so
-// that a drift of the machine's speed favours none of them.
+// Interleaved rounds: what is compared is measured alternately, in a new order each round, so that a drift of
+// the machine's speed favours none of it.
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@
 namespace carom::tools {
 namespace {
 
-/// More frames than this (46 hours at 60 fps) is taken for a typing error: it would fill any disk.
+/// More frames than this (46 hours at 60 fps) are taken for a typing error: they would fill any disk.
 constexpr double kMostFrames = 1e7;
 constexpr double kFastestFps = 1e6;
 
@@ -30,14 +30,13 @@ std::optional<FrameSize> two_numbers(const std::string& text) {
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    command
-        .option("--gl", &gl, "NAME", "OpenGL without a display; auto: osmesa where it is installed, else egl")
+    command.option("--gl", &gl, "NAME", "Offscreen OpenGL; auto: osmesa if installed, else egl")
         .one_of({"auto", "osmesa", "egl"});
 }
 
 void add_picture(Options& command, std::optional<double>& fps, std::string& size) {
     command.option("--fps", &fps, "F", "Frames per second (default: the scene's, else 60)");
-    command.option("--size", &size, "WxH", "Pixels (default: the scene's, else 1280x720)");
+    command.option("--size", &size, "WxH", "Size in pixels (default: the scene's, else 1280x720)");
 }
 
 void add_repeat(Options& command, int& rounds, std::string description) {
@@ -50,7 +49,7 @@ void add_cloth_slip(Options& command, std::string& name, std::string description
 }
 
 void add_reports(Options& command, std::string& csv, bool& json) {
-    command.option("--csv", &csv, "FILE.csv", "Write the table (default: not written)");
+    command.option("--csv", &csv, "FILE.csv", "Write the table to a file (default: not written)");
     command.flag("--json", json, "Print JSON (default: off)");
 }
 
@@ -80,7 +79,7 @@ int guarded(int (*run)(int argc, char** argv), int argc, char** argv) {
 
 void check_page_path(const std::string& option, const std::string& path) {
     if (!path.empty() && !path.ends_with(".html") && !path.ends_with(".htm"))
-        throw UsageError(option + " " + path + ": a page is an HTML file; give it a name that ends in .html");
+        throw UsageError(option + " " + path + ": pages are HTML; give a name that ends in .html");
 }
 
 kernel::Isa chosen_isa() {
@@ -144,8 +143,9 @@ double chosen_fps(std::optional<double> asked, const RenderSettings& settings) {
 long checked_frame_count(double from, double to, double fps) {
     const double estimate = (to - from) * fps;
     if (!(estimate <= kMostFrames)) {
-        throw UsageError(fmt::format("from {} s to {} s at {} fps would be more than {:.0f} frames", from, to,
-                                     fps, kMostFrames));
+        throw UsageError(fmt::format(
+            "from {} s to {} s at {} fps is more than {:.0f} frames; lower the rate or shorten the time",
+            from, to, fps, kMostFrames));
     }
     return render::frame_count(from, to, fps);
 }

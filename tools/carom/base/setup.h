@@ -1,4 +1,4 @@
-// Options that several commands have, and steps that several begin with.
+// Options that several commands share, and their common first steps.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace carom::tools {
 
-// Each of these adds options. The variables hold the defaults; those of add_picture are empty, and the scene
+// Each of these adds options, whose variables hold the defaults. Those of add_picture are empty: the scene
 // has the defaults.
 void add_gl(Options& command, std::string& gl);
 void add_picture(Options& command, std::optional<double>& fps, std::string& size);
@@ -24,36 +24,36 @@ void add_repeat(Options& command, int& rounds, std::string description);
 void add_cloth_slip(Options& command, std::string& name, std::string description);
 void add_reports(Options& command, std::string& csv, bool& json);
 
-/// Runs a program, and turns what was thrown into a message and an exit status.
+/// Runs a program, and turns exceptions into a message and an exit status.
 int guarded(int (*run)(int argc, char** argv), int argc, char** argv);
 
-/// Checks the name of a page before any work is done; it may be empty. @throws UsageError
+/// Checks the name of a page before any work is done; an empty name is valid. @throws UsageError
 void check_page_path(const std::string& option, const std::string& path);
 
-/// The instruction set that CAROM_ISA names, or else for every kernel the one that is fastest here.
+/// The instruction set that CAROM_ISA names, else the fastest one here for every kernel.
 /// @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();
 
 /// Reads a scene and plans it; its warnings go to standard error. @throws SceneError
 Plan plan_scene(const std::string& path);
 
-/// Options of a run that shows no progress line. SIGINT ends the run.
+/// Options of a run without a progress line. SIGINT ends the run.
 SimulateOptions interruptible();
 
 /// Calls simulate() and shows a progress line. SIGINT ends the run. @throws SimulationError, Interrupted
 Record simulate_plan(const Plan& plan, SimulateOptions options);
 
-/// A record from a file (.json), whose notes go to standard error, or else what simulating a scene gives.
+/// Reads a record from a file (.json), whose notes go to standard error, or simulates a scene.
 /// @throws SceneError, SimulationError, Interrupted
 Record read_shot(const std::string& path, SimulateOptions options);
 
-/// Whether a file is read as a record, by its name.
+/// Whether a file name is that of a record.
 inline bool is_record(const std::string& path) {
     return path.ends_with(".json");
 }
 
-/// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing if the text is
-/// anything else.
+/// Reads exactly kCount numbers with a separator between them: "1280x720". Returns nothing for any other
+/// text.
 template <class Number, std::size_t kCount>
 std::optional<std::array<Number, kCount>> numbers_in(const std::string& text, char separator) {
     std::array<Number, kCount> list{};
@@ -75,11 +75,10 @@ FrameSize parse_size(const std::string& text);
 /// Reads the columns and rows of a contact sheet, "4x3". @throws UsageError
 FrameSize parse_sheet(const std::string& text);
 
-/// The frames per second that the user asked for, or else those of the scene. @throws UsageError
+/// The frames per second that the user asked for, else the scene's. @throws UsageError
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings);
 
-/// The number of frames k with from + k / fps <= to. @throws UsageError if that is more than the program can
-/// number
+/// The number of frames k with from + k / fps <= to. @throws UsageError if there are too many
 long checked_frame_count(double from, double to, double fps);
 
 }  // namespace carom::tools

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Rounds to five significant digits. What is not finite becomes null.
+/// Rounds to five significant digits; a value that is not finite becomes null.
 Json rounded(double x) {
     if (!std::isfinite(x)) return nullptr;
     return std::strtod(fmt::format("{:.5g}", x).c_str(), nullptr);

@@ -12,16 +12,16 @@ namespace carom::tools {
 struct Axis {
     std::string title;
     bool logarithmic = false;
-    /// Default: what the points need.
+    /// Default: the range of the points.
     std::optional<double> low, high;
-    /// Where the marks are, and their text; empty: round values.
+    /// Positions and texts of the marks; empty: round values.
     std::vector<std::pair<double, std::string>> marks{};
 };
 
-/// Points, which may be joined by a line. Values that are not finite are not
-/// drawn, and values of 0 and below are not drawn on a logarithmic axis.
+/// Points, which may be joined by a line. Values that are not finite are skipped, as are values of 0 and
+/// below on a logarithmic axis.
 struct Series {
-    /// In the legend; empty: not there.
+    /// In the legend; empty: no entry.
     std::string name;
     std::vector<std::pair<double, double>> points;
     bool line = true, dots = true, dashed = false;
@@ -53,8 +53,8 @@ struct Plot {
     std::vector<Level> levels;
 };
 
-/// What chart.js draws. Values have five significant digits, far below a pixel.
-/// @param by_point  the reader looks at single points, not at all series at one x
+/// The chart as chart.js reads it. Values have five significant digits, far below a pixel.
+/// @param by_point the reader looks at single points, not at all series at one x
 nlohmann::ordered_json chart_json(const Plot& plot, bool by_point = false);
 
 }  // namespace carom::tools

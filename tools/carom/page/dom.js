@@ -1,10 +1,12 @@
-// Small helpers that every page uses: elements, numbers, and the frame of a page.
+// Small helpers for every page: elements, numbers, and the frame of a page.
 "use strict";
 
-/** An element: make("button", {class: "x", onclick: f}, "text", child, ...). Nothing here is ever parsed as HTML. */
+/** An element: make("button", {class: "x", onclick: f}, "text", child, ...). It never parses HTML. */
 function make(tag, attributes = {}, ...children) {
-  const svg = ["svg", "path", "line", "text", "g", "circle", "rect", "title"].includes(tag) && attributes.svg !== false;
-  const element = svg ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
+  const drawn = ["svg", "path", "line", "text", "g", "circle", "rect", "title"].includes(tag);
+  const svg = drawn && attributes.svg !== false;
+  const element =
+    svg ? document.createElementNS("http://www.w3.org/2000/svg", tag) : document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || key === "svg") continue;
     if (typeof value === "function") element[key] = value;
@@ -14,13 +16,13 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** What stands in the page under this id; null where there is nothing. */
+/** The page's data with this id, or null. */
 function pageData(id) {
   const element = document.getElementById(id);
   return element === null ? null : JSON.parse(element.textContent);
 }
 
-/** A number with a few digits, as a person reads it; thin spaces stand before units. */
+/** A number with a few digits, in a readable form. */
 function shown(x, digits = 3) {
   if (x === null || x === undefined) return "\u2013";
   if (typeof x !== "number") return typeof x === "boolean" ? (x ? "yes" : "no") : String(x);
@@ -33,23 +35,24 @@ function shown(x, digits = 3) {
   return String(Number(x.toPrecision(size >= 1000 ? Math.max(digits, 4) : digits)));
 }
 
-/** A time in ns in the unit that suits it. */
+/** A time in ns, in a suitable unit. */
 function duration(ns) {
   const [size, name] = ns < 1e3 ? [1, "ns"] : ns < 1e6 ? [1e3, "µs"] : ns < 1e9 ? [1e6, "ms"] : [1e9, "s"];
   return `${shown(ns / size)}\u2009${name}`;
 }
 
-/** Title, what was called, and the footer, around the parts of a page. */
+/** The header, with the title and lead, and the footer, with the command, around the parts of a page. */
 function pageFrame(page, ...parts) {
   document.body.append(
     make("header", {}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead || "")),
     make("main", {}, ...parts),
-    make("footer", {}, make("p", {}, "Made by ", make("code", {}, page.command)), make("p", {}, page.machine)));
+    make("footer", {}, make("p", {}, "Made by ", make("code", {}, page.command)),
+      make("p", {}, page.machine)));
 }
 
 const prefers = (what) => matchMedia(`(prefers-${what})`).matches;
 
-/** Calls draw() when the element has a width, and whenever that is another one; never while the browser lays out. */
+/** Calls draw() when the element gets a width or another width, but never during the browser's layout. */
 function onWidth(element, draw) {
   let width = 0;
   new ResizeObserver(() => {
@@ -59,6 +62,8 @@ function onWidth(element, draw) {
   }).observe(element);
 }
 
-/** A symbol of 16 x 16: what fonts do not have everywhere. */
-const icon = (d) => make("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, make("path", {d, fill: "currentColor"}));
-const ICONS = {play: "M4 2v12l10-6z", pause: "M3 2h4v12H3zM9 2h4v12H9z", back: "M3 2h2v12H3zM14 2v12L6 8z", next: "M11 2h2v12h-2zM2 2v12l8-6z"};
+/** A symbol of 16 x 16, because not all fonts have these. */
+const icon = (d) => make("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"},
+  make("path", {d, fill: "currentColor"}));
+const ICONS = {play: "M4 2v12l10-6z", pause: "M3 2h4v12H3zM9 2h4v12H9z",
+  back: "M3 2h2v12H3zM14 2v12L6 8z", next: "M11 2h2v12h-2zM2 2v12l8-6z"};

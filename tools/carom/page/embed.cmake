@@ -1,8 +1,10 @@
-# Writes scripts, styles and schemas into a C++ file: cmake "-DFILES=a.js;b.css" -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
+# Writes scripts, styles and schemas into a C++ file:
+# cmake "-DFILES=a.js;b.css" -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
 include(${CMAKE_CURRENT_LIST_DIR}/../../../render/look.cmake)
 carom_look(look "const \\1 = [\\2]" "const \\1 = \\2")
 set(text "// Made by tools/carom/page/embed.cmake.\n#include \"page/page.h\"\n\n")
-string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& ${FUNCTION}() {\n    static const std::vector<PageFile> files = {\n")
+string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& ${FUNCTION}() {\n")
+string(APPEND text "    static const std::vector<PageFile> files = {\n")
 foreach(path IN LISTS FILES)
   get_filename_component(name ${path} NAME)
   file(READ ${path} source)

@@ -1,16 +1,20 @@
-// How a table and its balls look from above: the lamp, the materials and the patterns of the rendered frames
-// (render/src/draw/shaders), computed pixel by pixel. The table is painted once for each size, a ball where it moved or turned.
+// How a table and its balls look from above: the lamp, materials and patterns of the rendered frames
+// (render/src/draw/shaders), computed pixel by pixel. The table is painted once per size, a ball whenever it
+// moves or turns.
 "use strict";
 
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
 /** GLSL's smoothstep; a may be greater than b. */
 const step = (a, b, x) => { const t = clamp((x - a) / (b - a), 0, 1); return t * t * (3 - 2 * t); };
-/** Screen value (0..1) of a radiance, with the soft shoulder of the renderer. */
-const toScreen = (c) => { const over = 1 + Math.max(c - 0.5, 0); return Math.sqrt(clamp(c, 0, 0.5) + 0.5 - 0.5 / (over * over)); };
+/** Screen value (0..1) of a radiance, with the renderer's soft shoulder. */
+const toScreen = (c) => {
+  const over = 1 + Math.max(c - 0.5, 0);
+  return Math.sqrt(clamp(c, 0, 0.5) + 0.5 - 0.5 / (over * over));
+};
 const fromScreen = (c) => c.map((x) => x * x);
 
-// The constants that begin with a k are those of render/include/carom/render/look.h; the build writes them here.
+// The build inserts the constants with a k from render/include/carom/render/look.h here.
 const [CLOTH, WOOD_DARK, WOOD_LIGHT, TRIM, INLAY, IVORY, RED_DOT, PALE_DOT] =
   [kCloth, kWoodDark, kWoodLight, kTrim, kInlay, kIvory, kRedDot, kPaleDot].map(fromScreen);
 
@@ -36,16 +40,18 @@ function lampLight(lamp, x, y, z) {
   return Math.max(tz * inverse, 0) * h * h * inverse * inverse;
 }
 
-/** Where the table [m] stands on a canvas [px]: lengthwise along its longer side, as the camera `top` has it. */
+/** Where the table [m] is on a canvas [px]: lengthwise along the longer side, as in the camera `top`. */
 class Projection {
   constructor(bounds, width, height, margin) {
-    const w = Math.max(bounds.high[0] - bounds.low[0], 1e-3), l = Math.max(bounds.high[1] - bounds.low[1], 1e-3);
+    const [w, l] = [0, 1].map((k) => Math.max(bounds.high[k] - bounds.low[k], 1e-3));
     const W = Math.max(width - 2 * margin, 10), H = Math.max(height - 2 * margin, 10);
     const upright = Math.min(W / w, H / l), lying = Math.min(W / l, H / w);
     this.lying = lying > upright;
     this.scale = Math.max(upright, lying);
-    const x = 0.5 * (bounds.low[0] + bounds.high[0]), y = 0.5 * (bounds.low[1] + bounds.high[1]), s = this.scale;
-    this.matrix = this.lying ? [0, s, s, 0, width / 2 - s * y, height / 2 - s * x] : [s, 0, 0, -s, width / 2 - s * x, height / 2 + s * y];
+    const x = 0.5 * (bounds.low[0] + bounds.high[0]), y = 0.5 * (bounds.low[1] + bounds.high[1]);
+    const s = this.scale;
+    this.matrix = this.lying ? [0, s, s, 0, width / 2 - s * y, height / 2 - s * x]
+      : [s, 0, 0, -s, width / 2 - s * x, height / 2 + s * y];
   }
   at(x, y) {
     const m = this.matrix;
@@ -66,7 +72,7 @@ function pathOf(loops) {
   return path;
 }
 
-/** Fills a path with a colour that colour(x, y, out) gives for each place of the table; out is a radiance. */
+/** Fills a path with the radiance that colour(x, y, out) writes to `out` for every place of the table. */
 function paint(scratch, projection, path, colour) {
   const {canvas} = scratch, out = [0, 0, 0];
   scratch.setTransform(1, 0, 0, 1, 0, 0);
@@ -86,9 +92,10 @@ function paint(scratch, projection, path, colour) {
   return canvas;
 }
 
-/** Paints the table without balls. `shape`: what tools/carom/view/table_shape.h describes. */
+/** Paints the table without balls. `shape`: as tools/carom/view/table_shape.h describes. */
 function paintTable(canvas, projection, shape) {
-  const context = canvas.getContext("2d"), scratch = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
+  const context = canvas.getContext("2d");
+  const scratch = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
   scratch.canvas.width = canvas.width;
   scratch.canvas.height = canvas.height;
   const lamp = shape.lamp, top = shape.wood_top, plain = () => context.setTransform(1, 0, 0, 1, 0, 0);
@@ -133,7 +140,7 @@ function paintTable(canvas, projection, shape) {
   plain();
 }
 
-/** The dark of the cloth along the cushions: the renderer's profile, as strokes one over the other. */
+/** The darkness of the cloth along the cushions: the renderer's profile, as overlapping strokes. */
 function shade(context, projection, shape) {
   context.save();
   context.setTransform(...projection.matrix);
@@ -142,7 +149,7 @@ function shade(context, projection, shape) {
   const path = new Path2D(), pieces = 14, wide = 0.045;
   for (const loops of [shape.cushion, ...shape.wood.map((board) => board.loops)]) path.addPath(pathOf(loops));
   const dark = (d) => d > 0.018 ? 0.1 * (wide - d) / 0.027 : mix(0.42, 0.1, d / 0.018);
-  let left = 1;  // of the light, outside the strokes so far
+  let left = 1;  // share of the light outside the strokes so far
   for (let i = 1; i <= pieces; ++i) {
     const d = wide * (1 - i / pieces), target = 1 - dark(d + 0.5 * wide / pieces);
     context.strokeStyle = `rgba(0,0,0,${Math.max(0, 1 - target / left)})`;
@@ -169,9 +176,9 @@ function paintHole(context, projection, hole) {
   }
 }
 
-const GLYPH = 96;  // [px] the square that a number is drawn into
+const GLYPH = 96;  // [px] size of the square that a number is drawn into
 const glyphs = new Map();
-/** How much of the square of the ivory disc the digits cover, as bytes. */
+/** How much of the ivory disc's square the digits cover, as bytes. */
 function glyphOf(number) {
   if (!glyphs.has(number)) {
     const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
@@ -180,13 +187,14 @@ function glyphOf(number) {
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillText(String(number), GLYPH / 2, GLYPH / 2 + 3, GLYPH * 0.8);
-    if (number === 6 || number === 9) context.fillRect(GLYPH * 0.34, GLYPH * 0.85, GLYPH * 0.32, GLYPH * 0.06);
+    if (number === 6 || number === 9)
+      context.fillRect(GLYPH * 0.34, GLYPH * 0.85, GLYPH * 0.32, GLYPH * 0.06);
     glyphs.set(number, context.getImageData(0, 0, GLYPH, GLYPH).data.filter((_, i) => i % 4 === 3));
   }
   return glyphs.get(number);
 }
 
-/** Radiance that a place of a ball's surface reflects of white light. b: the place in the ball's frame; w: a pixel in radii. */
+/** Share of white light that a ball reflects at b, in the ball's frame. w: the size of a pixel [radii]. */
 function albedo(style, b, w, out) {
   const inside = (x) => clamp(0.5 - x / w, 0, 1);
   const blend = (colour, t) => { for (let k = 0; k < 3; ++k) out[k] = mix(out[k], colour[k], t); };
@@ -212,18 +220,20 @@ function albedo(style, b, w, out) {
   return 1 - 0.85 * ink;
 }
 
-/** One ball as a small picture that is drawn anew when the ball has moved or turned. */
+/** A ball as a small picture, which is drawn again when the ball moves or turns. */
 class BallPicture {
   constructor(style) {
     this.style = {...style, base: fromScreen(style.color), bright: false};
-    this.style.bright = 0.3 * this.style.base[0] + 0.6 * this.style.base[1] + 0.1 * this.style.base[2] > kBright;
+    const [red, green, blue] = this.style.base;
+    this.style.bright = 0.3 * red + 0.6 * green + 0.1 * blue > kBright;
     this.context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
     this.key = "";
   }
 
-  /** Draws the ball around the pixel place (x, y) with the radius r [px]; p: its centre [m], R: its radius [m]. */
+  /** Draws the ball at the pixel (x, y) with the radius r [px]; p: its centre [m], R: its radius [m]. */
   draw(context, projection, lamp, x, y, r, p, R, q) {
-    const size = 2 * Math.ceil(r + 1) + 1, left = Math.floor(x) - (size >> 1), upper = Math.floor(y) - (size >> 1);
+    const size = 2 * Math.ceil(r + 1) + 1;
+    const left = Math.floor(x) - (size >> 1), upper = Math.floor(y) - (size >> 1);
     const key = [x, y, r, p[2], ...q].join();
     if (key !== this.key) {
       this.key = key;
@@ -239,23 +249,28 @@ class BallPicture {
 
   shade(projection, lamp, cx, cy, r, p, R, q) {
     const data = this.image.data, size = this.image.width, b = [0, 0, 0], base = [0, 0, 0];
-    const fade = mix(0.06, 1, Math.exp(Math.min(p[2] / 0.035, 0))), endless = lamp.endless, h = lamp.center[2];
+    const fade = mix(0.06, 1, Math.exp(Math.min(p[2] / 0.035, 0)));
+    const endless = lamp.endless, h = lamp.center[2];
     const half = endless ? [0.22 * h, 0.5 * h] : lamp.half, blur = 0.1 * h;
     for (let py = 0, at = 0; py < size; ++py) {
       for (let px = 0; px < size; ++px, at += 4) {
-        const sx = (px + 0.5 - cx) / r, sy = (py + 0.5 - cy) / r, d = Math.hypot(sx, sy), cover = clamp(0.5 + (1 - d) * r, 0, 1);
+        const sx = (px + 0.5 - cx) / r, sy = (py + 0.5 - cy) / r, d = Math.hypot(sx, sy);
+        const cover = clamp(0.5 + (1 - d) * r, 0, 1);
         data[at + 3] = 255 * cover;
         if (cover === 0) continue;
-        const shrink = d > 1 ? 1 / d : 1, nx = (projection.lying ? sy : sx) * shrink, ny = (projection.lying ? sx : -sy) * shrink;
+        const shrink = d > 1 ? 1 / d : 1;
+        const nx = (projection.lying ? sy : sx) * shrink, ny = (projection.lying ? sx : -sy) * shrink;
         const nz = Math.sqrt(Math.max(0, 1 - nx * nx - ny * ny));
-        // Into the frame of the ball: the conjugate of q turns n.
-        const tx = 2 * (q[3] * ny - q[2] * nz), ty = 2 * (q[1] * nz - q[3] * nx), tz = 2 * (q[2] * nx - q[1] * ny);
+        // Into the ball's frame: the conjugate of q turns n.
+        const tx = 2 * (q[3] * ny - q[2] * nz), ty = 2 * (q[1] * nz - q[3] * nx);
+        const tz = 2 * (q[2] * nx - q[1] * ny);
         b[0] = nx + q[0] * tx + (q[3] * ty - q[2] * tz);
         b[1] = ny + q[0] * ty + (q[1] * tz - q[3] * tx);
         b[2] = nz + q[0] * tz + (q[2] * tx - q[1] * ty);
         const shine = albedo(this.style, b, 1 / (r * mix(1, Math.max(nz, 0.08), 0.6)), base);
         const x = p[0] + nx * R, y = p[1] + ny * R, z = p[2] + nz * R;
-        const lx = endless ? 0 : lamp.center[0] - x, ly = endless ? 0 : lamp.center[1] - y, lz = endless ? h : h - z;
+        const lx = endless ? 0 : lamp.center[0] - x, ly = endless ? 0 : lamp.center[1] - y;
+        const lz = endless ? h : h - z;
         const inverse = 1 / Math.sqrt(lx * lx + ly * ly + lz * lz);
         const facing = Math.max(((nx * lx + ny * ly + nz * lz) * inverse + 0.6) / 1.6, 0);
         const under = 0.5 - 0.5 * nz, light = facing * facing * h * h * inverse * inverse + 0.2 * (1 - under);
@@ -276,9 +291,10 @@ class BallPicture {
   }
 }
 
-/** A round shadow: its darkness at d radii is profile(d), up to `reach` radii. */
+/** A round shadow, whose darkness at d radii is profile(d), up to `reach` radii. */
 function shadowPicture(reach, profile) {
-  const canvas = document.createElement("canvas"), size = canvas.width = canvas.height = 64, context = canvas.getContext("2d");
+  const canvas = document.createElement("canvas"), size = canvas.width = canvas.height = 64;
+  const context = canvas.getContext("2d");
   const image = context.createImageData(size, size);
   for (let i = 0; i < size * size; ++i) {
     const x = (i % size + 0.5) * 2 / size - 1, y = (Math.floor(i / size) + 0.5) * 2 / size - 1;

@@ -1,9 +1,9 @@
-// Where every ball of a record is at any instant: the formulas of docs/reference/record_format.md, term by term in the order in
-// which the engine computes them, so that positions, velocities and spins have the same bits. Orientations have not: they
-// need sin and cos, and those of a browser are not the engine's.
+// Where every ball of a record is at any time. The formulas are those of docs/reference/record_format.md,
+// with their terms in the engine's order, so that positions, velocities and spins have the same bits.
+// Orientations do not: they need sin and cos, and a browser's differ from the engine's.
 "use strict";
 
-/** The place in `list` of the last item whose `start` (or other key) is at most t; 0 where there is none. */
+/** The index of the last item in `list` whose `start` (or other key) is at most t; 0 if there is none. */
 function lastBefore(list, t, key = "start") {
   let low = 0, high = list.length;
   while (low < high) {
@@ -42,23 +42,23 @@ function spinAt(s, tau, R) {
   return [s.w[0] + tau * s.dw[0], s.w[1] + tau * s.dw[1], wz];
 }
 
-// [m] As the engine's: how far the floor lies below the cloth.
+// [m] As in the engine: how far the floor is below the cloth.
 const FLOOR_DEPTH = 0.76;
 
-/** Time until a ball that has left the table lies on the floor, as the engine's. */
+/** Time until a ball that has left the table lies on the floor, as in the engine. */
 function untilFloor(s, R, g) {
   if (s.state !== "out" || !(g > 0)) return Infinity;
   const v = s.v[2], height = Math.max(0, s.r[2] + (FLOOR_DEPTH - R));
   return (v + Math.sqrt(v * v + 2 * g * height)) / g;
 }
 
-/** State of a ball: {state, r, v, w, pocket}, in SI units. */
+/** The state of a ball: {state, r, v, w, pocket}, in SI units. */
 function stateAt(record, ball, t) {
   t = Math.min(Math.max(t, 0), record.duration);
   const track = record.tracks[ball], s = track.segments[lastBefore(track.segments, t)];
   const R = radiusOf(record, ball), floor = untilFloor(s, R, record.gravity);
   const tau = Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor);
-  const r = [s.r[0] + tau * (s.v[0] + 0.5 * tau * s.a[0]), s.r[1] + tau * (s.v[1] + 0.5 * tau * s.a[1]), s.r[2]];
+  const along = (k) => s.r[k] + tau * (s.v[k] + 0.5 * tau * s.a[k]), r = [along(0), along(1), s.r[2]];
   const v = velocityAt(s, tau), g = record.gravity;
   if (s.state === "airborne" || s.state === "out") {
     r[2] = s.r[2] + tau * (s.v[2] - 0.5 * g * tau);
@@ -68,14 +68,17 @@ function stateAt(record, ball, t) {
     r[2] -= falls * falls / (2 * g);
     v[2] = -falls;
   }
-  if (tau === floor) return {state: s.state, r: [r[0], r[1], R - FLOOR_DEPTH], v: [0, 0, 0], w: [0, 0, 0], pocket: -1};
+  if (tau === floor)
+    return {state: s.state, r: [r[0], r[1], R - FLOOR_DEPTH], v: [0, 0, 0], w: [0, 0, 0], pocket: -1};
   return {state: s.state, r, v, w: spinAt(s, tau, R), pocket: s.state === "pocketed" ? track.pocket : -1};
 }
 
 // Quaternions are [w, x, y, z].
 function product(p, q) {
-  return [p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-    p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3], p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]];
+  return [p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+    p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+    p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+    p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]];
 }
 
 function rotation(x, y, z) {
@@ -90,10 +93,10 @@ function unit(q) {
   return n > 0 ? q.map((x) => x / n) : [1, 0, 0, 0];
 }
 
-// [rad] and [-] As the engine's: the largest angle of a step, and the most steps of one call.
+// As in the engine: the largest angle of a step [rad], and the most steps of one call.
 const LARGEST_STEP = 0.2, MOST_STEPS = 1e5;
 
-/** The rotation over `time` while the angular velocity changes from w at the rate dw: fourth-order Magnus steps. */
+/** The rotation over `time` for the angular velocity w with the rate dw: fourth-order Magnus steps. */
 function turned(w, dw, time) {
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const then = w.map((x, k) => x + time * dw[k]);
@@ -106,21 +109,22 @@ function turned(w, dw, time) {
   let q = [1, 0, 0, 0];
   for (let i = 0; i < steps; ++i) {
     const middle = w.map((x, k) => x + (i + 0.5) * h * dw[k]), swerve = cross(middle, dw);
-    q = product(rotation(h * middle[0] - c * swerve[0], h * middle[1] - c * swerve[1], h * middle[2] - c * swerve[2]), q);
+    q = product(rotation(...[0, 1, 2].map((k) => h * middle[k] - c * swerve[k])), q);
   }
   return unit(q);
 }
 
 function segmentTurn(s, tau) {
   if (!(tau > 0)) return [1, 0, 0, 0];
-  const sign = Math.sign(s.w[2]), level = [s.dw[0], s.dw[1], 0], dw = [s.dw[0], s.dw[1], sign === 0 ? 0 : -sign * s.spin_decay];
+  const sign = Math.sign(s.w[2]), level = [s.dw[0], s.dw[1], 0];
+  const dw = [s.dw[0], s.dw[1], sign === 0 ? 0 : -sign * s.spin_decay];
   const end = sign !== 0 && s.spin_decay > 0 ? Math.abs(s.w[2]) / s.spin_decay : Infinity;
   if (tau <= end) return turned(s.w, dw, tau);
   const then = [s.w[0] + end * s.dw[0], s.w[1] + end * s.dw[1], 0];
   return product(turned(then, level, tau - end), turned(s.w, dw, end));
 }
 
-/** A function (ball, t) that gives the orientation, body to table, beginning with none. */
+/** A function (ball, t) that returns the rotation since the start, from the ball's frame to the table's. */
 function orientations(record) {
   const starts = record.tracks.map((track) => {
     let q = [1, 0, 0, 0];
@@ -134,13 +138,15 @@ function orientations(record) {
     t = Math.min(Math.max(t, 0), record.duration);
     const segments = record.tracks[ball].segments, i = lastBefore(segments, t), s = segments[i];
     const floor = untilFloor(s, radiusOf(record, ball), record.gravity);
-    return product(segmentTurn(s, Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor)), starts[ball][i]);
+    const tau = Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor);
+    return product(segmentTurn(s, tau), starts[ball][i]);
   };
 }
 
-/** Energies in J of all balls together, of those that are still in play: {moving, turning, raised}. */
+/** The energy [J] of all balls in play together: {moving, turning, raised}. */
 function energiesAt(record, t) {
-  const sum = {moving: 0, turning: 0, raised: 0}, square = (x) => x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+  const sum = {moving: 0, turning: 0, raised: 0};
+  const square = (x) => x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
   for (let ball = 0; ball < record.tracks.length; ++ball) {
     const s = stateAt(record, ball, t), R = radiusOf(record, ball), m = massOf(record, ball);
     if (s.state === "pocketed" || s.state === "out") continue;

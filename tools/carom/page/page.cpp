@@ -15,7 +15,7 @@
 namespace carom::tools {
 namespace {
 
-/// The files of this library, and those that another one has added.
+/// The files of this library, and those that other libraries have added.
 std::vector<PageFile>& known_files() {
     static std::vector<PageFile> files = page_files();
     return files;
@@ -29,12 +29,12 @@ const PageFile& page_file(std::string_view name) {
     return *found;
 }
 
-/// Hexadecimal digits as Base64, which is how a policy writes a hash.
+/// Base64 of hexadecimal digits: the form in which a policy writes a hash.
 std::string base64(const std::string& hex) {
     constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string out;
     for (std::size_t at = 0; at < hex.size(); at += 6) {
-        // Three bytes are six digits and four letters; what is missing at the end is 0 and shown as "=".
+        // Three bytes are six digits and four letters; missing bytes at the end count as 0 and show as "=".
         std::string six = hex.substr(at, 6);
         const std::size_t letters = six.size() / 2 + 1;
         six.resize(6, '0');
@@ -61,8 +61,7 @@ std::string as_html(const std::string& text) {
     return out;
 }
 
-/// JSON in which no text can end the element: "<" stands in
-/// strings only, and there it may be written as an escape.
+/// JSON whose texts cannot end the element: "<" occurs only in strings, where it may be escaped.
 std::string inlined(const std::string& json) {
     std::string out;
     for (const char c : json) {
@@ -93,7 +92,7 @@ std::string page_html(const std::string& title, const std::vector<std::string>& 
         "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
         as_html(title) + "</title>\n<style>" + style.text +
-        "</style>\n</head>\n<body>\n<noscript>This page is drawn by its script.</noscript>\n";
+        "</style>\n</head>\n<body>\n<noscript>This page needs JavaScript.</noscript>\n";
     for (const PageData& item : data)
         html +=
             "<script type=\"application/json\" id=\"" + item.id + "\">" + inlined(item.json) + "</script>\n";

@@ -1,5 +1,5 @@
-// Pages: self-contained HTML files. A page has a script and a style of its own, which its
-// Content-Security-Policy names by their hashes, and may load nothing.
+// Pages: self-contained HTML files. A page has its own script and style, which its Content-Security-Policy
+// names by their hashes, and may load nothing.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,17 +8,17 @@
 
 namespace carom::tools {
 
-/// A script or a style sheet, which the build puts into the program.
+/// A script or a style sheet that the build embedded in the program.
 struct PageFile {
     const char* name;
     const char* text;
     const char* sha256;  ///< of the text, in hexadecimal digits
 };
 const std::vector<PageFile>& page_files();
-/// Adds files that another library brings: those of the laboratory.
+/// Adds the page files of another library: the laboratory's.
 void add_page_files(const std::vector<PageFile>& more);
 
-/// What the scripts of a page read: JSON in an element with this id.
+/// What a page's scripts read: JSON in an element with this id.
 struct PageData {
     std::string id, json;
 };
@@ -27,8 +27,7 @@ struct PageData {
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
                       const std::vector<PageData>& data);
 
-/// What every page says about itself: its title, a line below
-/// that, the command that made it, program and machine.
+/// What every page says about itself: title, subtitle, the command that made it, program and machine.
 nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,
                                  const std::string& command, const std::string& version);
 

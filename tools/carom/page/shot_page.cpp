@@ -26,8 +26,8 @@ Json style_json(const render::BallStyle& style) {
             {"number", style.number}};
 }
 
-/// What a page needs to know of a shot beside its record: the shape
-/// of the table, and the look of each ball as the renderer paints it.
+/// What a page needs besides the record: the shape of the table, and each ball's look as the renderer paints
+/// it.
 Json shot_json(const Record& record) {
     const render::Stage stage(record, {});
     Json styles = Json::array();

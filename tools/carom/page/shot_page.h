@@ -1,4 +1,4 @@
-// The page that plays a shot: of `carom view`, and of a notebook.
+// The page that plays a shot, for `carom view` and for notebooks.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -18,8 +18,8 @@ struct ShotPageTexts {
 /// "16 balls, 212 events, 9.103 s"
 std::string shot_lead(const Record& record);
 
-/// The whole file. @param second  another shot to show over or beside the first; may be null
-/// @param margin  the chart of what its frames cost (margin_chart), or null
+/// The whole file. @param second another shot to show over or beside the first; may be null
+/// @param margin the chart of its frames' costs (margin_chart), or null
 std::string shot_page(const Record& record, const Record* second, const nlohmann::ordered_json& margin,
                       const ShotPageTexts& texts);
 

@@ -1,14 +1,15 @@
-// A table with the balls of a record on it, on two canvases: the table below, which is painted once for a size, and what moves.
+// A table with the balls of a record, on two canvases: below the table, which is painted once per size, and
+// above it everything that moves.
 "use strict";
 
 const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
-const SINK_TIME = 0.15;  // [s] how long a ball that was pocketed is seen to sink, as in rendered frames
+const SINK_TIME = 0.15;  // [s] how long a pocketed ball is seen sinking, as in rendered frames
 const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
 
 const isGone = (state) => state === "pocketed" || state === "out";
 
 class TableView {
-  /** `shape` and `styles`: the table's outlines, and {color, pattern, number} of each ball. */
+  /** `shape` and `styles`: the table's outlines, and {color, pattern, number} for each ball. */
   constructor(record, shape, styles, label) {
     Object.assign(this, {record, shape, styles, width: 0});
     this.under = make("canvas", {"aria-hidden": "true"});
@@ -21,15 +22,16 @@ class TableView {
     this.lamp = shadowPicture(1.85, (d) => LAMP_SHADOW * Math.max(0, 1 - d * d / 3.4) ** 2);
     this.cushions = pathOf(shape.cushion);
     const box = shape.bounds, sides = [box.high[0] - box.low[0], box.high[1] - box.low[1]];
-    this.eye = 0.6 * Math.max(...sides);  // [m] how high whoever looks is: a ball in the air is drawn larger
+    this.eye = 0.6 * Math.max(...sides);  // [m] height of the viewer: a ball in the air is drawn larger
     this.ratio = clamp(Math.min(...sides) / Math.max(...sides), 0.4, 1);
   }
 
-  /** Fits into a width and a height [CSS px]; what is upright on a narrow screen lies on a wide one. */
+  /** Fits into a width and a height [CSS px]; the table is upright on narrow screens, lying on wide ones. */
   fit(width, height) {
     const lying = Math.min(width, height / this.ratio) >= Math.min(height, width / this.ratio);
     const w = Math.floor(lying ? Math.min(width, height / this.ratio) : Math.min(width, height * this.ratio));
-    const h = Math.floor(lying ? w * this.ratio : w / this.ratio), dense = Math.min(window.devicePixelRatio || 1, 2);
+    const h = Math.floor(lying ? w * this.ratio : w / this.ratio);
+    const dense = Math.min(window.devicePixelRatio || 1, 2);
     if (w === this.width && h === this.height && dense === this.dense) return;
     Object.assign(this, {width: w, height: h, dense});
     for (const canvas of [this.under, this.over]) {
@@ -44,7 +46,7 @@ class TableView {
     paintTable(this.under, this.projection, this.shape);
   }
 
-  /** Where a state is drawn: {x, y, r} in pixels of the canvas, and its place in m; null where nothing is seen of it. */
+  /** Where a state is drawn: {x, y, r} in canvas pixels, and its place in m; null if it is not visible. */
   placed(ball, s, t) {
     if (s.state === "out" && s.r[2] < 0) return null;
     const R = radiusOf(this.record, ball);
@@ -56,16 +58,19 @@ class TableView {
         p = s.r.map((x, k) => x + left * (before[k] - x));
       }
     }
-    const [x, y] = this.projection.at(p[0], p[1]), nearer = this.eye / Math.max(this.eye - Math.max(p[2] - R, 0), 0.3 * this.eye);
+    const [x, y] = this.projection.at(p[0], p[1]);
+    const nearer = this.eye / Math.max(this.eye - Math.max(p[2] - R, 0), 0.3 * this.eye);
     return {x, y, r: Math.max(R * this.projection.scale * nearer, 2), p, R};
   }
 
-  /** All balls at t that can be seen, the lowest first. */
+  /** All visible balls at t, the lowest first. */
   balls(record, t) {
     const list = [];
     for (let i = 0; i < record.tracks.length; ++i) {
       const state = stateAt(record, i, t), place = this.placed(i, state, t);
-      if (place !== null) list.push({i, state, ...place, since: state.state === "pocketed" ? record.tracks[i].segments.at(-1).start : 0});
+      if (place === null) continue;
+      const since = state.state === "pocketed" ? record.tracks[i].segments.at(-1).start : 0;
+      list.push({i, state, ...place, since});
     }
     return list.sort((a, b) => a.p[2] - b.p[2] || a.since - b.since);
   }
@@ -78,8 +83,9 @@ class TableView {
     if (trails !== "off") this.trails(context, this.record, t, trails, false);
     this.seen = this.balls(this.record, t);
     this.shadows(context);
-    for (const ball of this.seen)
-      this.pictures[ball.i].draw(context, this.projection, this.shape.lamp, ball.x, ball.y, ball.r, ball.p, ball.R, this.orientation(ball.i, t));
+    const {projection, shape: {lamp}} = this;
+    for (const {i, x, y, r, p, R} of this.seen)
+      this.pictures[i].draw(context, projection, lamp, x, y, r, p, R, this.orientation(i, t));
     if (ghost !== null) this.ghosts(context, ghost, t);
     for (const ball of this.seen) {
       if (ball.i !== marked) continue;
@@ -94,23 +100,25 @@ class TableView {
   shadows(context) {
     context.save();
     context.setTransform(...this.projection.matrix);
-    // The cloth without the cushions: the even-odd rule cuts them out of everything.
+    // Draw only on the cloth: the even-odd rule cuts out the cushions.
     const cloth = new Path2D();
     cloth.rect(-1e4, -1e4, 2e4, 2e4);
     cloth.addPath(this.cushions);
     context.clip(cloth, "evenodd");
     context.setTransform(1, 0, 0, 1, 0, 0);
     const {lamp} = this.shape, down = this.projection.lying ? [0, 1, 1, 0] : [1, 0, 0, -1];
+    const aside = (p, k) => lamp.endless ? 0 : (p[k] - lamp.center[k]) / (lamp.center[2] - p[2]);
     for (const {state, x, y, p, R} of this.seen) {
-      const lift = Math.max(p[2] / R, 1), faint = clamp(p[2] / R, 0, 1), scale = R * this.projection.scale * lift;
+      const lift = Math.max(p[2] / R, 1), faint = clamp(p[2] / R, 0, 1);
+      const scale = R * this.projection.scale * lift;
       if (isGone(state.state) || faint === 0) continue;
-      let dx = lamp.endless ? 0 : (p[0] - lamp.center[0]) / (lamp.center[2] - p[2]), dy = lamp.endless ? 0 : (p[1] - lamp.center[1]) / (lamp.center[2] - p[2]);
+      let dx = aside(p, 0), dy = aside(p, 1);
       const far = Math.max(1, Math.hypot(dx, dy) / 0.65);
       [dx, dy] = [(down[0] * dx + down[1] * dy) / far, (down[2] * dx + down[3] * dy) / far];
       const put = (picture, ox, oy, alpha) => {
-        const reach = picture.reach * scale;
+        const reach = picture.reach * scale, size = 2 * reach;
         context.globalAlpha = alpha;
-        context.drawImage(picture.canvas, x + ox * scale - reach, y + oy * scale - reach, 2 * reach, 2 * reach);
+        context.drawImage(picture.canvas, x + ox * scale - reach, y + oy * scale - reach, size, size);
       };
       put(this.contact, 0, 0, faint / (lift * lift));
       put(this.lamp, dx, dy, faint / lift);
@@ -118,7 +126,7 @@ class TableView {
     context.restore();
   }
 
-  /** Outlines of the balls of another record, on this table. */
+  /** Outlines of another record's balls on this table. */
   ghosts(context, record, t) {
     for (const {i, state, x, y, r} of this.balls(record, t)) {
       if (isGone(state.state)) continue;
@@ -137,7 +145,7 @@ class TableView {
     }
   }
 
-  /** The ways of all balls up to t. A piece of motion is a parabola, and so is a quadratic curve of a canvas: nothing is sampled. */
+  /** The balls' paths up to t. A segment is a parabola, which a canvas draws exactly as a quadratic curve. */
   trails(context, record, t, kind, dashed) {
     context.save();
     context.setTransform(...this.projection.matrix);
@@ -149,9 +157,12 @@ class TableView {
       for (let i = 0; i < track.segments.length; ++i) {
         const s = track.segments[i], next = track.segments[i + 1];
         if (s.start >= t || isGone(s.state)) break;
-        const tau = Math.min((next ? Math.min(next.start, t) : Math.min(t, record.duration)) - s.start, s.duration ?? Infinity);
-        if (!(tau > 0) || s.state === "falling" || (s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0)) continue;
-        context.strokeStyle = kind === "ball" ? cssColour(this.styles[ball % this.styles.length].color) : TRAIL_COLOURS[s.state] || "#8cbfff";
+        const stop = next ? Math.min(next.start, t) : Math.min(t, record.duration);
+        const tau = Math.min(stop - s.start, s.duration ?? Infinity);
+        const still = s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0;
+        if (!(tau > 0) || s.state === "falling" || still) continue;
+        const own = this.styles[ball % this.styles.length].color;
+        context.strokeStyle = kind === "ball" ? cssColour(own) : TRAIL_COLOURS[s.state] || "#8cbfff";
         context.beginPath();
         context.moveTo(s.r[0], s.r[1]);
         context.quadraticCurveTo(s.r[0] + 0.5 * tau * s.v[0], s.r[1] + 0.5 * tau * s.v[1],
@@ -162,9 +173,10 @@ class TableView {
     context.restore();
   }
 
-  /** The ball under a place of the window, or -1. */
+  /** The ball under the pointer, or -1. */
   ballAt(event) {
-    const box = this.over.getBoundingClientRect(), x = (event.clientX - box.left) * this.dense, y = (event.clientY - box.top) * this.dense;
+    const box = this.over.getBoundingClientRect();
+    const x = (event.clientX - box.left) * this.dense, y = (event.clientY - box.top) * this.dense;
     let best = -1, nearest = 12 * this.dense;
     for (const ball of this.seen || []) {
       const away = Math.hypot(ball.x - x, ball.y - y) - ball.r;

@@ -20,9 +20,9 @@ using render::TableMesh;
 
 // [m] Corners are rounded to this: far below a pixel, far above the rounding of the mesh's floats.
 constexpr double kGrid = 1e-5;
-// [m] An outline may be simplified by this much.
+// [m] How far simplifying may move an outline.
 constexpr double kSimplify = 1.5e-4;
-// [m^2] Triangles that are smaller from above are walls, or turned away.
+// [m^2] Triangles that look smaller from above are walls, or face away.
 constexpr double kLeastArea = 1e-9;
 
 using Corner = std::pair<std::int64_t, std::int64_t>;  // in units of kGrid, relative to the mesh's origin
@@ -50,7 +50,7 @@ double distance_from(const Corner& p, const Corner& a, const Corner& b) {
     return kGrid * (length > 0.0 ? std::abs(along_x * y - along_y * x) / length : std::hypot(x, y));
 }
 
-/// Appends the points after `from` up to `to` that are needed to stay within kSimplify (Douglas and Peucker).
+/// Appends the points after `from` up to `to` that keep the outline within kSimplify (Douglas-Peucker).
 void append_needed(const Outline& all, std::size_t from, std::size_t to, Outline& kept) {
     std::size_t farthest = from;
     double most = kSimplify;
@@ -69,7 +69,7 @@ void append_needed(const Outline& all, std::size_t from, std::size_t to, Outline
     }
 }
 
-/// The outlines of all triangles together: edges that two of them share, in opposite directions, are inside.
+/// The outlines of all triangles together: an edge that two of them share, in opposite directions, is inside.
 std::vector<Outline> outlines(const std::vector<Triangle>& triangles) {
     std::map<std::pair<Corner, Corner>, int> edges;
     for (const Triangle& t : triangles) {
@@ -97,7 +97,7 @@ std::vector<Outline> outlines(const std::vector<Triangle>& triangles) {
         }
         whole.pop_back();
         if (whole.size() < 3) continue;
-        // Both halves are simplified between two corners that stay.
+        // Both halves are simplified, between two corners that stay.
         Outline kept;
         const std::size_t middle = whole.size() / 2;
         append_needed(whole, 0, middle, kept);
@@ -129,7 +129,7 @@ Json loops_json(const TableMesh& mesh, const std::vector<Triangle>& triangles) {
     return list;
 }
 
-/// The triangles of a material that are seen from above.
+/// The triangles of a material that are visible from above.
 std::vector<Triangle> seen_from_above(const std::vector<MeshVertex>& vertices, Material material) {
     std::vector<Triangle> list;
     for (std::size_t i = 0; i + 2 < vertices.size(); i += 3)
@@ -181,8 +181,8 @@ Json boards_json(const TableMesh& mesh) {
         double largest = 0.0;
         std::array<double, 3> u{}, v{};
     };
-    // A board is what has the same grain. Its bevels have
-    // that, too, and its largest triangle is its flat top.
+    // Triangles with the same grain form a board. Its bevels have that grain too; its largest triangle is its
+    // flat top.
     std::map<std::array<std::int64_t, 3>, Board> boards;
     for (const Triangle& t : seen_from_above(mesh.solid, Material::kWood)) {
         const std::array<double, 3> u = gradient(t, &MeshVertex::u);

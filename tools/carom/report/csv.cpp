@@ -3,15 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/console.h"
 #include "base/output_file.h"
+#include "carom/engine/event_details.h"
 
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB, which is taken for a typing error.
+/// 1e9 rows are more than 100 GB: taken for a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace
@@ -19,8 +24,13 @@ constexpr double kMostRows = 1e9;
 void write_events_csv(const Record& record, const std::string& path) {
     OutputFile file(path);
     const bool profiled = !record.costs.empty();
-    file.write(profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method\n" : "time,type,a,b\n");
+    std::string header =
+        profiled ? "time,type,a,b,detect_ns,resolve_ns,kernel_ns,steps,method" : "time,type,a,b";
+    for (const EventColumn& column : event_columns()) header += fmt::format(",{}", column.name);
+    file.write(header + ",met,cluster\n");
+    std::vector<double> numbers(event_columns().size());
     for (std::size_t i = 0; i < record.events.size(); ++i) {
+        throw_if_interrupted();
         const Event& event = record.events[i];
         const std::string& ball = record.tracks.at(event.a).id;
         std::string row =
@@ -29,6 +39,15 @@ void write_events_csv(const Record& record, const std::string& path) {
             const EventCost& cost = record.costs.at(i);
             row += fmt::format(",{},{},{},{},{}", cost.detect_ns, cost.resolve_ns, cost.kernel_ns, cost.steps,
                                cost.method);
+        }
+        event_row(record, i, numbers);
+        for (const double number : numbers) row += std::isnan(number) ? "," : fmt::format(",{}", number);
+        // Names of cushions contain commas.
+        row += fmt::format(",\"{}\",", met_name(record, event));
+        if (event.type == EventType::kBallCluster) {
+            const char* between = "";
+            for (const int member : record.clusters.at(static_cast<std::size_t>(event.detail)))
+                row += std::exchange(between, ";") + record.tracks.at(member).id;
         }
         file.write(row + '\n');
     }
@@ -39,7 +58,8 @@ void write_samples_csv(const Record& record, double dt, const std::string& path)
     OutputFile file(path);
     const double rows = (record.duration / dt + 1.0) * static_cast<double>(record.tracks.size());
     if (!(rows <= kMostRows)) {
-        throw UsageError(fmt::format("--sample-dt {}: that would be more than {:.0f} rows", dt, kMostRows));
+        throw UsageError(
+            fmt::format("--sample-dt {}: that is more than {:.0f} rows; use a larger step", dt, kMostRows));
     }
     file.write("time,ball,state,x,y,z,vx,vy,vz,wx,wy,wz\n");
     for (long k = 0; static_cast<double>(k) * dt <= record.duration; ++k) {

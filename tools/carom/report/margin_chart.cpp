@@ -20,7 +20,7 @@ double time_of(const Margin& margin, std::size_t frame) {
 Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
     Plot plot;
     plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
-    plot.notes = {fmt::format("{}{} of {} frames missed; strokes below: contacts",
+    plot.notes = {fmt::format("{}{} of {} frames missed; ticks mark contacts",
                               margin.rendered ? fmt::format("{}x{}; ", margin.size.width, margin.size.height)
                                               : std::string("simulation only; "),
                               margin.missed, margin.total.size())};

@@ -12,8 +12,8 @@
 
 namespace carom::tools {
 
-/// One value: nothing, a truth value, a count, a number or words.
-/// The text shows `text` in its place, unless that is empty.
+/// One value: nothing, a boolean, a count, a number or a text. In the text form `text` takes its place,
+/// unless it is empty.
 struct Cell {
     Cell() = default;
     template <class T>
@@ -31,9 +31,9 @@ struct Cell {
     std::string text;
 };
 
-/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the
-/// format in the text as fmt writes it: alignment, width and the form of numbers, ">8.2f".
-/// A column without a key is in the text only, one without a format is not in the text.
+/// `key` is the name in CSV and JSON, `title` the heading in the text. `format` is the fmt format in the
+/// text: alignment, width and number form, ">8.2f". A column without a key is only in the text; one without a
+/// format is not in the text.
 struct Column {
     explicit Column(std::string of_key, std::string of_title = "", std::string of_format = "",
                     bool is_in_csv = true)
@@ -45,15 +45,15 @@ struct Column {
     bool in_csv;
 };
 
-/// A row may have fewer values than columns, as when a measurement failed:
-/// then text and JSON contain these values, and CSV does not contain the row.
+/// A row may have fewer values than columns, for example after a failed measurement. Text and JSON then
+/// contain those values, and CSV omits the row.
 struct Table {
     template <class... Columns>
     explicit Table(Columns... list) : columns{std::move(list)...} {}
 
     struct Row {
         std::vector<Cell> cells;
-        std::string note;  ///< stands after the row in the text
+        std::string note;  ///< printed after the row in the text
     };
     void add(std::vector<Cell> cells, std::string note = "") {
         rows.push_back({std::move(cells), std::move(note)});
@@ -63,11 +63,11 @@ struct Table {
     std::vector<Row> rows;
 };
 
-/// Titles and rows, each with a line end. What has no value is "-".
+/// Titles and rows, one line each. A missing value is "-".
 std::string table_text(const Table& table);
 
-/// Keys and rows, each with a line end. Numbers read back to the same bits; a truth value is 1 or 0; words
-/// are in quotes where CSV needs it, and control characters in them become blanks.
+/// Keys and rows, one line each. Numbers read back to the same bits; booleans are 1 or 0; texts are quoted if
+/// CSV needs it, and control characters in them become spaces.
 std::string table_csv(const Table& table);
 std::string csv_line(const std::vector<Cell>& cells);
 /// Appends one value as csv_line() writes it, and a comma.
@@ -75,10 +75,10 @@ void append_csv(std::string& line, double x);
 void append_csv(std::string& line, std::int64_t count);
 void append_csv(std::string& line, std::string_view words);
 
-/// One value as JSON; null where there is none.
+/// One value as JSON; null if there is none.
 nlohmann::ordered_json cell_json(const Cell& cell);
 
-/// A list of objects. What has no value, or is no finite number, is null.
+/// A list of objects. A value that is missing or not finite is null.
 nlohmann::ordered_json table_json(const Table& table);
 
 /// Writes text to a file, unless its name is empty. @throws std::runtime_error

@@ -10,22 +10,22 @@
 
 namespace carom {
 
-/// What is set once for a run: how accurate an integrated model is, and which kernel integrates it.
+/// Settings of a run: how accurately a model is integrated, and by which kernel.
 struct BallBallSettings {
-    kernel::MarchFunction march = nullptr;             ///< set where the scene asks for substeps
+    kernel::MarchFunction march = nullptr;             ///< set if the scene asks for substeps
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     int substeps = 0;
     double tolerance = 0.0;  ///< relative to the approach speed
 };
 
-/// Velocities after the impact of two balls of one radius, and of one mass but for a model
-/// that reads the tolerance; both centres are at one height, and v_z stays as it is.
-/// `result.status` says where nothing was computed (the velocities are then as they came).
+/// Velocities after the impact of two balls of equal radius, whose centres are at the same height. Their
+/// masses are equal too, unless the model reads the tolerance. v_z does not change. `result.status` says
+/// whether the impact was solved; if not, the velocities are unchanged.
 using BallBallFunction = void (*)(const BallBallSettings& settings, const kernel::Ball& ball1,
                                   const kernel::Ball& ball2, const kernel::ImpactParams& params,
                                   kernel::ImpactResult& result);
 
-/// One model: its function, the state that it reads and writes, and which balls it takes. Every model reads
+/// One model: its function, the state that it reads and writes, and which balls it accepts. Every model reads
 /// and writes the velocities.
 struct BallBallModelInfo {
     const char* name;
@@ -34,8 +34,8 @@ struct BallBallModelInfo {
     bool reads_friction = false;     ///< mu_b and the spins matter, and the spins change
     bool reads_restitution = false;  ///< e_b matters
     bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
-    bool reads_tolerance = false;    ///< the settings matter: an integration, no closed form
-    /// balls on the cloth meet as free ones, and the cloth answers next: they may leave it
+    bool reads_tolerance = false;    ///< the settings matter: the model integrates, it has no closed form
+    /// balls on the cloth collide as free balls, then the cloth reacts: they may leave it
     bool free = false;
 };
 
@@ -44,10 +44,10 @@ std::span<const BallBallModelInfo* const> all_of(const BallBallModelInfo*);
 /// The model of this name, or null.
 const BallBallModelInfo* ball_ball_model(std::string_view name);
 
-/// Two balls of different size. The planar model holds both to the cloth: the horizontal velocities along the
-/// line of centres part at e_b times the approach, whatever the tilt of that line. Friction is known for
-/// equal radii only: mu_b must be 0 where the radii differ. Equations: docs/reference/physics.md, "Balls of
-/// different size".
+/// Two balls of different size. The planar model keeps both on the cloth: the horizontal velocities along the
+/// line of centres separate at e_b times the approach speed, whatever the tilt of that line. Friction is
+/// known for equal radii only: mu_b must be 0 if the radii differ. Equations: docs/reference/physics.md,
+/// "Balls of different size".
 ///
 /// @param params  R and m are not read
 void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel::Ball& ball1,

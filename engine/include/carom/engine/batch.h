@@ -1,4 +1,4 @@
-// Many shots of one scene: outcomes instead of records, in memory that is taken once.
+// Many shots of one scene: outcomes instead of records, in memory that is allocated once.
 #pragma once
 
 #include <array>
@@ -18,53 +18,55 @@
 
 namespace carom {
 
-/// How a shot of a batch ended: as StopReason says, or without a result.
+/// How a shot of a batch ended: a StopReason, or no result.
 enum class ShotStatus : std::uint8_t {
     kAtRest,
     kTime,
     kEvents,
     kEndless,
-    kInvalid,  ///< its values make no valid scene
-    kFailed,   ///< the simulation could not go on
+    kInvalid,  ///< its values do not make a valid scene
+    kFailed,   ///< the simulation failed
 };
 inline constexpr int kShotStatuses = 6;
 constexpr auto names_of(ShotStatus) {
-    return std::array{"at_rest", "time", "events", "endless", "invalid", "failed"};
+    std::array<const char*, kShotStatuses> names{"", "", "", "", "invalid", "failed"};
+    for (std::size_t i = 0; i < kStopWords.size(); ++i) names[i] = kStopWords[i].word;
+    return names;
 }
 constexpr bool has_result(ShotStatus status) {
     return status < ShotStatus::kInvalid;
 }
 
-/// Plays one shot after the other; after the first ones a shot takes no
-/// memory, unless it fails or has resting contacts. One thread at a time.
+/// Plays shots one after another. Once its buffers have grown, a shot allocates no memory, unless it fails or
+/// has resting contacts. Not safe for concurrent use.
 class Simulator {
   public:
-    /// @param scene  need not be valid before the first shot changes it
+    /// @param scene  need not be valid until the first shot has changed it
     /// @param isa    must be available
     Simulator(const Scene& scene, kernel::Isa isa);
 
-    /// The scene of the next shot. Its numbers may be changed between shots, nothing else.
+    /// The scene of the next shot. Change only its numbers between shots.
     Scene& scene() { return planner_.scene(); }
 
     /// Checks, plans and plays the scene.
-    /// @param change  at least what was changed since the last shot that had a result
-    /// @throws only what options.progress throws, and std::bad_alloc
+    /// @param change  covers at least what changed since the last shot that had a result
+    /// @throws only std::bad_alloc and what options.progress throws
     ShotStatus play(Change change, const SimulateOptions& options = {});
-    /// The same for a scene of its own, which is valid (it comes from a reader).
+    /// The same for another scene, which must be valid (as from a reader).
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
-    /// The same for a shot of a variation whose base() this simulator was made for. All shots have to be of
-    /// this one.
-    /// @param values  receives what was drawn, as VariedShot
+    /// The same for a shot of a variation. This simulator must have been made for its base(), and all its
+    /// shots must come from this variation.
+    /// @param values  receives the draws, as VariedShot
     ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
                     const SimulateOptions& options = {});
-    /// From now on shots have a record too, in memory that is kept.
+    /// From now on every shot also has a record, in memory that is reused.
     void keep_records() { records_ = true; }
     /// Sets the message of a shot that cannot be played. @return kInvalid
     ShotStatus refuse(std::string why);
 
     const Outcome& outcome() const { return outcome_; }      ///< of the last shot, if it has a result
     const Record& record() const { return record_; }         ///< the same, if keep_records()
-    const std::string& message() const { return message_; }  ///< why it has none
+    const std::string& message() const { return message_; }  ///< why it has no result
 
   private:
     ShotStatus run(bool same_table, const SimulateOptions& options);
@@ -75,42 +77,42 @@ class Simulator {
     Record record_;
     std::string message_;
     bool records_ = false;
-    bool checked_ = false;  // what no change of numbers can break
+    bool checked_ = false;  // the checks that no change of numbers can affect
 };
 
 /// A number that differs from shot to shot.
 struct BatchColumn {
-    std::string key;                 ///< as SceneNumber takes it
-    std::span<const double> values;  ///< one for each shot
+    std::string key;                 ///< as for SceneNumber
+    std::span<const double> values;  ///< one per shot
 };
 
 struct BatchOptions {
-    int threads = 0;             ///< 0: one for each core. The results do not depend on it.
+    int threads = 0;             ///< 0: one per core. The results do not depend on it.
     bool hash = false;           ///< fill Batch::hash
-    SimulateOptions simulate{};  ///< `progress` is not called, nothing is profiled
-    /// Empty, or for every ball of every shot whether it is left out (not 0). Such a shot is that of the
-    /// scene without these balls; they have no numbers (NaN) as x and y, no pocket and no cushion.
+    SimulateOptions simulate{};  ///< `progress` is not called, and nothing is profiled
+    /// Empty, or one flag per ball of every shot: not 0 leaves the ball out. The shot is then that of the
+    /// scene without these balls; their x and y are NaN, and they have no pocket and no cushions.
     std::span<const std::uint8_t> absent{};
-    /// Called by each thread between shots; true ends the batch with an exception of type BatchStopped.
+    /// Called by each thread between shots; true ends the batch with BatchStopped.
     std::function<bool()> stop{};
-    /// Called by each thread for its shots that have a result, when the arrays have it: what
-    /// judges shots reads them here, and they need not be played again. Both are lent for the
-    /// call; balls that were left out are in neither. What it throws ends the batch.
+    /// Called by each thread after a shot that has a result, once the arrays hold it: judge shots here,
+    /// without playing them again. Both arguments are valid during the call only, and neither contains balls
+    /// that were left out. An exception ends the batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
-    /// Only shots whose number is a multiple of it (not 0) are hashed, the
-    /// others have 0: short shots take half as long again with a hash.
+    /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes
+    /// short shots take half as long again.
     std::uint64_t hash_every = 1;
 };
 
-/// Where the outcomes of n shots of b balls go: arrays of n or of n
-/// x b, as in Batch, in memory of the caller's. Null: not wanted.
+/// Destination of the outcomes of n shots of b balls: the caller's arrays of n or of n x b, as in Batch.
+/// Null: not wanted.
 struct BatchArrays {
     ShotStatus* status = nullptr;
     double* duration = nullptr;
     std::int64_t* events = nullptr;
     std::int32_t *first_hit = nullptr, *contacts = nullptr, *approach_cushions = nullptr;
     double *x = nullptr, *y = nullptr;
-    /// from a ball's number to the next one's in x and in y: 2 where x and y alternate
+    /// step from one ball to the next in x and in y: 2 if x and y alternate
     std::size_t place_stride = 1;
     std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
     std::uint64_t* hash = nullptr;
@@ -121,13 +123,13 @@ class BatchStopped : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot one after the other, in
-/// the order of Scene::ball. A shot without a result has 0 everywhere and -1 as ball and pocket.
+/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of each shot together, in the
+/// order of Scene::ball. A shot without a result has 0 everywhere, and -1 as ball and pocket.
 struct Batch {
     Batch() = default;
-    /// Arrays for n shots of b balls, to be filled. @param hash  whether `hash` is wanted
+    /// Arrays for n shots of b balls, to be filled. @param hash  whether to allocate `hash`
     Batch(std::size_t n, std::size_t b, bool hash = false);
-    /// Where simulate_many puts their values.
+    /// The destination for simulate_many.
     BatchArrays arrays();
 
     std::size_t shots = 0, balls = 0;
@@ -135,8 +137,8 @@ struct Batch {
     std::vector<double> duration;         ///< n [s]
     std::vector<std::int64_t> events;     ///< n
     std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
-    std::vector<std::int32_t> contacts;   ///< n: how many balls it meets
-    /// n: how many cushions it meets before the second of them, or at all
+    std::vector<std::int32_t> contacts;   ///< n: the number of balls that it meets
+    /// n: the number of cushions that it meets before the second ball, or in all
     std::vector<std::int32_t> approach_cushions;
     std::vector<double> x, y;            ///< n x b [m], at the end
     std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
@@ -150,29 +152,28 @@ struct Batch {
     std::vector<Message> messages;  ///< in the order of the shots
 };
 
-/// [-] Most shots of one batch: beyond it sizes of arrays would overflow.
+/// [-] The most shots in one batch: beyond it, array sizes would overflow.
 inline constexpr std::size_t kMostBatchShots = std::size_t{1} << 31;
 /// @throws std::invalid_argument for more shots than that
 void check_shots(std::size_t shots);
 
 /// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for
-/// the scene with these numbers, bit for bit, whatever the number of threads. A shot that is invalid or fails
-/// has its status, and the others are played.
-/// @throws std::invalid_argument for a key that names no number, a key that is there twice, or a column of
-/// another length
-/// @throws std::bad_alloc, and std::system_error where the system gives no threads
+/// the scene with these numbers, bit for bit, for any number of threads. If a shot is invalid or fails, its
+/// status says so, and the others are played.
+/// @throws std::invalid_argument for a key that names no number, a repeated key, or a column of another
+/// length
+/// @throws std::bad_alloc, and std::system_error if the system cannot start the threads
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options = {});
 
-/// The same into arrays that are there already: memory is taken for the threads and the messages only.
-/// BatchOptions::hash is not read. @return the messages, in the order of the shots
+/// The same into existing arrays: allocates memory for the threads and the messages only. Ignores
+/// BatchOptions::hash. @return the messages, in the order of the shots
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,
                                           const BatchOptions& options, const BatchArrays& out);
 
-/// Plays shots first, first + 1, ... of a variation, which differ in what its rules say; otherwise the same.
-/// `options.absent` is not read.
-/// @param values  receives what was drawn: for every shot a text for every key, as VariedShot has them
+/// Plays shots first, first + 1, ... of a variation; otherwise the same. Ignores `options.absent`.
+/// @param values  receives the draws: a text per shot and key, as in VariedShot
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
                                           const BatchArrays& out, std::vector<std::string>& values);

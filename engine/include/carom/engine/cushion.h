@@ -11,7 +11,7 @@ namespace carom {
 struct BallParams;
 struct BallSize;
 
-/// What an impact of one ball with a cushion or jaw reads.
+/// Input of an impact between one ball and a cushion or jaw.
 struct CushionContact {
     double R;       ///< ball radius [m]
     double m;       ///< ball mass [kg]
@@ -21,52 +21,52 @@ struct CushionContact {
     double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
 };
 
-/// What an impact of a ball that comes with v and w reads: the friction is that
-/// of its slip at the nose, and the restitution that of its speed along the
-/// normal (BallParams::f_c_more, e_c_fall), both taken once, before the impact.
+/// Input of the impact of a ball with velocity v and spin w: the friction at its slip at the nose, and the
+/// restitution at its speed along the normal (BallParams::f_c_more, e_c_fall), both taken once, before the
+/// impact.
 CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
                                const Vec2& normal, const Vec3& v, const Vec3& w);
 
-/// The restitution at a speed [m/s] along the normal.
+/// Restitution at a speed [m/s] along the normal.
 double cushion_restitution(const BallParams& balls, double speed);
 
-/// Tangential impulse per mass [m/s] of a ball in the air at a nose, where nothing but the nose acts on it.
+/// Tangential impulse per mass [m/s] of a ball in the air at a nose, which is all that it touches.
 /// @param e, f  restitution and friction
-/// @param v_n, slip  [m/s] speed along the normal, and at right angles to it at the nose
+/// @param v_n, slip  [m/s] speed along the normal, and slip perpendicular to it at the nose
 using GripFunction = double (*)(double e, double f, double v_n, double slip);
 
-/// Coulomb's friction of a whole impact, f (1 + e) v_n, or what ends the slip (2/7 of it).
+/// Coulomb friction over a whole impact: f (1 + e) v_n, or 2/7 of the slip if that suffices to end it.
 double coulomb_grip(double e, double f, double v_n, double slip);
 
-/// Velocities after the impact, in place. v_z is 0 before and afterwards (planar).
+/// Velocities after the impact, in place. v_z is 0 before and after it (planar). A ball that does not
+/// approach (v . normal >= 0) is left alone.
 ///
-/// @param normal  unit, horizontal, from the cushion into the table.
-/// A ball that does not approach (v . normal >= 0) is left alone.
-/// @return false where the model found no solution (an iteration beyond its bound on steps, which takes
-/// frictions that no cloth has); the velocities are then as they came
+/// @param normal  unit, horizontal, from the cushion into the table
+/// @return false if the model found no solution (it reached its limit of iterations, which takes friction
+/// that no cloth has); the velocities are then unchanged
 using CushionFunction = bool (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
-/// One model: its function and what it looks at. All models are homogeneous in the velocities and do not read
-/// the mass (all impulses are per mass). Equations and sources: docs/reference/physics.md, "Cushion impact".
+/// One model: its function and its inputs. All models are homogeneous in the velocities and do not read the
+/// mass (impulses are per mass). Equations and sources: docs/reference/physics.md, "Cushion impact".
 struct CushionModelInfo {
     const char* name;
     const char* source;
     CushionFunction resolve;
     bool reads_friction = false;  ///< f_c, the height of the nose and the spin matter, and the spin changes
     bool reads_cloth = false;     ///< mu_s matters
-    /// Without friction, and with the nose at the height of the centre, the result has the bits of `smooth`.
+    /// Without friction, and with the nose as high as the centre, the result is that of `smooth`, bit for
+    /// bit.
     bool reflects_when_level = false;
-    /// Whether the model has a solution for all velocities; null:
-    /// for every contact. In mathavan_2010 a ball can jam.
+    /// Whether the model has a solution for all velocities; null: always. In mathavan_2010 a ball can jam.
     bool (*accepts)(const CushionContact& contact) = nullptr;
     /// Friction of a ball in the air; null: none.
     GripFunction grip = coulomb_grip;
 };
 
-/// The models that others refer to; cushion_model("stronge") and all_of() find the rest.
+/// The models that other code names directly; cushion_model("stronge") and all_of() find the rest.
 extern const CushionModelInfo kHan2005, kMathavan2010, kSmooth;
 
-/// All models, as messages list them.
+/// All models, in the order in which messages list them.
 std::span<const CushionModelInfo* const> all_of(const CushionModelInfo*);
 /// The model of this name, or null.
 const CushionModelInfo* cushion_model(std::string_view name);

@@ -1,7 +1,6 @@
-// Fields: the keys of a section as rows of a table. What reads and writes scenes and records, the schemas,
-// the tables of docs/reference/scene_format.md and the C interface all go through the rows, so that a key
-// which is added is known to each of them. The rows of a section stand below its struct, in scene.h and
-// table.h.
+// Fields: the keys of a section as rows of a table. The readers and writers of scenes and records, the
+// schemas, the tables of docs/reference/scene_format.md and the C interface all use these rows, so a new key
+// is known to all of them. The rows of each section follow its struct, in scene.h and table.h.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 
 namespace carom {
 
-/// The values that a number may take. `unit` is written after a blank; "" for none.
+/// The range of a number. `unit` is written after a space; "" for none.
 struct Interval {
     double low;
     bool low_open;
@@ -32,29 +31,29 @@ constexpr Interval at_least(double low, double high, const char* unit = "") {
 constexpr Interval more_than(double low, double high, const char* unit = "") {
     return {low, true, high, false, unit};
 }
-/// The upper end of integers that have no limit of their own.
+/// The upper end of integers without a limit of their own.
 inline constexpr double kAnyInteger = 0x1p63;
 
-/// What a field holds: nothing where an optional value is left open, and a list for a vector.
+/// The value of a field: nothing if an optional value is not set, and a list for a vector.
 using FieldValue = std::variant<std::monostate, double, std::int64_t, std::string, std::vector<double>>;
 
-/// Which files have the key.
+/// The files that have the key.
 enum class Files : std::uint8_t { kBoth, kScene, kRecord };
 
 struct KeyOptions {
     const char* shape = "";            ///< of a list: "[x, y]"
-    const char* record_key = nullptr;  ///< the key in record files, where it is another one
+    const char* record_key = nullptr;  ///< the key in record files, if it differs
     Files files = Files::kBoth;
-    int since = 1;                            ///< the version of record files that brought the key
+    int since = 1;                            ///< the version of record files that introduced the key
     bool later = false;                       ///< added within that version: older files of it lack the key
-    bool needed = false;                      ///< the scene has to give it
-    bool last_may_lack = false;               ///< the last number of a list may be left out where it is 0
-    const char* standard = nullptr;           ///< the default in words, where it is no value
-    const char* instead_of = nullptr;         ///< the key whose place this one takes where it is given
-    std::span<const char* const> names = {};  ///< the texts that are allowed; empty: all
+    bool needed = false;                      ///< the scene must give it
+    bool last_may_lack = false;               ///< the last number of a list may be omitted if it is 0
+    const char* standard = nullptr;           ///< the default in words, if it is not a value
+    const char* instead_of = nullptr;         ///< the key that this one replaces if it is given
+    std::span<const char* const> names = {};  ///< the texts allowed; empty: all
 };
 
-/// One row without its type: all that can be said about a key.
+/// One row without its type: all that is known about a key.
 struct Key {
     enum class Kind : std::uint8_t { kNumber, kInteger, kText, kNumbers, kIntegers };
 
@@ -63,9 +62,9 @@ struct Key {
     Interval range;       ///< of a number, and of every number in a list
     const char* meaning;  ///< for people, without the unit
     KeyOptions options;
-    bool optional;                          ///< the scene may leave it open
-    int members;                            ///< of the struct, that it stands for
-    std::vector<const char*> (*choices)();  ///< the texts that are allowed; null: options.names
+    bool optional;                          ///< the scene may omit it
+    int members;                            ///< how many members of the struct it represents
+    std::vector<const char*> (*choices)();  ///< the texts allowed; null: options.names
 
     bool in(Files files) const { return options.files == Files::kBoth || options.files == files; }
     const char* record_key() const { return options.record_key ? options.record_key : key; }
@@ -74,7 +73,7 @@ struct Key {
     std::int64_t most() const {
         return range.high < kAnyInteger ? static_cast<std::int64_t>(range.high) : INT64_MAX;
     }
-    /// Numbers in the list: those of its shape.
+    /// Length of the list, from its shape.
     std::size_t count() const {
         const std::string_view shape = options.shape;
         return 1 + static_cast<std::size_t>(std::count(shape.begin(), shape.begin() + shape.find(']'), ','));
@@ -89,15 +88,14 @@ template <class T>
 struct Field : Key {
     FieldValue (*get)(const T&);
     void (*set)(T&, const FieldValue&);  ///< the value is of this kind, and one of the choices
-    /// Whether the value is one that files may have, found
-    /// without memory; false also where that is not known.
+    /// Whether files may have this value, found without allocating memory; false also if that is unknown.
     bool (*fits)(const T&, const Key&) = nullptr;
-    /// The k-th number of a list in the struct itself; null where it is no member of its own.
+    /// The k-th number of a list in the struct itself; null if the struct does not store the list.
     double* (*element)(T&, std::size_t k) = nullptr;
 
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
-        // The height of a ball is no part of its place.
+        // A position leaves out the height of the ball.
         if (auto* list = std::get_if<std::vector<double>>(&value)) {
             list->resize(count());
             if (options.last_may_lack && list->back() == 0.0) list->pop_back();
@@ -106,8 +104,8 @@ struct Field : Key {
     }
 };
 
-/// Whether a scene file that says all of `object` has this
-/// row: it holds a value, and no other key stands in for it.
+/// Whether a scene file that writes out all of `object` has this row: it has a value, and no other key
+/// replaces it.
 template <class T, std::size_t kRows>
 bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T& object) {
     const bool replaced = std::any_of(fields, fields + kRows, [&](const Field<T>& other) {
@@ -117,10 +115,10 @@ bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T&
     return field.in(Files::kScene) && !replaced && field.value(object).index() != 0;
 }
 
-/// The least size of a number that is not 0: powers of smaller ones underflow.
+/// Smallest magnitude of a number other than 0: powers of smaller ones underflow.
 inline constexpr double kLeastSize = 1e-60;
 
-/// Whether a number is so small that it cannot be computed with.
+/// Whether a number is too small to compute with.
 constexpr bool is_tiny(double x) {
     return x != 0.0 && x > -kLeastSize && x < kLeastSize;
 }
@@ -132,7 +130,7 @@ constexpr bool contains(const Interval& range, double x) {
     return x - x == 0.0 && !is_tiny(x) && high_enough && low_enough;
 }
 
-/// What files call a value of an enumeration.
+/// The name of an enumeration's value in files.
 template <class E>
 auto name(E e) -> typename decltype(names_of(e))::value_type {
     return names_of(e)[static_cast<std::size_t>(e)];
@@ -194,7 +192,7 @@ std::vector<const char*> choice_names() {
     return names;
 }
 
-/// Whether a value is surely allowed. Of texts that is not known.
+/// Whether a value is certainly allowed; for texts, that is unknown.
 template <class V>
 bool fits(const V& v, const Key& key) {
     if constexpr (kIsOptional<V>)
@@ -247,9 +245,9 @@ void put(V& v, const FieldValue& value) {
 
 }  // namespace detail
 
-/// A row of one member: a number, an integer, a text, a vector, or a choice. A
-/// choice is an enumeration, whose names `names_of(V)` lists in the order of
-/// its values, or a pointer to a model: one of `all_of(V)`, called `name(v)`.
+/// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration,
+/// whose names `names_of(V)` lists in the order of its values, or a pointer to a model: one of `all_of(V)`,
+/// named `name(v)`.
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval& range, const char* meaning,
                                                 const KeyOptions& options = {}) {
@@ -270,7 +268,7 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* mea
     return field<kMember>(key, at_least(0.0, 0.0), meaning, options);
 }
 
-/// A row of two numbers that files write as a list.
+/// A row of two numbers, which files write as a list.
 template <auto kFirst, auto kSecond>
 constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& range, const char* meaning,
                                                const KeyOptions& options) {
@@ -299,9 +297,8 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
-/// The rows of a coefficient that may be a number or a fit of three: `number`
-/// is the first of them alone, and takes the place of a fit; `fit` is the
-/// list of all three, in scene files and where one of the others is not 0.
+/// The rows of a coefficient that may be a number or a fit with three. `number` is the first number alone,
+/// and replaces a fit. `fit` is the list of all three, in scene files, if one of the other two is not 0.
 template <auto kFirst, auto... kOthers>
 constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const Interval& range,
                                                        const char* meaning, const KeyOptions& options = {}) {
@@ -336,7 +333,7 @@ constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& ra
             }};
 }
 
-/// The keys of some rows, as far as these files have them.
+/// The keys of some rows that these files have.
 template <class T, std::size_t kRows>
 std::vector<std::string_view> keys_of(const Field<T> (&fields)[kRows], Files files) {
     std::vector<std::string_view> keys;

@@ -1,4 +1,4 @@
-// Whether a ball was driven to a cushion: games and sweeps count by this one meaning.
+// Whether a ball was driven to a cushion: games and sweeps share this definition.
 #pragma once
 
 #include <span>
@@ -7,13 +7,15 @@
 
 namespace carom {
 
-/// How far a ball is at most in the direction `along` (a unit vector) until `time`: the greatest along *
+/// The farthest that a ball gets in the direction `along` (a unit vector) until `time`: the greatest along *
 /// position [m].
 /// @param segments  those of the ball that begin until then, or more
 double farthest(std::span<const Segment> segments, const Vec2& along, double time);
 
-/// Whether a ball that meets a cushion or a jaw in this event touched it at the start, and has not left it:
-/// that is no contact that it was driven to. @param segments  those of the ball  @param R  its radius [m]
+/// Whether a ball that meets a cushion or a jaw in this event touched it at the start and has not left it
+/// since. Such a contact does not count as driven to the cushion.
+/// @param segments  those of the ball
+/// @param R  its radius [m]
 bool still_frozen(const Table& table, const Event& event, std::span<const Segment> segments, double R);
 
 }  // namespace carom

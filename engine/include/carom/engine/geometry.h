@@ -1,4 +1,4 @@
-// The table as the loop sees it: lines, round noses and pockets in final form.
+// The table as the event loop uses it: lines, round noses and pockets.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace carom {
 
-/// A straight cushion in final form; index as in scene.table.cushions.
+/// A straight cushion; index as in scene.table.cushions.
 struct CushionLine {
     Vec2 from;
     Vec2 direction;  ///< unit
@@ -28,8 +28,7 @@ struct Nose {
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R + radius - inset
 };
 
-/// [m] By how much less than its radius the centre of a
-/// ball is away from a nose of this height that it touches.
+/// [m] How much closer to a nose of this height than its radius the centre of a touching ball is.
 double nose_inset(CushionTouch touch, double R, double height);
 
 /// All parts of a table that a ball can meet.

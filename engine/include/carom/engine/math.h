@@ -1,5 +1,5 @@
-// Trigonometry of our own, made of + - * / and sqrt only, so that every machine, compiler and C library gives
-// the same bits (the C library picks variants by CPU).
+// Trigonometry made of + - * / and sqrt only, so that every machine, compiler and C library gives the same
+// bits (the C library picks variants by CPU).
 #pragma once
 
 namespace carom {

@@ -6,10 +6,10 @@
 
 namespace carom {
 
-/// The next shot: scene_after() with `cue`, checked. Balls in pockets and balls that left the table are gone;
-/// the others lie where they rest, to the bit.
+/// The next shot: scene_after() with `cue`, validated. Balls in pockets and off the table are removed; the
+/// others lie exactly where they came to rest.
 /// @param scene  that of the record: the same balls in the same order
-/// @throws SceneError where that is no valid scene: the cue's ball is gone or still moves
+/// @throws SceneError if that is not a valid scene: the cue's ball is gone or still moves
 Scene next_scene(const Scene& scene, const Record& record, const Cue& cue);
 
 }  // namespace carom

@@ -1,4 +1,4 @@
-// Plan: what must be computed for a scene. Constant during a run; the loop reads nothing else.
+// Plan: what to compute for a scene. It is constant during a run, and the event loop reads nothing else.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace carom {
 
-/// One effect of the design's table: in force or skipped, and why.
+/// One effect: in force or skipped, and why.
 struct EffectDecision {
     std::string keyword;
     bool in_force;
@@ -40,15 +40,15 @@ struct Need {
 struct EffectInfo {
     const char* keyword;       ///< of [effects]
     const char* skipped_when;  ///< for people
-    const char* keys;          ///< of a scene, that belong to it, with commas between them
+    const char* keys;          ///< the keys of a scene that belong to it, separated by commas
     Need (*need)(const EffectFacts&);
-    void (*leave_out)(Plan&) = nullptr;  ///< takes it out of the plan, beside Plan::skipped
-    bool last = false;                   ///< decided when all others are: it asks what came of them
+    void (*leave_out)(Plan&) = nullptr;  ///< removes it from the plan, in addition to Plan::skipped
+    bool last = false;                   ///< decided after all others, because it depends on them
 };
 /// All effects, in the order of Effect and of Plan::effects.
 std::span<const EffectInfo> effect_table();
 
-/// How detection looks for what a ball can meet: through all boxes, or in a tree of them (Box2D's). The
+/// How detection finds what a ball can meet: by testing every box, or in a tree of boxes (Box2D's). The
 /// events are the same to the last bit; lab/notes/2026-11-event_cost.md has the measured crossing.
 enum class Search : std::uint8_t { kDirect, kTree };
 constexpr auto names_of(Search) {
@@ -56,36 +56,38 @@ constexpr auto names_of(Search) {
 }
 
 struct Plan {
-    Scene scene;                  ///< ids, table and settings as read
-    BallParams balls{};           ///< as the scene, with the friction of skipped effects 0
+    Scene scene;                  ///< ids, table and settings, as read
+    BallParams balls{};           ///< as in the scene, except that the friction of skipped effects is 0
     std::vector<BallSize> sizes;  ///< of every ball of the scene
     double gravity = 9.81;
-    std::vector<MotionParams> motion;           ///< of every ball, without what the effects leave out
-    Geometry geometry;                          ///< empty lists where nothing can reach them
+    std::vector<MotionParams> motion;           ///< of every ball, without the effects that are skipped
+    Geometry geometry;                          ///< empty lists if nothing can reach them
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
-    std::vector<EffectDecision> effects;        ///< of effect_table(), then what no scene can ask for
+    std::vector<EffectDecision> effects;        ///< of effect_table(), then those that no scene can ask for
     std::bitset<kEffects> skipped;
     bool in_force(Effect effect) const { return !skipped[static_cast<std::size_t>(effect)]; }
     void skip(Effect effect) { skipped.set(static_cast<std::size_t>(effect)); }
     bool pairs = true;  ///< two balls can meet
     kernel::Isa isa = kernel::Isa::kScalar;
     const BallBallModelInfo* ball_ball = nullptr;
+    /// e_b as the model of ball-ball impacts reads it: 1 if it does not.
+    double e_b() const { return ball_ball->reads_restitution ? balls.e_b : 1.0; }
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
-    /// kSequential where fewer than three balls leave nothing to decide
+    /// kSequential if there are fewer than three balls
     ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls
     Search table_search = Search::kDirect;  ///< among cushions, noses and pockets
-    /// [ball radii] Way that a ball's box covers before it is
-    /// renewed; infinite: until the ball's next own event.
+    /// [ball radii] Distance that a ball's box covers before it is renewed; infinite: until the ball's next
+    /// own event.
     double box_travel = std::numeric_limits<double>::infinity();
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 
-/// Decides, once per run, by arguments that hold for the whole shot (design, section 3).
+/// Decides once per run, by arguments that hold for the whole shot (docs/design/architecture.md).
 /// @param isa must be available (kernel::isa_from_environment)
-/// @throws SceneError where [effects] refuses what the scene needs
+/// @throws SceneError if [effects] excludes what the scene needs
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
 /// Whether nothing in a plan takes energy: impacts return all of it, and there is no friction, no pocket and
@@ -104,7 +106,7 @@ class Planner {
     /// The scene to plan; it may be changed between two plans.
     Scene& scene() { return plan_.scene; }
     /// Valid until the next call.
-    /// @param same_table  the table is that of the last call
+    /// @param same_table  the table has not changed since the last call
     /// @throws SceneError as make_plan
     const Plan& plan(bool same_table = false);
 

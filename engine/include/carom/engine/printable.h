@@ -1,4 +1,4 @@
-// Text from a file, made fit for a message.
+// Makes text from a file safe to print in a message.
 #pragma once
 
 #include <string>
@@ -6,15 +6,14 @@
 
 namespace carom {
 
-/// `text` as a terminal may have it: what could steer one (control characters,
-/// marks that turn the direction of writing, bytes that are no UTF-8) becomes
-/// "?", and what is longer than 60 bytes is cut and ends in "...".
+/// `text`, safe for a terminal: control characters, marks that change the direction of writing, and bytes
+/// that are not UTF-8 become "?", and text longer than 60 bytes is cut and ends in "...".
 std::string printable(std::string_view text);
 
-/// printable() without the cut; line ends and tabs stay.
+/// printable() without the cut; keeps line ends and tabs.
 std::string harmless(std::string_view text);
 
-/// Whether printable() would change nothing but the length.
+/// Whether printable() would change nothing except the length.
 bool is_plain(std::string_view text);
 
 bool is_utf8(std::string_view text);

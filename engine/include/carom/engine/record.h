@@ -1,5 +1,5 @@
-// Record: what happened. Per ball a list of closed-form motion
-// segments, plus the ordered events. Immutable once made.
+// Record: the result of a simulation. A list of closed-form motion segments for each ball, and the ordered
+// events. Immutable once made.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,7 +21,7 @@
 
 namespace carom {
 
-/// kFalling: over a pocket, not yet in it. kOut: it has flown over the cushions and plays no more.
+/// kFalling: over a pocket, not yet in it. kOut: it flew over the cushions and is out of play.
 enum class MotionState : std::uint8_t {
     kStationary,
     kSpinning,
@@ -36,11 +36,11 @@ constexpr auto names_of(MotionState) {
     return std::array{"stationary", "spinning", "sliding",  "rolling",
                       "pocketed",   "falling",  "airborne", "out"};
 }
-/// Whether a ball in this state plays no more.
+/// Whether a ball in this state is out of play.
 constexpr bool is_gone(MotionState state) {
     return state == MotionState::kPocketed || state == MotionState::kOut;
 }
-/// Whether a ball moves without the cloth, on a parabola.
+/// Whether a ball moves on a parabola, without touching the cloth.
 constexpr bool flies(MotionState state) {
     return state == MotionState::kAirborne || state == MotionState::kOut;
 }
@@ -49,20 +49,20 @@ constexpr bool is_off_cloth(MotionState state) {
     return flies(state) || state == MotionState::kFalling;
 }
 
-/// One ball between two events that touch it. Times inside are relative to `start`.
+/// The motion of one ball between two of its events. Times inside are relative to `start`.
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
-    /// Centre, velocity, angular velocity at the start. While a ball falls, r_z stays the height at which
-    /// that began, and v_z is how fast it falls at the start: tau later it is by (v_z - g tau)^2 / 2g lower
-    /// than r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2.
+    /// Centre, velocity and angular velocity at the start. While a ball falls into a pocket, r_z stays at the
+    /// height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z - g
+    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
     double spin_decay = 0.0;  ///< |dw_z/dt| [rad/s^2], >= 0; w_z never passes 0
-    double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if none
+    double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if there is none
     MotionState state = MotionState::kStationary;
-    bool held = false;  ///< in a resting contact: `a` holds the contact forces too
-    /// Its own transition comes at the end of the duration (a held ball may only turn its forces)
+    bool held = false;  ///< in a resting contact: `a` includes the contact forces
+    /// A transition follows at the end of the duration (for a held ball, perhaps only its forces change)
     bool ends = true;
     bool operator==(const Segment&) const = default;
 };
@@ -78,16 +78,17 @@ enum class EventType : std::uint8_t {
     kRollSpin,
     kRollStop,
     kSpinStop,
-    // Resting contacts: from a hold to its release the two stay in touch and push each other.
+    // Resting contacts: from a hold to its release, the two stay in touch and push each other.
     kBallBallHold,
     kBallBallRelease,
     kBallCushionHold,
     kBallCushionRelease,
     kBallJawHold,
     kBallJawRelease,
-    kBallEdge,   ///< the centre passes the edge of a pocket: the ball falls, or is back on the cloth
-    kBallCloth,  ///< a ball that flew, or that another impact pressed down, hits the cloth
-    kBallOut,    ///< the centre of a ball that flies is over a cushion: it has left the table
+    /// the centre crosses the edge of a pocket: the ball begins to fall, or is back on the cloth
+    kBallEdge,
+    kBallCloth,  ///< a flying ball, or one that another impact pressed down, hits the cloth
+    kBallOut,    ///< the centre of a flying ball is over a cushion: it has left the table
 };
 inline constexpr int kEventTypes = 19;
 
@@ -98,12 +99,12 @@ enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it
     kImpact,      ///< it meets another ball, a cushion, a jaw, a pocket or the cloth
-    kTransition,  ///< it goes over from one state of motion to another by itself
+    kTransition,  ///< it changes its state of motion by itself
     kHold,        ///< a resting contact begins
     kRelease      ///< a resting contact ends
 };
 
-/// All that is known about an event from its type alone.
+/// All that follows from the type of an event.
 struct EventKind {
     EventType type;
     const char* name;  ///< in files
@@ -111,7 +112,7 @@ struct EventKind {
     Partner partner = Partner::kNone;
 };
 
-/// One row for every type, in the order of the enumeration.
+/// One row per type, in the order of the enumeration.
 inline constexpr EventKind kEventKinds[kEventTypes] = {
     {EventType::kCueStrike, "cue_strike", EventPhase::kStrike},
     {EventType::kBallBall, "ball_ball", EventPhase::kImpact, Partner::kBall},
@@ -140,7 +141,7 @@ constexpr const EventKind& kind(EventType type) {
 constexpr const char* name(EventType type) {
     return kind(type).name;
 }
-/// Whether balls collide: two of them, or a cluster.
+/// Whether balls collide: two, or a cluster.
 constexpr bool balls_collide(EventType type) {
     return kind(type).phase == EventPhase::kImpact && kind(type).partner == Partner::kBall;
 }
@@ -148,31 +149,50 @@ constexpr bool balls_collide(EventType type) {
 struct Event {
     double time = 0.0;  ///< s since the start of the shot
     EventType type = EventType::kCueStrike;
-    int a = -1;       ///< ball (index)
-    int b = -1;       ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
-    int detail = -1;  ///< kBallCluster: index into Record::clusters; cushions and jaws: of the round nose in
-                      ///< Plan::noses, or -1
-    /// of a ball in the air, so slow that it parts at a speed of its own: the energy may rise
+    int a = -1;  ///< ball (index)
+    int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
+    /// kBallCluster: index into Record::clusters; cushions and jaws: index into the plan's noses, or -1
+    int detail = -1;
+    /// a contact in the air so slow that it separates at a fixed speed: the energy may rise
     bool slow = false;
     bool operator==(const Event&) const = default;
 };
 
-/// What one event cost; filled only by a profiled run.
+/// Cost of one event; filled only by a profiled run.
 struct EventCost {
-    double detect_ns = 0.0;   ///< finding the next event and re-detection after this one
+    double detect_ns = 0.0;   ///< finding the next event, and detecting again after this one
     double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
     double kernel_ns = 0.0;   ///< inside the impact kernel
     long steps = 0;           ///< of the kernel
     std::string method{};     ///< "march", "elastic", "han_2005", ...
-    double queue_ns = 0.0;    ///< part of detect_ns: which event is next
+    double queue_ns = 0.0;    ///< part of detect_ns: choosing the next event
     bool operator==(const EventCost&) const = default;
 };
 
-/// kEndless: balls move that nothing stops, nothing more happens to them, and there was no time to stop at;
-/// the record ends at its last event.
+/// kEndless: balls move forever without another event, and there was no time to stop at; the record ends at
+/// its last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
+
+/// The words for a StopReason.
+struct StopWords {
+    const char* word;       ///< in tables, Python and C
+    const char* in_record;  ///< in record files
+    const char* sentence;   ///< for people
+};
+inline constexpr std::array<StopWords, 4> kStopWords = {{
+    {"at_rest", "at rest", "everything is at rest"},
+    {"time", "stop time", "stopped at the time limit"},
+    {"events", "number of events", "stopped at the event limit"},
+    {"endless", "endless motion", "no more events, but balls move forever"},
+}};
+constexpr const StopWords& words(StopReason why) {
+    return kStopWords[static_cast<std::size_t>(why)];
+}
+/// As record files have them.
 constexpr auto names_of(StopReason) {
-    return std::array{"at rest", "stop time", "number of events", "endless motion"};
+    std::array<const char*, kStopWords.size()> names{};
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = kStopWords[i].in_record;
+    return names;
 }
 
 /// State of one ball at a time.
@@ -185,7 +205,7 @@ struct BallState {
 
 struct BallTrack {
     std::string id;
-    /// Ordered by start; a later one with the same start replaces the earlier
+    /// Ordered by start; of two with the same start, the later one counts
     std::vector<Segment> segments;
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
@@ -202,46 +222,47 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    /// Balls of every ball_cluster event, by position; a and b are the pair that met
+    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the pair that met
     std::vector<std::vector<int>> clusters;
     std::vector<EventCost> costs;  ///< empty, or one per event
-    double setup_detect_ns = 0.0;  ///< profiled: first detection of all pairs
+    double setup_detect_ns = 0.0;  ///< profiled: the first detection, of all pairs
     double duration = 0.0;         ///< s
-    double start_time = 0.0;  ///< s: what SimulateOptions::start_time said; all times here are relative to it
+    double start_time = 0.0;       ///< s: SimulateOptions::start_time; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
-    /// Takes out what happened, for another shot. The memory of the motions and the events stays.
+    /// Removes the result, for another shot. Keeps the memory of the segments and the events.
     void clear();
 
     /// Radius and mass of a ball.
     BallSize size(int ball) const { return tracks[ball].own.value_or(balls.size()); }
 
-    /// State of a ball at time t: the last segment that starts at or before t, in closed form. t before 0
-    /// gives the start, t past the duration the state at the duration.
+    /// State of a ball at time t: the last segment that starts at or before t, in closed form. Before 0 it is
+    /// the start, and after the duration the end.
     BallState state_at(int ball, double t) const;
 
-    /// The same of every ball at many times, time after time: position, velocity
-    /// and spin in nine numbers, and the kind of motion. Null: not wanted.
+    /// The same for every ball at many times, one time after another: position, velocity and spin as nine
+    /// numbers, and the state of motion. Null: not wanted.
     void states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const;
 
-    /// Orientation (body to table) at time t, starting from the identity, by the integral of the angular
-    /// velocity; exact where the axis is fixed, else by fourth-order Magnus steps of at most 0.2 rad (1e-7
-    /// rad over a shot).
+    /// Orientation (body to table) at time t, starting from the identity: the integral of the angular
+    /// velocity. Exact if the axis is fixed, otherwise by fourth-order Magnus steps of at most 0.2 rad (error
+    /// 1e-7 rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
-    /// 64-bit FNV-1a over the bits of segments (but not `ends`), of events (but not `detail`) and of the
-    /// duration, as 16 hex digits.
+    /// 64-bit FNV-1a over the bits of the segments (except `ends`), of the events (except `detail`) and of
+    /// the duration, as 16 hex digits.
     std::string hash() const;
 
-    /// Name of what an event's b is: a ball, cushion, jaw or pocket id, or "".
+    /// Id of an event's b: a ball, cushion, jaw or pocket, or "".
     std::string partner_id(const Event& event) const;
 
   private:
     struct Orientations;
-    /// What is no part of what happened: any two of these are equal.
+    /// A cache that is not part of the value: any two of these are equal.
     struct Aside {
         Aside();
-        Aside(const Aside&) : Aside() {}  // A copy may be changed, so it works out its orientations anew.
+        // A copy may be changed, so it computes its orientations afresh.
+        Aside(const Aside&) : Aside() {}
         Aside(Aside&&) noexcept = default;
         ~Aside() = default;
         Aside& operator=(Aside other) noexcept {
@@ -261,7 +282,7 @@ inline Vec3 position_at(const Segment& s, double tau) {
 }
 inline Vec3 velocity_at(const Segment& s, double tau) {
     if (s.state == MotionState::kRolling && s.duration < std::numeric_limits<double>::infinity() && !s.held) {
-        // v + a tau, written so that the direction stays and the end is exactly 0.
+        // v + a tau, written so that the direction stays the same and the end is exactly 0.
         const double left = std::max(0.0, 1.0 - tau / s.duration);
         return {s.v.x() * left, s.v.y() * left, 0.0};
     }
@@ -269,37 +290,37 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
-/// [m] How far the floor lies below the cloth, where a ball that has left
-/// the table comes to rest: the bed of a table is 29 1/4 to 31 inches high
-/// (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+/// [m] Depth of the floor below the cloth, where a ball that left the table comes to rest. The bed of a table
+/// is 29 1/4 to 31 inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
 inline constexpr double kFloorDepth = 0.76;
 
-/// Time from the start of a segment until a ball of radius R lies
-/// on the floor [s]; infinite for one that has not left the table.
+/// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite if it has not
+/// left the table.
 inline double until_floor(const Segment& s, double R, double gravity) {
     if (s.state != MotionState::kOut || !(gravity > 0.0)) return std::numeric_limits<double>::infinity();
     const double v = s.v.z(), height = std::max(0.0, s.r.z() + (kFloorDepth - R));
     return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
 }
 
-/// The scene for the next shot: that of the record with its balls where and as they are at the end, without
-/// the balls in pockets, without a cue. Whoever plays says who is struck, and puts fallen balls back. One
-/// that is falling does so from the beginning. It may need other [effects].
+/// The scene for the next shot: that of the record with every ball as it is at the end, without the balls in
+/// pockets and without a cue. The caller chooses the ball to strike, and puts fallen balls back. A ball that
+/// is still falling starts its fall again. The result may need other [effects].
 /// @param scene  that of the record: the same balls in the same order
 Scene scene_after(const Scene& scene, const Record& record);
 
-/// Writes a record as JSON to `path` by way of a temporary name. Doubles read back to the same bits.
+/// Writes a record as JSON to `path`, under a temporary name first. Doubles read back to the same bits.
 /// @throws std::runtime_error naming the file
 void write_record(const Record& record, const std::string& path);
 
-/// What write_record writes. @throws std::runtime_error where it would, except for the file
+/// The text that write_record writes. @throws std::runtime_error as write_record does, except for the file
 std::string record_json(const Record& record);
 
-/// Reads what write_record wrote, now or in version 1 (docs/reference/record_format.md). What the file lacks,
-/// or has beyond what this version knows, is said in `notes`, a sentence each. @throws SceneError
+/// Reads what write_record wrote, in this version or in version 1 (docs/reference/record_format.md). `notes`
+/// receives a sentence for everything that the file lacks or that this version does not know. @throws
+/// SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; messages call the file `name`.
 Record parse_record(std::string_view text, const std::string& name,
                     std::vector<std::string>* notes = nullptr);
 

@@ -1,4 +1,4 @@
-// Scene: what a scene file says, validated, with every default written out.
+// Scene: the content of a scene file, validated, with every default written out.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace carom {
 
-/// A place in a scene file; line 0 stands for the file as a whole.
+/// A position in a scene file; line 0 means the whole file.
 struct SourceLocation {
     int line = 0;
     int column = 0;
@@ -34,7 +34,7 @@ class SceneError : public std::runtime_error {
   public:
     SceneError(const std::string& file, SourceLocation where, const std::string& message);
 
-    /// "what is wrong and what to do", without the place.
+    /// "what is wrong and what to do", without the position.
     const std::string& message() const noexcept { return message_; }
     const std::string& file() const noexcept { return file_; }
     SourceLocation where() const noexcept { return where_; }
@@ -44,15 +44,14 @@ class SceneError : public std::runtime_error {
     SourceLocation where_;
 };
 
-// The structs below compare all that they hold, so that a test which compares a whole one cannot forget a
-// field that is added later.
+// The structs below compare all their members, so that a test cannot miss one that is added later.
 
 inline constexpr Interval kBallRadius = at_least(kMinLength, kMaxLength, "m");
 inline constexpr Interval kMass = at_least(kMinMass, kMaxMass, "kg");
 inline constexpr Interval kFriction = at_least(0.0, kMaxFriction);
 inline constexpr Interval kRestitution = at_least(0.0, 1.0);
 
-/// What may differ from ball to ball.
+/// The properties that may differ from ball to ball.
 struct BallSize {
     double R;  ///< radius [m]
     double m;  ///< mass [kg]
@@ -63,8 +62,8 @@ inline constexpr Field<BallSize> kSizeFields[] = {
     field<&BallSize::m>("mass", kMass, "of this ball", {.standard = "as `[balls]`"}),
 };
 
-/// A coefficient that falls with a speed u [m/s]: at_rest
-/// + more exp(-fall u), and at_rest alone if `more` is 0.
+/// A coefficient that falls with a speed u [m/s]: at_rest + more exp(-fall u), or at_rest alone if `more` is
+/// 0.
 struct Falling {
     double at_rest, more = 0.0, fall = 0.0;  // fall [s/m]
     double operator()(double u) const;
@@ -83,32 +82,32 @@ struct BallParams {
     double e_b;
     double e_c;
     double f_c;
-    /// Ball-ball friction that falls with the slip u [m/s]:
-    /// mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at every speed.
+    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at
+    /// every slip.
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
     /// Cushion friction that falls with the slip u [m/s] at the nose: f_c + f_c_more exp(-f_c_fall u).
     double f_c_more = 0.0;
     double f_c_fall = 0.0;  ///< [s/m]
-    /// Cushion restitution that falls with the speed v_n [m/s] towards the
-    /// cushion: above e_c_above by e_c_fall for each m/s, and not below 0.
+    /// Cushion restitution that falls with the speed v_n [m/s] towards the cushion: above e_c_above it loses
+    /// e_c_fall per m/s, down to 0.
     double e_c_fall = 0.0;   ///< [s/m]
     double e_c_above = 0.0;  ///< [m/s]
-    /// Restitution of ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more exp(-e_t_fall V).
-    /// Source of 0.5: D. Alciatore, "Physical properties".
+    /// Restitution between ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more
+    /// exp(-e_t_fall V). Source of 0.5: D. Alciatore, "Physical properties".
     double e_t = 0.5, e_t_more = 0.0;
     double e_t_fall = 0.0;  ///< [s/m]
-    /// Share of the downward speed from a cushion that throws
-    /// a ball up again. 0: the published planar cushions.
+    /// Share of the downward speed after a cushion that throws the ball up again. 0: the published planar
+    /// cushions.
     double e_h = 0.0;
     BallSize size() const { return {R, m}; }
-    /// Between two balls, by the slip of their surfaces at the contact. Source of the form: D. Alciatore,
-    /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the value at
-    /// the slip before it; in a compliant cluster every contact has that of its own slip at every instant.
+    /// Between two balls, as a function of their slip at the contact. Source of the form: D. Alciatore,
+    /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the slip
+    /// before it; in a compliant cluster, every contact uses its current slip.
     Falling ball_friction() const { return {mu_b, mu_b_more, mu_b_fall}; }
-    /// At a cushion, by the slip at the nose.
+    /// At a cushion, as a function of the slip at the nose.
     Falling cushion_friction() const { return {f_c, f_c_more, f_c_fall}; }
-    /// Of ball and cloth, by the speed towards the cloth.
+    /// Between ball and cloth, as a function of the speed towards the cloth.
     Falling cloth_restitution() const { return {e_t, e_t_more, e_t_fall}; }
     bool operator==(const BallParams&) const = default;
 };
@@ -118,7 +117,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_s>("mu_s", kFriction, "sliding friction on the cloth"),
     field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
     field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
-    // Records give the rest of a fit in rows of its own.
+    // Records have separate rows for the rest of a fit.
     number_or_fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
         "mu_b", kFriction, "ball-ball friction, at any slip; replaces the fit of a preset"),
     field<&BallParams::mu_b_more>(
@@ -129,8 +128,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
                                   {.files = Files::kRecord, .since = 2}),
     fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
         "mu_b_fit", kFriction,
-        "ball-ball friction a + b exp(-c u) at the slip u in m/s, in an impact of two balls the slip before "
-        "it; `[0.009951, 0.108, 1.088]` is the fit of Alciatore's TP A.14",
+        "ball-ball friction a + b exp(-c u) at the slip u in m/s (for two balls, the slip before the "
+        "impact); `[0.009951, 0.108, 1.088]` is the fit of Alciatore's TP A.14",
         "[a, b, c] for a + b exp(-c u)", "mu_b"),
     field<&BallParams::e_b>("e_b", kRestitution, "ball-ball restitution"),
     number_or_fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
@@ -146,7 +145,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "e_c_fit", kFriction,
         "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - "
         "v0) "
-        "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` meets the snooker cushion of 2009",
+        "above, and not below 0; `[1, 0.08, 1.7]` with `mathavan_2010` reproduces the snooker cushion "
+        "measured in 2009",
         "[e, c, v0] for e - c max(0, v - v0)", "e_c"),
     number_or_fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
         "f_c", kFriction, "cushion friction, at any slip"),
@@ -173,8 +173,8 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "restitution of ball and cloth a + b exp(-c V) at the speed V in m/s towards the cloth",
         "[a, b, c] for a + b exp(-c V)", "e_t"),
     field<&BallParams::e_h>("e_h", kRestitution,
-                            "share of the downward speed from a cushion that throws a ball up again: a hop; "
-                            "about 0.2 on a real table",
+                            "share of the downward speed after a cushion that throws the ball up again (a "
+                            "hop); about 0.2 on a real table",
                             {.since = 2, .later = true}),
 };
 
@@ -185,18 +185,18 @@ struct BallStart {
     Vec3 velocity = Vec3::Zero();                ///< [m/s]
     Vec3 spin = Vec3::Zero();                    ///< [rad/s]
     double height = 0.0;                         ///< [m] between the ball and the cloth
-    SourceLocation where;                        ///< where the file puts it ([rack] for a racked ball)
-    std::optional<BallSize> own = std::nullopt;  ///< radius and mass of its own; nothing: those of all balls
+    SourceLocation where;                        ///< its line in the file (that of [rack] for a racked ball)
+    std::optional<BallSize> own = std::nullopt;  ///< its own radius and mass; nothing: those of [balls]
     /// Whether it starts in the air.
     bool flies() const { return height > 0.0 || velocity.z() != 0.0; }
     bool operator==(const BallStart&) const = default;
 };
 inline constexpr Field<BallStart> kBallStartFields[] = {
     field<&BallStart::id>("id", at_least(1.0, kMaxIdLength, "bytes"),
-                          "used once; no commas, quotes or control characters"),
+                          "unique; no commas, quotes or control characters"),
     field<&BallStart::position>("position", kCoordinate, "of the centre", {.shape = "[x, y]"}),
     field<&BallStart::height>("height", at_least(0.0, kMaxLength, "m"),
-                              "of its lowest point above the cloth: it starts in the air"),
+                              "of its lowest point above the cloth, to start in the air"),
     field<&BallStart::velocity>("velocity", at_least(-kMaxSpeed, kMaxSpeed, "m/s"),
                                 "to start moving without a cue; vz, upward, may be left out",
                                 {.shape = "[vx, vy, vz]", .last_may_lack = true}),
@@ -217,7 +217,7 @@ constexpr auto names_of(RackGame) {
     return std::array{"eight_ball", "nine_ball", "ten_ball", "snooker", "three_cushion", "triangle", "line"};
 }
 
-/// Balls that a file does not place one by one.
+/// Balls that a scene does not place one by one.
 struct Rack {
     RackGame game = RackGame::kEightBall;
     double gap = 1e-4;
@@ -226,28 +226,28 @@ struct Rack {
     int count = 5;
     int rows = 5;
     double angle_deg = 0.0;                       ///< counter-clockwise; 0: rows towards +y
-    std::optional<int> spot_ball = std::nullopt;  ///< the ball that stands at the position; nothing: the apex
+    std::optional<int> spot_ball = std::nullopt;  ///< the ball at the position; nothing: the apex
     std::optional<Vec2> position = std::nullopt;  ///< nothing: the foot spot
 };
 inline constexpr Field<Rack> kRackFields[] = {
-    field<&Rack::game>("game", "which balls stand where"),
+    field<&Rack::game>("game", "arrangement of the balls"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
     field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
     field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),
     field<&Rack::rows>("rows", at_least(1.0, kMaxRackRows), "rows of a `triangle`"),
-    field<&Rack::position>("position", kCoordinate, "where the rack stands",
+    field<&Rack::position>("position", kCoordinate, "position of the rack",
                            {.shape = "[x, y]", .standard = "the foot spot"}),
     field<&Rack::spot_ball>(
         "spot_ball", at_least(1.0, kMaxBalls),
-        "number of the ball that stands there: 9 in a nine-ball rack with the 9 on the spot",
+        "number of the ball at that position: 9 in a nine-ball rack with the 9 on the spot",
         {.standard = "the apex"}),
     field<&Rack::angle_deg>("angle_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
-                            "by which the rack is turned about that ball; 0 has its rows towards +y"),
+                            "rotation of the rack about that ball; 0: rows towards +y"),
 };
 
-/// What strikes the ball. Its defaults are those of a scene file with an empty [cue], and of the C interface.
+/// The cue's stroke. The defaults are those of a scene file with an empty [cue], and of the C interface.
 struct Cue {
     std::string preset = "low_deflection";
     std::string ball = "cue";
@@ -300,12 +300,13 @@ enum class PocketModel : std::uint8_t { kFall, kAtOnce };
 constexpr auto names_of(PocketModel) {
     return std::array{"fall", "at_once"};
 }
-/// Whether balls leave the cloth. kDrop: a planar model, which drops the vertical part of a strike.
+/// Whether balls leave the cloth. kDrop: a planar model, which drops the vertical part of a stroke.
 enum class Vertical : std::uint8_t { kKeep, kDrop };
 constexpr auto names_of(Vertical) {
     return std::array{"keep", "drop"};
 }
-/// How `substeps` are marched (kernel/march.h): summed exactly over many steps, or step by step as published.
+/// How `substeps` are integrated (kernel/march.h): summed exactly over many steps, or one by one, as
+/// published.
 enum class March : std::uint8_t { kSummed, kPublished };
 constexpr auto names_of(March) {
     return std::array{"summed", "published"};
@@ -315,7 +316,7 @@ constexpr auto names_of(ClusterModel) {
     return std::array{"compliant", "sequential", "rigid"};
 }
 
-// The models of an impact are rows of tables: ball_ball.h and cushion.h.
+// The models of an impact are rows of tables, in ball_ball.h and cushion.h.
 struct BallBallModelInfo;
 struct CushionModelInfo;
 const char* name(const BallBallModelInfo* model);
@@ -328,14 +329,15 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    /// straight noses; a ball preset brings the one that fits its game
+    /// straight noses; a ball preset sets the model that suits its game
     const CushionModelInfo* cushion = &kHan2005;
-    const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: as the straight noses
+    const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: the same as straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
-    std::optional<int> substeps;  ///< set: the published march with N of them, instead of the tolerance
+    /// set: the published integration with this many steps, instead of the tolerance
+    std::optional<int> substeps;
     March march = March::kSummed;
     CushionTouch cushion_touch = CushionTouch::kRadius;
     PocketModel pocket = PocketModel::kFall;
@@ -347,7 +349,7 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::ball_ball>("ball_ball", "impact of two balls"),
     field<&Physics::cushion>(
         "cushion",
-        "impact with a straight cushion; `mathavan_2010` refuses a friction under which a ball could jam",
+        "impact with a straight cushion; `mathavan_2010` rejects a friction with which a ball could jam",
         {.standard = "that of the balls' preset"}),
     field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
     field<&Physics::cloth_slip>(
@@ -364,15 +366,13 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::substeps>("substeps", at_least(1.0, kMaxSubsteps), "the published march with this N",
                               {.instead_of = "tolerance"}),
     field<&Physics::march>("march",
-                           "how `substeps` are done: the same steps summed over many at once, or one after "
-                           "the other in the loop as "
-                           "published, to the bit",
+                           "how `substeps` are computed: the same steps summed over many at once, or one by "
+                           "one as published, bit for bit",
                            {.since = 2, .later = true}),
     field<&Physics::cushion_touch>(
         "cushion_touch",
-        "distance of a ball's centre from a nose line that it touches: its `radius` R, as most simulators "
-        "have "
-        "it, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose`; that is 0.6 to 2.2 mm less",
+        "distance of a ball's centre from a nose line that it touches: its `radius` R, as in most "
+        "simulators, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose` (0.6 to 2.2 mm less)",
         {.since = 2}),
     field<&Physics::pocket>("pocket",
                             "a ball whose centre crosses the circle of a pocket falls, and may come back "
@@ -386,8 +386,8 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
         {.since = 2}),
 };
 
-/// What a plan computes or leaves out. The keywords of [effects], and
-/// when one is left out: effect_table() in plan.h, in this order.
+/// Effects that a plan computes or skips, in the order of effect_table() in plan.h, which has the keywords of
+/// [effects] and the conditions.
 enum class Effect : std::uint8_t {
     kSliding,
     kRolling,
@@ -403,7 +403,7 @@ enum class Effect : std::uint8_t {
 };
 inline constexpr std::size_t kEffects = 11;
 
-/// [effects]: one effect forced in or out of the plan.
+/// [effects]: one effect forced on or off.
 struct EffectOverride {
     std::string keyword;
     bool in_force;
@@ -428,7 +428,7 @@ inline constexpr const char* kCameras[] = {"top", "rail", "player", "follow"};
 struct RenderSettings {
     double fps = 60.0;
     int width = FrameSize().width, height = FrameSize().height;
-    std::string camera = "top";                                     ///< not used where eye and target are set
+    std::string camera = "top";                                     ///< ignored if eye and target are set
     std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< both or neither
     FrameSize size() const { return {width, height}; }
     bool operator==(const RenderSettings&) const = default;
@@ -437,15 +437,15 @@ inline constexpr Field<RenderSettings> kRenderFields[] = {
     field<&RenderSettings::fps>("fps", more_than(0.0, kMaxFps, "frames per second"), "frame rate"),
     field<&RenderSettings::width, &RenderSettings::height>("size", at_least(1.0, kMaxImageSize, "pixels"),
                                                            "of an image", {.shape = "[width, height]"}),
-    field<&RenderSettings::camera>("camera", "where one looks from", {.names = kCameras}),
-    field<&RenderSettings::eye>("eye", kCoordinate, "place of a free camera, with `target`",
+    field<&RenderSettings::camera>("camera", "view of the table", {.names = kCameras}),
+    field<&RenderSettings::eye>("eye", kCoordinate, "position of a free camera, with `target`",
                                 {.shape = "[x, y, z]", .instead_of = "camera"}),
     field<&RenderSettings::target>("target", kCoordinate, "point that a free camera looks at, with `eye`",
                                    {.shape = "[x, y, z]", .instead_of = "camera"}),
 };
 
 struct Scene {
-    std::string file;  ///< stands in messages; a scene built in code may call itself what it likes
+    std::string file;  ///< the name in messages; free to choose for a scene built in code
     Table table;
     std::string ball_preset = "pool";
     BallParams balls{};
@@ -460,15 +460,15 @@ struct Scene {
     /// The ball that such a size is for: the one that the cue strikes.
     std::string cue_ball_id() const { return cue ? cue->ball : Cue().ball; }
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
-    /// Whether a ball may leave the cloth before it meets
-    /// anything: one starts in the air, or the cue is raised.
+    /// Whether a ball may leave the cloth before it meets anything: one starts in the air, or the cue is
+    /// raised.
     bool lifts() const {
         const bool raised = cue && cue->elevation_deg > 0.0 && cue->speed > 0.0;
         return physics.vertical == Vertical::kKeep &&
                (raised ||
                 std::any_of(ball.begin(), ball.end(), [](const BallStart& b) { return b.flies(); }));
     }
-    /// Whether all balls have one radius and mass.
+    /// Whether all balls have the same radius and mass.
     bool alike() const {
         return std::all_of(ball.begin(), ball.end(),
                            [&](const BallStart& b) { return size_of(b) == size_of(ball.front()); });
@@ -491,27 +491,26 @@ inline constexpr Field<Scene> kBallPresetFields[] = {
 /// Reads and validates a scene file. @throws SceneError
 Scene read_scene(const std::string& path);
 
-/// The content of a scene file, for parse_scene. @throws SceneError
+/// The text of a scene file, for parse_scene. @throws SceneError
 std::string read_scene_text(const std::string& path);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; messages call the file `name`.
 Scene parse_scene(std::string_view text, const std::string& name);
 
-/// A scene as a scene file, every value written out: parse_scene reads the same scene back (racked balls as
-/// written ones; names that only people read, and depths of pockets, are left out).
+/// A scene as the text of a scene file, every value written out: parse_scene reads the same scene back.
+/// Racked balls are placed one by one; names for people and depths of pockets are left out.
 std::string scene_text(const Scene& scene);
 
-/// For a scene that was built in code: all that parse_scene checks, in the same order and words, on the
-/// struct itself.
+/// For a scene built in code: makes all the checks of parse_scene, with the same messages in the same order.
 /// @throws SceneError without a line
 void validate(const Scene& scene);
 
 /// A preset by name. @throws std::invalid_argument for an unknown one
 Table make_table(std::string_view preset);
 BallParams make_ball_params(std::string_view preset);
-/// Gives a scene the balls of a preset and the model of their cushions.
+/// Gives a scene the balls of a preset, and the cushion model that belongs to them.
 void use_balls(Scene& scene, std::string_view preset);
-/// Rolling friction on a cloth by name.
+/// Rolling friction of a cloth by name.
 double cloth_mu_r(std::string_view cloth);
 
 }  // namespace carom

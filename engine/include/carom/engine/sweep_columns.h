@@ -1,5 +1,4 @@
-// The table that a sweep makes of its shots: one list of columns,
-// for the program's rows and for whatever keeps arrays.
+// The table of a sweep: one list of columns, for the program's rows and for code that stores arrays.
 #pragma once
 
 #include <cstddef>
@@ -16,25 +15,25 @@ namespace carom {
 struct SweepColumn {
     std::string name;
     ValueKind kind = ValueKind::kNumber;
-    std::string unit;        ///< "" where it has none
-    bool of_result = false;  ///< shots without a result have no value
+    std::string unit;        ///< "" if it has none
+    bool of_result = false;  ///< empty for shots without a result
 };
 
 /// shot, KEY..., outcome, duration, events, first_contact,
 /// contacts, cushions, pocketed, ID.x, ID.y, ID.pocket..., message
 std::vector<SweepColumn> sweep_columns(const Variation& variation);
 
-/// What one column has of some shots; only the arrays of its kind are filled.
+/// The values of one column for some shots; only the arrays of its kind are filled.
 struct ColumnValues {
     std::vector<double> numbers;       ///< NaN for no value
     std::vector<std::int64_t> wholes;  ///< 0 for no value
-    std::vector<std::int32_t> places;  ///< of a shot's text in `texts`, -1 for no value
-    std::vector<std::string> texts;    ///< each once, in the order in which they come first
+    std::vector<std::int32_t> places;  ///< index of each shot's text in `texts`, -1 for no value
+    std::vector<std::string> texts;    ///< each text once, in order of first appearance
 };
 
-/// The values of sweep_columns() of shots first, first + 1, ... that simulate_many has played.
-/// @param draws     what simulate_many gave as their values
-/// @param outcomes  all arrays but `cushions` and `hash` are needed
+/// The values of sweep_columns() for shots first, first + 1, ... of simulate_many.
+/// @param draws     the values that simulate_many returned
+/// @param outcomes  needs all arrays except `cushions` and `hash`
 std::vector<ColumnValues> sweep_values(const Variation& variation, std::uint64_t first, std::size_t shots,
                                        std::span<const std::string> draws, const BatchArrays& outcomes,
                                        std::span<const Batch::Message> messages);

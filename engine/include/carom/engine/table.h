@@ -1,4 +1,4 @@
-// The table: what balls bounce off and fall into. Lengths in m, heights above the cloth.
+// The table: cushions, jaws and pockets. Lengths in m, heights above the cloth.
 //
 // Frame: right-handed, z up, x along the short side, y along the long side, origin where two nose lines meet.
 #pragma once
@@ -17,8 +17,8 @@ namespace carom {
 inline constexpr Interval kCoordinate = at_least(-kMaxCoordinate, kMaxCoordinate, "m");
 inline constexpr Interval kNoseHeight = more_than(0.0, kMaxLength, "m");
 
-/// A straight cushion nose from one point to the other. It acts on both sides, and its ends are round with
-/// radius 0: neighbouring cushions leave no gap.
+/// A straight cushion nose between two points. It acts on both sides, and its ends are round with radius 0,
+/// so that neighbouring cushions leave no gap.
 struct Cushion {
     std::string id;
     Vec2 from, to;
@@ -75,11 +75,11 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
 };
 
-/// Cushions are "c1", "c2", ..., jaws "j1", ..., pockets "p1", ..., in the order in which they are listed.
-/// The presets list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
+/// Cushions are "c1", "c2", ..., jaws "j1", ..., pockets "p1", ..., in the order of their lists. The presets
+/// list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
 struct Table {
     std::string preset;  ///< "seven_foot", ..., or "" for a custom outline
-    /// as the scene names it; its friction is in BallParams
+    /// the scene's name for it; its friction is in BallParams
     std::optional<std::string> cloth = std::nullopt;
     double width = 0.0,
            length = 0.0;         ///< playing surface between nose lines; the bounding box of a custom outline
@@ -87,7 +87,7 @@ struct Table {
     std::vector<Cushion> cushions;
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
-    /// Beyond it a ball in the air is out; nothing: behind any cushion.
+    /// A ball in the air is out beyond it; nothing: behind any cushion.
     std::optional<Rectangle> bed = std::nullopt;
     bool operator==(const Table&) const = default;
 };
@@ -111,11 +111,11 @@ inline constexpr Field<Table> kTableFields[] = {
                           {.shape = "[x, y]", .files = Files::kRecord}),
     field<&Table::bed>(
         "bed", kCoordinate,
-        "two corners of the playing surface: a ball in the air is out where it leaves it, and no sooner",
+        "two corners of the playing surface: a ball in the air is out when it leaves this rectangle",
         {.shape = "[x0, y0, x1, y1]", .since = 2, .later = true, .standard = "behind any cushion"}),
 };
 
-/// Foot spot, where racks stand: (w/2, 3l/4) from the table's corner.
+/// Foot spot, the default position of racks: (w/2, 3l/4) from the table's corner.
 Vec2 foot_spot(const Table& table);
 
 }  // namespace carom

@@ -1,5 +1,4 @@
-// Vectors of the engine. Planar sums (x, y) are taken as
-// Vec2 so that swapping the axes swaps nothing but names.
+// Vectors of the engine. Sums over x and y use Vec2, so that swapping the axes cannot change the rounding.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,14 +28,14 @@ inline double dot(const Vec2& a, const Vec2& b) {
 inline double length(const Vec2& a) {
     const double largest = std::max(std::abs(a.x()), std::abs(a.y()));
     if (largest == 0.0) return 0.0;
-    // Squares stay normal numbers in this range; outside it, scale by a power of two (exact).
+    // In this range squares are normal numbers; outside it, scale by a power of two (exact).
     if (largest > 0x1p-500 && largest < 0x1p500) return std::sqrt(a.x() * a.x() + a.y() * a.y());
     const double scale = largest < 1.0 ? 0x1p600 : 0x1p-600;
     const double x = a.x() * scale, y = a.y() * scale;
     return std::sqrt(x * x + y * y) / scale;
 }
 
-/// Sums over three axes keep x and y together, so that swapping these swaps no rounding.
+/// Sums over three axes add x and y first, so that swapping these two does not change the rounding.
 inline double dot3(const Vec3& a, const Vec3& b) {
     return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z();
 }
@@ -52,8 +51,8 @@ inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Distance of p from the segment between two points that differ. The
-/// cross product keeps it exact to rounding where p is close to the line.
+/// Distance of p from the segment between two different points. The cross product keeps it exact to rounding
+/// if p is close to the line.
 inline double distance_to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
     const Vec2 along = to - from;
     const double s = dot(p - from, along);

@@ -1,4 +1,4 @@
-// The list of ball-ball models, each a file beside this one, and the law of friction that they share.
+// The list of ball-ball models, each in a file of this folder, and the law of friction that they share.
 #include "carom/engine/ball_ball.h"
 
 #include <span>

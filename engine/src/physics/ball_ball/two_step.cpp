@@ -1,6 +1,6 @@
-// Ball-ball model `two_step`: the free impact of two balls, then that of the cloth
-// on those that it presses down (physics/airborne.h). Where no ball can leave the
-// cloth it is the planar impact of balls without friction or of one height.
+// Ball-ball model `two_step`: the free impact of two balls, then that of the cloth on those that it presses
+// down (physics/airborne.h). If no ball can leave the cloth, it is the planar impact of balls without
+// friction or of equal height.
 #include "carom/engine/ball_ball.h"
 #include "carom/kernel/closed_forms.h"
 

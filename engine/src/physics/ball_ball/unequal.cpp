@@ -35,7 +35,7 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const Ball& b
         result.status = kernel::ImpactStatus::kNotApproaching;
         return;
     }
-    // Impulses over the reduced mass, on ball 2; the shares are what it does to the velocities.
+    // Impulses on ball 2, divided by the reduced mass; the shares convert them to changes of velocity.
     const double total = size1.m + size2.m, share1 = size2.m / total, share2 = size1.m / total;
     const double J_n = (1.0 + params.e_b) * approach;
     double J_x = 0.0, J_z = 0.0;
@@ -45,7 +45,7 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const Ball& b
         const double c_x = x.x() * v.x() + x.y() * v.y() - R * w.z();
         const double c_z = R * (x.x() * w.x() + x.y() * w.y());
         const double c = length(Vec2(c_x, c_z));
-        // A unit of it changes the slip by 7/2: 1 from the centres, 5/2 from the spins.
+        // A unit of J_t changes the slip by 7/2: 1 from the centres, 5/2 from the spins.
         const double J_t = std::min(params.mu_b * J_n, 2.0 / 7.0 * c);
         if (c > 0.0) {
             J_x = J_t * (c_x / c);

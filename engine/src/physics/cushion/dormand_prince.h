@@ -3,8 +3,8 @@
 
 namespace carom::detail {
 
-/// A coefficient of the tableau. h is multiplied first and
-/// then divided: that order is part of the results' bits.
+/// A coefficient of the tableau. h is multiplied first and divided afterwards: the bits of the results depend
+/// on that order.
 struct Fraction {
     double numerator, denominator;
 };
@@ -22,8 +22,8 @@ inline constexpr Fraction kError[7] = {{71, 57600},      {0, 1},    {-71, 16695}
 template <class State>
 struct DormandPrinceStep {
     State next;
-    State slope;  ///< at `next`: the first slope of the step that follows
-    State error;  ///< fourth order against fifth
+    State slope;  ///< at `next`: the first slope of the next step
+    State error;  ///< fourth order minus fifth
 };
 
 /// y + h (sum of k times the row), from the left.

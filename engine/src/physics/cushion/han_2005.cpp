@@ -1,6 +1,6 @@
 // Cushion model `han_2005`: Han, "Dynamics in carom and three cushion billiards", J. Mech. Sci. Tech. 19
-// (2005), 976, with the misprints of equations 14c and 21a mended. Frame: X into the cushion, Z up, Y = Z x
-// X. s, c: sine and cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along
+// (2005), 976, with the misprints of equations 14c and 21a corrected. Frame: X into the cushion, Z up, Y = Z
+// x X. s, c: sine and cosine of the nose's height angle. S: slip at the nose (S_x along the slope, S_y along
 // the cushion); N: normal impulse; P: tangential impulse (per mass).
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ bool cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3
     const double P_X = -P_x * s - N * c, P_Z = P_x * c - N * s;
     const double turn = 2.5 / R;
     const double dw_X = -turn * P_y * s, dw_Y = turn * (P_X * s - P_Z * c), dw_Z = turn * P_y * c;
-    // Changes are added, so that nothing else is rounded: without friction, at ball height, these are the
-    // bits of the model smooth.
+    // Changes are added, so that nothing else is rounded: without friction, at ball height, the bits are
+    // those of the model smooth.
     v = Vec3(v.x() + (P_X * X.x() + P_y * Y.x()), v.y() + (P_X * X.y() + P_y * Y.y()), 0.0);
     w = Vec3(w.x() + (dw_X * X.x() + dw_Y * Y.x()), w.y() + (dw_X * X.y() + dw_Y * Y.y()), w.z() + dw_Z);
     return true;

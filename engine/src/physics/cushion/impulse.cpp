@@ -1,5 +1,6 @@
-// Cushion model `impulse`: one frictional impulse along the inclined normal, as for two rough spheres. It is
-// Coulomb's f J_n, or what ends the slip (2/7 of it). Equations: docs/reference/physics.md, "Cushion impact".
+// Cushion model `impulse`: one frictional impulse along the inclined normal, as for two rough spheres:
+// Coulomb's f J_n, or 2/7 of the slip if that suffices to end it. Equations: docs/reference/physics.md,
+// "Cushion impact".
 #include "physics/cushion/nose.h"
 
 namespace carom {

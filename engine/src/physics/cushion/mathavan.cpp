@@ -9,14 +9,15 @@
 //   dv_x = -(q_x + p_x)          da_x = -(5/2) (q_y + p_y)       I = (v_x + s a_y - c a_z, -s v_y + a_x)
 //   dv_y = -(c - s q_y + p_y)    da_y = -(5/2) (s q_x - p_x)     C = (v_x - a_y, v_y + a_x)
 //                                da_z =  (5/2) c q_x
-// A slip gives q = f I/|I| and p = mu_s N C/|C|. Where a slip vanishes, the contact sticks if static friction
-// can hold it, which is the limit of explicit Euler steps that become ever smaller. Otherwise it goes on to
-// slip in the direction in which it is driven. The two contacts never stick at the same time, because that
-// would stop the ball.
+// A slip gives q = f I/|I| and p = mu_s N C/|C|. If a slip vanishes, the contact sticks if static friction
+// can hold it, which is the limit of ever smaller explicit Euler steps. Otherwise it continues to slip in the
+// direction in which it is driven. The two contacts never stick at the same time, because that would stop the
+// ball.
 //
-// The independent variable is the fall of v_y, from the approach speed (1, all velocities are relative to it)
-// to 0 and on until the work of restitution is e^2 times that of compression. Method: Dormand and Prince 5(4)
-// with the step that the last error asks for; steps end where a slip vanishes or a stuck contact lets go.
+// The independent variable is the decrease of v_y, from the approach speed (1, all velocities are relative to
+// it) to 0 and beyond, until the work of restitution is e^2 times that of compression. The method is Dormand
+// and Prince 5(4) with the step length controlled by the last error. Steps end where a slip vanishes or a
+// stuck contact breaks away.
 #include <algorithm>
 #include <cmath>
 
@@ -31,29 +32,32 @@ namespace {
 // [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about
 // as large, and far below the default tolerance of a ball-ball impact.
 constexpr double kCushionTolerance = 1e-7;
-// [of the approach speed] A nose that can stick is taken to stick below this slip. What that leaves out is of
+// [of the approach speed] A nose that can stick is treated as sticking below this slip. The error is of
 // second order (docs/reference/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
-// [of the approach speed] A nose that has stopped to stick slips by less than this for a while. Its direction
+// [of the approach speed] A nose that has ceased to stick slips by less than this for a while. Its direction
 // then follows the drive without delay, which makes the equations stiff, so it is set to that of the drive.
-// What that leaves out is of second order: about the square root of this constant times its square.
+// The error is of second order: about the square root of this constant times its square.
 constexpr double kCushionCreep = 1e-4;
-constexpr int kCushionSteps = 5000;  // [-] bound on its steps; an impact takes 3 to 300
+constexpr int kCushionSteps = 5000;  // [-] limit of steps; an impact takes 3 to 300
 
 using State = MathavanState;
 using Forces = MathavanForces;
 
 // All relative to the approach speed.
-constexpr double kWorkShare = 1e-10;     // of the work of restitution, that may be left at the end
+constexpr double kWorkShare = 1e-10;     // tolerance of the work of restitution
 constexpr double kStill = 1e-15;         // v_y at the end of compression
-constexpr double kFirstStep = 0.35;      // fall of v_y
-constexpr double kSmallestStep = 1e-13;  // taken whatever its error
+constexpr double kFirstStep = 0.35;      // decrease of v_y
+constexpr double kSmallestStep = 1e-13;  // accepted whatever its error
 constexpr double kNoSlip = 1e-9;         // slip without a direction
-constexpr double kLateStick = 1e-6;      // slip at which a contact sticks whose sticking is of first order
-constexpr double kLetGo = 1e-9;          // share of static friction by which a stuck contact lets go early
-constexpr double kTurned = 1e-26;        // squared turn at which the fixed point of a direction has settled
-constexpr int kTurns = 40;               // largest number of iterations
-constexpr int kLateSteps = 100;          // after so many a slip is taken as lost earlier
+// slip below which a contact sticks, if sticking is only of first order
+constexpr double kLateStick = 1e-6;
+// margin of static friction by which a stuck contact breaks away early
+constexpr double kLetGo = 1e-9;
+// squared turn below which the iteration for a direction has converged
+constexpr double kTurned = 1e-26;
+constexpr int kTurns = 40;       // largest number of iterations
+constexpr int kLateSteps = 100;  // after this many, a slip counts as gone earlier
 
 class Impact {
   public:
@@ -62,7 +66,7 @@ class Impact {
         noise_ = 0x1p-48 * (1.0 + std::abs(y_.v_x) + std::abs(y_.a_x) + std::abs(y_.a_y) + std::abs(y_.a_z));
     }
 
-    /// Returns false where the bound on steps was met; `end` is then left alone.
+    /// Returns false if the limit of steps was reached; `end` is then unchanged.
     bool run(State& end) {
         update_stick_state();
         while (y_.v_y > kStill && !out_of_steps()) advance(y_.v_y, 0.0);
@@ -93,16 +97,16 @@ class Impact {
     }
     Forces forces(const State& y) const {
         const Vec2 nose = laws_.nose_slip(y), cloth = laws_.cloth_slip(y);
-        // A slip of rounding size has no direction; the contact
-        // goes where update_stick_state() found that it is driven.
+        // A slip of rounding size has no direction; the contact moves in the direction found by
+        // update_stick_state().
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const Vec2 cloth_direction = no_cloth_slip(cloth_size) ? cloth_direction_ : Vec2(cloth / cloth_size);
         if (nose_creeps_) return forces(driven_nose(cloth_direction), cloth_direction);
         return forces(nose_size <= zero_slip() ? nose_direction_ : Vec2(nose / nose_size), cloth_direction);
     }
 
-    // Where a nose that static friction no longer holds goes: the drive less the friction points along the
-    // slip. A contraction, because friction acts nearly alike in all directions.
+    // Direction of a nose that static friction no longer holds: the drive minus the friction points along the
+    // slip. The iteration is a contraction, because friction acts nearly alike in all directions.
     Vec2 driven_nose(const Vec2& cloth_direction) const {
         Vec2 direction = nose_direction_;
         turn(direction, laws_.nose_hold(laws_.mu * cloth_direction));
@@ -113,21 +117,21 @@ class Impact {
         return direction;
     }
 
-    // Change per unit of fall of v_y.
+    // Change per unit of decrease of v_y.
     State slope(const State& y) const {
         const State k = laws_.change(forces(y));
         const double scale = -1.0 / k.v_y;
         return {k.v_x * scale, -1.0, k.a_x * scale, k.a_y * scale, k.a_z * scale, std::abs(y.v_y) * scale};
     }
 
-    // What static friction would need, over what it can give: above 1 the contact slips.
+    // Static friction required, divided by the largest possible: above 1 the contact slips.
     double nose_strain() const { return norm(laws_.nose_hold(laws_.mu * cloth_direction_)) / laws_.f; }
     double cloth_strain(const Forces& f) const { return norm(laws_.cloth_hold(f.q)) / (laws_.mu * f.load); }
 
-    // Decides for both contacts whether they stick, and where a vanished slip goes. A contact that stuck lets
-    // go a little early: the steps come no closer to that point.
+    // Decides for both contacts whether they stick, and in which direction a vanished slip continues. A stuck
+    // contact breaks away a little early, because the steps end just before that point.
     void update_stick_state() {
-        // A direction that the slip itself has; a vanished one keeps its last (at first: none).
+        // A slip gives its own direction; a vanished one keeps its last (at first: none).
         const Vec2 nose = laws_.nose_slip(y_), cloth = laws_.cloth_slip(y_);
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const bool nose_gone = is_zero_slip(nose_size), cloth_gone = no_cloth_slip(cloth_size);
@@ -162,23 +166,22 @@ class Impact {
         if (nose_stuck_ != was_stuck || cloth_stuck_ != cloth_was_stuck) step_ = kFirstStep;
     }
 
-    // Slip below which a nose that can stick does so. Where that takes its time, or turns the cloth's load
-    // off or on, end_slip() is of first order only, and the slip has to be smaller.
+    // Slip below which a nose that can stick does so. If that takes long, or switches the cloth's load on or
+    // off, end_slip() is of first order only, and the slip must be smaller.
     double ends_below(double nose_y, double cloth, double strain) const {
         const bool clamped = !(laws_.s + laws_.c * laws_.f * nose_y > 0.0);
         const bool soon = strain < 0.9 && clamped == nose_hold_clamped();
         return soon ? std::max(late_stick(), kCushionStick * std::min(1.0, cloth)) : late_stick();
     }
 
-    // Where friction and drive nearly balance, a slip can linger: the longer the impact takes, the larger a
-    // slip is taken as none. So every impact ends.
+    // If friction and drive nearly balance, a slip can linger. The longer the impact takes, the larger the
+    // slip that counts as none, so that every impact ends.
     double late_stick() const {
         return steps_ < kLateSteps ? kLateStick : kLateStick * (1 << std::min(10, steps_ / kLateSteps));
     }
 
-    // Takes away what is left of the slip at a nose that sticks from now on,
-    // by the friction that would do it: when it does makes no difference to
-    // first order, because a stuck nose takes up the drive in between.
+    // Removes the remaining slip at a nose that sticks from now on, by the friction that would do it. To
+    // first order it does not matter when, because a stuck nose takes up the drive in between.
     void end_slip(const Vec2& slip) {
         const Vec2 mu = nose_hold_clamped() ? Vec2(0.0, 0.0) : Vec2(laws_.mu * laws_.c * cloth_direction_);
         const double q_y = slip.y() / (laws_.s * laws_.s + 2.5 + (2.5 - laws_.s) * mu.y());
@@ -205,7 +208,7 @@ class Impact {
     }
     bool nose_hold_clamped() const { return laws_.nose_hold_lifts(laws_.mu * cloth_direction_); }
 
-    // By how much it turned (the square of it).
+    // Returns the square of the angle turned.
     static double turn(Vec2& direction, const Vec2& towards) {
         const double size = norm(towards);
         if (!(size > 0.0)) return 0.0;
@@ -214,16 +217,16 @@ class Impact {
         return (direction - was).squaredNorm();
     }
 
-    // Most that v_y may fall before a slip vanishes; a little
-    // less, so that its direction is still one at the end.
+    // Largest decrease of v_y before a slip vanishes; a little less, so that the slip still has a direction
+    // at the end.
     double until_gone(const Vec2& slip, const Vec2& rate) const {
         const double size = norm(slip);
         const double closing = size > zero_slip() ? -(slip.x() * rate.x() + slip.y() * rate.y()) / size : 0.0;
         return closing > 0.0 ? 0.95 * size / closing : 2.0;
     }
 
-    // One accepted step: v_y falls by at most `most` (0: no
-    // limit), the work stays at or below `target` (0: no limit).
+    // One accepted step: v_y decreases by at most `most` (0: no limit), and the work stays at or below
+    // `target` (0: no limit).
     void advance(double most, double target) {
         if (!known_) slope_ = slope(y_);
         double h = std::min(step_, 1.0);
@@ -232,7 +235,7 @@ class Impact {
             h = std::min(h, until_gone(laws_.nose_slip(y_), laws_.nose_slip(slope_)));
         if (!cloth_stuck_ && laws_.mu > 0.0)
             h = std::min(h, until_gone(laws_.cloth_slip(y_), laws_.cloth_slip(slope_)));
-        double force = target > 0.0 ? -laws_.change(forces(y_)).v_y : 0.0;  // fall per impulse
+        double force = target > 0.0 ? -laws_.change(forces(y_)).v_y : 0.0;  // decrease per impulse
         const double allowed = tolerance_ + noise_;
         const bool stuck = nose_stuck_ || cloth_stuck_;
         const double before = stuck ? strain(y_) : 0.0;
@@ -257,7 +260,7 @@ class Impact {
                 continue;
             }
             if (target > 0.0 && next.work > target * (1.0 + kWorkShare) && !smallest) {
-                // Too far: again with the force that this step has met.
+                // Too far: repeat with the force found in this step.
                 const double fell = h * (h - 2.0 * y_.v_y) / 2.0;
                 force = fell / (next.work - y_.work);
                 continue;
@@ -290,8 +293,8 @@ class Impact {
         return size > zero_slip() ? std::min(1.0, norm(after) / size) : 1.0;
     }
 
-    // By how much a step may change for an error of `x` times what is allowed: x^(-1/5) with some margin,
-    // from square roots (no libm), within [1/5, 4].
+    // Factor for the step length if the error is `x` times the allowed one: x^(-1/5) with some margin, from
+    // square roots (no libm), within [1/5, 4].
     static double scaled(double x) {
         const double root = std::sqrt(std::sqrt(x));  // x^(1/4), and x^(1/5) = x^(1/4) x^(-1/20)
         return root > 4.0 ? 0.2 : (root > 0.2 ? 0.8 / root : 4.0);
@@ -320,7 +323,7 @@ class Impact {
     double noise_ = 0.0;
     double step_ = kFirstStep;
     int steps_ = 0;
-    State slope_{};  // at y_, where it is known
+    State slope_{};  // at y_, if it is known
     bool known_ = false;
     bool restoring_ = false;
     bool nose_stuck_ = false, cloth_stuck_ = false, nose_creeps_ = false;
@@ -350,13 +353,14 @@ bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3&
     return true;
 }
 
-// A ball cannot jam while the normal velocity falls all along, f_c s + mu_s (s + f_c c) < c, and while the
-// cloth cannot hold the ball at any friction of the nose.
+// A ball cannot jam if the normal velocity decreases throughout, f_c s + mu_s (s + f_c c) < c, and the cloth
+// cannot hold the ball for any friction of the nose.
 bool mathavan_2010_ends(const CushionContact& p) {
     const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
     if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;
-    // What the cloth would need to hold the ball, less what it can give, is linear in the nose's friction q_y
-    // wherever there is a load N = s + c q_y: the ends of that interval tell.
+    // The friction required of the cloth to hold the ball, minus the largest possible, is linear in the
+    // nose's friction q_y wherever there is a load N = s + c q_y, so it suffices to test the ends of that
+    // interval.
     const auto slips = [&](double q_y) { return (c + (2.5 - s) * q_y) / 3.5 > p.mu_s * (s + c * q_y); };
     const double low = std::max(-f, -s / c);
     return low > f || (slips(low) && slips(f));

@@ -1,5 +1,5 @@
-// The laws of the cushion model `mathavan_2010` (equations and letters: mathavan.cpp): slips, what static
-// friction would need, and what a pair of friction forces changes. Nothing here knows of steps.
+// The laws of the cushion model `mathavan_2010` (equations and symbols: mathavan.cpp): slips, static
+// friction, and the effect of a pair of friction forces. Independent of the integration.
 #pragma once
 
 #include <algorithm>
@@ -58,7 +58,7 @@ struct MathavanLaws {
     Vec2 cloth_hold(const Vec2& q) const {
         return {-(1.0 - 2.5 * s) * q.x() / 3.5, (-c - (2.5 - s) * q.y()) / 3.5};
     }
-    /// Whether the ball would be off the cloth while the nose holds it.
+    /// Whether the ball would lift off the cloth while the nose holds it.
     bool nose_hold_lifts(const Vec2& cloth) const { return !(s + c * nose_hold(cloth).y() > 0.0); }
 
     double load(const Vec2& q) const { return std::max(0.0, s + c * q.y()); }
@@ -71,7 +71,7 @@ struct MathavanLaws {
     }
 };
 
-/// The model mathavan_2010 to a tolerance of one's own, of the approach speed and per step.
+/// The model mathavan_2010 with another tolerance, relative to the approach speed and per step.
 bool cushion_mathavan_2010_to(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w,
                               double tolerance);
 

@@ -1,5 +1,5 @@
-// The list of cushion models, each a file beside this one with its
-// row, and the laws of friction and restitution that they share.
+// The list of cushion models, each in a file of this folder, and the laws of friction and restitution that
+// they share.
 #include "carom/engine/cushion.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What several cushion models share: the contact of a ball with an inclined nose.
+// The contact of a ball with an inclined nose, for several cushion models.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace carom::detail {
 
-/// Speed at which the ball comes towards the cushion.
+/// Speed of the ball towards the cushion.
 inline double approach_speed(const Vec2& normal, const Vec3& v) {
     return -(v.x() * normal.x() + v.y() * normal.y());
 }
@@ -28,14 +28,14 @@ inline NoseContact nose_contact(const CushionContact& p, const Vec2& normal, con
     const Vec3 arm = -p.R * c.n;
     const Vec3 u = v + Vec3(w.y() * arm.z() - w.z() * arm.y(), w.z() * arm.x() - w.x() * arm.z(),
                             w.x() * arm.y() - w.y() * arm.x());
-    // The spin's share is at right angles to n; v_z is 0.
+    // The spin's contribution is perpendicular to n; v_z is 0.
     c.u_n = v.x() * c.n.x() + v.y() * c.n.y();
     c.u_t = u - c.u_n * c.n;
     c.speed_t = std::sqrt(c.u_t.x() * c.u_t.x() + c.u_t.y() * c.u_t.y() + c.u_t.z() * c.u_t.z());
     return c;
 }
 
-/// Applies a normal impulse J_n and a tangential one J_t against the slip (both per mass). The cloth takes up
+/// Applies a normal impulse J_n and a tangential one J_t against the slip (both per mass). The cloth absorbs
 /// the vertical part.
 inline void apply_at_nose(const CushionContact& p, const NoseContact& c, double J_n, double J_t, Vec3& v,
                           Vec3& w) {

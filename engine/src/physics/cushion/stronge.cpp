@@ -1,11 +1,11 @@
 // Cushion model `stronge`: a compliant nose with a tangential spring (W. J. Stronge, Impact Mechanics, the
 // lumped-parameter model of contact with tangential compliance).
 //
-// Units: time in 1 / (normal frequency), velocities in the normal approach speed, forces per mass. Normal
-// force: sin t in compression (t <= t_c = pi/2), sin phi(t) in restitution, phi = t/e + t_c (1 - 1/e), until
-// t_f = (1 + e) t_c. The tangential spring has the compliance eta = beta_t / omega^2 (normal: 1); a unit of
-// tangential impulse changes the tangential velocity by beta_t = 7/2. While the nose sticks, spring and ball
-// swing with frequency omega.
+// Units: time in 1 / (normal frequency), velocities in the normal approach speed, forces per mass. The normal
+// force is sin t in compression (t <= t_c = pi/2) and sin phi(t) in restitution, phi = t/e + t_c (1 - 1/e),
+// until t_f = (1 + e) t_c. The tangential spring has the compliance eta = beta_t / omega^2 (normal: 1); a
+// unit of tangential impulse changes the tangential velocity by beta_t = 7/2. While the nose sticks, spring
+// and ball oscillate with frequency omega.
 #include <algorithm>
 #include <cmath>
 
@@ -16,8 +16,8 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [-] Grid on which the cushion model stronge brackets the end of stick: a thirtieth of the restitution, far
-// finer than the swing of its tangential spring.
+// [-] Grid that brackets the end of sticking: a thirtieth of the restitution, far finer than the oscillation
+// of the tangential spring.
 constexpr int kStrongeGrid = 32;
 
 constexpr double kOmega = 1.8;  // tangential over normal frequency; pooltool 0.6.0's value
@@ -41,7 +41,7 @@ class NormalForce {
     double e_;
 };
 
-// The swing of ball and spring while the nose sticks, from time t0 on.
+// The oscillation of ball and spring while the nose sticks, from time t0.
 struct Swing {
     double t0;
     double u0;  // tangential velocity then
@@ -56,9 +56,9 @@ struct Swing {
     }
 };
 
-// When the spring's force reaches f times the normal force. h = f F - |s| / eta obeys h'' + omega^2 h = f F
-// (omega^2 - 1) > 0 in compression and starts there from h = h' = 0 (or h' > 0), and omega (t_c - t0) < pi,
-// so that h > 0: the nose lets go in restitution only. There the first sign change is bracketed on a grid and
+// When the spring's force reaches f times the normal force. In compression, h = f F - |s| / eta obeys h'' +
+// omega^2 h = f F (omega^2 - 1) > 0 and starts from h = h' = 0 (or h' > 0); since omega (t_c - t0) < pi, h >
+// 0, so the nose breaks away in restitution only. There the first sign change is bracketed on a grid and
 // bisected.
 double release_time(const Swing& swing, const NormalForce& normal, double f) {
     const auto margin = [&](double t) { return f * normal.force(t) - std::abs(swing.deflection(t)) / kEta; };
@@ -72,7 +72,7 @@ double release_time(const Swing& swing, const NormalForce& normal, double f) {
         }
         low = t;
     }
-    // Either a sign change, or the force vanishes with the normal force at the end of the contact.
+    // Either there is a sign change, or the force vanishes with the normal force at the end of the contact.
     for (int k = 0; k < 60; ++k) {
         const double middle = low + 0.5 * (high - low);
         if (!(middle > low && middle < high)) break;

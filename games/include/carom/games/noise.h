@@ -1,4 +1,4 @@
-// What a player does to the strike that was meant.
+// Random errors of a player's strike.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,23 @@ struct Noise {
 };
 
 /// Noise by name:
-///   "none"     nothing
-///   "fastfiz"  0.075 m/s, aim 0.125 degrees, elevation 0.1 degrees, offset 0.5 mm both ways: the default of
-///   class GaussianNoise of
-///              FastFiz (Noise.h), the simulator of the computational pool championships
-///   "ai3603"   0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii both ways: noise_std of class
-///   PoolEnv of the
-///              course AI3603 (SJTU-RL2/AI3603-Billiards)
-/// @param R  radius of the ball that is struck [m], for those given in millimetres
-/// @throws std::invalid_argument for another name, or a radius that is not more than 0
+///   "none" no errors
+///   "fastfiz" 0.075 m/s, aim 0.125 degrees, elevation 0.1 degrees, offset 0.5 mm in both directions: the
+///              default of class GaussianNoise of FastFiz (Noise.h), the simulator of the computational pool
+///              championships
+///   "ai3603" 0.1 m/s, aim and elevation 0.1 degrees, offset 0.003 ball radii in both directions:
+///              noise_std of class PoolEnv of the course AI3603 (SJTU-RL2/AI3603-Billiards)
+/// @param R radius of the struck ball [m], for errors in millimetres
+/// @throws std::invalid_argument for another name, or a radius that is not greater than 0
 Noise noise_by_name(std::string_view name, double R);
 
-/// The strike that a player makes who means `cue`. A pure function: shot `index` of a seed always has the
-/// same errors, and they are those that a sweep with `--vary cue.speed=normal(sd)` and so on draws (keys
-/// cue.speed, cue.aim_deg, cue.elevation_deg, cue.offset.side, cue.offset.height).
+/// The strike of a player who intends `cue`. A pure function: shot `index` of a seed always has the same
+/// errors, the ones that a sweep with `--vary cue.speed=normal(sd)` and so on draws (keys cue.speed,
+/// cue.aim_deg, cue.elevation_deg, cue.offset.side, cue.offset.height).
 ///
-/// The result is a strike that a scene takes (legal_strike): a negative speed becomes 0, an elevation below 0
-/// the level cue, and an offset beyond the rim goes straight towards the centre until it is on it. So the
-/// errors at such an end are not normal any more.
+/// The result is always legal (legal_strike): a negative speed becomes 0, an elevation below 0 becomes a
+/// level cue, and an offset beyond the rim moves straight towards the centre until it is on the rim. At these
+/// limits the errors are no longer normal.
 /// @throws std::invalid_argument for a number that is not finite, or a negative standard deviation
 Cue with_noise(const Cue& cue, const Noise& sd, std::uint64_t seed, std::uint64_t index);
 

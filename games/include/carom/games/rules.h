@@ -1,12 +1,13 @@
-// Rules of games: what is legal, and what came of a shot.
-// Pure functions of a state, of the balls and of a record.
+// Rules of games: what is legal, and the outcome of a shot. Pure functions of a state, the balls and a
+// record.
 //
 // Eight-ball and nine-ball: World Pool-Billiard Association, The Rules of Play, effective 15 March 2016
 // ("WPA"). Three-cushion: Union Mondiale de Billard, World rules of carom billiard ("UMB"). Snooker: World
 // Professional Billiards and Snooker Association, Official rules, section 3 ("WPBSA"). Sum to three: the game
-// of that name of pooltool 0.6.0 and LightZero's zoo.
+// of that name in pooltool 0.6.0 and LightZero's zoo.
 //
-// What no record shows is not judged: feet, touched balls, double hits, pushes, time, misses of snooker.
+// Rules about things that a record does not show are not judged: feet, touched balls, double hits, pushes,
+// time, misses in snooker.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ constexpr auto names_of(Group) {
     return std::array{"open", "solids", "stripes"};
 }
 
-/// The ball on of snooker. kColour: any one, after a red. The colours have their points as numbers.
+/// The ball on in snooker. kColour: any colour, after a red. The colours have their points as numbers.
 enum class BallOn : std::uint8_t { kColour, kRed, kYellow, kGreen, kBrown, kBlue, kPink, kBlack };
 constexpr auto names_of(BallOn) {
     return std::array{"colour", "red", "yellow", "green", "brown", "blue", "pink", "black"};
@@ -41,32 +42,32 @@ constexpr auto names_of(BallOn) {
 /// More points than any game has, and fewer than an int holds.
 inline constexpr int kMostPoints = 1000000000;
 
-/// All that a game remembers between two shots, beside where the
-/// balls lie. Players are 0 and 1. A game reads only what is its own.
+/// Everything a game remembers between two shots, besides the positions of the balls. Players are 0 and 1. A
+/// game reads only its own fields.
 struct State {
     Game game = Game::kEightBall;
     int turn = 0;                        ///< whose shot it is
-    bool opening = true;                 ///< the break, or the first shot of a game of carom
-    InHand in_hand = InHand::kNo;        ///< the cue ball, for the player whose turn it is
+    bool opening = true;                 ///< the break, or the first shot of a carom game
+    InHand in_hand = InHand::kNo;        ///< where the player whose turn it is may place the cue ball
     std::array<int, 2> points = {0, 0};  ///< each 0 to kMostPoints, as are target and fouls
     int target = 0;                      ///< three-cushion, sum to three: points that win; 0: no end
     bool over = false;
     int winner = -1;                                            ///< -1: none, or not yet
     std::array<Group, 2> group = {Group::kOpen, Group::kOpen};  ///< eight-ball
     bool may_push_out = false;          ///< nine-ball: this is the shot after the break
-    std::array<int, 2> fouls = {0, 0};  ///< nine-ball: of each player, without a legal shot between
+    std::array<int, 2> fouls = {0, 0};  ///< nine-ball: consecutive fouls of each player
     BallOn on = BallOn::kRed;           ///< snooker
     bool free_ball = false;             ///< snooker: any ball may be nominated as the ball on
     bool operator==(const State&) const = default;
 };
 
-/// A new game. @param first  the player who begins  @param target  as State::target
+/// A new game. @param first the player who begins @param target as in State::target
 State new_game(Game game, int first = 0, int target = 0);
 
-/// What a player says before a shot. Snooker: `ball` is the nominated
-/// colour or free ball; without one it is the ball that is hit first.
+/// What a player announces before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
+/// empty, the ball that is hit first.
 struct Call {
-    std::string ball;       ///< id; "" for none
+    std::string ball;       ///< id, or ""
     std::string pocket;     ///< id, "p1", ...
     bool safety = false;    ///< eight-ball: the turn ends whatever falls
     bool push_out = false;  ///< nine-ball
@@ -75,17 +76,17 @@ struct Call {
 
 /// What the next shot may do.
 struct Legal {
-    std::vector<std::string> cue_balls;  ///< what may be struck: one id
-    std::vector<std::string> first;      ///< what the cue ball may meet first
-    std::vector<std::string> callable;   ///< what may be called; empty where the game has no calls
+    std::vector<std::string> cue_balls;  ///< ids that may be struck: one
+    std::vector<std::string> first;      ///< what the cue ball may hit first
+    std::vector<std::string> callable;   ///< what may be called; empty if the game has no calls
     InHand in_hand = InHand::kNo;
     bool may_push_out = false;
     bool operator==(const Legal&) const = default;
 };
 
-/// @param balls  ids of the balls on the table. The cue ball need not be among them while it is in hand.
-/// Ids are those of racks: cue, 1 to 15; white, yellow, red; snooker has reds with numbers. @throws
-/// std::invalid_argument where the game has no ball left to play
+/// @param balls ids of the balls on the table. The cue ball may be missing while it is in hand. Ids are those
+/// of racks: cue, 1 to 15; white, yellow, red; snooker numbers its reds. @throws std::invalid_argument if no
+/// ball is left to play
 Legal legal(const State& state, std::span<const std::string> balls);
 
 enum class Foul : std::uint8_t {
@@ -93,11 +94,11 @@ enum class Foul : std::uint8_t {
     kCueBallOff,
     kNoBallHit,
     kWrongBallFirst,
-    kNoCushion,  ///< nothing fell, and no ball met a cushion after the first contact
+    kNoCushion,  ///< nothing fell, and no ball hit a cushion after the first contact
     kFewCushionsOnBreak,
     kBallOff,
-    kPlacedOutside,     ///< the cue ball was in hand and not in its area
-    kBehindHeadString,  ///< it met a ball behind the head string before it had crossed it
+    kPlacedOutside,     ///< the cue ball was in hand and placed outside its area
+    kBehindHeadString,  ///< it hit a ball behind the head string before crossing it
     kThirdFoul,
     kWrongCueBall,
     kOpeningNotRed,
@@ -120,25 +121,25 @@ constexpr auto names_of(Foul) {
                       "wrong ball pocketed",
                       "two balls hit at once"};
 }
-/// The rule that a foul breaks, such as "WPA 6.1"; "" where the game has no such rule.
+/// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
 const char* rule_of(Game game, Foul foul);
 
-/// A ball that comes back to the table.
+/// A ball that is respotted.
 struct Respot {
     std::string ball;
     Vec2 place = Vec2::Zero();  ///< [m]
     bool operator==(const Respot&) const = default;
 };
 
-/// How the game may go on.
+/// How the game may continue.
 enum class Decision : std::uint8_t {
     kPlayOn,          ///< the balls stay
     kTakeInHand,      ///< the cue ball is in hand
     kPassBack,        ///< the other player shoots
-    kRerack,          ///< who decides breaks anew
-    kRerackForOther,  ///< the other player breaks anew
-    kSpotEight,       ///< the eight comes back, and play goes on
-    kSpotTouching,    ///< three-cushion: the cue ball and what touches it are spotted
+    kRerack,          ///< the player who decides breaks again
+    kRerackForOther,  ///< the other player breaks again
+    kSpotEight,       ///< the eight is respotted, and play continues
+    kSpotTouching,    ///< three-cushion: the cue ball and the balls touching it are spotted
 };
 constexpr auto names_of(Decision) {
     return std::array{"play on",          "take in hand",   "pass back",          "rerack",
@@ -148,7 +149,7 @@ constexpr auto names_of(Decision) {
 struct Option {
     Decision decision = Decision::kPlayOn;
     State state;                  ///< of the next shot
-    std::vector<Respot> respots;  ///< what comes back before it
+    std::vector<Respot> respots;  ///< balls that are respotted before it
     bool rerack() const { return decision == Decision::kRerack || decision == Decision::kRerackForOther; }
     bool operator==(const Option&) const = default;
 };
@@ -157,38 +158,38 @@ struct Verdict {
     std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
     int points = 0;           ///< scored by the shot
     int penalty = 0;          ///< snooker: what the other player receives
-    /// at least one. Where there are several, the first is what happens unless `chooser` takes another
+    /// At least one. If there are several, the first one applies unless `chooser` takes another.
     std::vector<Option> options;
-    int chooser = -1;  ///< the player who chooses; -1 where there is one option
+    int chooser = -1;  ///< the player who chooses; -1 if there is one option
     const State& next() const { return options.front().state; }
     const std::vector<Respot>& respots() const { return options.front().respots; }
     bool operator==(const Verdict&) const = default;
 };
 
-/// What came of a shot. @param state  before it
-/// @throws std::invalid_argument for a record that does not end at rest, in which no cue strikes, without the
-/// game's balls, or for a game that is over
+/// The outcome of a shot. @param state before it
+/// @throws std::invalid_argument for a record that does not end at rest, has no cue strike or lacks the
+/// game's balls, and for a game that is over
 Verdict judge(const State& state, const Record& record, const Call& call = {});
 
-/// The ball that the player strikes whose turn it is: "cue", or of three-cushion "white" or "yellow".
+/// The ball that the player to shoot strikes: "cue", or in three-cushion "white" or "yellow".
 const char* cue_ball(const State& state);
 
 /// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table
-/// between the noses, and overlaps no ball. @param record  of the shot before
+/// between the noses, and overlaps no ball. @param record of the previous shot
 /// @throws std::invalid_argument for an option with balls that the record does not have
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
-/// The table before the next shot, without a cue: what is gone is gone, what is respotted is back, the cue
-/// ball is placed.
-/// @param scene   that of the record
-/// @param option  one of the verdict's; not one that racks anew
-/// @param place   of the cue ball: needed where it is gone, allowed where it is in hand
+/// The table before the next shot, without a cue: pocketed balls are gone, respotted balls are back, and the
+/// cue ball is placed.
+/// @param scene that of the record
+/// @param option one of the verdict's, except one that racks again
+/// @param place of the cue ball: required if it is gone, allowed if it is in hand
 /// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, for
 /// a game that is over, and for an option or a scene with other balls than the record's
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place = std::nullopt);
 
-/// The next shot: the same with the strike, checked. @throws SceneError where it is no valid scene
+/// The next shot: the same with the strike, validated. @throws SceneError if the scene is not valid
 Scene next_scene(const Scene& scene, const Record& record, const Option& option, const Cue& cue,
                  const std::optional<Vec2>& place = std::nullopt);
 

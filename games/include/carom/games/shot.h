@@ -1,4 +1,5 @@
-// What rules ask of a shot: who met whom first, which cushions, what fell. All of it stands in the record.
+// What rules ask about a shot: which ball hit which first, which cushions, what fell. The record has all of
+// it.
 #pragma once
 
 #include <string>
@@ -9,12 +10,12 @@
 
 namespace carom::games {
 
-/// One contact of one ball, in the order of the record. Contacts that began to last count as one.
+/// One contact of one ball, in the order of the record. The start of a lasting contact counts as one contact.
 struct Touch {
     double time = 0.0;  ///< [s]
     int ball = -1;
-    int other = -1;  ///< the ball that it met; -1 for a cushion or a jaw
-    /// of a cushion: false where the ball was frozen to it from the start and had not left it
+    int other = -1;  ///< the ball that it hit; -1 for a cushion or a jaw
+    /// cushions: false if the ball was frozen to it from the start and had not left it
     bool driven = true;
     bool cushion() const { return other < 0; }
     bool operator==(const Touch&) const = default;
@@ -23,10 +24,11 @@ struct Touch {
 /// Balls are indices into Record::tracks.
 struct Shot {
     int struck = -1;  ///< the ball that the cue strikes
-    /// the ball that it meets first; several where it meets them at once; empty for none
+    /// the ball that it hits first; several if it hits them at once; empty for none
     std::vector<int> first_hits;
-    double first_time = 0.0;  ///< [s] when
-    /// Every contact of a ball with a cushion or a jaw, and every contact of the struck ball with another one
+    double first_time = 0.0;  ///< [s] when it does
+    /// Every contact of a ball with a cushion or a jaw, and every contact of the struck ball with another
+    /// ball
     std::vector<Touch> touches;
     struct Fallen {
         int ball, pocket;
@@ -35,22 +37,23 @@ struct Shot {
     std::vector<Fallen> pocketed;  ///< in the order in which they fell
     std::vector<int> out;          ///< balls that left the table
 
-    bool fell(int ball) const;  ///< into a pocket
-    bool left(int ball) const;  ///< the table
+    bool fell(int ball) const;  ///< whether the ball fell into a pocket
+    bool left(int ball) const;  ///< whether the ball left the table
     bool gone(int ball) const { return fell(ball) || left(ball); }
-    /// Balls that were driven to a cushion after `time`: they met
-    /// one that they were not frozen to, fell, or left the table.
+    /// Balls driven to a cushion after `time`: they hit one to which they were not frozen, fell, or left the
+    /// table.
     std::vector<int> driven_after(double time) const;
 };
 
-/// Reads a record. @throws std::invalid_argument for one that no cue begins, or that does not end at rest
+/// Reads a record. @throws std::invalid_argument if it does not begin with a cue strike, or does not end at
+/// rest
 Shot shot_of(const Record& record);
 
 /// Index of a ball, or -1.
 int index_of(const Record& record, std::string_view id);
 
-/// How far a ball is at most in the direction `along` (a unit
-/// vector) until `time`: the greatest along * position [m].
+/// How far a ball gets in the direction `along` (a unit vector) until `time`: the largest along * position
+/// [m].
 double farthest(const Record& record, int ball, const Vec2& along, double time);
 
 }  // namespace carom::games

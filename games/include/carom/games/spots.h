@@ -1,4 +1,4 @@
-// Spots of a table, and where a ball comes back: exactly, and never onto another one.
+// Spots of a table, and where a ball is respotted: exactly, and never overlapping another ball.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace carom::games {
 struct Lying {
     Vec2 place = Vec2::Zero();  ///< [m]
     double R = 0.0;             ///< [m]
-    double gap = 0.0;           ///< [m] how far others have to stay away; 0: they may touch it
+    double gap = 0.0;           ///< [m] how far others must stay away; 0: they may touch it
 };
 
-/// Spots on the long axis: the head string, the middle and the foot
-/// string at a quarter, a half and three quarters of the length.
+/// Spots on the long axis: the head string, the centre and the foot string, at a quarter, a half and three
+/// quarters of the length.
 Vec2 head_spot(const Table& table);
 Vec2 center_spot(const Table& table);
 /// The colours of snooker, from the highest value, 7, down to 2.
@@ -34,40 +34,39 @@ enum class InHand : std::uint8_t { kNo, kAnywhere, kHeadString, kD };
 constexpr auto names_of(InHand) {
     return std::array{"no", "anywhere", "head string", "D"};
 }
-/// y of the head string [m]; behind it lies what is nearer to the head rail, y = the table's corner.
+/// y of the head string [m]. The area behind it reaches to the head rail, at the y of the table's corner.
 double head_string(const Table& table);
-/// Whether a ball with its centre there is in the area: of kHeadString
-/// behind the string and not on it, of kD in the D or on its lines.
+/// Whether a ball with its centre there is in the area: for kHeadString behind the string and not on it, for
+/// kD in the D or on its lines.
 bool in_area(const Table& table, InHand area, const Vec2& place);
 
-/// Whether a ball of radius R may lie there: it overlaps none, and keeps the gap of each.
+/// Whether a ball of radius R may lie there: it overlaps no ball, and keeps the gap of each.
 bool is_free(const Vec2& place, double R, std::span<const Lying> others);
 
-/// Whether a ball of radius R that moves straight from one place
-/// to another meets none of them; one that it only grazes is met.
+/// Whether a ball of radius R that moves straight from one place to another hits none of them; grazing counts
+/// as a hit.
 bool is_clear(const Vec2& from, const Vec2& to, double R, std::span<const Lying> others);
 
-/// The free place nearest to `from` on the line from there along `direction` (a unit
-/// vector), at most `reach` away; nothing where all of it is blocked. A ball that is
-/// in the way is touched exactly (to rounding, and never overlapped), or at its gap.
+/// The free place nearest to `from` along `direction` (a unit vector), at most `reach` away; empty if all of
+/// it is blocked. A ball in the way is touched exactly (to rounding, and never overlapped), or at its gap.
 std::optional<Vec2> nearest_free(const Vec2& from, const Vec2& direction, double reach, double R,
                                  std::span<const Lying> others);
 
-/// [m] What a spotted ball keeps away from the cue ball (WPA 1.4), and a
-/// snooker colour from every ball: half a millimetre, which the eye sees.
+/// [m] Distance of a spotted ball from the cue ball (WPA 1.4), and of a snooker colour from every ball: half
+/// a millimetre, which the eye sees.
 inline constexpr double kSpotGap = 5e-4;
 
-/// A pool ball on the long string: on `spot` or as near to it as can be,
-/// towards the foot rail; where that is all blocked, towards the head rail
-/// (WPA 1.4). @throws std::invalid_argument where the whole string is blocked
+/// The place of a pool ball spotted on the long string: `spot`, or as near to it as possible towards the foot
+/// rail; if that is all blocked, towards the head rail (WPA 1.4). @throws std::invalid_argument if the whole
+/// string is blocked
 Vec2 spot_on_long_string(const Table& table, const Vec2& spot, double R, std::span<const Lying> others);
 
-/// The radius of the D [m], whose middle is the spot of the brown.
+/// The radius of the D [m], whose centre is the spot of the brown.
 double radius_of_d(const Table& table);
 
-/// A snooker colour: its own spot; or the free spot of the highest colour; or as near to
-/// its own spot as can be, towards the top (foot) cushion, or the other way where there
-/// is no room. `others` may have any gap; a spot is occupied where they are touched.
+/// The place of a spotted snooker colour: its own spot; else the free spot of the highest colour; else as
+/// near to its own spot as possible, towards the top (foot) cushion, or the other way if there is no room.
+/// `others` may have any gap; a ball that would be touched occupies the spot.
 Vec2 spot_snooker(const Table& table, std::string_view colour, double R, std::span<const Lying> others);
 
 }  // namespace carom::games

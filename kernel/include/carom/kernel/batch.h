@@ -1,22 +1,23 @@
-// Many independent impacts at once, as structures of arrays: the types that every batch kernel shares.
+// Many independent impacts at once, as structures of arrays: the types that all batch kernels share.
 //
-// Lane i of a batch is one impact: element i of every array. Arrays need no alignment and a batch may have
-// any length, 0 too. Results may not overlap inputs. Raw pointers, because files built for one instruction
-// set include no std templates.
+// Lane i of a batch is one impact: element i of every array. Arrays need no alignment, and a batch may have
+// any length, including 0. Results must not overlap inputs. Raw pointers, because files built for one
+// instruction set include no std templates.
 #pragma once
 
 #include "carom/kernel/impact.h"
 
 namespace carom::kernel {
 
-/// One ball of every impact, read.
+/// Input: one ball of every impact.
 struct BallLanes {
     const double* r[3];  ///< centre [m]
     const double* v[3];  ///< velocity [m/s]
     const double* w[3];  ///< angular velocity [rad/s]
 };
 
-/// The parameters of every impact, read; as ImpactParams. The sign of the cloth slip is one for the batch.
+/// Input: the parameters of every impact, as in ImpactParams. The sign of the cloth slip is common to the
+/// batch.
 struct ParamLanes {
     const double* R;
     const double* m;
@@ -30,7 +31,7 @@ struct ParamLanes {
     const double* radius_ratio = nullptr;
 };
 
-/// Velocities of one ball after every impact, written.
+/// Output: velocities of one ball after every impact.
 struct VelocityLanes {
     double* v[3];
     double* w[3];
@@ -38,12 +39,12 @@ struct VelocityLanes {
 
 /// The impacts of one call.
 struct ImpactBatch {
-    long count;  ///< lanes; <= 0 is none
+    long count;  ///< lanes; <= 0: none
     BallLanes ball1, ball2;
     ParamLanes params;
 };
 
-/// What comes out, per lane exactly as ImpactResult.
+/// The results, per lane exactly as in ImpactResult.
 struct ImpactBatchResult {
     VelocityLanes ball1, ball2;
     ImpactStatus* status;

@@ -1,6 +1,6 @@
-// The contact phase of many equal balls at once: Hertz contacts with friction,
-// whose normals turn as the balls move, in units of the approach speed V and of
-// L = (V^2 m / k)^0.4 (docs/reference/physics.md, several contacts at once).
+// The contact phase of many equal balls at once: Hertz contacts with friction, whose normals turn as the
+// balls move, in units of the approach speed V and of L = (V^2 m / k)^0.4 (docs/reference/physics.md, several
+// contacts at once).
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@ struct HertzContact {
     int i, j;        ///< balls
     double nx, ny;   ///< unit normal from i to j
     double overlap;  ///< [L] at the start; negative: a gap
-    /// Share of the turning of the balls that the normal takes part in while the
-    /// contact is closed. With 0 it stays as at the touch, and the touch is where
-    /// the balls would meet without the time that the contacts before took.
+    /// Share of the balls' turning that the normal follows while the contact is closed. With 0 the normal
+    /// stays as at the touch, and the touch is where the balls would meet if the earlier contacts took no
+    /// time.
     double turn = 1.0;
 };
 
-/// F = d^1.5 while a contact is loaded for the first time, d^1.5 (a + b (d / d_m)^p) below its largest
-/// overlap d_m; friction along the slip s with |s| regularised to sqrt(s^2 + epsilon^2). At every instant
-/// each contact has the friction of its own slip, mu_b + mu_b_more exp(-mu_b_fall |s|).
+/// F = d^1.5 while a contact is loaded for the first time, and d^1.5 (a + b (d / d_m)^p) below its largest
+/// overlap d_m. Friction acts along the slip s, with |s| regularised to sqrt(s^2 + epsilon^2). At every
+/// instant each contact has the friction of its own slip, mu_b + mu_b_more exp(-mu_b_fall |s|).
 struct HertzLaw {
     double a, b;
     int p;  ///< a power of 2
@@ -32,7 +32,7 @@ struct HertzLaw {
     double mu_b_fall = 0.0;    ///< [1/V]
 };
 
-/// What one call reads and writes. `numbers` and `places` are scratch memory of contact_phase_numbers() and
+/// Input and output of one call. `numbers` and `places` are scratch memory of contact_phase_numbers() and
 /// contact_phase_places() elements.
 struct ContactPhase {
     int balls, contacts;
@@ -51,13 +51,13 @@ constexpr std::size_t contact_phase_places(int contacts) noexcept {
 }
 
 /// Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V]. A step
-/// is `longest_step` [L/V] at most. Without friction it is the classical method; with friction one of order 3
-/// that is stable where friction is stiff, of four, six or eight stages, with steps as short as its error
-/// asks for. Between two steps the cloth answers what pressed the balls. During a step normals turn at the
-/// speed of its start; after it, by the mean of both ends. While all contacts are open the balls fly on
-/// without a step; a contact that closes late in look_ahead turns less, at its end not at all. The order in
-/// which a ball's contacts are given is the order of its sums.
-/// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
+/// is at most `longest_step` [L/V]. Without friction the method is the classical one. With friction it has
+/// order 3, is stable although friction is stiff, and has four, six or eight stages, with the step length
+/// controlled by the error. Between two steps the cloth reacts to the load on the balls. During a step
+/// normals turn at the speed of its start; after it they are set by the mean of both ends. While all contacts
+/// are open the balls fly without steps. A contact that closes late in look_ahead turns less, and at its end
+/// not at all. A ball's contacts are summed in the order in which they are given.
+/// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
 using ContactPhaseFunction = long (*)(const ContactPhase& phase, const HertzLaw& law, double longest_step,
                                       double look_ahead, double time_limit) noexcept;
 
@@ -95,11 +95,10 @@ constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) no
     return 56 * static_cast<std::size_t>(balls) + 6 * static_cast<std::size_t>(contacts);
 }
 
-/// The same forces in space. Balls that are not held have no cloth: `law.mu_s` and the sign of its slip are
-/// not read. The contacts last a tenth of what one with the cloth does, which comes next. The places of the
-/// balls are integrated too, and every normal is that of the places. Steps, flights and the end are those of
-/// ContactPhaseFunction.
-/// @return the number of steps, or -1 if the contacts did not part within time_limit [L/V]
+/// The same forces in space, without a cloth: `law.mu_s` and the sign of its slip are ignored. The contacts
+/// last a tenth as long as the impact with the cloth, which comes next. The positions of the balls are
+/// integrated too, and give every normal. Steps, flights and the end are those of ContactPhaseFunction.
+/// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
 long contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law, double longest_step,
                             double look_ahead, double time_limit) noexcept;
 

@@ -1,8 +1,7 @@
-// Ball-ball impact: the types that every kernel shares.
+// Ball-ball impact: the types that all kernels share.
 //
-// Units are SI. The frame is right-handed, z up from the cloth. An impact is planar: both centres are at one
-// height and the vertical velocities are left as they are. If the radii differ, the larger ball stands
-// higher.
+// Units are SI. The frame is right-handed, z up from the cloth. An impact is planar: both centres are at the
+// same height, and the vertical velocities do not change.
 #pragma once
 
 namespace carom::kernel {
@@ -17,7 +16,7 @@ struct Ball {
 /// Sign of the cloth slip inside the impact (docs/reference/physics.md, "Sign of the cloth slip").
 enum class ClothSlip : unsigned char {
     kConsistent,   ///< u = (v_x - R w_y, v_y + R w_x): agrees with the motion between events; the default
-    kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; feeds energy in; for parity only
+    kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; adds energy; for parity only
 };
 
 /// Parameters of one impact.
@@ -30,42 +29,40 @@ struct ImpactParams {
     /// Coefficient of restitution, 0..1 (mathavan: energetic, W_restitution = e_b^2 W_compression)
     double e_b;
     ClothSlip cloth_slip = ClothSlip::kConsistent;
-    /// Mass and radius of ball 2 over those of ball 1. The impacts by tolerance and the marches take them up
-    /// to kLargestMassRatio and kLargestRadiusRatio (tolerance.h), or over those; to the closed forms one
-    /// that is not 1 is kBadParameter. Of two radii the larger ball's centre is as much higher as it is
-    /// larger.
+    /// Mass of ball 2 divided by that of ball 1. ToleranceFunction accepts 1/kLargestMassRatio to
+    /// kLargestMassRatio (tolerance.h); for every other kernel a ratio other than 1 is kBadParameter.
     double mass_ratio = 1.0;
     double radius_ratio = 1.0;
 };
 
 enum class ImpactStatus : unsigned char {
     kOk,              ///< computed
-    kNotApproaching,  ///< approach speed <= 0 (or too small to be a number): the balls leave as they came
-    kBadState,      ///< a state is not finite, the centres coincide or are not at one height: result = input
-    kBadParameter,  ///< a parameter or setting is out of range: result = input
-    kStepLimit,     ///< the march reached its bound on steps (see march.h): result = input
+    kNotApproaching,  ///< approach speed <= 0 (or too small to compute with): the velocities are unchanged
+    kBadState,        ///< a state is not finite, or the centres coincide or differ in height: result = input
+    kBadParameter,    ///< a parameter or setting is out of range: result = input
+    kStepLimit,       ///< the integration reached its limit of steps (march.h): result = input
 };
 
 /// What is wrong, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
-/// How an impact by tolerance was solved (tolerance.h); kNone
-/// from every other kernel and where nothing was computed.
+/// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel and if nothing was
+/// computed.
 enum class ToleranceMethod : unsigned char {
     kNone,
     kClosedFrictionless,  ///< no friction between the balls: one formula
     kClosedGearing,       ///< no slip between the balls: as without friction
-    kClosedStick,         ///< horizontal slip only, with the stick that may end it: one formula
+    kClosedStick,         ///< horizontal slip only, and the stick that may end it: one formula
     kCollocation4,        ///< one collocation of 4 nodes over the whole impact
     kCollocation8,        ///< one collocation of 8 nodes over the whole impact
-    kAdaptive,            ///< cut into intervals, towards stick or where the cloth slip comes close to zero
+    kAdaptive,            ///< divided into intervals, near stick or if the cloth slip comes close to zero
 };
 
-/// Velocities after the impact. Where the status is not kOk they are those before it.
+/// Velocities after the impact, or before it if the status is not kOk.
 struct ImpactResult {
     double v1[3], w1[3];  ///< ball 1 [m/s], [rad/s]
     double v2[3], w2[3];  ///< ball 2
-    long steps;           ///< steps of the march, 1 for a closed form, 0 where nothing was computed
+    long steps;           ///< steps of the integration, 1 for a closed form, 0 if nothing was computed
     ImpactStatus status;
     ToleranceMethod method;
 };

@@ -1,7 +1,8 @@
-// Impacts by tolerance: as accurate as asked, and no slower than needed (docs/design/impact_kernel.md).
+// Impacts solved to a tolerance: as accurate as asked, and no slower than needed
+// (docs/design/impact_kernel.md).
 //
 // The impact of the 2014 model (march.h) is a small ordinary differential equation in the normal impulse.
-// Instead of marching, this kernel solves it by the cheapest method that keeps the tolerance asked for.
+// This kernel solves it by the cheapest method that keeps the tolerance, instead of by small steps.
 #pragma once
 
 #include "carom/kernel/batch.h"
@@ -10,12 +11,12 @@
 
 namespace carom::kernel {
 
-/// Tolerances asked for may lie in this range; anything else, NaN too, is kBadParameter.
+/// Allowed range of tolerances; anything else, including NaN, is kBadParameter.
 inline constexpr double kTightestTolerance = 1e-13;
 inline constexpr double kLoosestTolerance = 1e-1;
 
-/// Friction coefficients above this are kBadParameter here. Up to this value no ball can stick to the cloth
-/// during an impact, as the equations that are solved assume.
+/// Larger friction coefficients are kBadParameter here. Up to this value no ball can stick to the cloth
+/// during an impact, which the equations assume.
 inline constexpr double kLargestFriction = 1.0;
 
 /// The mass of one ball may be this multiple of the other's, and the radius that one.
@@ -24,9 +25,9 @@ inline constexpr double kLargestMassRatio = 1e6, kLargestRadiusRatio = 4.0;
 /// the error is tested.
 inline constexpr double kFastMassRatio = 10.0;
 
-/// [-] What an impulse does to a ball of mass m, as a share of what it does to one of two equal balls with
-/// the reduced mass that m and `other` have: 2 other/(m + other), from 0 to 2. The friction of the pressed
-/// ball on the cloth acts with it.
+/// [-] Effect of an impulse on a ball of mass m, relative to its effect on one of two equal balls with the
+/// reduced mass of m and `other`: 2 other/(m + other), from 0 to 2. The friction of the pressed ball on the
+/// cloth scales with it: its product with mu_s may be kLargestFriction at most.
 constexpr double impulse_share(double m, double other) {
     return 2.0 / (1.0 + m / other);
 }
@@ -38,19 +39,19 @@ bool sizes_have_solution(const ImpactParams& params) noexcept;
 /// Solves one impact of two balls of any masses and radii (docs/reference/physics.md, "Balls of different
 /// size"). Two radii cost some ten times as much.
 ///
-/// @param tolerance  largest error of any component of v and of R w after the impact, as a share of the
-/// approach speed; a tolerance looser than 1e-3 is solved as 1e-3. Rounding adds a few units in the last
-/// place of the largest speed before the impact. `result.steps` is the number of evaluations of the slip
-/// directions over the impact (sweeps), 1 for a closed form; `result.method` is what was used.
+/// @param tolerance  largest error of any component of v and of R w after the impact, relative to the
+/// approach speed; a tolerance above 1e-3 is solved as 1e-3. Rounding adds a few units in the last place of
+/// the largest speed before the impact. `result.steps` is the number of evaluations of the slip directions
+/// over the impact (sweeps), 1 for a closed form; `result.method` is the method used.
 using ToleranceFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
                                    double tolerance, ImpactResult& result) noexcept;
 
 /// The kernel built for one instruction set (which must be available). All give the same bits.
 ToleranceFunction tolerance_function(Isa isa) noexcept;
 
-/// Solves every impact of a batch; the bound holds for each. All instruction
-/// sets give the same bits, whatever the length of the batch and the place of
-/// an impact in it; they need not be the bits of ToleranceFunction.
+/// Solves every impact of a batch; the error bound holds for each. All instruction sets give the same bits,
+/// whatever the length of the batch and the position of an impact in it; they may differ from the bits of
+/// ToleranceFunction.
 using ToleranceBatchFunction = void (*)(const ImpactBatch& batch, double tolerance,
                                         const ImpactBatchResult& result) noexcept;
 

@@ -7,12 +7,12 @@
 namespace carom::render {
 
 enum class Backend : std::uint8_t {
-    kAuto,    ///< default_backend(), looked for when it is needed
+    kAuto,    ///< default_backend(), chosen when it is needed
     kOsmesa,  ///< libOSMesa.so.8 (Debian package libosmesa6)
     kEgl,     ///< libEGL.so.1, surfaceless platform of Mesa (Debian packages libegl1 and libegl-mesa0)
 };
 
-/// OSMesa where the system has it, else EGL: the one default of the library, the program and Python.
+/// OSMesa if the system has it, else EGL: the default of the library, the program and Python.
 Backend default_backend();
 
 /// "auto", "osmesa" or "egl"; @throws RenderError for another name

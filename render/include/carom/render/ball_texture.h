@@ -6,9 +6,9 @@
 
 namespace carom::render {
 
-/// The colours of a ball, without light, as the renderer has them: twice as wide as high. Column and row are
+/// The colours of a ball without light, as the renderer has them: twice as wide as high. Column and row are
 /// the angles phi and theta of the direction (cos theta, sin theta cos phi, sin theta sin phi) in the ball's
-/// own frame, phi from 0 to 2 pi, theta from 0 to pi. The numbers are far from the poles that way.
+/// own frame, phi from 0 to 2 pi, theta from 0 to pi. This keeps the numbers far from the poles.
 Image ball_texture(const BallStyle& style, int width);
 
 }  // namespace carom::render

@@ -15,7 +15,7 @@ namespace carom::render {
 struct FreeCamera {
     std::optional<Vec3> eye, target;  ///< [m]; set both, or neither for a named camera
     double fov_deg = 45.0;            ///< vertical field of view of the free camera [deg]
-    std::string ball;  ///< id of the ball that "follow" follows; default: the ball that moves first
+    std::string ball;                 ///< id of the ball for "follow"; default: the ball that moves first
 };
 
 /// top: from above; the table fills the image. rail: from behind the head
@@ -23,8 +23,8 @@ struct FreeCamera {
 /// looking along its path. follow: behind a ball, moving smoothly with it.
 class CameraPath {
   public:
-    /// `record` must outlive the path. @throws RenderError
-    /// for an unknown camera or ball; it lists the known ones
+    /// `record` must outlive the path. @throws RenderError for an unknown camera or ball, listing the known
+    /// ones
     CameraPath(const Record& record, const TableMesh& table, const std::string& name, const FreeCamera& free,
                FrameSize size);
 
@@ -46,8 +46,7 @@ class CameraPath {
 /// A camera that looks along `direction` at the box, at the shortest distance that still shows all of it.
 Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_deg, FrameSize size);
 
-/// Index of the ball that moves first: the ball that the cue strikes,
-/// or else the first ball with a velocity; 0 if none moves.
+/// Index of the ball that moves first: the struck ball, else the first ball with a velocity; 0 if none moves.
 int first_ball(const Record& record);
 
 }  // namespace carom::render

@@ -74,9 +74,9 @@ struct DrawList {
     std::vector<DrawBox> boxes;
     /// Samples per pixel of the table, which is redrawn only when the camera or the table changes
     int table_samples = 16;
-    /// For a camera that is different in each frame: the table is drawn with one
-    /// sample per pixel, and then its edges are smoothed by the share of each
-    /// pixel that they cut off. The mesh should be made with Edges::kSharp.
+    /// For a camera that differs from frame to frame: the table is drawn with one sample per pixel, and then
+    /// its edges are smoothed by the share of each pixel that they cut off. The mesh should be made with
+    /// Edges::kSharp.
     bool camera_moves = false;
 };
 

@@ -23,14 +23,13 @@ class KeptImage {
     std::shared_ptr<const DrawnPicture> shows_;
 };
 
-/// For those who make something of one image after the other: where it may differ from the one before.
+/// For encoders of successive images: where an image may differ from the one before.
 class ChangedBoxes {
   public:
-    /// Boxes outside of which the image is equal to the one
-    /// of the last call; the whole image if nothing is known.
+    /// Boxes outside which the image equals that of the last call; the whole image if nothing is known.
     std::vector<PixelBox> next(const KeptImage& image);
 
-    /// The same for an image that may show anything, and the next call knows nothing of it.
+    /// The same for an image that may show anything; the next call cannot compare with it.
     std::vector<PixelBox> next(const Image& image);
 
   private:

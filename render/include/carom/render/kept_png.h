@@ -1,4 +1,4 @@
-// PNG files of frames in turn, of which only what changed is encoded.
+// PNG files of successive frames, encoding only what changed.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,7 @@
 
 namespace carom::render {
 
-/// Encodes as 8-bit RGB. The bytes depend on the pixels alone:
-/// not on the images before, nor on which encoder makes them.
+/// Encodes as 8-bit RGB. The bytes depend on the pixels alone: not on earlier images, nor on the encoder.
 class KeptPng {
   public:
     KeptPng();
@@ -18,11 +17,11 @@ class KeptPng {
     KeptPng(KeptPng&&) noexcept;
     KeptPng& operator=(KeptPng&&) noexcept;
 
-    /// Encodes anew only the pieces of the picture that may differ from the last image. `bytes` is
-    /// overwritten and its memory is reused. @throws RenderError for an image without pixels
+    /// Encodes only the pieces of the picture that may differ from the last image. `bytes` is overwritten and
+    /// its memory is reused. @throws RenderError for an image without pixels
     void encode(const KeptImage& image, std::vector<std::uint8_t>& bytes);
 
-    /// The same for an image of which nothing is known.
+    /// The same for an image about which nothing is known.
     void encode(const Image& image, std::vector<std::uint8_t>& bytes);
 
     /// The share of the last picture that was encoded anew, 0..1.

@@ -1,6 +1,6 @@
-// How a table and its balls look, for all that paint them. The build makes the same constants, with the same
-// names, for the shaders and for the pages (render/look.cmake), so each stands on a line of its own. A colour
-// is a screen value: its square is the radiance that is reflected.
+// How a table and its balls look, for everything that paints them. The build makes the same constants, with
+// the same names, for the shaders and for the pages (render/look.cmake), so each must be on its own line. A
+// colour is a screen value: its square is the reflected radiance.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ inline constexpr Color kLeather{0.17, 0.13, 0.11};
 inline constexpr Color kTrim{0.19, 0.175, 0.165};
 inline constexpr Color kInlay{0.88, 0.85, 0.76};
 inline constexpr Color kFloor{0.16, 0.145, 0.135};
-/// [-] How much more of the light the cloth of a cushion reflects.
+/// [-] How much more light the cloth of a cushion reflects.
 inline constexpr double kCushionGain = 1.12;
 /// [-] What chalk reflects.
 inline constexpr double kChalk = 0.75;
 
-// Surfaces that are shaded by others, in one colour each: the mean of what is painted here.
+// Surfaces that others shade, in one colour each: the mean of what is painted here.
 inline constexpr Color kPlainCushion{0.058, 0.53, 0.365};
 inline constexpr Color kPlainWood{0.35, 0.176, 0.091};
 inline constexpr Color kPlainPocket{0.12, 0.092, 0.078};
@@ -34,17 +34,17 @@ inline constexpr Color kPaleDot{0.93, 0.90, 0.82};
 /// [-] What a digit reflects, and as a screen value.
 inline constexpr double kInk = 0.012;
 inline constexpr double kInkOnScreen = 0.11;
-/// [-] From this luminance on a ball is bright: its dots are red.
+/// [-] A ball of at least this luminance is bright: its dots are red.
 inline constexpr double kBright = 0.3;
 /// [-] How much white is in the second half of a ball of two halves.
 inline constexpr double kPaleHalf = 0.65;
-/// [radii] Half the width of a stripe; the ivory disc behind a number, the dots, and the one that is larger.
+/// [radii] Half the width of a stripe; the ivory disc behind a number, the dots, and the larger dot.
 inline constexpr double kStripe = 0.60;
 inline constexpr double kSpot = 0.52;
 inline constexpr double kDot = 0.17;
 inline constexpr double kLargeDot = 0.34;
 
-/// Of a ball that reflects so much red, green and blue [-].
+/// For a ball that reflects this much red, green and blue [-].
 inline bool is_bright(float r, float g, float b) {
     return 0.3F * r + 0.6F * g + 0.1F * b > static_cast<float>(kBright);
 }

@@ -9,7 +9,7 @@
 
 namespace carom::render {
 
-/// A convex polygon, in the order of its corners.
+/// A convex polygon: its corners in order.
 using Corners = std::vector<MeshVertex>;
 
 enum class Axis : std::uint8_t { kX, kY };

@@ -9,7 +9,10 @@
 
 namespace carom::render {
 
-/// Encodes a whole picture by libpng, as 8-bit RGB without row filters. kept_png.h is many times faster.
+/// zlib level of frames: higher levels take far longer and save little.
+inline constexpr int kFrameLevel = 1;
+
+/// Encodes a whole picture with libpng, as 8-bit RGB without row filters. kept_png.h is many times faster.
 /// level: of zlib, 0..9. `bytes` is overwritten and its memory is reused. @throws RenderError
 void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes);
 

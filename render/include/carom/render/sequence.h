@@ -25,7 +25,7 @@ enum class RawFormat : std::uint8_t {
     kY4m,  ///< a frame of a Y4M stream, which begins with y4m_header(): 4:2:0, colours as in ITU-R BT.709
 };
 
-/// The first line of a Y4M stream. @throws RenderError for frames per second that it cannot say to 9 digits
+/// The first line of a Y4M stream. @throws RenderError for a frame rate that it cannot express to 9 digits
 std::string y4m_header(FrameSize size, double fps);
 
 struct SequenceOptions {
@@ -47,16 +47,15 @@ struct SequenceOptions {
     std::function<double(long k)> frame_cost_ms;
     /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
     int table_samples = 16;
-    /// zlib level 0..9: libpng encodes every frame as a whole. Default: only what changed is encoded
-    /// (kept_png.h)
-    std::optional<int> libpng_level;
+    /// Encode every frame as a whole with libpng. Default: only what changed is encoded (kept_png.h)
+    bool libpng = false;
     Backend backend = Backend::kAuto;
     /// Number of threads that encode and write. 1: everything runs on the
     /// calling thread, so that the timings do not disturb each other. 0: one
     /// per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    /// Skip frames whose file is there, a whole PNG. A comment in each says of which picture and instant it
-    /// is. Frames of other pictures are drawn anew; where there are others only, it is an error.
+    /// Skip frames whose file is a complete PNG of the same picture and instant, as a comment in each file
+    /// says. Frames of other pictures are drawn again; it is an error if there are only others.
     bool resume = false;
     RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
@@ -81,15 +80,15 @@ double frame_time(double from, long k, double fps);
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if
-/// its parent exists. Frames with these numbers that are there go first, and behind them those of other
-/// pictures that carom drew; one frame by itself leaves the others. Another run with the same pattern is
-/// refused meanwhile. Skipped frames (`resume`) have no timing. Memory does not grow with the number of
-/// frames.
+/// its parent exists. Existing frames with these numbers are removed first, and those with higher numbers if
+/// carom drew them for another picture; a single frame leaves the others alone. Meanwhile another run with
+/// the same pattern is refused. Skipped frames (`resume`) have no timing. Memory does not grow with the
+/// number of frames.
 /// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 
-/// The file of frame k: a name without an integer conversion is that of the only frame.
-/// @throws RenderError for a pattern with another one, or with two
+/// The file of frame k; a name without an integer conversion is the only frame's.
+/// @throws RenderError for a pattern with another conversion, or with two
 std::string frame_path(const std::string& pattern, long k);
 
 /// Whether the pattern has a place for the number of a frame.

@@ -53,8 +53,8 @@ struct TableMesh {
     Lamp lamp;
 };
 
-/// kRounded: noses and rails have small bevels. kSharp: they have none, because
-/// strips that are thinner than a pixel would flicker under a camera that moves.
+/// kRounded: noses and rails have small bevels. kSharp: they have none, because strips thinner than a pixel
+/// would flicker under a moving camera.
 enum class Edges : std::uint8_t { kRounded, kSharp };
 
 /// Makes the mesh. `visited`: positions that balls reach; they decide on which side of an open cushion its

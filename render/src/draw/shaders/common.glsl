@@ -1,5 +1,5 @@
-// Camera and lamp; precedes every other source. All positions are relative to the origin of the table mesh: floats then
-// resolve a tenth of a micrometre on any table.
+// Camera and lamp; precedes every other source. All positions are relative to the origin of the table mesh,
+// so that floats resolve a tenth of a micrometre on any table.
 layout(std140) uniform View {   // the same layout as struct View in view.h
     mat4 u_view_projection;
     vec3 u_eye;
@@ -21,8 +21,8 @@ vec3 to_screen(vec3 c) {
 }
 vec3 from_screen(vec3 c) { return c * c; }
 
-// Light of the lamp on a surface at p with normal n; 1 straight below the lamp. Only the nearest point of a rectangle
-// of 0.6 of its size is used: this is smooth and needs one square root, where an integral would need dozens.
+// Light of the lamp on a surface at p with normal n; 1 straight below the lamp. Only the nearest point of a
+// rectangle of 0.6 times its size is used: this is smooth and needs one square root instead of dozens.
 float lamp_light(vec3 p, vec3 n) {
     vec2 away = p.xy - u_lamp.xy, reach = 0.6 * u_lamp_half;
     vec3 to = vec3(clamp(away, -reach, reach) - away, u_lamp.z - p.z);

@@ -33,7 +33,7 @@ bool in_hole(vec2 p) {
 
 vec3 cloth_albedo(vec2 p) {
     vec3 base = from_screen(kCloth);
-    // A coarse weave that is visible only from near: it fades out before its threads are one to two pixels wide.
+    // A coarse weave that shows only from nearby: it fades out before its threads are one to two pixels wide.
     float pixel = length(fwidth(v_position));
     float fine = 1.0 - smoothstep(0.0006, 0.0016, pixel);
     vec2 thread = sin(p * (6.2831853 / 0.0026));
@@ -43,7 +43,8 @@ vec3 cloth_albedo(vec2 p) {
 }
 
 vec3 wood_albedo(vec2 uv) {
-    // The fine grain fades out before its rings are one to two pixels wide; it would flicker under a camera that moves.
+    // The fine grain fades out before its rings are one to two pixels wide; otherwise it would flicker as
+    // the camera moves.
     float pixel = length(fwidth(uv)) * 160.0;
     float fine = mix(noise(vec2(uv.x * 9.0, uv.y * 160.0)), 0.5, smoothstep(0.5, 1.2, pixel));
     float rings = noise(vec2(uv.x * 2.2, uv.y * 38.0)) * 0.65 + fine * 0.35;
@@ -55,7 +56,7 @@ vec3 lit(vec3 albedo, vec3 n) {
     return albedo * (1.05 * lamp_light(v_position, n) + 0.16 * sky);
 }
 
-// Adds the mirror image of the lamp. tint: what the surface lets through of it.
+// Adds the mirror image of the lamp. tint: how much of it the surface reflects, by colour.
 vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
     vec3 view = normalize(v_position - u_eye);
     vec3 r = reflect(view, n);
@@ -67,11 +68,13 @@ vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
 vec3 pocket_wall(vec3 p, vec3 n, float bottom) {
     // Leather that is lit only through the mouth of the pocket: the light decreases with depth.
     float fade = exp(min(p.z, 0.0) / 0.035);
-    return from_screen(kLeather) * mix(0.06, 0.75, fade) * (bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n));
+    float light = bottom > 0.5 ? 0.5 : 0.6 + 0.4 * lamp_light(p, n);
+    return from_screen(kLeather) * mix(0.06, 0.75, fade) * light;
 }
 
 vec3 floor_color(vec3 p) {
-    vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
+    vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy);
+    vec2 e = abs(p.xy - 0.5 * (u_inner.xy + u_inner.zw)) - half_size;
     float away = length(max(e, 0.0));
     vec3 near = from_screen(kFloor) * (0.10 + 0.9 * smoothstep(0.0, 1.0, away));
     // The floor fades into the dark room, which has the colour of the background.
@@ -89,14 +92,14 @@ void main() {
 #if defined(CLOTH)
     color = written(lit(cloth_albedo(p) * (v_material == 0 ? 1.0 : kCushionGain), n));
 #elif defined(CHALK)
-    // The share of the width of this pixel that lies within the mark.
+    // The share of this pixel's width that lies within the mark.
     float across = max(fwidth(v_uv.y), 1e-4);
     float cover = min(v_uv.y + 0.5 * across, 1.0) - max(v_uv.y - 0.5 * across, -1.0);
     cover = v_uv.x * clamp(cover / across, 0.0, 1.0);
     color = written(mix(lit(cloth_albedo(p), n), lit(vec3(kChalk), n), cover));
 #elif defined(SHADE)
-    // Only the opacity counts: black is blended over the cloth. In screen values, of which the square is the radiance,
-    // the same darkening needs another opacity.
+    // Only the opacity counts: black is blended over the cloth. In screen values, whose square is the
+    // radiance, the same darkening needs another opacity.
     color = vec4(0.0, 0.0, 0.0, 1.0 - sqrt(1.0 - v_uv.x));
 #elif defined(WOOD)
     color = written(glossy(lit(wood_albedo(v_uv), n), n, vec3(1.7, 1.0, 0.62), 0.5));

@@ -16,20 +16,11 @@
 namespace carom::tools {
 namespace {
 
-/// The ball that moves first: the struck one, else the first that has a velocity; -1 if none moves.
-int first_mover(const Record& record) {
-    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
-        const Vec3 v = record.state_at(static_cast<int>(i), 0.0).velocity;
-        if (v.x() != 0.0 || v.y() != 0.0) return static_cast<int>(i);
-    }
-    return -1;
-}
-
-/// A ToleranceFunction in form: the power series of the tests, rounded to double.
+/// A ToleranceFunction that calls the power series of the tests, rounded to double.
 void by_power_series(const kernel::Ball& ball1, const kernel::Ball& ball2, const kernel::ImpactParams& params,
                      double tolerance, kernel::ImpactResult& result) noexcept {
     const reference::ImpactTruth truth = reference::reference_impact(ball1, ball2, params);
-    if (!truth.ok) {  // separating or bad: the kernel has the words for it
+    if (!truth.ok) {  // separating or bad: the kernel reports it
         kernel::tolerance_function(kernel::Isa::kScalar)(ball1, ball2, params, tolerance, result);
         if (result.status == kernel::ImpactStatus::kOk) result.status = kernel::ImpactStatus::kStepLimit;
         return;
@@ -47,16 +38,16 @@ void by_power_series(const kernel::Ball& ball1, const kernel::Ball& ball2, const
 
 }  // namespace
 
-ShotContacts contacts_of(const Record& record) {
+ShotContacts contacts_of(const Scene& scene, const Record& record) {
     ShotContacts outcome;
-    const int mover = first_mover(record);
+    const int struck = struck_ball(scene);
     for (const Event& event : record.events) {
         if (kind(event.type).phase != EventPhase::kImpact) continue;
         const std::string a = record.tracks.at(event.a).id, b = record.partner_id(event);
         outcome.contacts.push_back(fmt::format("{} {} {}", name(event.type), a, b));
         const bool balls = balls_collide(event.type);
-        if (balls && outcome.first_contact.empty() && (event.a == mover || event.b == mover))
-            outcome.first_contact = event.a == mover ? b : a;
+        if (balls && outcome.first_contact.empty() && (event.a == struck || event.b == struck))
+            outcome.first_contact = event.a == struck ? b : a;
     }
     for (const BallTrack& track : record.tracks) outcome.pockets.push_back(track.pocket);
     return outcome;
@@ -79,17 +70,17 @@ FinalError final_error(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
 }
 
 double gain_of(const Plan& plan, const Record& record) {
-    const int mover = first_mover(record);
-    if (mover < 0) return 1.0;  // nothing moves: every ball stays as far off as it is put
+    const int struck = struck_ball(plan.scene);
+    if (struck < 0) return 1.0;  // nothing moves: an offset stays as it is
     const std::vector<Vec2> end = final_positions(record);
-    const auto ball = static_cast<std::size_t>(mover);
+    const auto ball = static_cast<std::size_t>(struck);
     double gain = 0.0;
     for (const int axis : {0, 1}) {
         Plan twin = plan;
         Vec3& position = twin.scene.ball[ball].position;
         const double before = position[axis];
         position[axis] = before + kTwinStep;
-        const double step = position[axis] - before;  // as far as a double can tell
+        const double step = position[axis] - before;  // the step after rounding
         if (step == 0.0) continue;
         gain =
             std::max(gain, final_error(final_positions(simulate(twin, interruptible())), end).largest / step);

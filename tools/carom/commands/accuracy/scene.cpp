@@ -19,11 +19,11 @@
 namespace carom::tools {
 namespace {
 
-/// The converged runs must agree within this part of the target;
-/// otherwise differences from them are not called errors.
+/// The converged runs must agree within this fraction of the target; otherwise, differences from them are not
+/// called errors.
 constexpr double kAgreement = 0.1;
 
-/// One setting: how to run it once, and what it gave.
+/// One setting: how to run it, and its result.
 struct SceneSubject {
     SceneAccuracyRow row;
     Plan plan;
@@ -52,7 +52,7 @@ std::vector<SceneSubject> subjects(const Scene& scene, const AccuracySceneArgs& 
     return list;
 }
 
-/// Shares of kernel and cluster map in the profiled run that was disturbed least.
+/// Takes the shares of kernel and cluster map from the least disturbed profiled run.
 void set_shares(SceneAccuracyRow& row, const Plan& plan) {
     constexpr int kRuns = 3;
     SimulateOptions options = interruptible();
@@ -73,9 +73,9 @@ void set_shares(SceneAccuracyRow& row, const Plan& plan) {
     }
 }
 
-void compare(SceneAccuracyRow& row, const Record& record, const ShotContacts& truth,
+void compare(SceneAccuracyRow& row, const Scene& scene, const Record& record, const ShotContacts& truth,
              const std::vector<Vec2>& end) {
-    const ShotContacts outcome = contacts_of(record);
+    const ShotContacts outcome = contacts_of(scene, record);
     row.order_same = outcome.contacts == truth.contacts;
     row.first_same = outcome.first_contact == truth.first_contact;
     row.pocketed_same = outcome.pockets == truth.pockets;
@@ -88,7 +88,7 @@ const SceneAccuracyRow* row_of(const SceneAccuracy& result, const char* method, 
     return nullptr;
 }
 
-/// The march to compare with: N = 1000, as the paper has it, else the first one.
+/// The march to compare with: N = 1000, as in the paper, else the first one.
 const SceneAccuracyRow* compared_march(const SceneAccuracy& result) {
     if (const SceneAccuracyRow* row = row_of(result, "march", 1000.0)) return row;
     for (const SceneAccuracyRow& row : result.rows)
@@ -96,7 +96,7 @@ const SceneAccuracyRow* compared_march(const SceneAccuracy& result) {
     return nullptr;
 }
 
-/// The loosest tolerance that met the target, and with it every tighter one.
+/// The loosest tolerance such that it and every tighter one met the target.
 std::optional<double> loosest_measured(const SceneAccuracy& result) {
     std::vector<const SceneAccuracyRow*> rows;
     for (const SceneAccuracyRow& row : result.rows)
@@ -117,8 +117,8 @@ std::string metres(double x) {
 std::string sentence_of(const SceneAccuracy& result) {
     if (!result.converged)
         return fmt::format(
-            "The two converged methods end {} apart (gain {:.1e}): nothing here can be called an error, and "
-            "no setting promises {}.",
+            "The two converged methods end {} apart (gain {:.1e}), so no difference here can be called an "
+            "error, and no setting guarantees {}.",
             metres(result.agreement), result.gain, metres(result.target));
     if (!result.recommended)
         return fmt::format(
@@ -128,19 +128,19 @@ std::string sentence_of(const SceneAccuracy& result) {
     const SceneAccuracyRow* row = row_of(result, "tolerance", *result.recommended);
     std::string text;
     if (row->failed.empty() && row->error.largest <= result.target) {
-        text = fmt::format("Tolerance {:g} suffices for {} (it is off by {}", *result.recommended,
+        text = fmt::format("Tolerance {:g} is enough for {} (error {}", *result.recommended,
                            metres(result.target), metres(row->error.largest));
         text += result.loosest && *result.loosest > *result.recommended
-                    ? fmt::format("; as it happens, {:g} is enough)", *result.loosest)
+                    ? fmt::format("; {:g} happens to be enough too)", *result.loosest)
                     : ")";
     } else {
-        text = fmt::format("The gain asks for tolerance {:g}, but that is off by {}, more than {}",
+        text = fmt::format("The gain calls for tolerance {:g}, but its error is {}, more than {}",
                            *result.recommended, metres(row->error.largest), metres(result.target));
     }
     if (const SceneAccuracyRow* march = compared_march(result)) {
         if (march->failed.empty())
-            text += fmt::format("; {} would be off by {} and take {:.3g} times as long", march->setting,
-                                metres(march->error.largest), march->ns_min / row->ns_min);
+            text += fmt::format("; {} would have an error of {} and take {:.3g} times as long",
+                                march->setting, metres(march->error.largest), march->ns_min / row->ns_min);
     }
     return text + ".";
 }
@@ -159,7 +159,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
     const Record truth = simulate_plan(tight, {});
     const Record other = simulate_plan(with_power_series(scene), {});
-    const ShotContacts outcome = contacts_of(truth), other_outcome = contacts_of(other);
+    const ShotContacts outcome = contacts_of(scene, truth), other_outcome = contacts_of(scene, other);
     const std::vector<Vec2> end = final_positions(truth);
     result.contacts = outcome.contacts.size();
     for (const Event& event : truth.events) result.ball_hits += balls_collide(event.type) ? 1U : 0U;
@@ -174,7 +174,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     for (SceneSubject& s : list) {
         throw_if_interrupted();
         try {
-            compare(s.row, simulate(s.plan, interruptible()), outcome, end);
+            compare(s.row, scene, simulate(s.plan, interruptible()), outcome, end);
             set_shares(s.row, s.plan);
         } catch (const SimulationError& error) {
             s.row.failed = error.what();
@@ -198,24 +198,23 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
 
 void add_accuracy_options(Options& command, AccuracySceneArgs& args) {
     command.argument("SCENE", args.scene, "Scene file (TOML)");
-    command.option("--target", &args.target, "M",
-                   "Final error allowed, in m: what the recommendation aims at");
-    command.option("--march", &args.march, "N,...", "Settings of the march to compare, N").in(1, 100000000);
+    command.option("--target", &args.target, "M", "Final error to aim for, in m");
+    command.option("--march", &args.march, "N,...", "Settings N of the march to compare").in(1, 100000000);
     command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
         .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
-    add_repeat(command, args.repeat, "Interleaved rounds; minimum, median and maximum are over them");
+    add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
     add_reports(command, args.csv, args.json);
 }
 
 Plan plan_for_accuracy(const AccuracySceneArgs& args) {
-    if (args.scene.empty()) throw UsageError("accuracy: a scene file is required; see --help");
+    if (args.scene.empty()) throw UsageError("accuracy: no scene file given; see --help");
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
     Plan plan = plan_scene(args.scene);
     if (!plan.scene.physics.ball_ball->reads_tolerance)
         throw UsageError(
-            fmt::format("{}: ball_ball = \"{}\" is one formula, without an accuracy to choose; set ball_ball "
-                        "= \"mathavan\"",
+            fmt::format("{}: ball_ball = \"{}\" is a closed formula without an accuracy setting; set "
+                        "ball_ball = \"mathavan\"",
                         args.scene, name(plan.scene.physics.ball_ball)));
     return plan;
 }
@@ -233,7 +232,7 @@ int run(const AccuracySceneArgs& args) {
 
 void add_accuracy(Options& program) {
     auto [command, args] = program.command<AccuracySceneArgs>(
-        "accuracy", "What accuracy costs in time, and the accuracy that a shot deserves", run);
+        "accuracy", "Measure accuracy against time, and find the tolerance that a shot needs", run);
     add_accuracy_options(command, args);
 }
 

@@ -1,4 +1,4 @@
-// carom accuracy SCENE: what each accuracy setting of a shot costs, and which one the shot deserves.
+// carom accuracy SCENE: the cost of each accuracy setting for a shot, and which setting the shot needs.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace carom::tools {
 
 struct AccuracySceneArgs {
     std::string scene;
-    /// Final error allowed [m].
+    /// Allowed final error [m].
     double target = 1e-3;
     /// N of the march.
     std::vector<int> march = {100, 1000, 10000, 100000};
@@ -22,17 +22,17 @@ struct AccuracySceneArgs {
     /// Interleaved rounds.
     int repeat = 5;
     bool json = false;
-    /// A file name; empty: not asked for.
+    /// A file name; empty: not written.
     std::string csv;
 };
 
-/// What happened in a shot: all contacts in order, the first ball hit, and which ball fell into which pocket.
+/// What happened in a shot: all contacts in order, the first ball hit, and which pocket each ball fell into.
 struct ShotContacts {
     std::vector<std::string> contacts;
-    std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
+    std::string first_contact;  ///< the ball that the struck ball hits first, or ""
     std::vector<int> pockets;   ///< per ball, -1: on the table
 };
-ShotContacts contacts_of(const Record& record);
+ShotContacts contacts_of(const Scene& scene, const Record& record);
 
 /// Distances between the final positions of the same ball in two runs [m].
 struct FinalError {
@@ -41,49 +41,50 @@ struct FinalError {
 FinalError final_error(const std::vector<Vec2>& a, const std::vector<Vec2>& b);
 std::vector<Vec2> final_positions(const Record& record);
 
-/// One setting of one shot. Times are of the whole simulation [ns], processor time of the thread.
+/// One setting of one shot. Times are the thread's processor time for the whole simulation [ns].
 struct SceneAccuracyRow {
     std::string method;   ///< march, march published, tolerance
     std::string setting;  ///< "N=1000", "1e-06"
-    /// Another simulator: it has no kernel, and its contacts come in no exact order.
+    /// Another simulator: it has no kernel, and the order of its contacts is not exact.
     bool other_simulator = false;
     double value = 0.0;
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double kernel_share = 0.0, cluster_share = 0.0;  ///< of a profiled run
-    FinalError error;                                ///< from the converged run
+    FinalError error;                                ///< relative to the converged run
     bool order_same = false, first_same = false, pocketed_same = false;
-    std::string failed;  ///< why the run could not be finished, or ""
+    std::string failed;  ///< why the run failed, or ""
 };
 
 struct SceneAccuracy {
     double target = 0.0;
-    double gain = 0.0;       ///< final displacement over initial displacement, from a twin moved by 1e-12 m
+    double gain = 0.0;       ///< final displacement over initial displacement, for a twin moved by 1e-12 m
     double agreement = 0.0;  ///< largest final distance between the two converged runs [m]
     bool outcome_agrees = false;  ///< of the two converged runs
-    bool converged = false;       ///< both agree, and far closer than the target: errors may be called errors
-    std::optional<double> recommended;  ///< by gain alone; nothing where double precision does not allow it
-    std::optional<double> loosest;      ///< measured here: met the target, as did every tighter one
+    /// both agree far more closely than the target, so differences may be called errors
+    bool converged = false;
+    std::optional<double> recommended;        ///< by gain alone; empty if double precision does not allow it
+    std::optional<double> loosest;            ///< measured here: it and every tighter one met the target
     std::size_t contacts = 0, ball_hits = 0;  ///< of the converged run; hits: of two balls or a cluster
     std::string sentence;
     std::vector<SceneAccuracyRow> rows;
 };
 
-/// The gain, from twins of the plan whose first moving ball starts kTwinStep to the side and ahead; the
+/// The gain, from twins of the plan whose struck ball starts kTwinStep to the side and ahead; the
 /// larger of the two.
 inline constexpr double kTwinStep = 1e-12;
 double gain_of(const Plan& plan, const Record& record);
 
-/// The loosest power of ten that keeps gain x tolerance x kFlight within the target; nothing where that is
-/// below the tightest tolerance, which is where double precision ends.
+/// The loosest power of ten that keeps gain x tolerance x kFlight within the target; empty if that is below
+/// the tightest tolerance, where double precision ends.
 std::optional<double> deserved_tolerance(double gain, double target);
-/// [m] A relative error t of the speed after an impact gives a position error
-/// of t times the way to the next impact, which is about this long at most.
+/// [m] A relative speed error t after an impact becomes a position error of t times the distance to the next
+/// impact, which is at most about this.
 inline constexpr double kFlight = 1.0;
 
-/// A plan of the same scene with another setting; exactly one of the two.
+/// A plan of the same scene with another setting.
 Plan with_tolerance(const Scene& scene, double tolerance);
 Plan with_substeps(const Scene& scene, int substeps, March march = March::kSummed);
-/// With every ball-ball impact solved by power series in extended precision, which shares no code with the
+/// Solves every ball-ball impact by power series in extended precision, which shares no code with the
 /// kernels: the second converged method.
 Plan with_power_series(const Scene& scene);
 
@@ -91,14 +92,14 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
 /// Minimum, median and maximum of a row's times.
 void set_times(SceneAccuracyRow& row, const std::vector<double>& samples_ns);
 
-/// The options that the program and the laboratory share, and what is checked before any work.
+/// The options that the program and the laboratory share, and their checks before any work.
 void add_accuracy_options(Options& command, AccuracySceneArgs& args);
 /// @throws UsageError, SceneError
 Plan plan_for_accuracy(const AccuracySceneArgs& args);
 
-/// A row for each setting.
+/// One row per setting.
 Table scene_accuracy_table(const SceneAccuracy& result);
-/// What the report says above its table.
+/// The lines above the table.
 std::vector<std::string> scene_accuracy_notes(const SceneAccuracy& result, const std::string& scene);
 std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene);
 std::string scene_accuracy_json(const SceneAccuracy& result);

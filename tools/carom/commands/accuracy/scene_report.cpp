@@ -15,21 +15,21 @@
 namespace carom::tools {
 namespace {
 
-/// An error below what the two converged runs differ by is not resolved.
+/// An error below the difference of the two converged runs is not resolved.
 std::string error_text(double error, const SceneAccuracy& result) {
     return error < result.agreement ? fmt::format("<{:.1e}", result.agreement) : fmt::format("{:.1e}", error);
 }
 
 std::string gain_sentence(const SceneAccuracy& result) {
-    return fmt::format("{}. Gain {:.2e}: a ball put 1e-12 m beside its place ends up to {:.1e} m off.",
+    return fmt::format("{}. Gain {:.2e}: a ball displaced by 1e-12 m ends up to {:.1e} m off.",
                        counted(result.contacts, "contact"), result.gain, result.gain * kTwinStep);
 }
 
 std::string converged_sentence(const SceneAccuracy& result) {
     return fmt::format(
         "Two converged methods (collocation at 1e-13, power series in extended precision) end {:.1e} m "
-        "apart, outcome {}.",
-        result.agreement, result.outcome_agrees ? "the same" : "not the same");
+        "apart; their outcomes are {}.",
+        result.agreement, result.outcome_agrees ? "the same" : "different");
 }
 
 }  // namespace

@@ -36,8 +36,7 @@ std::string kernel_line(const Plan& plan) {
                        name(physics.cloth_slip));
 }
 
-/// Which instruction set each kernel of the plan runs on.
-/// Of kernels that are not in the plan nothing is said.
+/// The instruction set of each kernel in the plan.
 std::string isa_line(const Plan& plan) {
     const auto with = [&plan](std::string_view text) {
         return fmt::format("{} (available: {})", text, kernel::available_isas());
@@ -51,7 +50,7 @@ std::string isa_line(const Plan& plan) {
     return with(fmt::format("impacts {}, clusters {}: {}", kernel::name(kernel::fastest_isa(impact)),
                             kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase)),
                             known != nullptr ? fmt::format("measured on {}", known)
-                                             : "the widest, this processor was not measured"));
+                                             : "the widest; this processor was not measured"));
 }
 
 std::string stop_line(const Stop& stop) {
@@ -77,11 +76,11 @@ std::string report(const Plan& plan) {
         "          {}: R {} m, mass {} kg, mu_s {}, mu_r {}, mu_sp {}, mu_b {}, e_b {}, e_c {}, f_c {}\n",
         scene.ball_preset, p.R, p.m, p.mu_s, p.mu_r, p.mu_sp, scene.balls.mu_b, p.e_b, p.e_c, p.f_c);
     if (scene.balls.mu_b_more > 0.0)
-        fmt::format_to(line, "          mu_b at a slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b,
+        fmt::format_to(line, "          mu_b at slip u: {} + {} exp(-{} u)\n", scene.balls.mu_b,
                        scene.balls.mu_b_more, scene.balls.mu_b_fall);
     for (const BallStart& ball : scene.ball) {
         if (ball.own)
-            fmt::format_to(line, "          of its own, ball {}: R {} m, mass {} kg\n", ball.id, ball.own->R,
+            fmt::format_to(line, "          ball {} differs: R {} m, mass {} kg\n", ball.id, ball.own->R,
                            ball.own->m);
     }
     if (scene.cue) {
@@ -99,7 +98,7 @@ std::string report(const Plan& plan) {
     fmt::format_to(line, "isa       {}\n", isa_line(plan));
     fmt::format_to(line, "search    balls {}, table {}{}\n", name(plan.ball_search), name(plan.table_search),
                    plan.box_travel < std::numeric_limits<double>::infinity()
-                       ? fmt::format("; boxes cover {} ball radii at first", plan.box_travel)
+                       ? fmt::format("; boxes start at {} ball radii", plan.box_travel)
                        : "; boxes reach to a ball's next own event");
     fmt::format_to(line, "stop      {}\n", stop_line(scene.stop));
     fmt::format_to(line, "render    {} fps, {}x{}, camera {}\n", scene.render.fps, scene.render.width,
@@ -123,7 +122,7 @@ int run(const CheckArgs& args) {
 
 void add_check(Options& program) {
     auto [command, args] = program.command<CheckArgs>(
-        "check", "Validate a scene; print its plan: effects, models, kernel, names", run);
+        "check", "Check a scene and print its plan: effects, models, kernels, names", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
 }
 

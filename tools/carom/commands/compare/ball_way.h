@@ -1,4 +1,4 @@
-// The way of one ball through a shot.
+// The path of one ball through a shot.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@
 
 namespace carom::tools {
 
-/// Where a ball of a shot is, up to where it is gone: what lies in a pocket is put on its bottom, at once.
+/// Where a ball is at any time, until it leaves play. A pocketed ball lies at the bottom of its pocket at
+/// once.
 class BallWay {
   public:
     BallWay(const Record& record, int ball) : record_(record), ball_(ball), last_(record.duration) {
@@ -19,7 +20,7 @@ class BallWay {
     }
 
     Vec3 at(double t) const { return record_.state_at(ball_, std::min(t, last_)).position; }
-    /// [s] From there on the place stays.
+    /// [s] The position no longer changes after this.
     double last() const { return last_; }
     const std::vector<Segment>& segments() const { return record_.tracks[ball_].segments; }
 

@@ -24,13 +24,13 @@ using Json = nlohmann::ordered_json;
 
 struct CompareArgs {
     std::string a, b;
-    /// [m] More than the default tolerance of impacts leaves (3.3e-5 in the snooker break, less in all other
-    /// scenes that come with carom, beside 1e-12), and less than one sees or measures on a table.
+    /// [m] Larger than the error of the default impact tolerance (3.3e-5 in the snooker break, measured
+    /// against 1e-12; less in carom's other scenes), and smaller than anyone sees or measures on a table.
     double tolerance = 1e-4;
     bool json = false;
 };
 
-/// What is said about one shot alone.
+/// What is reported about one shot alone.
 struct ComparedShot {
     const std::string& file;
     const Record& record;
@@ -56,7 +56,7 @@ Json end_json(const BallEnd& end) {
             {"position", vector_json(end.position)}};
 }
 
-/// An event of both shots; null where a shot has fewer.
+/// An event of both shots; null if a shot has fewer.
 Json two_events_json(const EventDifference& events, std::size_t number) {
     const auto one = [number](const std::vector<NamedEvent>& list) {
         return number < list.size() ? Json({{"time", list[number].time},
@@ -99,18 +99,19 @@ std::string what_happened(const NamedEvent& event) {
     return fmt::format("{} {}", event.type, fmt::join(event.who, " "));
 }
 
-/// How far the events are alike, and the first ones that differ: in their time, and in more than that.
+/// How far the events match, and the first ones that differ: in time only, and in anything else.
 std::string events_text(const EventDifference& events) {
     std::string out =
-        fmt::format("\nevents\n  A has {}, B has {}; alike: ", events.a.size(), events.b.size());
+        fmt::format("\nevents\n  A has {}, B has {}; matching: ", events.a.size(), events.b.size());
     if (events.alike == 0) out += "none";
     if (events.alike > 0) out += events.ends_alike() ? "all" : fmt::format("the first {}", events.alike);
     if (events.alike > 0 && !events.first_apart) out += ", at the same times";
     if (events.first_apart) {
         const std::size_t k = *events.first_apart;
         const double a = events.a[k].time, b = events.b[k].time;
-        out += fmt::format(", at times up to {:.3g} s apart\n  number {} is the first at another time: {}\n",
-                           events.farthest_apart, k + 1, what_happened(events.a[k]));
+        out +=
+            fmt::format(", at times up to {:.3g} s apart\n  event {} is the first at a different time: {}\n",
+                        events.farthest_apart, k + 1, what_happened(events.a[k]));
         out += fmt::format("    A {:.6f} s\n    B {:.6f} s, {:.3g} s {}", a, b, std::abs(b - a),
                            b > a ? "later" : "earlier");
     }
@@ -120,7 +121,7 @@ std::string events_text(const EventDifference& events) {
         const NamedEvent& event = list[events.alike];
         return fmt::format("    {} {:.6f} s {}\n", shot, event.time, what_happened(event));
     };
-    return out + fmt::format("\n  number {} is the first of another kind:\n", events.alike + 1) +
+    return out + fmt::format("\n  event {} is the first that does not match:\n", events.alike + 1) +
            line("A", events.a) + line("B", events.b);
 }
 
@@ -129,7 +130,7 @@ std::string end_text(const BallEnd& end) {
     return end.state == MotionState::kOut ? "off the table" : name(end.state);
 }
 
-/// A row for every ball. What is more than the tolerance apart has a star.
+/// One row per ball; a star marks a difference above the tolerance.
 std::string balls_text(const ShotDifference& d, double tolerance) {
     std::size_t wide = 4, wide_a = 8, wide_b = 8;
     for (const BallDifference& ball : d.balls) {
@@ -148,12 +149,12 @@ std::string balls_text(const ShotDifference& d, double tolerance) {
     return "\n" + table_text(table);
 }
 
-/// "; not pocketed alike: 1, 5": the balls that are gone in one shot only, or in another pocket.
+/// "; pocketed differently: 1, 5": the balls that are gone in one shot only, or into different pockets.
 std::string fates(const ShotDifference& d) {
     std::vector<std::string_view> ids;
     for (const BallDifference& ball : d.balls)
         if (!ball.gone_alike()) ids.push_back(ball.id);
-    return ids.empty() ? "" : fmt::format("; not pocketed alike: {}", fmt::join(ids, ", "));
+    return ids.empty() ? "" : fmt::format("; pocketed differently: {}", fmt::join(ids, ", "));
 }
 
 /// "cue, by 0.577 m at 3.7089 s"
@@ -164,7 +165,7 @@ std::string farthest_text(const BallDifference& ball) {
 
 std::string conclusion(const ShotDifference& d, double tolerance) {
     if (d.within(tolerance) && d.same_bits) return "the same, bit for bit";
-    if (d.balls.empty()) return "different: they have no ball in common";
+    if (d.balls.empty()) return "different: no ball in common";
     const auto most = [](const BallDifference& ball) { return std::max(ball.end, ball.largest); };
     const BallDifference& worst = *std::max_element(
         d.balls.begin(), d.balls.end(),
@@ -172,11 +173,12 @@ std::string conclusion(const ShotDifference& d, double tolerance) {
     const auto unlike =
         std::count_if(d.balls.begin(), d.balls.end(),
                       [tolerance](const BallDifference& ball) { return !ball.within(tolerance); });
-    if (d.within(tolerance) && most(worst) == 0.0) return "equal: all places are the same, but not all bits";
+    if (d.within(tolerance) && most(worst) == 0.0)
+        return "equal: all positions are the same, but not all bits";
     if (unlike == 0)
         return fmt::format(
             "{} within {:g} m; the farthest is {}",
-            d.same_balls() ? "equal" : "different: not the same balls; those of both are equal", tolerance,
+            d.same_balls() ? "equal" : "different: not the same balls; the common ones are equal", tolerance,
             farthest_text(worst));
     return fmt::format("different: {} of {} more than {:g} m apart, the farthest {}{}{}", unlike,
                        counted(d.balls.size(), "ball"), tolerance, farthest_text(worst), fates(d),
@@ -190,16 +192,15 @@ std::string difference_text(const ComparedShot& a, const ComparedShot& b, const 
         out += fmt::format("{}  {}: {}, {:.4f} s, {}, hash {}\n", letter, shot->file,
                            counted(shot->record.tracks.size(), "ball"), shot->record.duration,
                            counted(shot->record.events.size(), "event"), shot->hash);
-    if (!d.only_a.empty()) out += fmt::format("balls of A alone: {}\n", fmt::join(d.only_a, ", "));
-    if (!d.only_b.empty()) out += fmt::format("balls of B alone: {}\n", fmt::join(d.only_b, ", "));
+    if (!d.only_a.empty()) out += fmt::format("balls only in A: {}\n", fmt::join(d.only_a, ", "));
+    if (!d.only_b.empty()) out += fmt::format("balls only in B: {}\n", fmt::join(d.only_b, ", "));
     if (!d.balls.empty()) out += events_text(d.events) + balls_text(d, tolerance);
     if (d.until < std::max(a.record.duration, b.record.duration))
-        out += fmt::format("  largest: up to {:.4f} s, when one of them was stopped\n", d.until);
+        out += fmt::format("  largest: until {:.4f} s, when one of the shots was stopped\n", d.until);
     return out + "\n" + conclusion(d, tolerance) + "\n";
 }
 
-/// A shot that cannot be computed is bad input: the exit status
-/// of a failure, 1, is the answer that two shots differ.
+/// A shot that cannot be computed is bad input (exit status 2): 1 already means that the shots differ.
 Record shot_to_compare(const std::string& path) {
     try {
         return read_shot(path, {});
@@ -223,14 +224,15 @@ int run(const CompareArgs& args) {
 
 void add_compare(Options& program) {
     auto [command, args] =
-        program.command<CompareArgs>("compare", "Two shots: where they part, and by how much", run);
-    command.argument("A", args.a, "Scene file (TOML), or a record (.json)").required = true;
-    command.argument("B", args.b, "The other one").required = true;
-    command.option("--tolerance", &args.tolerance, "L", "Distance of places, in m, that counts as equal");
+        program.command<CompareArgs>("compare", "Compare two shots: where they differ, and by how much", run);
+    command.argument("A", args.a, "Scene file (TOML) or record (.json)").required = true;
+    command.argument("B", args.b, "Scene file or record to compare with").required = true;
+    command.option("--tolerance", &args.tolerance, "L",
+                   "Positions at most this far apart, in m, count as equal");
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.footer =
-        "Exit status: 0 equal within the tolerance, 1 not, 2 no answer. Example: "
-        "carom compare scenes/stop.toml scenes/draw.toml; carom view A B shows both.";
+        "Exit status: 0 equal within the tolerance, 1 different, 2 bad usage or bad input. Example: carom "
+        "compare scenes/stop.toml scenes/draw.toml; carom view A B shows both.";
 }
 
 }  // namespace carom::tools

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// Where the square of |d0 + s b + s^2 c| may be largest inside of 0 < s < 1: the roots of its derivative, a
-/// cubic, by halving the pieces in which that only rises or only falls.
+/// Where |d0 + s b + s^2 c|^2 may have a maximum in 0 < s < 1: the roots of its derivative, a cubic, found by
+/// bisection where the cubic is monotonic.
 std::vector<double> turning_points(const Vec3& d0, const Vec3& b, const Vec3& c) {
     const double g0 = d0.dot(b), g1 = b.dot(b) + 2.0 * d0.dot(c), g2 = 3.0 * b.dot(c), g3 = 2.0 * c.dot(c);
     const auto slope = [&](double s) { return g0 + s * (g1 + s * (g2 + s * g3)); };
@@ -46,7 +46,7 @@ BallEnd end_of(const Record& record, int ball, const BallWay& way) {
             way.at(way.last())};
 }
 
-/// Times from 0 to `until` between which both ways are one parabola each.
+/// Times from 0 to `until` between which both paths are one parabola each.
 std::vector<double> knots(const BallWay& a, const BallWay& b, double until) {
     std::vector<double> times = {0.0, until, a.last(), b.last()};
     for (const BallWay* way : {&a, &b})
@@ -91,7 +91,7 @@ NamedEvent by_names(const Record& record, const Event& event) {
     return out;
 }
 
-/// The balls of a shot by their names.
+/// The balls of a shot by name.
 using BallsByName = std::unordered_map<std::string_view, int>;
 
 BallsByName balls_by_name(const Record& record) {
@@ -129,7 +129,7 @@ EventDifference event_difference(std::vector<NamedEvent> a, std::vector<NamedEve
     return out;
 }
 
-/// [s] So long is known where the balls are.
+/// [s] Positions are known up to here.
 double known_until(const Record& record) {
     return record.stopped == StopReason::kAtRest ? kForever : record.duration;
 }

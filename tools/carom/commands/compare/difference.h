@@ -1,4 +1,4 @@
-// What differs between two shots: events, and where their balls are.
+// The differences between two shots: their events, and where their balls are.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,14 @@ namespace carom::tools {
 /// How a shot leaves a ball.
 struct BallEnd {
     MotionState state = MotionState::kStationary;
-    std::string pocket;  ///< that holds it, or ""
-    /// [m]; of a ball that is gone (in a pocket, off the table) the last one before
+    std::string pocket;  ///< the one that holds it, or ""
+    /// [m] If the ball is gone (in a pocket, off the table), its last position before that.
     Vec3 position = Vec3::Zero();
     bool operator==(const BallEnd&) const = default;
 
     bool gone() const { return is_gone(state); }
-    /// Whether both are in one pocket, or both off the table: where they were last is nobody's concern then.
+    /// Whether both are in the same pocket, or both off the table; their last positions no longer matter
+    /// then.
     bool gone_like(const BallEnd& other) const {
         return gone() && state == other.state && pocket == other.pocket;
     }
@@ -31,21 +32,21 @@ struct BallEnd {
 struct BallDifference {
     std::string id;
     BallEnd a, b;
-    double end = 0.0;         ///< [m] between the last places; 0 for a ball that is gone alike
-    double largest = 0.0;     ///< [m] between the places at one time, from 0 to ShotDifference::until
-    double largest_at = 0.0;  ///< [s] the first time of that distance
+    double end = 0.0;         ///< [m] between the last positions; 0 if the ball is gone alike
+    double largest = 0.0;     ///< [m] between positions at the same time, from 0 to ShotDifference::until
+    double largest_at = 0.0;  ///< [s] when that distance first occurs
 
-    /// Whether it is gone in both shots alike, or in none.
+    /// Whether the ball is gone alike in both shots, or in neither.
     bool gone_alike() const { return a.gone_like(b) || (!a.gone() && !b.gone()); }
-    /// That, and its places are never farther apart than `length` [m].
+    /// The same, and the positions are never farther apart than `length` [m].
     bool within(double length) const { return gone_alike() && end <= length && largest <= length; }
 };
 
-/// An event by names. Two are alike that have the same type and the same names, in any order.
+/// An event with names. Two events match if they have the same type and the same names, in any order.
 struct NamedEvent {
     double time = 0.0;  ///< [s]
     std::string type;
-    std::vector<std::string> who;  ///< the ball, and what it meets, if anything; of a cluster all its balls
+    std::vector<std::string> who;  ///< the ball and what it meets, if anything; for a cluster, all its balls
 
     bool alike(const NamedEvent& other) const {
         return type == other.type &&
@@ -53,15 +54,15 @@ struct NamedEvent {
     }
 };
 
-/// The events of both shots, one after the other.
+/// The events of both shots, each in order.
 struct EventDifference {
-    std::size_t alike = 0;  ///< so many from the first on are alike
-    /// of these the first, from 0, whose times are not the same bit for bit
+    std::size_t alike = 0;  ///< this many match, from the first on
+    /// the first of these, from 0, whose times are not bit-identical
     std::optional<std::size_t> first_apart;
-    double farthest_apart = 0.0;  ///< [s] between the times of one of these
+    double farthest_apart = 0.0;  ///< [s] largest difference of their times
     std::vector<NamedEvent> a, b;
 
-    /// Whether no shot has more than those that are alike.
+    /// Whether neither shot has events beyond the matching ones.
     bool ends_alike() const { return alike == a.size() && alike == b.size(); }
 };
 
@@ -69,8 +70,8 @@ struct ShotDifference {
     bool same_bits = false;                   ///< the hashes are the same
     std::vector<std::string> only_a, only_b;  ///< balls that the other shot does not have
     EventDifference events;                   ///< of the balls that both have
-    /// [s] So long places are compared: to the end of the longer
-    /// shot, or to that of one which was stopped while balls moved.
+    /// [s] Positions are compared until here: the end of the longer shot, or of one that was stopped while
+    /// balls moved.
     double until = 0.0;
     std::vector<BallDifference> balls;  ///< those that both have, in the order of a
 
@@ -79,7 +80,8 @@ struct ShotDifference {
     bool within(double length) const;
 };
 
-/// Distances are exact to rounding: between two events of a ball, the difference of its places is a parabola.
+/// Distances are exact to rounding: between two events of a ball, the difference of its positions is a
+/// parabola.
 ShotDifference difference(const Record& a, const Record& b);
 
 }  // namespace carom::tools

@@ -1,21 +1,23 @@
-// carom describe: the program described for others to read, a man page, a page
-// of the documents, and completions for bash and zsh. They are written from the
-// table of options that is parsed, so that they cannot differ from it.
+// carom describe: the man page, the command-line page of the documents, and completions for bash and zsh. All
+// are written from the table of options that is parsed, so that they cannot differ from it.
 #include <fmt/format.h>
 
 #include <list>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/console.h"
 #include "base/options.h"
+#include "carom/engine/event_details.h"
+#include "carom/games/measures.h"
 #include "commands/describe/formats.h"
 
 namespace carom::tools {
 namespace {
 
-/// The rows of a command that are known by their place, or the others.
+/// The positional arguments of a command, or its other rows.
 std::vector<Option> rows_of(const Options& command, bool by_place) {
     std::vector<Option> found;
     for (const Option& row : command.rows)
@@ -30,7 +32,7 @@ std::string meaning(const Option& row) {
 }
 
 bool takes_file(const Option& row) {
-    // What is known by its place is a scene or a record.
+    // A positional argument is a scene or a record.
     if (row.by_place()) return row.choices.empty();
     return row.value.find("FILE") != std::string::npos || row.value.find("PATTERN") != std::string::npos;
 }
@@ -45,7 +47,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how a command is called, with what it cannot do without.
+/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how to call a command, with everything it requires.
 std::string synopsis_of(const Options& command, const std::string& name) {
     std::string synopsis = name;
     for (const Option& row : rows_of(command, true)) {
@@ -58,9 +60,8 @@ std::string synopsis_of(const Options& command, const std::string& name) {
 }
 
 constexpr const char* kIsaText =
-    "scalar, v3 or v4 forces the instruction set; all give the same bits. Left out, "
-    "every kernel runs on the one that was measured to be fastest on this processor, or on the widest one; "
-    "`carom check` shows it.";
+    "scalar, v3 or v4 forces the instruction set; all give the same bits. By default, every kernel uses the "
+    "one that was measured to be fastest on this processor, or the widest one; `carom check` shows it.";
 constexpr struct {
     int status;
     const char* meaning;
@@ -104,9 +105,9 @@ std::string man_page(const Options& program) {
            "\" \"User Commands\"\n"
            ".SH NAME\ncarom \\- event\\-based billiards simulator\n"
            ".SH SYNOPSIS\n\\fBcarom\\fR \\fICOMMAND\\fR [options]\n"
-           ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls, perhaps a shot. Simulates it from "
-           "event "
-           "to event, draws what happened without a display, and says what every frame cost.\n"
+           ".SH DESCRIPTION\nReads a scene (TOML): a table, its balls and perhaps a shot. Simulates it event "
+           "by event, "
+           "renders it without a display, and reports the cost of every frame.\n"
            ".SH COMMANDS\n" +
            commands + ".SH ENVIRONMENT\n.TP\n\\fBCAROM_ISA\\fR\n" + kIsaText + "\n.SH EXIT STATUS\n" +
            statuses +
@@ -126,7 +127,7 @@ std::string code_list(const std::vector<std::string>& words) {
     return fmt::format("`{}`", fmt::join(words, "`, `"));
 }
 
-/// The description of an option; what the page says of all flags and files at its top is left out.
+/// The description of an option, without what the top of the page says about all flags and files.
 std::string page_meaning(const Option& row) {
     std::string text = meaning(row);
     for (const char* known : {" (default: off)", " (default: not written)", " (default: not drawn)"})
@@ -152,7 +153,31 @@ void page_command(std::string& out, const Options& command, const std::string& p
             out += "\n";
         }
     }
-    if (!command.footer.empty()) out += fmt::format("\n{}\n", markdown(command.footer));
+    if (command.footer.empty()) return;
+    std::string footer = replaced(markdown(command.footer), "\n  ", "\n* ");
+    if (const std::size_t list = footer.find("\n* "); list != footer.npos) footer.insert(list, "\n");
+    out += fmt::format("\n{}\n", footer);
+}
+
+/// The page with lines of at most 110 columns; the further lines of a list item are indented.
+std::string wrapped(const std::string& page) {
+    constexpr std::size_t kWidth = 110;
+    std::string out;
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        const std::string indent = line.starts_with("* ") ? "  " : "";
+        while (line.size() > kWidth) {
+            std::size_t space = line.rfind(' ', kWidth);
+            // A line that begins with a dash would be a list item.
+            while (space != line.npos && line.compare(space, 3, " - ") == 0)
+                space = line.rfind(' ', space - 1);
+            if (space == line.npos || space <= indent.size()) break;
+            out += line.substr(0, space) + "\n";
+            line = indent + line.substr(space + 1);
+        }
+        out += line + "\n";
+    }
+    return out;
 }
 
 std::string command_line_page(const Options& program) {
@@ -160,19 +185,18 @@ std::string command_line_page(const Options& program) {
     for (const Options& command : program.commands) page_command(commands, command, program.name);
     for (const auto& [status, text] : kStatuses)
         statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", status, text);
-    return "# The command line\n\n"
-           "Every command with its options, as `--help` behind a command says them; `carom describe "
-           "command-line` "
-           "prints this page. SCENE is a scene file (TOML). A flag is off, and a file is not written, unless "
-           "it is "
-           "named.\n\n"
-           "* Exit status: " +
-           statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands;
+    return wrapped(
+        "# The command line\n\n"
+        "Every command and option, as `carom COMMAND --help` prints them; `carom describe command-line` "
+        "prints this page. SCENE is a scene file (TOML). Flags are off and files are not written unless "
+        "they are named.\n\n"
+        "* Exit status: " +
+        statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands);
 }
 
 // ---- bash ------------------------------------------------------------------------------------------------
 
-/// One case per command: the words that may follow, and what the value of an option may be.
+/// One case per command: the words that may follow, and the values of its options.
 void bash_cases(std::string& out, const Options& command, const std::string& path) {
     std::vector<std::string> words;
     std::string values;
@@ -207,7 +231,7 @@ std::string bash_completion(const Options& program) {
         "    esac\n"
         "    COMPREPLY=()\n"
         "    COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
-        "    # Options only where one has been begun.\n"
+        "    # Offer options only after a dash.\n"
         "    [[ $word == -* ]] || COMPREPLY=($(printf '%s\\n' \"${COMPREPLY[@]}\" | grep -v '^-'))\n"
         "    if [ -n \"$files\" ] && [[ $word != -* ]]; then\n"
         "        local file\n"
@@ -229,7 +253,7 @@ std::string zsh_value(const Option& row) {
     return takes_file(row) ? "_files" : " ";
 }
 
-/// The arguments of _arguments that a command's options and places are.
+/// A command's options and positional arguments, in the form that _arguments takes.
 std::string zsh_arguments(const Options& command) {
     std::string out;
     for (const Option& row : rows_of(command, false)) {
@@ -263,9 +287,34 @@ std::string zsh_completion(const Options& program) {
         functions, zsh_arguments(program), names, cases);
 }
 
+// ---- measures and columns --------------------------------------------------------------------------------
+
+std::string measures_text() {
+    std::string out =
+        "Measures of a shot, for carom sweep --measure. An expression joins them with numbers, texts "
+        "in\nquotes, and, or, not, == != < <= > >=, in, near, + - * /, as in\n  \"9\" in pocketed and not "
+        "scratch\n  cue near (0.6, 1.2, 0.05)      at rest within 5 cm of this place\n\n";
+    for (const games::MeasureInfo& m : games::measures()) {
+        const std::string call =
+            *m.arguments == 0 ? std::string(m.name) : fmt::format("{}({})", m.name, m.arguments);
+        out += fmt::format("  {:<24}{:<7}{}\n", call, m.unit, m.what);
+    }
+    return out + "\nBALL is an id, K counts from 1, X and Y are in m, GAME is a game of carom judge.\n";
+}
+
+std::string events_text() {
+    std::string out =
+        "Columns of carom simulate --events, after time, type, a, b and what --profile adds. A column "
+        "is\nempty if its kind of event has no such number.\n\n";
+    for (const EventColumn& column : event_columns())
+        out += fmt::format("  {:<14}{:<7}{}\n", column.name, column.unit, column.what);
+    return out + fmt::format("  {:<21}{}\n  {:<21}{}\n", "met", "what ball a meets, by its name", "cluster",
+                             "all balls of a cluster, separated by ;");
+}
+
 // ---- the command -----------------------------------------------------------------------------------------
 
-/// What the command can print: one row for each format.
+/// What the command can print: one row per format.
 constexpr struct {
     const char* name;
     std::string (*text)(const Options& program);
@@ -275,7 +324,9 @@ constexpr struct {
                 {"command-line", command_line_page},
                 {"scene-schema", [](const Options&) { return scene_schema(); }},
                 {"record-schema", [](const Options&) { return record_schema(); }},
-                {"scene-format", [](const Options&) { return scene_format(); }}};
+                {"scene-format", [](const Options&) { return scene_format(); }},
+                {"measures", [](const Options&) { return measures_text(); }},
+                {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {
     std::string format;
@@ -292,7 +343,7 @@ int run(const DescribeArgs& args, const Options& program) {
 void add_describe(Options& program) {
     auto args = std::make_shared<DescribeArgs>();
     Options& command =
-        program.command("describe", "This program and its file formats, for people and for other programs");
+        program.command("describe", "Print a description of this program or of its file formats");
     Option& format = command.argument("FORMAT", args->format, "What to print");
     format.required = true;
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// [bytes] Longest text of a record file.
+/// [bytes] Longest text in a record file.
 constexpr int kLongestText = 256;
 
 bool is_list(const Key& key) {
@@ -34,7 +34,7 @@ bool is_whole(const Key& key) {
     return key.kind == Key::Kind::kInteger || key.kind == Key::Kind::kIntegers;
 }
 
-/// Without what only Markdown needs.
+/// Removes what only Markdown needs.
 std::string plain(std::string text) {
     text.erase(std::remove(text.begin(), text.end(), '`'), text.end());
     return text;
@@ -53,7 +53,7 @@ Json bound(const Key& key, double x) {
     return is_whole(key) ? Json(static_cast<std::int64_t>(x)) : Json(x);
 }
 
-/// Of a record's numbers only the sign counts, except for integers.
+/// Only the sign of a record's numbers is checked, except for integers.
 Json number_schema(const Key& key, Files files) {
     Json schema = {{"type", is_whole(key) ? "integer" : "number"}};
     const Interval& range = key.range;
@@ -90,7 +90,7 @@ Json json_of(const FieldValue& value) {
         value);
 }
 
-/// The properties of some rows; in a scene file with the defaults that `standard` holds.
+/// The properties of some rows; in a scene file, with the defaults in `standard`.
 template <class T, std::size_t kRows>
 void add_properties(Json& object, const Field<T> (&fields)[kRows], const T& standard, Files files) {
     for (const Field<T>& f : fields) {
@@ -121,7 +121,8 @@ Json list_of(const Json& items, int most) {
     return {{"type", "array"}, {"items", items}, {"maxItems", most}};
 }
 
-/// Shortest; powers of ten from 10 000 on, and those below 0.001, with an exponent.
+/// The shortest text. Powers of ten from 10 000 up, and numbers that fmt writes with an exponent, have one
+/// without zeros.
 std::string text_of(double x) {
     std::string text = fmt::format("{}", x);
     const std::size_t zeros = text.find("0000"), one = text.find('1');
@@ -147,7 +148,7 @@ std::string default_text(const Key& key, const FieldValue& value) {
     return code("[" + text + "]");
 }
 
-/// Which values a key takes: the names of a choice, or a range.
+/// The values a key takes: the names of a choice, or a range.
 std::string values_text(const Key& key) {
     std::string text;
     const std::vector<const char*> names = key.names();
@@ -173,8 +174,7 @@ std::string line_of(const Key& key, const std::string& standard) {
                        meaning_text(key));
 }
 
-/// The rows of a table, a line each; of the parts of a
-/// list, the first one with the name of the list in front.
+/// The rows of a table, one line each; the first of a list's parts is preceded by the list's name.
 template <class T, std::size_t kRows>
 std::string lines_of(const Field<T> (&fields)[kRows], const T& standard, const char* list = nullptr) {
     std::string text;
@@ -209,20 +209,20 @@ std::string effects_lines() {
     return text;
 }
 
-/// A file that the build put into the program.
+/// A file that the build embedded in the program.
 std::string built_in(std::string_view name) {
     for (const PageFile& file : describe_files())
         if (file.name == name) return file.text;
     throw std::logic_error(fmt::format("{} is not in the program", name));
 }
 
-/// Replaces what a page has between the marks of this name by a table.
+/// Replaces the table between the marks of this name in a page.
 void put_table(std::string& page, const char* name, const char* header, const std::string& lines) {
     const std::string begin = fmt::format("<!-- begin {} -->\n", name),
                       end = fmt::format("<!-- end {} -->", name);
     const std::size_t from = page.find(begin), to = page.find(end);
     if (from == page.npos || to == page.npos || to < from)
-        throw std::logic_error(fmt::format("the page has no marks of the table {}", name));
+        throw std::logic_error(fmt::format("the page has no marks for the table {}", name));
     std::string rule = "|";
     for (std::size_t i = 1; header[i] != '\0'; ++i)
         if (header[i] == '|') rule += "---|";

@@ -15,11 +15,11 @@ const std::vector<PageFile>& describe_files();
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed
-/// text stands beside this file, with null for what comes from the tables.
+/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text is beside this file, with
+/// null for what comes from the tables.
 std::string record_schema();
-/// The page of scene files: docs/reference/scene_format.md, its tables
-/// between the marks <!-- begin NAME --> and <!-- end NAME --> written anew.
+/// The page of scene files: docs/reference/scene_format.md, with fresh tables between the marks <!-- begin
+/// NAME --> and <!-- end NAME -->.
 std::string scene_format();
 
 }  // namespace carom::tools

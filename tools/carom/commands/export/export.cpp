@@ -1,4 +1,4 @@
-// carom export: a shot for programs that show three dimensions.
+// carom export: a shot for 3D programs.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -22,8 +22,8 @@ struct ExportArgs {
 
 int run(const ExportArgs& args) {
     if (!args.output.ends_with(".glb"))
-        throw UsageError(fmt::format(
-            "-o {}: what is exported is binary glTF; give it a name that ends in .glb", args.output));
+        throw UsageError(
+            fmt::format("-o {}: the export is binary glTF; give a name that ends in .glb", args.output));
     GltfOptions options;
     options.linear = args.interpolation == "linear";
     options.fps = chosen_fps(args.fps, {});
@@ -40,12 +40,12 @@ int run(const ExportArgs& args) {
 
 void add_export(Options& program) {
     auto [command, args] =
-        program.command<ExportArgs>("export", "A shot as glTF 2.0, for three.js, Godot, Blender", run);
-    command.argument("SHOT", args.input, "Scene file (TOML), or a record (.json)").required = true;
-    command.option("-o,--output", &args.output, "FILE.glb", "The file");
+        program.command<ExportArgs>("export", "Export a shot as glTF 2.0, for three.js, Godot, Blender", run);
+    command.argument("SHOT", args.input, "Scene file (TOML) or record (.json)").required = true;
+    command.option("-o,--output", &args.output, "FILE.glb", "File to write");
     command.option("--interpolation", &args.interpolation, "NAME", "cubic is exact; Blender needs linear")
         .one_of({"cubic", "linear"});
-    command.option("--fps", &args.fps, "F", "Places per second of linear");
+    command.option("--fps", &args.fps, "F", "Samples per second for linear");
 }
 
 }  // namespace carom::tools

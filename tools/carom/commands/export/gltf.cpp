@@ -7,7 +7,7 @@
 namespace carom::tools {
 namespace {
 
-// Names of numbers in the specification.
+// Constants of the glTF specification.
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125, kIndices = 34963;
 constexpr std::size_t kAlign = 4;
 
@@ -15,7 +15,7 @@ std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
 }
 
-/// Appends a number with its lowest byte first, whatever the machine does.
+/// Appends a number with its lowest byte first, on any machine.
 void append_u32(std::string& out, std::size_t value) {
     for (int byte = 0; byte < 4; ++byte) out += static_cast<char>((value >> (8 * byte)) & 0xFFU);
 }
@@ -42,7 +42,7 @@ std::size_t Gltf::add_view(const void* data, std::size_t size, int target) {
     binary_.resize((binary_.size() + kAlign - 1) / kAlign * kAlign, '\0');
     Json view = {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}};
     if (target != 0) view["target"] = target;
-    // The file has its lowest bytes first, as have all machines that this program is built for.
+    // The file is little-endian, like every machine this program is built for.
     binary_.append(static_cast<const char*>(data), size);
     return add("bufferViews", std::move(view));
 }

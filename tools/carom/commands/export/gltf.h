@@ -17,14 +17,14 @@ class Gltf {
 
     explicit Gltf(const std::string& generator);
 
-    /// Appends an object to a list of the file ("nodes", "meshes", ...), and returns its number.
+    /// Appends an object to one of the file's lists ("nodes", "meshes", ...) and returns its index.
     std::size_t add(const char* list, Json object);
 
-    /// Appends numbers as an accessor with least and greatest values. `type`: "SCALAR", "VEC2", "VEC3",
-    /// "VEC4"; `target`: what a GPU uses it for (34962 vertices), or 0. @returns its number
+    /// Appends numbers as an accessor with minimum and maximum. `type`: "SCALAR", "VEC2", "VEC3", "VEC4";
+    /// `target`: how a GPU uses them (34962: vertices), or 0. @returns its index
     std::size_t add_floats(const std::vector<float>& values, const char* type, int target = 0);
     std::size_t add_indices(const std::vector<std::uint32_t>& indices);
-    /// Appends a PNG file as an image. @returns the number of a texture that shows it
+    /// Appends a PNG file as an image. @returns the index of a texture that shows it
     std::size_t add_png(const std::vector<std::uint8_t>& png);
 
     Json& json() { return json_; }

@@ -10,35 +10,35 @@
 namespace carom::tools {
 namespace {
 
-/// [m] Places that differ by less are one: rounding of the engine, far below that of floats.
+/// [m] Positions that differ by less are the same: the engine's rounding, far below that of floats.
 constexpr double kSamePlace = 1e-9;
-/// [rad] between two keys of a rotation, and how far a constant
-/// rate between them may be off; [-] keys of one piece of motion.
+/// [rad] Largest turn between two rotation keys, and largest error of a constant rate between them; [-] most
+/// keys of one piece of motion.
 constexpr double kLargestTurn = 0.5, kLargestError = 0.005, kMostKeys = 1e5;
 
-/// One segment between the instants at which it is in force.
+/// One segment, between the instants at which it applies.
 struct Piece {
     double from, to;
-    BallState first, last;  ///< its own states there
+    BallState first, last;  ///< its states at those instants
 };
 
-/// Those that last long enough for a float to see.
+/// The pieces that last long enough for a float to resolve.
 std::vector<Piece> pieces_of(const Record& record, int ball) {
     const std::vector<Segment>& segments = record.tracks[ball].segments;
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const Segment& s = segments[i];
         const double next = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
-        // On the floor, and not a rounding above it.
+        // On the floor, not a rounding error above it.
         const double floor = until_floor(s, record.size(ball).R, record.gravity);
         double end = s.start + std::min(s.duration, floor);
         if (end - s.start < floor) end = std::nextafter(end, std::numeric_limits<double>::infinity());
         const double to = std::min(next, record.duration), own_end = std::min(to, end);
-        // Where a segment ends by itself before the next one begins, the ball stays as it is.
+        // If a segment ends by itself before the next one begins, the ball stays where it is.
         for (const auto& [a, b] : {std::pair(s.start, own_end), std::pair(own_end, to)}) {
             if (!(static_cast<float>(b) > static_cast<float>(a))) continue;
-            // The state at its end is that just before: at the end
-            // itself the next segment is in force, or the floor.
+            // The end state is the one just before the end: at the end itself, the next segment or the floor
+            // applies.
             double before = std::nextafter(b, a);
             while (a == s.start && before > a && before - s.start >= floor)
                 before = std::nextafter(before, a);
@@ -52,7 +52,7 @@ bool moves(const Piece& piece) {
     return piece.first.velocity != Vec3::Zero() || piece.last.velocity != Vec3::Zero();
 }
 
-/// Appends a key, which replaces one of the same time, or comes one float later where the place jumps.
+/// Appends a key. It replaces one of the same time, or comes one float later if the position jumps.
 void append(std::vector<PositionKey>& keys, double time, const BallState& state, bool begins) {
     PositionKey key{static_cast<float>(time), {}, gltf_axes(state.position), {}};
     (begins ? key.after : key.before) = gltf_axes(state.velocity);
@@ -110,7 +110,7 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
         RotationKey key{static_cast<float>(time), gltf_axes(record.orientation_at(ball, time).normalized())};
         if (!keys.empty()) {
             if (!(key.time > keys.back().time)) return;
-            // q and -q are one rotation; the nearer of them is turned to by the shorter way.
+            // q and -q are the same rotation; the nearer one gives the shorter turn.
             float same = 0.0F;
             for (std::size_t k = 0; k < 4; ++k) same += key.q[k] * keys.back().q[k];
             if (same < 0.0F)
@@ -123,8 +123,8 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
         const double fastest = std::max(piece.first.spin.norm(), piece.last.spin.norm());
         if (fastest == 0.0) continue;
         const double lasts = piece.to - piece.from;
-        // While the rate changes by a in each second, a turn at a constant
-        // rate between two keys h apart is off by a h^2 / 8 at most.
+        // If the rate changes by a per second, a constant rate between two keys h apart is off by at most a
+        // h^2 / 8.
         const double change = (piece.last.spin - piece.first.spin).norm();
         const double count = std::ceil(std::clamp(
             std::max(fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError))), 1.0,

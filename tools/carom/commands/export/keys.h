@@ -10,28 +10,28 @@
 
 namespace carom::tools {
 
-/// (x, y, z) of the table in the axes of glTF.
+/// (x, y, z) of the table in glTF axes.
 inline std::array<float, 3> gltf_axes(const Vec3& p) {
     return {static_cast<float>(p.x()), static_cast<float>(p.z()), static_cast<float>(-p.y())};
 }
-/// x, y, z, w of the same rotation there.
+/// The same rotation in glTF axes, as x, y, z, w.
 inline std::array<float, 4> gltf_axes(const Eigen::Quaterniond& q) {
     return {static_cast<float>(q.x()), static_cast<float>(q.z()), static_cast<float>(-q.y()),
             static_cast<float>(q.w())};
 }
 
 struct PositionKey {
-    float time = 0.0F;  ///< s, greater than that of the key before
-    /// Place [m]; its rates [m/s] just before and just after.
+    float time = 0.0F;  ///< s, greater than the previous key's
+    /// Position [m], and its rates [m/s] just before and just after.
     std::array<float, 3> before{}, place{}, after{};
 };
 
-/// Two keys bound each piece of motion, and a cubic Hermite curve between them is that
-/// parabola. Pieces shorter than a float can tell are left out; a place that jumps, as
-/// into a pocket, has a second key one float later. One key: the ball never moves.
+/// Two keys bound each piece of motion; the cubic Hermite curve between them is exactly its parabola. Pieces
+/// too short for a float are skipped. A position that jumps, as into a pocket, has a second key one float
+/// later. A single key means that the ball never moves.
 std::vector<PositionKey> position_keys(const Record& record, int ball);
 
-/// The same for programs that join keys by straight lines: `fps` keys a second while the ball moves.
+/// The same for programs that join keys by straight lines: `fps` keys per second while the ball moves.
 std::vector<PositionKey> sampled_position_keys(const Record& record, int ball, double fps);
 
 struct RotationKey {
@@ -39,8 +39,8 @@ struct RotationKey {
     std::array<float, 4> q{};
 };
 
-/// At the ends of every piece of motion, and so many between that the ball turns
-/// by half a radian at most and a constant rate between two keys is off by 0.005.
+/// Keys at the ends of every piece of motion, and enough between them that the ball turns by at most half a
+/// radian and a constant rate is off by at most 0.005.
 std::vector<RotationKey> rotation_keys(const Record& record, int ball);
 
 }  // namespace carom::tools

@@ -25,11 +25,12 @@ using Json = Gltf::Json;
 using render::Material;
 namespace look = render::look;
 
-constexpr int kVertices = 34962;                   // what a buffer is for, in the specification
-constexpr int kSpherePieces = 48;                  // [-] around a ball; half as many from pole to pole
+constexpr int kVertices = 34962;  // buffer target of vertices, from the specification
+// [-] segments around a ball; half as many from pole to pole
+constexpr int kSpherePieces = 48;
 constexpr int kTextureWidth = 512, kPngLevel = 9;  // [px], of zlib
 
-/// What a material reflects, and how rough it is.
+/// How a material reflects.
 struct Surface {
     const char* name;
     look::Color color;  ///< screen values, whose squares are reflected
@@ -80,7 +81,7 @@ std::size_t add_table(Gltf& file, const render::TableMesh& table) {
                     {{"name", "table"}, {"mesh", mesh}, {"translation", array_of(gltf_axes(origin))}});
 }
 
-/// A sphere of radius 1, whose accessors all balls share. Its poles are those of ball_texture().
+/// A unit sphere, whose accessors all balls share. Its poles are those of ball_texture().
 class Sphere {
   public:
     explicit Sphere(Gltf& file) {
@@ -89,8 +90,7 @@ class Sphere {
         std::vector<std::uint32_t> indices;
         for (int j = 0; j <= kRows; ++j) {
             for (int i = 0; i <= kSpherePieces; ++i) {
-                // Each triangle at a pole has a corner there of its
-                // own, in the middle of its part of the texture.
+                // Each triangle at a pole has its own corner there, in the middle of its part of the texture.
                 const double column = i + (j == 0 || j == kRows ? 0.5 : 0.0);
                 const double phi = 2.0 * std::numbers::pi * column / kSpherePieces,
                              theta = std::numbers::pi * j / kRows;
@@ -112,7 +112,7 @@ class Sphere {
     }
 
     Json primitive(std::size_t material) const {
-        // On a sphere of radius 1 a place is its own normal.
+        // On a unit sphere, a position is its own normal.
         return {{"attributes", {{"POSITION", positions_}, {"NORMAL", positions_}, {"TEXCOORD_0", texture_}}},
                 {"indices", indices_},
                 {"material", material}};
@@ -136,7 +136,7 @@ std::size_t add_ball_mesh(Gltf& file, const Sphere& sphere, const std::string& i
                     {{"name", "ball " + id}, {"primitives", Json::array({sphere.primitive(material)})}});
 }
 
-/// One animation, whose channels are added ball by ball.
+/// One animation; its channels are added ball by ball.
 class Animation {
   public:
     void add(std::size_t node, const char* path, std::size_t input, std::size_t output,

@@ -8,7 +8,7 @@
 namespace carom::tools {
 
 struct GltfOptions {
-    bool linear = false;  ///< join sampled places by straight lines, instead of cubics between events
+    bool linear = false;  ///< join sampled positions by straight lines instead of cubics between events
     double fps = 120.0;   ///< of the samples
 };
 

@@ -18,7 +18,7 @@ using render::Corners;
 using render::Material;
 using render::MeshVertex;
 
-constexpr int kHolePieces = 48;  // [-] straight pieces of a hole's edge: 0.1 mm from the circle
+constexpr int kHolePieces = 48;  // [-] straight pieces of a hole's edge, within 0.1 mm of the circle
 
 MeshVertex between(const MeshVertex& a, const MeshVertex& b, float t) {
     MeshVertex c = a;
@@ -28,7 +28,7 @@ MeshVertex between(const MeshVertex& a, const MeshVertex& b, float t) {
     return c;
 }
 
-/// The parts of a convex polygon on the outer and on the inner side of the vertical plane x nx + y ny = d.
+/// Splits a convex polygon by the vertical plane x nx + y ny = d into its outer and inner part.
 std::pair<Corners, Corners> split(const Corners& polygon, float nx, float ny, float d) {
     std::pair<Corners, Corners> parts;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -36,7 +36,7 @@ std::pair<Corners, Corners> split(const Corners& polygon, float nx, float ny, fl
         const float out_a = nx * a.x + ny * a.y - d, out_b = nx * b.x + ny * b.y - d;
         (out_a > 0.0F ? parts.first : parts.second).push_back(a);
         if ((out_a > 0.0F) == (out_b > 0.0F)) continue;
-        // From the outer end, so that two polygons with a common edge get the same corner on it.
+        // Interpolated from the outer end, so that two polygons with a common edge get the same corner on it.
         const MeshVertex on =
             out_a > 0.0F ? between(a, b, out_a / (out_a - out_b)) : between(b, a, out_b / (out_b - out_a));
         parts.first.push_back(on);
@@ -45,7 +45,7 @@ std::pair<Corners, Corners> split(const Corners& polygon, float nx, float ny, fl
     return parts;
 }
 
-/// Appends what is outside the hole.
+/// Appends the part outside the hole.
 void cut_hole(const Corners& polygon, const render::Hole& hole, const Vec2& origin,
               std::vector<Corners>& kept) {
     const Vec2 center = hole.center - origin;
@@ -67,7 +67,7 @@ void cut_hole(const Corners& polygon, const render::Hole& hole, const Vec2& orig
         kept.insert(kept.end(), outside.begin(), outside.end());
 }
 
-/// Vertices that are equal to a micrometre and a thousandth of their normal are one.
+/// Merges vertices that agree to a micrometre, and whose normals agree to a thousandth.
 class Indexed {
   public:
     void add(const Corners& polygon, TablePart& part) {
@@ -104,12 +104,12 @@ bool has_holes(Material material) {
     return material == Material::kCloth || material == Material::kWood;
 }
 
-/// Cuts triangles along the sides of the squares around all holes, through the whole table, so that
-/// neighbours keep their corners in common; only what lies in a square is then cut along the circle.
+/// Cuts triangles along the sides of the squares around all holes, across the whole table, so that neighbours
+/// still share their corners. Only pieces inside a square are then cut along the circle.
 class HoleCutter {
   public:
     explicit HoleCutter(const render::TableMesh& mesh) : mesh_(mesh) {
-        // With more holes than the renderer cuts out there would be too many pieces.
+        // More holes than the renderer cuts out would give too many pieces.
         if (mesh.holes.size() > kMostHoles) return;
         for (const render::Hole& hole : mesh.holes) {
             const Vec2 center = hole.center - mesh.origin;

@@ -1,4 +1,4 @@
-// The table as indexed triangles, one list a material, for programs that know nothing of this renderer.
+// The table as indexed triangles, one list per material, for programs that do not know this renderer.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace carom::tools {
 
 struct TablePart {
     std::vector<float> positions,
-        normals;  ///< three numbers a vertex, in the axes of glTF, relative to the mesh's origin
-    std::vector<std::uint32_t> indices;  ///< three a triangle
+        normals;  ///< three numbers per vertex, in glTF axes, relative to the mesh's origin
+    std::vector<std::uint32_t> indices;  ///< three per triangle
 };
 
-/// The solid parts but the floor, with the holes of pockets cut out of cloth
-/// and wood, which the renderer's shaders do; and the marks on the cloth.
+/// The solid parts except the floor, and the marks on the cloth. Pocket holes are cut out of cloth and wood,
+/// which the renderer leaves to its shaders.
 std::map<render::Material, TablePart> table_parts(const render::TableMesh& mesh);
 
 }  // namespace carom::tools

@@ -58,7 +58,7 @@ class LineReader {
         for (;;) {
             throw_if_interrupted();
             const ssize_t count = ::read(STDIN_FILENO, buffer_, sizeof buffer_);
-            throw_if_interrupted();  // the end of the input may come together with the signal
+            throw_if_interrupted();  // the end of the input may arrive together with the signal
             if (count < 0 && errno == EINTR) continue;
             if (count < 0) throw std::runtime_error(std::string("standard input: ") + std::strerror(errno));
             position_ = 0;
@@ -115,7 +115,7 @@ int run(const ImpactArgs& args) {
 
 void add_impact(Options& program) {
     auto [command, args] = program.command<ImpactArgs>(
-        "impact", "One impact per line of standard input, its result per line (JSON)", run);
+        "impact", "Compute impacts: one per line of standard input, one result per line (JSON)", run);
     command.option("--method", &args.method, "NAME", "Ball-ball model")
         .one_of({"mathavan", "inelastic", "elastic"});
     command
@@ -123,7 +123,7 @@ void add_impact(Options& program) {
                 "Use the published march with this N (mathavan; default: off)")
         .in(1, 100000000);
     Option& tolerance = command.option("--tolerance", &args.tolerance, "E",
-                                       "Error allowed, relative to the approach speed (mathavan)");
+                                       "Allowed error, relative to the approach speed (mathavan)");
     tolerance.in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
     tolerance.excludes = "--substeps";
     add_cloth_slip(command, args.cloth_slip, "Sign of the cloth slip inside the impact (mathavan)");

@@ -1,5 +1,4 @@
-// Reads one line of carom impact, which is JSON, and computes
-// the answer, which is JSON too. "id" is copied to the answer.
+// Reads one line of carom impact (JSON) and computes its answer (JSON). "id" is copied to the answer.
 #include "commands/impact/impact_line.h"
 
 #include <fmt/core.h>
@@ -41,7 +40,7 @@ const Json& need(const Json& object, const char* key) {
     return *it;
 }
 
-/// What a kind of line holds beside "kind", "id" and "params": names with a space between them.
+/// The keys of one kind of line besides "kind", "id" and "params", separated by spaces.
 struct LineKind {
     const char* kind;
     bool airborne;  ///< the line says "airborne": true
@@ -54,36 +53,37 @@ constexpr LineKind kBallBall = {
     "ball_ball", false,      "two balls on the cloth", kTwoStates, "R m mu_s1 mu_s2 mu_b e_b",
     "m2 R2",     kTwoAnswers};
 constexpr LineKind kBallBallInAir = {
-    "ball_ball", true,       "two balls, one of them in the air", kTwoStates, "R1 R2 m1 m2 mu_b e_b",
+    "ball_ball", true,       "two balls, at least one in the air", kTwoStates, "R1 R2 m1 m2 mu_b e_b",
     "",          kTwoAnswers};
 constexpr LineKind kCushion = {
     "cushion", false, "a ball on the cloth and a cushion", "model normal v w", "R m mu_s e_c f_c height",
     "",        "v w"};
 constexpr LineKind kCushionInAir = {
-    "cushion", true, "a ball in the air and a nose", "model normal offset v w", "R e_c f_c", "", "v w"};
-constexpr LineKind kCloth = {
-    "cloth", false, "a ball that comes down on the cloth", "v w", "R mu_s mu_sp e_t gravity", "", "v w"};
+    "cushion", true, "a ball in the air and a cushion nose", "model normal offset v w", "R e_c f_c",
+    "",        "v w"};
+constexpr LineKind kCloth = {"cloth", false, "a ball landing on the cloth", "v w", "R mu_s mu_sp e_t gravity",
+                             "",      "v w"};
 
 constexpr struct {
     const char *keys, *meaning;
 } kMeanings[] = {
-    {"r, v, w", "centre, velocity and angular velocity before the impact, [x, y, z]; in the answer after it"},
+    {"r, v, w", "centre, velocity and angular velocity [x, y, z] before the impact; in the answer, after it"},
     {"R, m", "radius and mass; m2 and R2 are those of ball 2 if they differ"},
     {"mu_s, mu_b, e_b, ...", "as in [balls] of a scene file; mu_s1 and mu_s2 are mu_s under each ball"},
     {"model", "a cushion model, as in [physics] of a scene file"},
     {"normal", "horizontal, from the cushion into the table, [x, y] of length 1"},
-    {"offset", "from the line of the nose to the ball's centre, [along the normal, up]"},
-    {"height", "of the nose above the cloth"},
+    {"offset", "from the nose line to the ball's centre, [along the normal, up]"},
+    {"height", "height of the nose above the cloth"},
     {"id", "any value; the answer repeats it"},
-    {"steps, ns", "steps of the kernel, and its time in nanoseconds"},
-    {"error", "in place of an answer: what is wrong with the line"}};
+    {"steps, ns", "kernel steps, and kernel time in nanoseconds"},
+    {"error", "instead of an answer: what is wrong with the line"}};
 
 std::vector<std::string> words_of(std::string text) {
     std::istringstream in(std::move(text));
     return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// Refuses a key that is not read: a misspelt key would silently give another result.
+/// Refuses unknown keys: a misspelt key would silently change the result.
 void refuse_unknown(const Json& object, const std::string& known) {
     const std::vector<std::string> names = words_of(known);
     for (const auto& item : object.items())
@@ -111,7 +111,7 @@ void read_vector(const Json& line, const char* key, double (&out)[kSize]) {
     for (int i = 0; i < kSize; ++i) out[i] = number(json[i], key);
 }
 
-/// A parameter within [least, most], its ends left out where `open`.
+/// A parameter within [least, most], without its ends if `open`.
 double parameter(const Json& params, const char* key, double least, double most, bool open = false) {
     const double value = number(need(params, key), key);
     const bool inside = open ? value > least && value < most : value >= least && value <= most;
@@ -124,11 +124,11 @@ double parameter(const Json& params, const char* key, double least, double most,
     return value;
 }
 
-/// @throws LineError where a number of the input was beyond what doubles can compute with (R = 1e-321 m)
+/// @throws LineError if a number of the input is beyond what doubles can compute with (R = 1e-321 m)
 Json list(const double (&v)[3]) {
     for (const double x : v) {
         if (!std::isfinite(x))
-            throw LineError("the result is not finite; a number of the line is too large or too small");
+            throw LineError("the result is not finite: a number in the line is too large or too small");
     }
     return Json::array({v[0], v[1], v[2]});
 }
@@ -163,7 +163,7 @@ Json list(const Vec3& v) {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// Two balls of which one or both fly: one free impact, in closed form.
+/// Two balls, of which one or both fly: one free impact, in closed form.
 Json free_balls(const Json& line) {
     const Json& params = params_of(line);
     refuse_unknown(line, params, kBallBallInAir);
@@ -185,7 +185,7 @@ Json free_balls(const Json& line) {
             {"w2", list(ball2.w)}, {"steps", 1},          {"ns", ns}};
 }
 
-/// A ball that comes down on the cloth.
+/// A ball landing on the cloth.
 Json cloth(const Json& line) {
     const Json& params = params_of(line);
     refuse_unknown(line, params, kCloth);
@@ -214,11 +214,12 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
     const auto ratio = [&](const char* key, double one, double largest, const char* of_one) {
         if (!params.contains(key)) return 1.0;
         if (settings.method != ImpactSettings::Method::kMathavan)
-            throw LineError(fmt::format("\"{}\": only mathavan takes balls that differ; leave it out", key));
+            throw LineError(
+                fmt::format("\"{}\": only --method mathavan solves different balls; leave it out", key));
         const double over = parameter(params, key, 0.0, kUnbounded, true) / one;
         if (!(over <= largest && over >= 1.0 / largest))
             throw LineError(
-                fmt::format("\"{}\": expected {} times or over {} at most", key, of_one, largest));
+                fmt::format("\"{}\": expected at most a factor of {} from {}", key, largest, of_one));
         return over;
     };
     p.mass_ratio = ratio("m2", p.m, kernel::kLargestMassRatio, "m");
@@ -266,7 +267,7 @@ const CushionModelInfo& model_of(const Json& line) {
     std::string known;
     for (const CushionModelInfo* model : all_of(&kHan2005))
         known += (known.empty() ? "" : ", ") + std::string(model->name);
-    throw LineError(fmt::format("\"model\": this is no cushion model of this version; there are: {}", known));
+    throw LineError(fmt::format("\"model\": unknown cushion model; expected one of {}", known));
 }
 
 Vec2 unit_normal(const Json& line) {
@@ -274,15 +275,16 @@ Vec2 unit_normal(const Json& line) {
     read_vector(line, "normal", n);
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1]);
     if (!(std::abs(length - 1.0) <= kUnitSlack)) {
-        throw LineError(fmt::format("\"normal\": expected a vector of length 1, this one has {}", length));
+        throw LineError(
+            fmt::format("\"normal\": expected a vector of length 1, this one has length {}", length));
     }
-    // A vector that is a unit vector up to rounding is used as it
-    // is, so that the result has the bits that the caller expects.
+    // A vector that is a unit vector up to rounding is used as it is, so that the result has the bits the
+    // caller expects.
     if (std::abs(length - 1.0) <= 4.0 * std::numeric_limits<double>::epsilon()) return {n[0], n[1]};
     return {n[0] / length, n[1] / length};
 }
 
-/// A ball in the air at a nose, whose line it is off by D horizontally and by q in height.
+/// A ball in the air at a nose. Its centre is D from the nose line horizontally, and q in height.
 Json nose_in_air(const Json& line) {
     const CushionModelInfo& model = model_of(line);
     const Json& params = params_of(line);
@@ -321,19 +323,19 @@ Json cushion(const Json& line) {
     read_vector(line, "w", w_in);
     Vec3 v(v_in[0], v_in[1], v_in[2]), w(w_in[0], w_in[1], w_in[2]);
     model.resolve(contact, unit_normal(line), v, w);
-    if (!(v.allFinite() && w.allFinite())) throw LineError("the result is too large for a number");
+    if (!(v.allFinite() && w.allFinite())) throw LineError("the result is too large");
     return {{"v", {v.x(), v.y(), v.z()}}, {"w", {w.x(), w.y(), w.z()}}};
 }
 
 Json parse(std::string_view line) {
     const Json::parser_callback_t depth_limit = [](int depth, Json::parse_event_t, Json&) {
-        if (depth > kDeepest) throw LineError(fmt::format("nested more than {} deep", kDeepest));
+        if (depth > kDeepest) throw LineError(fmt::format("more than {} levels of nesting", kDeepest));
         return true;
     };
     try {
         return Json::parse(line, depth_limit);
     } catch (const Json::parse_error& error) {
-        throw LineError(fmt::format("this is not JSON (at byte {})", error.byte));
+        throw LineError(fmt::format("not valid JSON (at byte {})", error.byte));
     } catch (const Json::out_of_range&) {
         throw LineError("a number is too large");
     }
@@ -341,7 +343,7 @@ Json parse(std::string_view line) {
 
 Json compute(std::string_view text, const ImpactSettings& settings) {
     const Json line = parse(text);
-    if (!line.is_object()) throw LineError("expected an object");
+    if (!line.is_object()) throw LineError("expected a JSON object");
     const Json& kind = need(line, "kind");
     Json result;
     if (kind == "ball_ball")
@@ -359,7 +361,7 @@ Json compute(std::string_view text, const ImpactSettings& settings) {
 }  // namespace
 
 std::string impact_keys() {
-    std::string text = "A line is a JSON object; answers come in the order of the lines. Units are SI.";
+    std::string text = "Each line is a JSON object; answers come in the same order. Units are SI.";
     for (const LineKind& kind : {kBallBall, kBallBallInAir, kCushion, kCushionInAir, kCloth}) {
         std::string params = kind.params;
         if (*kind.optional != '\0') params += fmt::format(", optional {}", kind.optional);

@@ -33,7 +33,7 @@ struct ImpactAnswer {
 /// Computes one line. Whatever the line holds, the answer is a result or an error.
 ImpactAnswer answer_impact(std::string_view line, const ImpactSettings& settings);
 
-/// The kinds of lines with their keys, for people: a line for each, behind a first one.
+/// The kinds of lines and their keys for people, one line each after a first line.
 std::string impact_keys();
 
 /// The answer that says why a line was not computed.

@@ -18,7 +18,7 @@ MeasuredMargin measure_margin(const Plan& plan, const MarginArgs& args) {
     for (int run = 0; run < args.repeat; ++run) {
         runs.push_back(
             one_run(plan, args.drawing(), fps, fmt::format("run {} of {}:", run + 1, args.repeat)));
-        // Only the last one is read.
+        // Only the last record is read.
         if (run > 0) runs[static_cast<std::size_t>(run) - 1].record = {};
     }
     Margin margin = combine(runs, fps, !args.no_render);
@@ -47,8 +47,8 @@ void read_margin_args(MarginArgs& args) {
 void add_margin_options(Options& command, MarginArgs& args) {
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     add_picture(command, args.fps, args.size);
-    add_repeat(command, args.repeat, "Runs; every frame's cost is the median over them");
-    command.flag("--no-render", args.no_render, "Measure the simulation only (default: off)");
+    add_repeat(command, args.repeat, "Number of runs; a frame's cost is its median over them");
+    command.flag("--no-render", args.no_render, "Measure only the simulation (default: off)");
     add_gl(command, args.drawn.gl);
     add_reports(command, args.csv, args.json);
     command.footer =
@@ -57,8 +57,8 @@ void add_margin_options(Options& command, MarginArgs& args) {
 }
 
 void add_margin(Options& program) {
-    auto [command, args] =
-        program.command<MarginArgs>("margin", "Real-time margin: what every frame costs against 1/fps", run);
+    auto [command, args] = program.command<MarginArgs>(
+        "margin", "Measure the real-time margin: the cost of every frame against 1/fps", run);
     add_margin_options(command, args);
 }
 

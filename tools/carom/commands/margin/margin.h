@@ -1,4 +1,4 @@
-// carom margin: what every frame costs against 1/fps, stage by stage.
+// carom margin: the cost of every frame against 1/fps, stage by stage.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,19 +19,19 @@ struct MarginArgs {
     int repeat = 1;
     bool no_render = false;
     FrameSettings drawn;
-    /// A file name; empty: not asked for.
+    /// A file name; empty: not written.
     std::string csv;
     bool json = false;
 
     const FrameSettings* drawing() const { return no_render ? nullptr : &drawn; }
 };
 
-/// The options that the program and the laboratory share.
-/// read_margin_args() takes what the parser leaves as text.
+/// The options that the program and the laboratory share. read_margin_args() reads those that the parser
+/// leaves as text.
 void add_margin_options(Options& command, MarginArgs& args);
 void read_margin_args(MarginArgs& args);
 
-/// All runs, combined, with what timing itself costs.
+/// All runs combined, and the cost of timing itself.
 struct MeasuredMargin {
     Margin margin;
     MarginRun last;
@@ -40,14 +40,14 @@ MeasuredMargin measure_margin(const Plan& plan, const MarginArgs& args);
 
 /// "240 frames of 16.667 ms (60 fps, 1280x720), 0 missed"
 std::string margin_lead(const Margin& margin);
-/// What the report says below its table, a line each.
+/// The lines below the table.
 std::string margin_sentences(const Margin& margin, const MarginRun& last);
 /// Percentiles of every stage that was measured, and of whole frames [ms].
 Table stages_table(const Margin& margin);
-/// A row for each frame.
+/// One row per frame.
 Table frames_table(const Margin& margin, const MarginRun& last);
 
-/// An event of a profiled record, with what it cost [ns].
+/// An event of a profiled record, and its cost [ns].
 nlohmann::ordered_json event_cost_json(const Record& record, std::size_t event);
 
 std::string margin_json(const Margin& margin, const MarginRun& last);

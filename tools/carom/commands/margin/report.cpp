@@ -78,31 +78,29 @@ std::string margin_sentences(const Margin& margin, const MarginRun& last) {
     const double p99 = spread(margin.total).p99;
     const std::vector<double> slack = slacks(margin);
     fmt::format_to(line,
-                   "At p99 a frame takes {:.1f} % of its time: margin {:.3f} ms. Slack: median {:.1f} %, "
-                   "least {:.1f} %.\n",
+                   "At p99 a frame takes {:.1f} % of its budget and leaves {:.3f} ms. Slack: median {:.1f} "
+                   "%, minimum {:.1f} %.\n",
                    100.0 * p99 / margin.budget_ms, margin.budget_ms - p99, median(slack), slack.front());
     if (margin.rendered)
         fmt::format_to(line,
-                       "Without encoding and writing, {} would be missed. Of a picture {:.1f} % were encoded "
-                       "anew (median; p99 "
-                       "{:.1f} %).\n",
+                       "Without encoding and writing, {} would be missed. {:.1f} % of a picture is encoded "
+                       "anew (median; p99 {:.1f} %).\n",
                        counted(static_cast<std::size_t>(margin.missed_shown), "frame"),
                        100.0 * spread(margin.encoded_share).p50, 100.0 * spread(margin.encoded_share).p99);
     if (margin.runs > 1)
-        fmt::format_to(
-            line,
-            "Medians of {} runs; from run to run p50 {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} ms, "
-            "missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
-            margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low, margin.p99_runs.high,
-            margin.missed_runs.low, margin.missed_runs.high, 100.0 * margin.frame_spread);
-    fmt::format_to(line, "The parts add up to {:.1f} % of the {:.1f} ms on the wall, one after the other.\n",
+        fmt::format_to(line,
+                       "Medians of {} runs; over the runs, p50 is {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} "
+                       "ms, missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
+                       margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low,
+                       margin.p99_runs.high, margin.missed_runs.low, margin.missed_runs.high,
+                       100.0 * margin.frame_spread);
+    fmt::format_to(line, "The stages add up to {:.1f} % of the {:.1f} ms of wall time.\n",
                    100.0 * margin.accounting.share(), margin.accounting.wall_ms);
-    fmt::format_to(
-        line,
-        "Timing itself: simulating takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; a look at "
-        "the clock is {:.0f} ns). Off, it is not in the loop.\n",
-        margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
-        margin.timing.clock_ns);
+    fmt::format_to(line,
+                   "Cost of timing: the simulation takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; "
+                   "{:.0f} ns per clock reading). Without profiling, the loop contains no timing.\n",
+                   margin.timing.profiled_ms, margin.timing.plain_ms, 100.0 * margin.timing.share(),
+                   margin.timing.clock_ns);
     const std::vector<std::size_t>& events = last.frames[margin.worst].events;
     fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
                    time_of(margin, margin.worst), margin.total[margin.worst],
@@ -136,7 +134,7 @@ Table frames_table(const Margin& margin, const MarginRun& last) {
 std::string margin_json(const Margin& margin, const MarginRun& last) {
     Json stages = Json::object();
     for (std::size_t s = 0; s < kMarginStages; ++s) {
-        // A stage that was not measured is null and not 0.
+        // A stage that was not measured is null, not 0.
         stages[name(static_cast<MarginStage>(s))] =
             margin.has(s) ? spread_json(margin.stage[s]) : Json(nullptr);
     }

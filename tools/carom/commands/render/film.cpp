@@ -23,9 +23,9 @@
 namespace carom::tools {
 namespace {
 
-// Colours of Y4M frames are those of ITU-R BT.709, which the stream cannot say. WebP and GIF are given RGB:
-// the first has other weights, the second a palette. The palette is made of the first ten frames, because
-// ffmpeg keeps in memory what it makes one of; dots at fixed places stay equal from frame to frame.
+// Y4M frames have the colours of ITU-R BT.709, which the stream cannot declare. WebP and GIF are given RGB:
+// WebP weights colours differently, GIF has a palette. The palette comes from the first ten frames, because
+// ffmpeg keeps in memory every frame it makes one from; ordered dithering stays the same from frame to frame.
 #define CAROM_BT709 "-vf setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709 -pix_fmt yuv420p"
 constexpr FilmKind kKinds[] = {
     {".mp4", "mp4", render::RawFormat::kY4m,
@@ -77,7 +77,7 @@ void require_ffmpeg(const std::string& path) {
     for (std::string folder; std::getline(stream, folder, ':');)
         if (::access((folder + "/ffmpeg").c_str(), X_OK) == 0) return;
     throw std::runtime_error(
-        fmt::format("{}: ffmpeg, which makes films, is not there: install the package ffmpeg, or write "
+        fmt::format("{}: films need ffmpeg, which is not installed; install the package ffmpeg, or write "
                     "frames with -o frames/%05d.png",
                     path));
 }
@@ -124,7 +124,7 @@ void Film::start(const FilmKind& kind, FrameSize size, double fps) {
     posix_spawn_file_actions_adddup2(&files, ends[0], 0);
     posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&files, ::fileno(messages_), 2);
-    // A group of its own: Ctrl-C on the terminal reaches carom alone, which decides.
+    // A process group of its own: Ctrl-C in the terminal then reaches only carom, which decides what to do.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -136,7 +136,7 @@ void Film::start(const FilmKind& kind, FrameSize size, double fps) {
         child_ = -1;
         throw std::runtime_error(path_ + ": cannot start ffmpeg: " + std::strerror(error));
     }
-    // A write that would wait returns instead, so that an interrupt is seen.
+    // A write that would block returns instead, so that an interrupt is noticed.
     ::fcntl(pipe_, F_SETFL, ::fcntl(pipe_, F_GETFL) | O_NONBLOCK);
 }
 
@@ -155,7 +155,7 @@ int Film::wait_for_end() {
     ::close(std::exchange(pipe_, -1));  // the end of its input
     int status = 0;
     while (::waitpid(child_, &status, 0) < 0) {
-        if (errno != EINTR) throw std::runtime_error(path_ + ": ffmpeg is lost: " + std::strerror(errno));
+        if (errno != EINTR) throw std::runtime_error(path_ + ": lost ffmpeg: " + std::strerror(errno));
         throw_if_interrupted();
     }
     child_ = -1;
@@ -172,9 +172,9 @@ void Film::fail(int status) {
 }
 
 void Film::write(const std::uint8_t* bytes, std::size_t count) {
-    constexpr int kPatience = 100;  // ms between looks at an interrupt
-    // Frames that were on their way when ffmpeg failed come here, too.
-    if (pipe_ < 0) throw std::runtime_error(path_ + ": ffmpeg has ended");
+    constexpr int kPatience = 100;  // ms between checks for an interrupt
+    // Frames still on their way when ffmpeg failed also come here.
+    if (pipe_ < 0) throw std::runtime_error(path_ + ": ffmpeg has already ended");
     while (count > 0) {
         throw_if_interrupted();
         const ssize_t written = ::write(pipe_, bytes, count);

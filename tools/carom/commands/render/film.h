@@ -1,4 +1,4 @@
-// A film that ffmpeg makes of frames as they come.
+// A film that ffmpeg encodes frame by frame.
 #pragma once
 
 #include <sys/types.h>
@@ -14,33 +14,33 @@
 
 namespace carom::tools {
 
-/// One kind of film, by the ending of its name.
+/// One kind of film, recognised by the extension of its name.
 struct FilmKind {
     const char* ending;
-    const char* muxer;        ///< ffmpeg's name of the format
-    render::RawFormat input;  ///< what ffmpeg is given
-    const char* options;      ///< for ffmpeg, with blanks between them
-    bool even = false;        ///< width and height have to be even
-    double fastest = 0.0;     ///< the most frames per second; 0: any number
+    const char* muxer;        ///< ffmpeg's name for the format
+    render::RawFormat input;  ///< what ffmpeg receives
+    const char* options;      ///< for ffmpeg, separated by spaces
+    bool even = false;        ///< width and height must be even
+    double fastest = 0.0;     ///< most frames per second; 0: no limit
 };
 
-/// The kind that the name asks for, or null: the name is no film's.
+/// The kind of film for this file name, or null if it is not a film.
 const FilmKind* film_kind(const std::string& path);
 
-/// @throws std::runtime_error that names the package if there is no ffmpeg
+/// @throws std::runtime_error naming the package if ffmpeg is missing
 void require_ffmpeg(const std::string& path);
 
-/// Runs ffmpeg, which writes to a temporary name; the film gets its own name when it is complete.
+/// Runs ffmpeg, which writes to a temporary name. The film gets its own name when it is complete.
 class Film {
   public:
     /// Starts ffmpeg. @throws std::runtime_error naming the film
     Film(const std::string& path, const FilmKind& kind, FrameSize size, double fps);
-    /// Ends ffmpeg if it still runs. Without commit() nothing is left of the film.
+    /// Ends ffmpeg if it still runs. Without commit(), no film is left.
     ~Film();
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
 
-    /// Gives ffmpeg the next bytes. May be called from another thread.
+    /// Passes the next bytes to ffmpeg. May be called from another thread.
     /// @throws Interrupted, std::runtime_error if ffmpeg failed
     void write(const std::uint8_t* bytes, std::size_t count);
 
@@ -51,8 +51,8 @@ class Film {
   private:
     void end();
     void start(const FilmKind& kind, FrameSize size, double fps);
-    int wait_for_end();                  ///< its status as of waitpid()
-    [[noreturn]] void fail(int status);  ///< with the last line that ffmpeg wrote
+    int wait_for_end();                  ///< its status, as from waitpid()
+    [[noreturn]] void fail(int status);  ///< with the last line ffmpeg wrote
 
     std::string path_;
     OutputFile file_;

@@ -1,4 +1,4 @@
-// carom render: numbered PNG frames of a scene or of a record.
+// carom render: numbered PNG frames, or a film, of a scene or of a record.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ struct RenderArgs {
     std::string gl = "auto";
     std::string png_writer = "changes";
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
-    std::string ball;         ///< followed by the camera "follow"; empty: the ball that moves first
+    std::string ball;         ///< ball for camera "follow"; empty: the first that moves
     std::string overlay;      ///< list of names
     bool trails = false;      ///< --overlay trails
     std::string sheet;        ///< "4x3"; empty: frames
@@ -43,7 +43,7 @@ struct RenderArgs {
     const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
 };
 
-/// Other programs tell what a file holds by its name.
+/// Other programs recognise a file by its name.
 void check_png_name(const std::string& path) {
     if (!path.ends_with(".png") && !path.ends_with(".PNG"))
         throw UsageError(fmt::format("-o {}: pictures are PNG files; give a name that ends in .png", path));
@@ -58,9 +58,10 @@ void check_args(const RenderArgs& args) {
     second("--from", args.from);
     second("--to", args.to);
     second("--at", args.at);
-    if (args.to && *args.to < args.from) throw UsageError("--to is before --from: there would be no frame");
+    if (args.to && *args.to < args.from)
+        throw UsageError("--to is before --from, so there are no frames; swap them");
     if (args.at && (args.from != 0.0 || args.to || args.frame)) {
-        throw UsageError("--at is one instant: it cannot be combined with --from, --to or --frame");
+        throw UsageError("--at shows one instant; use it without --from, --to and --frame");
     }
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
     if (!args.sheet.empty()) {
@@ -70,9 +71,11 @@ void check_args(const RenderArgs& args) {
     }
     if (const FilmKind* const film = args.film()) {
         const std::string what = fmt::format("-o {}", args.pattern);
-        if (args.resume) throw UsageError(what + ": a film cannot be resumed");
-        if (args.frame || args.at) throw UsageError(what + ": one frame is no film; use --from and --to");
-        if (args.png_writer != "changes") throw UsageError(what + ": --png-writer is of PNG files");
+        if (args.resume) throw UsageError(what + ": a film cannot be resumed; leave out --resume");
+        if (args.frame || args.at)
+            throw UsageError(what + ": a film needs more than one frame; use --from and --to");
+        if (args.png_writer != "changes")
+            throw UsageError(what + ": --png-writer applies only to PNG files; leave it out");
         require_ffmpeg(args.pattern);
         return;
     }
@@ -81,12 +84,13 @@ void check_args(const RenderArgs& args) {
     try {
         const bool numbered = render::is_numbered(args.pattern);
         if (!one && !numbered)
-            throw UsageError(fmt::format(
-                "bad frame pattern '{}'; give exactly one %d or %0Nd, like frames/%05d.png, or the name of a "
-                "film, like shot.mp4 (.webm, .gif, .webp)",
-                args.pattern));
+            throw UsageError(
+                fmt::format("bad frame pattern '{}'; give exactly one %d or %0Nd, as in frames/%05d.png, or "
+                            "the name of a film, as in shot.mp4 (.webm, .gif, .webp)",
+                            args.pattern));
         if (args.resume && !numbered)
-            throw UsageError(fmt::format("-o {}: one picture cannot be resumed", args.pattern));
+            throw UsageError(
+                fmt::format("-o {}: one picture cannot be resumed; leave out --resume", args.pattern));
     } catch (const render::RenderError& error) {
         throw UsageError(error.what());
     }
@@ -113,13 +117,15 @@ render::Overlay overlay_of(const RenderArgs& args) {
 
 void set_view(const RenderArgs& args, const RenderSettings& settings, render::SequenceOptions& options) {
     if (!args.eye.empty() && args.target.empty()) throw UsageError("--eye needs --target X,Y,Z");
-    if (!args.eye.empty() && !args.camera.empty()) throw UsageError("--camera and --eye exclude each other");
+    if (!args.eye.empty() && !args.camera.empty())
+        throw UsageError("--camera and --eye cannot be combined; use one of them");
     options.camera = args.camera.empty() ? settings.camera : args.camera;
     options.view.ball = args.ball;
     if (!args.eye.empty()) {
         options.view.eye = parse_point("--eye", args.eye);
         options.view.target = parse_point("--target", args.target);
-        if (*options.view.eye == *options.view.target) throw UsageError("--target is where the eye is");
+        if (*options.view.eye == *options.view.target)
+            throw UsageError("--target and --eye are the same point; move one of them");
     } else if (args.camera.empty()) {
         options.view.eye = settings.eye;
         options.view.target = settings.target;
@@ -127,14 +133,14 @@ void set_view(const RenderArgs& args, const RenderSettings& settings, render::Se
     options.overlay = overlay_of(args);
 }
 
-/// A scene's rate is lowered to what the film can have; a rate that was asked for is not.
+/// Lowers the scene's rate to the film's limit, but not a rate that was asked for.
 double film_fps(const RenderArgs& args, const RenderSettings& settings) {
     const double fps = chosen_fps(args.fps, settings), fastest = args.film()->fastest;
     if (fastest == 0.0 || fps <= fastest) return fps;
     if (args.fps)
-        throw UsageError(
-            fmt::format("--fps {}: {} has at most {} frames per second", fps, args.film()->ending, fastest));
-    message(fmt::format("note: {} has at most {} frames per second, the scene {}", args.film()->ending,
+        throw UsageError(fmt::format("--fps {}: {} allows at most {} frames per second", fps,
+                                     args.film()->ending, fastest));
+    message(fmt::format("note: {} allows at most {} frames per second; the scene has {}", args.film()->ending,
                         fastest, fps));
     return fastest;
 }
@@ -149,7 +155,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
-    if (args.png_writer == "libpng") options.libpng_level = 1;
+    options.libpng = args.png_writer == "libpng";
     options.jobs = args.jobs;
     options.resume = args.resume;
     if (args.raw || args.y4m) {
@@ -160,7 +166,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     }
     options.backend = render::backend_from_name(args.gl);
     if (options.from > record.duration && !args.to) {
-        throw UsageError(fmt::format("{} {}: the shot is over after {} s", args.at ? "--at" : "--from",
+        throw UsageError(fmt::format("{} {}: the shot ends at {} s", args.at ? "--at" : "--from",
                                      options.from, record.duration));
     }
     const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
@@ -170,12 +176,11 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-/// Tells the margin bar what the simulation of each frame cost: the sum over the
-/// events between the frame and the next one. A record that was not profiled has
-/// no costs; its bar shows drawing, reading back and encoding only.
+/// Tells the margin bar the simulation cost of each frame: the sum over the events up to the next frame. A
+/// record that was not profiled has no costs; its bar shows only drawing, reading back and encoding.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-    // Events before the first and after the last frame that is shown belong to frames that are not shown.
+    // Events before the first and after the last shown frame belong to frames that are not shown.
     const double before = std::ceil(options.from * options.fps);
     const auto first = static_cast<long>(before);
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
@@ -212,23 +217,23 @@ int write_film(const RenderArgs& args, const Record& record, render::SequenceOpt
     return kOk;
 }
 
-/// Says how to go on where it is interrupted.
+/// Renders, and says how to continue after an interrupt.
 std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
     try {
         return render::render_sequence(record, options);
     } catch (const Interrupted&) {
         if (!options.raw && render::is_numbered(options.pattern))
-            message("stopped; the same command with --resume goes on");
+            message("stopped; run the same command with --resume to continue");
         throw;
     }
 }
 
 int run(const RenderArgs& args) {
     check_args(args);
-    if (args.raw && args.y4m) throw UsageError("--raw and --y4m exclude each other");
+    if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";
     if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
-        throw UsageError(fmt::format("{} goes with neither --resume nor --sheet", stream));
+        throw UsageError(fmt::format("{} cannot be combined with --resume or --sheet", stream));
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
@@ -250,7 +255,7 @@ int run(const RenderArgs& args) {
     const std::vector<render::FrameTiming> timings = rendered(record, options);
     throw_if_interrupted();
     if (timings.empty()) {
-        print(fmt::format("0 frames: all are there: {}\n", options.pattern));
+        print(fmt::format("all frames already exist: {}\n", options.pattern));
         return kOk;
     }
     if (args.raw || args.y4m) {
@@ -270,7 +275,7 @@ int run(const RenderArgs& args) {
     }
     print(fmt::format("{}, {}x{} at {} fps: {}\n", counted(timings.size(), "frame"), options.size.width,
                       options.size.height, options.fps, options.pattern));
-    // With their number, so that older frames behind them are not in the film.
+    // With the number of frames, so that older files with higher numbers stay out of the film.
     print(fmt::format(
         "to make a film of them: ffmpeg -y -framerate {} -i {} -frames:v {} -pix_fmt yuv420p shot.mp4\n",
         options.fps, shell_word(options.pattern), timings.back().frame + 1));
@@ -281,42 +286,43 @@ int run(const RenderArgs& args) {
 
 void add_render(Options& program) {
     auto [command, args] = program.command<RenderArgs>(
-        "render", "Numbered PNG frames of a scene or a record; frame k shows from + k/fps", run);
-    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json) of carom simulate -o")
-        .required = true;
-    command.option("-o,--output", &args.pattern, "PATTERN",
-                   "Files, with one %d or %05d for the frame's number; or a film (.mp4, .webm, .gif, .webp), "
-                   "which ffmpeg makes");
+        "render",
+        "Render a scene or a record as numbered PNG frames, or as a film; frame k shows from + k/fps", run);
+    command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
+    command.option(
+        "-o,--output", &args.pattern, "PATTERN",
+        "Frames, with one %d or %05d for the number; or a film (.mp4, .webm, .gif, .webp), made by ffmpeg");
     add_picture(command, args.fps, args.size);
-    command.option("--from", &args.from, "S", "First instant in s");
-    command.option("--to", &args.to, "S", "Last instant in s (default: the end of the shot)");
+    command.option("--from", &args.from, "S", "Start time in s");
+    command.option("--to", &args.to, "S", "End time in s (default: the end of the shot)");
     command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
-    command.option("--at", &args.at, "S", "Only this instant in s, as frame 0 (default: all)");
+    command.option("--at", &args.at, "S", "Only this time in s, as frame 0 (default: all)");
     command.option("--camera", &args.camera, "NAME", "Camera (default: the scene's, else top)")
         .one_of({"top", "rail", "player", "follow"});
     command.option("--eye", &args.eye, "X,Y,Z",
-                   "Free camera: where the eye is, in m (default: a named camera)");
+                   "Free camera: position of the eye in m (default: a named camera)");
     Option& target = command.option("--target", &args.target, "X,Y,Z",
-                                    "Free camera: what it looks at, in m (default: a named camera)");
+                                    "Free camera: point that it looks at, in m (default: a named camera)");
     target.needs = "--eye";
-    command.option("--ball", &args.ball, "ID",
-                   "Ball that camera follow follows (default: the one that moves first)");
+    command.option("--ball", &args.ball, "ID", "Ball for camera follow (default: the first that moves)");
     command.option("--overlay", &args.overlay, "LIST",
-                   "Drawn over the picture: trails (or trails=ball, in the colours of the balls), events, "
-                   "spin, ghost, clock, margin, or all (default: none)");
-    command.flag("--trails", args.trails, "The same as --overlay trails (default: off)");
+                   "Overlays: trails (or trails=ball, in the balls' colours), events, spin, ghost, clock, "
+                   "margin, or all (default: none)");
+    command.flag("--trails", args.trails, "Same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
                    "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
-    command.flag("--resume", args.resume, "Leave out frames whose finished file is there (default: off)");
+    command.flag("--resume", args.resume, "Skip frames whose files are already finished (default: off)");
     command.flag("--raw", args.raw,
-                 "RGB bytes on standard output instead of PNG files, for ffmpeg (default: off)");
-    command.flag("--y4m", args.y4m,
-                 "A Y4M stream (4:2:0) on standard output instead: half the bytes of --raw (default: off)");
+                 "Write RGB bytes to standard output, for ffmpeg, instead of PNG files (default: off)");
+    command.flag(
+        "--y4m", args.y4m,
+        "Write a Y4M stream (4:2:0) to standard output instead: half the bytes of --raw (default: off)");
     add_gl(command, args.gl);
     command
-        .option("--png-writer", &args.png_writer, "NAME",
-                "changes encodes what changed since the frame before, libpng every frame as a whole")
+        .option(
+            "--png-writer", &args.png_writer, "NAME",
+            "changes: encode only what changed since the previous frame; libpng: encode every frame whole")
         .one_of({"changes", "libpng"});
 }
 

@@ -1,4 +1,4 @@
-// carom simulate: runs a scene and says what happened.
+// carom simulate: runs a scene and reports what happened.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,8 +12,10 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "base/units.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
+#include "commands/simulate/story.h"
 #include "report/csv.h"
 #include "report/table.h"
 
@@ -24,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct SimulateArgs {
     std::string scene;
-    std::string record;  ///< file names; empty: not asked for
+    std::string record;  ///< file names; empty: not written
     std::string events;
     std::string samples;
     std::optional<double> sample_dt;  ///< [s]
@@ -32,11 +34,12 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
-    bool list = false;    ///< the events as a table
-    bool verify = false;  ///< check the laws after every event
+    bool list = false;  ///< tell every event
+    std::string units = kUnits[0];
+    bool verify = false;  ///< check the physical laws after every event
 };
 
-/// What the events of a profiled run cost, by kind: the sums. The text shows the means.
+/// The total cost of a profiled run's events, by kind. The text shows the means.
 Table costs_by_kind(const Record& record) {
     Table table(Column("type", "", "<24"), Column("count", "count", ">6"),
                 Column("detect_ns", "detect", ">12"), Column("resolve_ns", "resolve", ">12"),
@@ -90,24 +93,14 @@ std::string result_json(const Record& record) {
     return all.dump() + "\n";
 }
 
-const char* reason(StopReason stopped) {
-    constexpr const char* kReasons[] = {"everything is at rest", "stopped at its time",
-                                        "stopped at its number of events",
-                                        "nothing more happens, but balls move for ever"};
-    return kReasons[static_cast<int>(stopped)];
-}
-
-std::string summary(const Record& record, const std::string& scene) {
+std::string summary(const Record& record, const std::string& scene, const SimulateArgs& args) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
-    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\nevents\n", scene, counted(record.tracks.size(), "ball"),
-                   record.duration, counted(record.events.size(), "event"), reason(record.stopped));
-    std::array<long, kEventTypes> counts{};
-    for (const Event& event : record.events) ++counts[static_cast<std::size_t>(event.type)];
-    for (int type = 0; type < kEventTypes; ++type) {
-        const long count = counts[type];
-        if (count > 0) fmt::format_to(line, "  {:<22}{:>6}\n", name(static_cast<EventType>(type)), count);
-    }
+    const Units units = units_of(args.units);
+    const Unit length = length_unit(units);
+    fmt::format_to(line, "{}: {}, {:.4f} s, {}; {}\n\n", scene, counted(record.tracks.size(), "ball"),
+                   record.duration, counted(record.events.size(), "event"), words(record.stopped).sentence);
+    fmt::format_to(line, "{}", args.list ? all_events(record, units) : story(record, units));
     fmt::format_to(line, "\npocketed\n");
     long pocketed = 0;
     for (const Event& event : record.events) {
@@ -117,31 +110,22 @@ std::string summary(const Record& record, const std::string& scene) {
                        record.partner_id(event), event.time);
     }
     if (pocketed == 0) fmt::format_to(line, "  none\n");
-    const char* title = "\noff the table (m)\n";
+    const std::string title = fmt::format("\noff the table ({})\n", length.name);
+    bool off = false;
     for (const Event& event : record.events) {
         if (event.type != EventType::kBallOut) continue;
-        const Vec3 there = record.state_at(event.a, event.time).position;
-        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} high, at {:.4f} s\n",
-                       std::exchange(title, ""), record.tracks.at(event.a).id, there.x(), there.y(),
-                       there.z(), event.time);
+        const Vec3 there = record.state_at(event.a, event.time).position * length.factor;
+        fmt::format_to(line, "{}  {:<6} left at {:.6f}, {:.6f}, {:.6f} (height), at {:.4f} s\n",
+                       std::exchange(off, true) ? "" : title, record.tracks.at(event.a).id, there.x(),
+                       there.y(), there.z(), event.time);
     }
-    fmt::format_to(line, "\nballs at the end (m)\n");
+    fmt::format_to(line, "\nfinal positions ({})\n", length.name);
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
         fmt::format_to(line, "  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", record.tracks[i].id, name(s.state),
-                       s.position.x(), s.position.y());
+                       s.position.x() * length.factor, s.position.y() * length.factor);
     }
     return fmt::to_string(out);
-}
-
-/// What happened, one line an event.
-std::string event_list(const Record& record) {
-    Table table(Column("", "time (s)", ">12.6f"), Column("", "  type", "<24"), Column("", "ball", "<10"),
-                Column("", "with", "<"));
-    for (const Event& event : record.events)
-        table.add({event.time, "  " + std::string(name(event.type)), record.tracks.at(event.a).id,
-                   record.partner_id(event)});
-    return "\n" + table_text(table);
 }
 
 /// Where the time of a profiled run went.
@@ -158,9 +142,8 @@ std::string profile_report(const Record& record) {
                      cost.kernel_ns, cost.steps, fmt::format("  {}", cost.method)});
     }
     return fmt::format(
-        "\ncost by kind of event (mean ns; kernel is a part of resolve)\n{}"
-        "  first detection of all pairs: {:.0f} ns; all together: {:.3f} ms\n"
-        "\nkernel by ball-ball event and cluster\n{}",
+        "\ncost by kind of event (mean ns; resolve includes kernel)\n{}  first search of all pairs: {:.0f} "
+        "ns; total: {:.3f} ms\n\nkernel by ball-ball event and cluster\n{}",
         table_text(costs_by_kind(record)), record.setup_detect_ns, total * 1e-6, table_text(kernels));
 }
 
@@ -186,7 +169,7 @@ void write_files(const SimulateArgs& args, const Record& record) {
     if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
 }
 
-/// Names the first law that the run broke, if any.
+/// Reports the first law that the run broke, if any.
 int verified(const Record& record, const Plan& plan) {
     const std::optional<Violation> violation = verify(record, plan);
     if (!violation) return kOk;
@@ -209,7 +192,7 @@ int run(const SimulateArgs& args) {
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
-    // --hash replaces the summary, so that the output is one line. The JSON contains the hash in any case.
+    // --hash replaces the summary, so that the output is one line. JSON always contains the hash.
     if (args.json) {
         print(result_json(record));
         return status;
@@ -218,8 +201,8 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, harmless(args.scene)));
-    if (args.list) print(event_list(record));
+        print(summary(record, harmless(args.scene), args));
+    if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
     if (args.profile) print(profile_report(record));
     return status;
 }
@@ -228,16 +211,15 @@ int run(const SimulateArgs& args) {
 
 void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
-        "simulate", "Run a scene: what happened, events, record, sampled states, hash", run);
+        "simulate", "Simulate a scene: print what happened, write events, record or samples", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command
         .option("-o,--output", &args.record, "FILE.json",
-                "Write the record, for carom render (default: not written)")
+                "Write the record, which carom render reads (default: not written)")
         .to_stdout = true;
     command
         .option("--events", &args.events, "FILE.csv",
-                "Write the events; - is standard output, in place of the summary, as below (default: not "
-                "written)")
+                "Write the events; - prints them instead of the summary (default: not written)")
         .to_stdout = true;
     command
         .option("--samples", &args.samples, "FILE.csv",
@@ -246,16 +228,19 @@ void add_simulate(Options& program) {
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
-    command.flag("--list", args.list, "Print the events as a table (default: off)");
+    command.flag("--list", args.list,
+                 "Tell every event, not only the landmarks of a long shot (default: off)");
+    command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
+        .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
     command.flag("--profile", args.profile,
-                 "Time every event: cost by kind, kernel by ball-ball event, columns in the events file "
-                 "(default: off)");
+                 "Time every event: cost by kind, kernel cost by ball-ball event, extra columns in the "
+                 "events file (default: off)");
     command.flag("--json", args.json, "Print JSON (default: off)");
-    command.flag(
-        "--verify", args.verify,
-        "Check the laws after every event; a broken one is named, and the exit status is 1 (default: off)");
+    command.flag("--verify", args.verify,
+                 "Check the physical laws after every event; report the first one broken, with exit status 1 "
+                 "(default: off)");
 }
 
 }  // namespace carom::tools

@@ -1,7 +1,14 @@
 #include "commands/sweep/rows.h"
 
+#include <fmt/format.h>
+
 #include <future>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/console.h"
@@ -10,7 +17,7 @@
 namespace carom::tools {
 namespace {
 
-/// The value of one column and shot. What a shot without a result has not is empty.
+/// The value of one column and shot. It is empty if a shot without a result does not have it.
 void append_value(std::string& row, const SweepColumn& column, const ColumnValues& values, std::size_t shot,
                   bool has_result) {
     if (column.of_result && !has_result)
@@ -23,22 +30,34 @@ void append_value(std::string& row, const SweepColumn& column, const ColumnValue
         append_csv(row, std::string_view(values.texts[static_cast<std::size_t>(values.places[shot])]));
 }
 
-}  // namespace
-
-std::string sweep_header(const Variation& variation) {
-    std::vector<Cell> cells;
-    for (const SweepColumn& column : sweep_columns(variation)) cells.emplace_back(column.name);
-    return csv_line(cells);
+/// A shot that ended before its balls were at rest has no value of a measure that judges whole shots.
+games::MeasureValue value_of(const games::Measure& measure, const Record& record) {
+    try {
+        return measure.of(record);
+    } catch (const std::invalid_argument& refused) {
+        if (record.stopped == StopReason::kAtRest)
+            throw UsageError(fmt::format("--measure {}: {}", measure.text(), refused.what()));
+        if (measure.is_number()) return std::numeric_limits<double>::quiet_NaN();
+        return std::vector<std::string>();
+    }
 }
 
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa) {
+SweepRows play_part(const Sweep& sweep, std::uint64_t first, std::size_t shots) {
+    const Variation& variation = sweep.variation;
+    const std::size_t measures = sweep.measures.size();
+    std::vector<games::MeasureValue> measured(shots * measures);
     BatchOptions options;
     options.threads = 1;
     options.stop = [] { return interrupted(); };
+    if (measures > 0)
+        options.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
+            for (std::size_t m = 0; m < measures; ++m)
+                measured[shot * measures + m] = value_of(sweep.measures[m], record);
+        };
     Batch batch(shots, variation.base().ball.size());
     std::vector<std::string> draws;
     try {
-        batch.messages = simulate_many(variation, first, shots, isa, options, batch.arrays(), draws);
+        batch.messages = simulate_many(variation, first, shots, sweep.isa, options, batch.arrays(), draws);
     } catch (const BatchStopped&) {
         throw Interrupted();
     }
@@ -50,33 +69,49 @@ SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t
     for (std::size_t shot = 0; shot < shots; ++shot) {
         ++rows.outcomes[static_cast<std::size_t>(batch.status[shot])];
         for (std::size_t k = 0; k < columns.size(); ++k) {
-            // A key's value stands as it was drawn.
+            // A key's value is written as it was drawn.
             if (k >= 1 && k <= keys)
                 append_csv(rows.text, std::string_view(draws[shot * keys + k - 1]));
             else
                 append_value(rows.text, columns[k], values[k], shot, has_result(batch.status[shot]));
+        }
+        const bool result = has_result(batch.status[shot]);
+        for (std::size_t m = 0; m < measures; ++m) {
+            games::MeasureValue& value = measured[shot * measures + m];
+            append_csv(rows.text, std::string_view(result ? games::text_of(value) : ""));
+            if (result) rows.values.push_back(std::move(value));
         }
         rows.text.back() = '\n';
     }
     return rows;
 }
 
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
-                    int threads) {
-    const auto parts = static_cast<std::size_t>(threads);
+}  // namespace
+
+std::string sweep_header(const Sweep& sweep) {
+    std::vector<Cell> cells;
+    for (const SweepColumn& column : sweep_columns(sweep.variation)) cells.emplace_back(column.name);
+    for (const games::Measure& measure : sweep.measures) cells.emplace_back(measure.text());
+    return csv_line(cells);
+}
+
+SweepRows play_rows(const Sweep& sweep, std::uint64_t first, std::size_t shots) {
+    const auto parts = static_cast<std::size_t>(sweep.threads);
     std::vector<std::future<SweepRows>> played;
     for (std::size_t i = 0; i < parts; ++i) {
         const std::size_t from = shots * i / parts, to = shots * (i + 1) / parts;
         if (to > from)
             played.push_back(
-                std::async(std::launch::async, [&variation, isa, begin = first + from, count = to - from] {
-                    return play_rows(variation, begin, count, isa);
+                std::async(std::launch::async, [&sweep, begin = first + from, count = to - from] {
+                    return play_part(sweep, begin, count);
                 }));
     }
     SweepRows rows;
     for (std::future<SweepRows>& part : played) {
-        const SweepRows more = part.get();
+        SweepRows more = part.get();
         rows.text += more.text;
+        rows.values.insert(rows.values.end(), std::make_move_iterator(more.values.begin()),
+                           std::make_move_iterator(more.values.end()));
         for (std::size_t i = 0; i < rows.outcomes.size(); ++i) rows.outcomes[i] += more.outcomes[i];
     }
     return rows;

@@ -1,35 +1,45 @@
-// The table that a sweep writes: its header, and a row for each shot.
+// The table that a sweep writes: its header, and one row per shot.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "carom/engine/batch.h"
 #include "carom/engine/sweep_columns.h"
 #include "carom/engine/variation.h"
+#include "carom/games/measures.h"
 #include "carom/kernel/isa.h"
 
 namespace carom::tools {
 
 using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
-/// The names of sweep_columns(), with a line end.
-std::string sweep_header(const Variation& variation);
+/// What makes the rows: the shots, and the measures whose columns follow those of sweep_columns().
+struct Sweep {
+    const Variation& variation;
+    const std::vector<games::Measure>& measures;
+    kernel::Isa isa;
+    int threads;
+};
+
+/// The names of the columns, with a line end.
+std::string sweep_header(const Sweep& sweep);
 
 /// Rows of consecutive shots, with their line ends.
 struct SweepRows {
     std::string text;
     Outcomes outcomes{};
+    /// For each shot with a result, the values of all measures.
+    std::vector<games::MeasureValue> values;
 };
 
-/// Plays shots first, first + 1, ... and writes their rows. A row depends on the variation and the number of
-/// its shot only; a shot with invalid values and one that fails have a row, too. @throws Interrupted
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa);
-/// The same, shared out among threads. @throws Interrupted,
-/// std::system_error where the system gives no threads
-SweepRows play_rows(const Variation& variation, std::uint64_t first, std::size_t shots, kernel::Isa isa,
-                    int threads);
+/// Plays shots first, first + 1, ... on several threads, and writes their rows. A row depends only on the
+/// variation and the number of its shot; invalid and failed shots have a row, too.
+/// @throws Interrupted; std::system_error if the system cannot start the threads; UsageError for a measure
+/// that does not apply to such shots
+SweepRows play_rows(const Sweep& sweep, std::uint64_t first, std::size_t shots);
 
 }  // namespace carom::tools

@@ -1,4 +1,4 @@
-// How far a sweep is, in a file that other programs read while it runs.
+// The progress of a sweep, in a file that other programs read while it runs.
 #pragma once
 
 #include <chrono>
@@ -9,17 +9,16 @@
 
 namespace carom::tools {
 
-/// A JSON object in a file that is replaced as a whole: whoever reads it
-/// finds a complete one. Its keys are those of docs/guide/clusters.md.
+/// A JSON object in a file that is replaced as a whole, so that a reader always finds a complete one. Its
+/// keys are those of docs/guide/clusters.md.
 class SweepStatus {
   public:
-    /// @param path  empty: nothing is written
-    /// @param first, last, from  shots first to last - 1 are wanted, and those before `from` are there
-    /// already
+    /// @param path empty: nothing is written
+    /// @param first, last, from shots first to last - 1 are wanted, and those before `from` already exist
     SweepStatus(std::string path, std::string output, std::uint64_t first, std::uint64_t last,
                 std::uint64_t from);
 
-    /// Writes the file if the last time is a second ago. @throws std::runtime_error
+    /// Writes the file if a second has passed since the last time. @throws std::runtime_error
     void show(std::uint64_t done, const Outcomes& outcomes);
     /// Writes it for the last time. @param state  "done" or "stopped"
     void end(const char* state);

@@ -1,8 +1,7 @@
-// carom sweep: simulates many shots of one scene and writes one row for each shot.
+// carom sweep: simulates many shots of one scene and writes one row per shot.
 //
-// A row depends only on the scene, the rules, the seed and its number. The engine
-// plays a block of shots on all threads, and their rows are written in order: if
-// the program is killed, the file contains the first rows of the whole table.
+// A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on
+// all threads, and their rows are written in order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -19,11 +20,14 @@
 #include <vector>
 
 #include "base/console.h"
+#include "base/game_state.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "commands/sweep/partial_file.h"
+#include "carom/engine/printable.h"
 #include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
+#include "commands/sweep/table_in_parts.h"
+#include "commands/sweep/tally.h"
 
 namespace carom::tools {
 namespace {
@@ -37,14 +41,17 @@ struct SweepArgs {
     std::string shard;  ///< "2/4"; empty: all
     std::string output;
     std::string status;  ///< a file; empty: none
+    std::vector<std::string> measures;
+    std::string game;
+    bool json = false;
 };
 
 using Clock = std::chrono::steady_clock;
 
-/// Doubles, and what reads tables as doubles, count to there.
+/// Doubles, and programs that read tables as doubles, count this far.
 constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
-/// A block of shots grows until it takes this long: what a kill can lose, and how often the progress moves.
+/// A block of shots grows until it takes this long, which is how often the progress moves.
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
@@ -59,115 +66,87 @@ ShotRange shard_range(const std::string& text, std::uint64_t count) {
     if (text.empty()) return {0, count, true};
     if (const auto part = numbers_in<std::uint64_t, 2>(text, '/')) {
         const auto [i, n] = *part;
-        // count * k / n, without the product of the two, which may be too large.
+        // count * k / n without the product, which may overflow.
         const auto begin = [count, n = n](std::uint64_t k) { return count / n * k + count % n * k / n; };
         if (i >= 1 && i <= n && n <= kMostShards) return {begin(i - 1), begin(i), i == 1};
     }
     throw UsageError(fmt::format("--shard {}: expected I/N with 1 <= I <= N, as in 2/4", text));
 }
 
-/// What makes the rows.
-struct Sweep {
-    const Variation& variation;
-    kernel::Isa isa;
-    int threads;
-};
-
-/// The k-th value of a row as it stands there; of quotes only what is between them counts.
-std::string_view field_of(std::string_view row, std::size_t k) {
-    bool quoted = false;
-    std::size_t begin = 0, at = 0;
-    for (; at < row.size(); ++at) {
-        if (row[at] == '"') quoted = !quoted;
-        if (row[at] != ',' || quoted) continue;
-        if (k-- == 0) break;
-        begin = at + 1;
-    }
-    return row.substr(begin, at - begin);
+std::uint64_t failures(const Outcomes& outcomes) {
+    return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
-/// What stands in a file that is taken up.
-struct RowsThere {
-    std::uint64_t failed = 0;
-    bool in_order = true;
-
-    void see(const Sweep& sweep, const ShotRange& range, long number, std::string_view row) {
-        if (range.header && number == 0) {
-            in_order = std::string(row) + '\n' == sweep_header(sweep.variation);
-            return;
-        }
-        const std::uint64_t shot = range.first + static_cast<std::uint64_t>(number) - (range.header ? 1 : 0);
-        in_order = in_order && field_of(row, 0) == fmt::format_int(shot).c_str();
-        if (field_of(row, 1 + sweep.variation.keys().size()) == name(ShotStatus::kFailed)) ++failed;
-    }
-};
-
-/// The shot at which an incomplete file of an earlier run is continued. Its last row is computed again: if
-/// another build gives another row, the file is not continued.
-std::uint64_t take_up(const PartialFile& file, const Sweep& sweep, const ShotRange& range,
-                      const RowsThere& there) {
-    if (file.lines() == 0) return range.first;
-    const std::uint64_t rows = static_cast<std::uint64_t>(file.lines()) - (range.header ? 1 : 0);
-    std::string expected;
-    if (rows <= range.last - range.first)
-        expected = rows == 0 ? sweep_header(sweep.variation)
-                             : play_rows(sweep.variation, range.first + rows - 1, 1, sweep.isa).text;
-    if (!there.in_order || expected != file.last_line() + '\n')
-        throw std::runtime_error(fmt::format("{}: {} not what this program computes; remove it to begin anew",
-                                             file.name(),
-                                             there.in_order ? "its last row is" : "its rows are"));
-    message(fmt::format("going on with {}: {} of {} shots are there", file.name(), rows,
-                        range.last - range.first));
-    return range.first + rows;
-}
-
-/// Runs the shots from `from` on, block by block, and writes their rows. The next block is played while one
-/// is waited for and written, so that no thread stands idle.
-Outcomes write_rows(PartialFile& file, const Sweep& sweep, const ShotRange& range, std::uint64_t from,
-                    SweepStatus& status) {
+/// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
+/// one is awaited and written, so that no thread is idle.
+Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
+                    std::vector<Tally>& tallies) {
     Outcomes outcomes{};
     ProgressLine line("sweep");
     auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
-    std::uint64_t begun = from;
+    std::uint64_t begun = table.next();
     std::future<SweepRows> next;
     const auto begin_next = [&] {
         const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
         begun += shots;
         next = std::async(std::launch::async, [&sweep, first, shots] {
-            return play_rows(sweep.variation, first, static_cast<std::size_t>(shots), sweep.isa,
-                             sweep.threads);
+            return play_rows(sweep, first, static_cast<std::size_t>(shots));
         });
     };
     if (begun < range.last) begin_next();
-    for (std::uint64_t done = from; done < range.last;) {
+    while (table.next() < range.last) {
         const Clock::time_point start = Clock::now();
-        const std::uint64_t last = begun;
+        const std::uint64_t shots = begun - table.next();
         std::future<SweepRows> ready = std::exchange(next, {});
         if (begun < range.last) begin_next();
         const SweepRows rows = ready.get();
-        file.append(rows.text);
-        file.flush();
+        table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
-        done = last;
+        for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
-        status.show(done, outcomes);
-        line.show_bar(static_cast<long>(done - range.first), static_cast<long>(range.last - range.first));
+        status.show(table.next(), outcomes);
+        line.show_bar(static_cast<long>(table.next() - range.first),
+                      static_cast<long>(range.last - range.first));
     }
     return outcomes;
 }
 
-std::string summary(const Outcomes& outcomes, const SweepArgs& args, int jobs, double seconds) {
+/// What the shots that this run has played came to.
+std::string summary(const Outcomes& outcomes, const std::vector<Tally>& tallies, const SweepArgs& args,
+                    int jobs, double seconds) {
     std::uint64_t shots = 0;
     for (const std::uint64_t n : outcomes) shots += n;
+    if (args.json) {
+        nlohmann::ordered_json json = {
+            {"file", harmless(args.output)}, {"shots", shots}, {"seconds", seconds}};
+        for (int i = 0; i < kShotStatuses; ++i)
+            json["outcomes"][name(static_cast<ShotStatus>(i))] = outcomes[i];
+        json["measures"] = nlohmann::ordered_json::array();
+        for (const Tally& tally : tallies) json["measures"].push_back(tally.json());
+        return json.dump() + "\n";
+    }
     std::string text =
-        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} a second\n", args.output, counted(shots, "shot"),
+        fmt::format("{}: {} in {:.2f} s on {}, {:.0f} per second\n", args.output, counted(shots, "shot"),
                     seconds, counted(static_cast<std::size_t>(jobs), "thread"),
                     static_cast<double>(shots) / std::max(seconds, 1e-9));
     for (int i = 0; i < kShotStatuses; ++i) {
         const std::uint64_t n = outcomes[i];
         if (n > 0) text += fmt::format("  {:<8}{:>10}\n", name(static_cast<ShotStatus>(i)), n);
     }
+    for (const Tally& tally : tallies) text += tally.text();
     return text;
+}
+
+std::vector<games::Measure> read_measures(const SweepArgs& args, const Scene& scene) {
+    std::optional<games::Game> game;
+    if (!args.game.empty()) game = game_of(args.game);
+    std::vector<games::Measure> measures;
+    try {
+        for (const std::string& text : args.measures) measures.emplace_back(text, scene, game);
+    } catch (const games::MeasureError& error) {
+        throw UsageError(fmt::format("--measure {}", error.what()));
+    }
+    return measures;
 }
 
 Variation read_variation(const SweepArgs& args) {
@@ -186,44 +165,56 @@ int run(const SweepArgs& args) {
     const Variation variation = read_variation(args);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    // Each range of shots has a file of its own.
-    const std::uint64_t id =
-        variation.fingerprint() ^ (range.first * 0x9e3779b97f4a7c15u) ^ (range.last * 0xbf58476d1ce4e5b9u);
+    const std::vector<games::Measure> measures = read_measures(args, variation.base());
+    std::uint64_t columns = 0;
+    for (const games::Measure& measure : measures)
+        for (const char c : measure.text() + args.game + '\n')
+            columns = (columns ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    // Each range of shots has parts of its own.
+    const std::uint64_t id = variation.fingerprint() ^ columns ^ (range.first * 0x9e3779b97f4a7c15u) ^
+                             (range.last * 0xbf58476d1ce4e5b9u);
     if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
         throw UsageError(fmt::format(
-            "-o {}: this file is there, perhaps of another shard; give each its own, or remove it",
+            "-o {}: this file exists, perhaps from another shard; give each shard its own, or remove it",
             args.output));
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const Sweep sweep{variation, isa, jobs};
-    RowsThere there;
-    PartialFile file(args.output, id,
-                     [&](long number, std::string_view row) { there.see(sweep, range, number, row); });
-    const std::uint64_t from = take_up(file, sweep, range, there);
-    if (range.header && file.lines() == 0) file.append(sweep_header(sweep.variation));
+    const Sweep sweep{variation, measures, isa, jobs};
+    std::vector<Tally> tallies(measures.begin(), measures.end());
+    TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first);
+    const std::uint64_t from = table.next();
+    if (from > range.first) {
+        // Another build may have other bits.
+        if (!table.ends_with(play_rows(sweep, from - 1, 1).text))
+            throw std::runtime_error(
+                fmt::format("{}: its last row is not what this program computes; remove it to start again",
+                            table.folder()));
+        message(fmt::format("continuing with {}: {} of {} shots are done", table.folder(), from - range.first,
+                            range.last - range.first));
+    }
     const Clock::time_point start = Clock::now();
     Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(file, sweep, range, from, status);
+        outcomes = write_rows(table, sweep, range, status, tallies);
     } catch (const std::system_error& error) {
         throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
                                              counted(static_cast<std::size_t>(jobs), "thread"),
                                              error.what()));
     } catch (const Interrupted&) {
-        file.flush();
+        table.keep();
         status.end("stopped");
-        if (file.can_be_taken_up())
-            message(fmt::format("stopped; the same command goes on with {}", file.name()));
+        if (!table.folder().empty())
+            message(fmt::format("stopped; run the same command to continue with {}", table.folder()));
         throw;
     }
-    file.commit();
+    table.commit();
     status.end("done");
-    print(summary(outcomes, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
-    const std::uint64_t failed = outcomes[static_cast<std::size_t>(ShotStatus::kFailed)] + there.failed;
-    if (failed == 0) return kOk;
-    message(fmt::format("{} failed while running; {} why", counted(failed, "shot"),
-                        failed == 1 ? "its row says" : "their rows say"));
+    print(
+        summary(outcomes, tallies, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
+    if (table.failed() == 0) return kOk;
+    message(fmt::format("{} failed while running; {} why", counted(table.failed(), "shot"),
+                        table.failed() == 1 ? "its row says" : "their rows say"));
     return kFailed;
 }
 
@@ -231,26 +222,30 @@ int run(const SweepArgs& args) {
 
 void add_sweep(Options& program) {
     auto [command, args] = program.command<SweepArgs>(
-        "sweep", "Many shots of one scene with values that vary: a row a shot", run);
+        "sweep", "Simulate many shots of one scene with varied values, one row per shot", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    Option& vary = command.option(
-        "--vary", &args.vary, "KEY=DISTRIBUTION",
-        "What varies and how, once per key: uniform(a,b), normal(sd) around the scene's value, "
-        "normal(mean,sd), integer(a,b) or list(v,...)");
+    Option& vary = command.option("--vary", &args.vary, "KEY=DISTRIBUTION",
+                                  "What varies and how, once per key: uniform(a,b), normal(sd) around the "
+                                  "scene's value, normal(mean,sd), integer(a,b) or list(v,...)");
     vary.required = true;
+    command.option("--measure", &args.measures, "EXPRESSION",
+                   "A column more, and a line of the summary: any measure or expression that carom describe "
+                   "measures explains, as often as wanted (default: none)");
+    command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
+        .one_of(game_names());
+    command.flag("--json", args.json, "Print the summary as JSON (default: off)");
     command.option("--count", &args.count, "N", "Number of shots").required = true;
     command.option("--seed", &args.seed, "S", "Seed of all draws");
     command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
         .in(0, 256);
     command.option("--shard", &args.shard, "I/N",
-                   "Only the I-th of N parts; the files of all parts, one behind the other, are the whole "
+                   "Play only the I-th of N parts; the files of all parts, concatenated, are the whole table "
                    "(default: all)");
     command.option("--status", &args.status, "FILE",
-                   "How far it is, every second, as JSON (default: not written)");
+                   "Write the progress every second, as JSON (default: not written)");
     command.option("-o,--output", &args.output, "FILE.csv", "Table to write").required = true;
     command.footer =
-        "A sweep that was stopped or killed goes on when the same command is given again "
-        "(docs/guide/sweep.md).";
+        "To continue a sweep that was stopped or killed, run the same command again (docs/guide/sweep.md).";
 }
 
 }  // namespace carom::tools

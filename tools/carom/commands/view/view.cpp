@@ -1,4 +1,4 @@
-// carom view: a shot as one page that plays it.
+// carom view: a shot as one HTML page that plays it.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@ struct ViewArgs {
     bool margin = true;
 };
 
-/// A shot, and what its frames cost where that is known.
+/// A shot, and the cost of its frames if known.
 struct MeasuredShot {
     Record record;
     Json margin = nullptr;  ///< a chart
@@ -48,17 +48,17 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     return {std::move(runs.front().record), std::move(chart)};
 }
 
-/// A record has been simulated already. If that was profiled, it says what each frame of the simulation cost.
+/// A record is not simulated again. If it was profiled, it contains the simulation cost of each frame.
 MeasuredShot read_record_shot(const ViewArgs& args) {
     std::vector<MarginRun> runs(1);
     Record& record = runs.front().record;
     record = read_shot(args.input, {});
     if (!args.margin) return {std::move(record)};
     if (record.costs.empty()) {
-        message(fmt::format(
-            "note: {}: the record is not profiled, so the page has no chart of frames; give the scene, or a "
-            "record of carom simulate --profile",
-            args.input));
+        message(
+            fmt::format("note: {}: the record is not profiled, so the page has no frame chart; use the "
+                        "scene, or a record from carom simulate --profile",
+                        args.input));
         return {std::move(record)};
     }
     const double fps = record.render.fps;
@@ -92,11 +92,12 @@ int run(const ViewArgs& args) {
 }  // namespace
 
 void add_view(Options& program) {
-    auto [command, args] = program.command<ViewArgs>("view", "A shot as one page that plays it", run);
-    command.argument("SCENE", args.input, "Scene file (TOML), or a record (.json)").required = true;
-    command.argument("SECOND", args.second, "Another one, over or beside it (default: none)");
-    command.option("-o,--output", &args.output, "FILE.html", "The page; FILE.html#t=1.5 opens at 1.5 s");
-    command.flag("--no-margin", args.margin, "Do not draw and time the frames (default: off)");
+    auto [command, args] =
+        program.command<ViewArgs>("view", "Write a shot as one HTML page that plays it", run);
+    command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
+    command.argument("SECOND", args.second, "Second shot, over or beside the first (default: none)");
+    command.option("-o,--output", &args.output, "FILE.html", "Page to write; FILE.html#t=1.5 opens at 1.5 s");
+    command.flag("--no-margin", args.margin, "Skip drawing and timing the frames (default: off)");
     add_gl(command, args.gl);
 }
 

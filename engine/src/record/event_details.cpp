@@ -1,0 +1,223 @@
+#include "carom/engine/event_details.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "physics/motion.h"
+#include "record/verify_between.h"
+
+namespace carom {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+// [-] Diamonds of a whole long and a whole short rail.
+constexpr double kLongRail = 8.0, kShortRail = 4.0;
+
+bool has(const Record& record, const Event& event, int ball) {
+    if (event.a == ball || (kind(event.type).partner == Partner::kBall && event.b == ball)) return true;
+    if (event.type != EventType::kBallCluster) return false;
+    const std::vector<int>& cluster = record.clusters[static_cast<std::size_t>(event.detail)];
+    return std::find(cluster.begin(), cluster.end(), ball) != cluster.end();
+}
+
+BallState state_of(const Record& record, int ball, const Segment& s, double tau) {
+    const double R = record.size(ball).R;
+    const Placed placed = placed_at(s, tau, record.gravity, R);
+    const Vec3 spin = tau > 0.0 ? spin_at(s, tau, R) : s.w;
+    const int pocket = s.state == MotionState::kPocketed ? record.tracks[ball].pocket : -1;
+    return {s.state, placed.position, placed.velocity, spin, pocket};
+}
+
+/// The ball before and after the event: the segment that ends there, and the one that the event began.
+BallAtEvent around(const Record& record, std::size_t index, int ball) {
+    const std::vector<Segment>& segments = record.tracks[ball].segments;
+    const double time = record.events[index].time;
+    const auto earlier = [](const Segment& s, double t) { return s.start < t; };
+    const auto later = [](double t, const Segment& s) { return t < s.start; };
+    auto first = std::lower_bound(segments.begin(), segments.end(), time, earlier);
+    const auto end = std::upper_bound(first, segments.end(), time, later);
+    // No event caused a ball's initial motion.
+    if (first == segments.begin()) ++first;
+    std::size_t begin = index, last = index;
+    while (begin > 0 && record.events[begin - 1].time == time) --begin;
+    while (last + 1 < record.events.size() && record.events[last + 1].time == time) ++last;
+    std::ptrdiff_t rank = 0, all = 0;
+    for (std::size_t i = begin; i <= last; ++i) {
+        if (!has(record, record.events[i], ball)) continue;
+        rank += i < index;
+        ++all;
+    }
+    const auto state = [&](auto segment) {
+        return state_of(record, ball, *segment, std::max(0.0, time - segment->start));
+    };
+    if (end - first == all) return {ball, state(first + rank - 1), state(first + rank)};
+    return {ball, state(first - 1), state(std::max(first, end) - 1), rank == 0, rank == all - 1};
+}
+
+/// Sets the point and the normal of what ball a meets.
+void place_contact(const Record& record, const Event& event, EventDetails& d) {
+    const BallState& a = d.balls.front().after;
+    const double R = record.size(event.a).R;
+    switch (kind(event.type).partner) {
+        case Partner::kBall:
+            d.normal = (a.position - d.balls[1].after.position).normalized();
+            d.point = a.position - R * d.normal;
+            return;
+        case Partner::kCushion:
+        case Partner::kJaw: {
+            const bool jaw = kind(event.type).partner == Partner::kJaw;
+            const auto part = static_cast<std::size_t>(event.b);
+            const Vec2 center = planar(a.position), nearest = nearest_point(record.table, event, center);
+            const Vec2 n = (center - nearest).normalized();
+            const Vec2 point = jaw ? Vec2(nearest + record.table.jaws[part].radius * n) : nearest;
+            d.normal = Vec3(n.x(), n.y(), 0.0);
+            d.point = Vec3(point.x(), point.y(),
+                           jaw ? record.table.jaws[part].height : record.table.cushions[part].height);
+            return;
+        }
+        default:
+            if (event.type != EventType::kBallCloth) return;
+            d.normal = Vec3::UnitZ();
+            d.point = a.position - R * d.normal;
+    }
+}
+
+double diamond(const Table& table, const Event& event, const Vec3& point) {
+    if (!(table.width > 0.0 && table.length > 0.0)) return EventDetails::kNone;
+    const Cushion& cushion = table.cushions[static_cast<std::size_t>(event.b)];
+    const Vec2 along = cushion.to - cushion.from;
+    return std::abs(along.y()) > std::abs(along.x())
+               ? (point.y() - table.corner.y()) / table.length * kLongRail
+               : (point.x() - table.corner.x()) / table.width * kShortRail;
+}
+
+constexpr EventColumn kColumns[] = {
+    {"a_x", "m", "centre of ball a"},
+    {"a_y", "m", ""},
+    {"a_z", "m", ""},
+    {"a_vx_before", "m/s", "velocity of ball a just before the event"},
+    {"a_vy_before", "m/s", ""},
+    {"a_vz_before", "m/s", ""},
+    {"a_wx_before", "rad/s", "its angular velocity"},
+    {"a_wy_before", "rad/s", ""},
+    {"a_wz_before", "rad/s", ""},
+    {"a_vx", "m/s", "velocity of ball a just after the event"},
+    {"a_vy", "m/s", ""},
+    {"a_vz", "m/s", ""},
+    {"a_wx", "rad/s", "its angular velocity"},
+    {"a_wy", "rad/s", ""},
+    {"a_wz", "rad/s", ""},
+    {"b_x", "m", "the same of the other ball, if there is one"},
+    {"b_y", "m", ""},
+    {"b_z", "m", ""},
+    {"b_vx_before", "m/s", ""},
+    {"b_vy_before", "m/s", ""},
+    {"b_vz_before", "m/s", ""},
+    {"b_wx_before", "rad/s", ""},
+    {"b_wy_before", "rad/s", ""},
+    {"b_wz_before", "rad/s", ""},
+    {"b_vx", "m/s", ""},
+    {"b_vy", "m/s", ""},
+    {"b_vz", "m/s", ""},
+    {"b_wx", "rad/s", ""},
+    {"b_wy", "rad/s", ""},
+    {"b_wz", "rad/s", ""},
+    {"point_x", "m", "where ball a touches what it meets"},
+    {"point_y", "m", ""},
+    {"point_z", "m", ""},
+    {"normal_x", "", "unit vector along which ball a is pushed"},
+    {"normal_y", "", ""},
+    {"normal_z", "", ""},
+    {"cut_deg", "deg", "between the relative velocity before and the normal: the cut angle; 0 is head-on"},
+    {"closing", "m/s", "speed at which the two approach along the normal"},
+    {"impulse", "N s", "that ball a received"},
+    {"lost", "J", "energy that the balls of this event lost"},
+    {"diamond", "", "of a cushion: 0 to 4 along short rails, 0 to 8 along long ones, from the origin's side"},
+};
+
+}  // namespace
+
+std::string met_name(const Record& record, const Event& event) {
+    const auto named = [&](const auto& parts) { return parts[static_cast<std::size_t>(event.b)].name; };
+    std::string text;
+    if (event.b >= 0 && kind(event.type).partner == Partner::kCushion) text = named(record.table.cushions);
+    if (event.b >= 0 && kind(event.type).partner == Partner::kJaw) text = named(record.table.jaws);
+    if (event.b >= 0 && kind(event.type).partner == Partner::kPocket) text = named(record.table.pockets);
+    return text.empty() ? record.partner_id(event) : text;
+}
+
+Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
+    const auto part = static_cast<std::size_t>(event.b);
+    if (kind(event.type).partner == Partner::kJaw) return table.jaws[part].center;
+    const Cushion& c = table.cushions[part];
+    const Vec2 line = c.to - c.from;
+    return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
+}
+
+EventDetails details_of(const Record& record, std::size_t event) {
+    const Event& e = record.events[event];
+    const EventKind& of = kind(e.type);
+    EventDetails d;
+    d.balls.push_back(around(record, event, e.a));
+    if (of.partner == Partner::kBall) d.balls.push_back(around(record, event, e.b));
+    if (e.type == EventType::kBallCluster)
+        for (const int ball : record.clusters[static_cast<std::size_t>(e.detail)])
+            if (ball != e.a && ball != e.b) d.balls.push_back(around(record, event, ball));
+
+    const BallAtEvent& a = d.balls.front();
+    place_contact(record, e, d);
+    if (of.partner == Partner::kCushion) d.diamond = diamond(record.table, e, d.point);
+    const bool impact = of.phase == EventPhase::kImpact && of.partner != Partner::kPocket;
+    if (!impact && of.phase != EventPhase::kStrike) return d;
+    const auto known = [&](auto member, std::size_t count) {
+        return std::all_of(d.balls.begin(), d.balls.begin() + static_cast<std::ptrdiff_t>(count),
+                           [member](const BallAtEvent& ball) { return ball.*member; });
+    };
+    const bool whole =
+        known(&BallAtEvent::before_known, d.balls.size()) && known(&BallAtEvent::after_known, d.balls.size());
+    if (whole) d.impulse = record.size(e.a).m * (a.after.velocity - a.before.velocity).norm();
+    if (!impact) return d;
+    const bool pair = of.partner == Partner::kBall;
+    if (known(&BallAtEvent::before_known, pair ? 2 : 1)) {
+        const Vec3 v = a.before.velocity - (pair ? d.balls[1].before.velocity : Vec3::Zero());
+        d.closing = -v.dot(d.normal);
+        d.cut = std::atan2(v.cross(d.normal).norm(), d.closing);
+    }
+    if (!whole) return d;
+    d.lost = 0.0;
+    // ball_energy() is divided by the mass in [balls].
+    for (const BallAtEvent& ball : d.balls)
+        d.lost += record.balls.m *
+                  (ball_energy(record, ball.ball, ball.before) - ball_energy(record, ball.ball, ball.after));
+    return d;
+}
+
+std::span<const EventColumn> event_columns() {
+    return kColumns;
+}
+
+void event_row(const Record& record, std::size_t event, std::span<double> row) {
+    const EventDetails d = details_of(record, event);
+    auto at = row.begin();
+    const auto put = [&at](const Vec3& v) {
+        for (const double value : v) *at++ = value;
+    };
+    for (std::size_t i = 0; i < 2; ++i) {
+        const bool there = i < d.balls.size();
+        const BallState none{MotionState::kStationary, Vec3::Constant(EventDetails::kNone),
+                             Vec3::Constant(EventDetails::kNone), Vec3::Constant(EventDetails::kNone)};
+        const BallState &before = there ? d.balls[i].before : none, &after = there ? d.balls[i].after : none;
+        put(after.position);
+        put(before.velocity);
+        put(before.spin);
+        put(after.velocity);
+        put(after.spin);
+    }
+    put(d.point);
+    put(d.normal);
+    for (const double value : {d.cut * kDegrees, d.closing, d.impulse, d.lost, d.diamond}) *at++ = value;
+}
+
+}  // namespace carom

@@ -1,0 +1,81 @@
+// Finds the shot that most surely does what is wanted, under the errors of a hand.
+//
+// Every candidate is played with the same errors and the same layouts of the balls (common random numbers),
+// so that candidates differ by what they are and not by luck. Most are dropped after a few shots and the rest
+// get more (successive halving: Jamieson and Talwalkar, "Non-stochastic best arm identification and
+// hyperparameter optimization", AISTATS 2016). The best then have descendants nearby, in several generations.
+// The figures that are reported come from shots that the search has not seen.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "carom/games/measures.h"
+#include "carom/kernel/isa.h"
+
+namespace carom::games {
+
+/// Standard deviations of a player's independent normal errors.
+struct Hand {
+    double aim_deg = 0.2;        ///< [degrees]
+    double speed = 0.03;         ///< of the speed [-]
+    double tip = 0.02;           ///< of the tip, sideways and up [ball radii]
+    double elevation_deg = 0.0;  ///< [degrees]
+    bool operator==(const Hand&) const = default;
+};
+
+/// An input that the search chooses.
+struct Choice {
+    /// As SceneNumber takes it; or hit.BALL, which aims at that ball: 0 is full, 1 and -1 pass its left and
+    /// right edge, with nothing allowed for squirt.
+    std::string key;
+    double low = 0.0, high = 0.0;
+};
+
+struct SolveOptions {
+    std::vector<Choice> choices;
+    Hand hand;
+    std::uint64_t seed = 1;
+    std::size_t shots = 400000;  ///< all that the search plays
+    int threads = 0;             ///< 0: one for each core
+    std::size_t best = 3;        ///< how many shots that differ in kind
+    /// Scenes that differ from `scene` in the places of their balls only, such as racks; or empty.
+    std::vector<Scene> layouts;
+    std::function<void(std::size_t done)> progress;
+    std::function<bool()> stop;
+};
+
+struct Solution {
+    std::vector<double> values;  ///< in the order of the choices
+    Scene scene;                 ///< the shot as it is meant
+    std::size_t shots = 0, successes = 0;
+    /// How often each ball fell into each pocket, per shot, the most frequent first.
+    struct Fall {
+        int ball, pocket;
+        double share;
+    };
+    std::vector<Fall> falls;
+    /// Share of successes if one input is off by `by` this way or that.
+    struct Cost {
+        std::string input;
+        double by;
+        const char* unit;
+        double less, more;
+    };
+    std::vector<Cost> costs;
+};
+
+/// The best shots that differ in kind, the surest first.
+/// @throws std::invalid_argument for a key that names no number, a range that is none, or a want that the
+/// shots cannot be asked for
+std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
+                            const SolveOptions& options);
+
+}  // namespace carom::games

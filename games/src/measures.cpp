@@ -1,0 +1,647 @@
+#include "carom/games/measures.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/event_details.h"
+#include "carom/engine/frozen.h"
+#include "carom/games/judge_many.h"
+#include "carom/games/shot.h"
+
+namespace carom::games {
+namespace {
+
+using Texts = std::vector<std::string>;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+// [m] The distance of `near` if none is given.
+constexpr double kNear = 0.1;
+
+/// The arguments of a measure, checked against the scene.
+struct Arguments {
+    int ball = -1;
+    std::vector<double> numbers;
+    std::optional<Game> game;
+};
+
+/// A record, and what several measures read from it.
+struct Played {
+    explicit Played(const Record& played) : record(played) {}
+    const Shot& shot() const {
+        if (!shot_) shot_ = shot_of(record);
+        return *shot_;
+    }
+    int struck() const {
+        for (const Event& event : record.events)
+            if (event.type == EventType::kCueStrike) return event.a;
+        return -1;
+    }
+    const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
+
+    const Record& record;
+
+  private:
+    mutable std::optional<Shot> shot_;
+};
+
+Texts listed(const Played& played, EventType type, bool partner) {
+    Texts texts;
+    for (const Event& event : played.record.events)
+        if (event.type == type)
+            texts.push_back(partner ? played.record.partner_id(event) : played.id(event.a));
+    return texts;
+}
+
+double count(const Played& played, EventType type, bool struck) {
+    const int ball = played.struck();
+    return static_cast<double>(
+        std::count_if(played.record.events.begin(), played.record.events.end(), [&](const Event& event) {
+            return event.type == type && (struck ? event.a == ball : event.a != ball);
+        }));
+}
+
+/// The events in which the struck ball is driven to a cushion or a jaw.
+std::vector<std::size_t> driven(const Played& played) {
+    std::vector<std::size_t> events;
+    const int ball = played.struck();
+    for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
+        const Event& event = played.record.events[i];
+        const EventKind& of = kind(event.type);
+        const bool wall = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
+        if (!wall || event.a != ball || of.phase == EventPhase::kRelease) continue;
+        const auto& segments = played.record.tracks[static_cast<std::size_t>(ball)].segments;
+        if (!still_frozen(played.record.table, event, segments, played.record.size(ball).R))
+            events.push_back(i);
+    }
+    return events;
+}
+
+std::optional<std::size_t> cushion(const Played& played, double number) {
+    const std::vector<std::size_t> events = driven(played);
+    const auto index = static_cast<std::size_t>(number) - 1;
+    return index < events.size() ? std::optional(events[index]) : std::nullopt;
+}
+
+/// Sums or compares over the pieces of a ball's motion: f(segment, seconds for which it applies).
+template <class F>
+void pieces(const Record& record, int ball, F&& f) {
+    const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(ball)].segments;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        const double end = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
+        const double lasts = std::min(end - segments[i].start, segments[i].duration);
+        if (lasts > 0.0 && !is_gone(segments[i].state)) f(segments[i], lasts);
+    }
+}
+
+/// Length of the parabola of a segment in the plane [m], by its closed form.
+double length_of(const Segment& s, double time) {
+    const double v2 = s.v.x() * s.v.x() + s.v.y() * s.v.y(), a2 = s.a.squaredNorm();
+    const double va = s.v.x() * s.a.x() + s.v.y() * s.a.y();
+    if (a2 == 0.0) return std::sqrt(v2) * time;
+    // With tau from the vertex, the speed is sqrt(h^2 + a^2 tau^2).
+    const double a = std::sqrt(a2), shift = va / a2, h2 = std::max(0.0, v2 - va * va / a2);
+    const auto whole = [&](double tau) {
+        const double speed = std::sqrt(h2 + a2 * tau * tau);
+        return 0.5 * (tau * speed + (h2 > 0.0 ? h2 / a * std::asinh(a * tau / std::sqrt(h2)) : 0.0));
+    };
+    return whole(time + shift) - whole(shift);
+}
+
+BallState last(const Played& played, int ball) {
+    return played.record.state_at(ball, played.record.duration);
+}
+
+double distance(const Played& played, const Arguments& of) {
+    const BallState s = last(played, of.ball);
+    if (is_gone(s.state)) return kNone;
+    return std::hypot(s.position.x() - of.numbers[0], s.position.y() - of.numbers[1]);
+}
+
+Texts fouls(const Played& played, const Arguments& of, bool opening) {
+    const State state = opening ? new_game(*of.game) : state_of_turn(*of.game, Group::kOpen);
+    Texts texts;
+    for (const Foul foul : judge(state, played.record).fouls) texts.emplace_back(name(foul));
+    return texts;
+}
+
+struct Row {
+    MeasureInfo info;
+    MeasureValue (*value)(const Played&, const Arguments&);
+};
+
+// Names of arguments: BALL, X, Y, R, K (a number from 1), GAME.
+const Row kRows[] = {
+    {{"pocketed", "", "list", "balls that fell, in order"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         return listed(p, EventType::kBallPocket, false);
+     }},
+    {{"pockets", "", "list", "pockets they fell into, in the same order"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         return listed(p, EventType::kBallPocket, true);
+     }},
+    {{"balls_pocketed", "", "", "number of balls that fell, except the struck ball"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         return count(p, EventType::kBallPocket, false);
+     }},
+    {{"any_pocketed", "", "truth", "whether a ball other than the struck one fell"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         return double(count(p, EventType::kBallPocket, false) > 0.0);
+     }},
+    {{"pocket_of", "BALL", "text", "pocket that holds the ball; out if it left the table, else empty"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         for (const Event& event : p.record.events) {
+             if (event.a == of.ball && event.type == EventType::kBallPocket)
+                 return Texts{p.record.partner_id(event)};
+             if (event.a == of.ball && event.type == EventType::kBallOut) return Texts{"out"};
+         }
+         return Texts{};
+     }},
+    {{"off_table", "", "list", "balls that left the table"},
+     [](const Played& p, const Arguments&) -> MeasureValue { return listed(p, EventType::kBallOut, false); }},
+    {{"scratch", "", "truth", "whether the struck ball fell or left the table"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         return double(count(p, EventType::kBallPocket, true) + count(p, EventType::kBallOut, true) > 0.0);
+     }},
+    {{"first_hit", "", "list", "ball that the struck ball hits first; several if it hits them at once"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         Texts texts;
+         for (const int ball : p.shot().first_hits) texts.push_back(p.id(ball));
+         return texts;
+     }},
+    {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         Texts texts;
+         for (const std::size_t i : driven(p)) texts.push_back(p.record.partner_id(p.record.events[i]));
+         return texts;
+     }},
+    {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         const auto i = cushion(p, of.numbers[0]);
+         return i ? details_of(p.record, *i).point.x() : kNone;
+     }},
+    {{"cushion_y", "K", "m", "y where it does"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         const auto i = cushion(p, of.numbers[0]);
+         return i ? details_of(p.record, *i).point.y() : kNone;
+     }},
+    {{"cushion_diamond", "K", "", "the place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         const auto i = cushion(p, of.numbers[0]);
+         return i ? details_of(p.record, *i).diamond : kNone;
+     }},
+    {{"driven", "", "",
+      "number of balls driven to a rail, pocketed or off the table, except the struck ball"},
+     [](const Played& p, const Arguments&) -> MeasureValue {
+         const std::vector<int> balls = p.shot().driven_after(p.shot().first_time);
+         return double(balls.size()) - double(std::count(balls.begin(), balls.end(), p.struck()));
+     }},
+    {{"legal_break", "GAME", "truth", "whether the shot is a fair break of the game"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return double(fouls(p, of, true).empty()); }},
+    {{"break_foul", "GAME", "list", "fouls of the shot as a break of the game"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, true); }},
+    {{"foul", "GAME", "list", "fouls of the shot in the middle of a game; in eight-ball with an open table"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, false); }},
+    {{"x", "BALL", "m", "final x"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.x(); }},
+    {{"y", "BALL", "m", "final y"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.y(); }},
+    {{"distance", "BALL, X, Y", "m", "from the ball's final position to (X, Y); empty if it is gone"},
+     [](const Played& p, const Arguments& of) -> MeasureValue { return distance(p, of); }},
+    {{"travel", "BALL", "m", "length of the ball's path on the table"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         double sum = 0.0;
+         pieces(p.record, of.ball, [&sum](const Segment& s, double time) { sum += length_of(s, time); });
+         return sum;
+     }},
+    {{"max_speed", "BALL", "m/s", "largest speed of the ball"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         double most = 0.0;
+         // Speed is convex in each piece, so that it is largest at an end.
+         pieces(p.record, of.ball, [&](const Segment& s, double time) {
+             for (const double tau : {0.0, time}) {
+                 const double up = flies(s.state) ? s.v.z() - p.record.gravity * tau : 0.0;
+                 most = std::max(most, std::hypot(velocity_at(s, tau).x(), velocity_at(s, tau).y(), up));
+             }
+         });
+         return most;
+     }},
+    {{"rest_time", "BALL", "s", "when the ball comes to rest or falls"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         double end = 0.0;
+         pieces(p.record, of.ball, [&end](const Segment& s, double time) {
+             if (s.state != MotionState::kStationary) end = s.start + time;
+         });
+         return end;
+     }},
+    {{"air_time", "BALL", "s", "how long the ball is in the air"},
+     [](const Played& p, const Arguments& of) -> MeasureValue {
+         double sum = 0.0;
+         pieces(p.record, of.ball, [&sum](const Segment& s, double time) {
+             if (s.state == MotionState::kAirborne) sum += time;
+         });
+         return sum;
+     }},
+    {{"duration", "", "s", "duration of the shot"},
+     [](const Played& p, const Arguments&) -> MeasureValue { return p.record.duration; }},
+};
+
+}  // namespace
+
+/// A value, an operation, or a measure with its arguments.
+struct Measure::Node {
+    enum class Kind { kValue, kMeasure, kOr, kAnd, kNot, kCompare, kIn, kSum };
+    Kind kind = Kind::kValue;
+    std::string word;  ///< the operator
+    MeasureValue value;
+    const Row* row = nullptr;
+    Arguments arguments;
+    std::vector<Node> parts;
+};
+
+namespace {
+
+using Node = Measure::Node;
+
+bool truth(const MeasureValue& value) {
+    if (const double* number = std::get_if<double>(&value)) return *number != 0.0 && !std::isnan(*number);
+    const Texts& texts = std::get<Texts>(value);
+    return !texts.empty() && !(texts.size() == 1 && texts[0].empty());
+}
+
+bool is_number(const Node& node) {
+    if (node.kind == Node::Kind::kValue) return std::holds_alternative<double>(node.value);
+    if (node.kind != Node::Kind::kMeasure) return true;
+    const std::string_view unit = node.row->info.unit;
+    return unit != "text" && unit != "list";
+}
+
+/// Reads an expression by recursive descent, one function per level of precedence.
+class Reader {
+  public:
+    Reader(const std::string& text, const Scene& scene, std::optional<Game> game)
+        : text_(text), scene_(scene), game_(game) {
+        next();
+    }
+
+    Node whole() {
+        Node node = either();
+        if (kind_ != Kind::kEnd) fail("expected the end, or an operator such as and, or, <");
+        return node;
+    }
+
+  private:
+    enum class Kind { kEnd, kNumber, kText, kName, kSign };
+
+    [[noreturn]] void fail(const std::string& why) const {
+        throw MeasureError("\"" + text_ + "\", at " +
+                           (kind_ == Kind::kEnd ? "its end" : "\"" + token_ + "\"") + ": " + why);
+    }
+
+    void next() {
+        while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+        token_.clear();
+        kind_ = Kind::kEnd;
+        if (at_ == text_.size()) return;
+        const std::size_t begin = at_;
+        const auto is = [&](auto test) {
+            return at_ < text_.size() && test(static_cast<unsigned char>(text_[at_]));
+        };
+        const char c = text_[at_];
+        if (c == '"') {
+            kind_ = Kind::kText;
+            const std::size_t end = text_.find('"', begin + 1);
+            token_ = text_.substr(begin + 1, end == std::string::npos ? end : end - begin - 1);
+            at_ = end == std::string::npos ? text_.size() : end + 1;
+            if (end == std::string::npos) fail("expected a closing quote");
+            return;
+        }
+        if (is([](int d) { return std::isdigit(d) || d == '.'; })) {
+            kind_ = Kind::kNumber;
+            const char* const last = text_.data() + text_.size();
+            const auto [end, error] = std::from_chars(text_.data() + begin, last, number_);
+            if (error != std::errc()) fail("expected a number");
+            at_ = static_cast<std::size_t>(end - text_.data());
+        } else if (is([](int d) { return std::isalpha(d) || d == '_'; })) {
+            kind_ = Kind::kName;
+            while (is([](int d) { return std::isalnum(d) || d == '_'; })) ++at_;
+        } else {
+            kind_ = Kind::kSign;
+            const std::string two = text_.substr(at_, 2);
+            at_ += two == "<=" || two == ">=" || two == "==" || two == "!=" ? 2 : 1;
+        }
+        token_ = text_.substr(begin, at_ - begin);
+    }
+
+    bool is(std::string_view word) const {
+        return (kind_ == Kind::kName || kind_ == Kind::kSign) && token_ == word;
+    }
+    bool take(std::string_view word) {
+        if (!is(word)) return false;
+        next();
+        return true;
+    }
+    void need(std::string_view word) {
+        if (!take(word)) fail("expected " + std::string(word));
+    }
+
+    static Node made(Node::Kind kind, std::string word, std::vector<Node> parts) {
+        Node node;
+        node.kind = kind;
+        node.word = std::move(word);
+        node.parts = std::move(parts);
+        return node;
+    }
+    Node pair(Node::Kind kind, std::string word, Node left, Node right) const {
+        std::vector<Node> parts;
+        parts.push_back(std::move(left));
+        parts.push_back(std::move(right));
+        return made(kind, std::move(word), std::move(parts));
+    }
+
+    Node either() {
+        Node left = both();
+        while (take("or")) left = pair(Node::Kind::kOr, "or", std::move(left), both());
+        return left;
+    }
+    Node both() {
+        Node left = negated();
+        while (take("and")) left = pair(Node::Kind::kAnd, "and", std::move(left), negated());
+        return left;
+    }
+    Node negated() {
+        if (++depth_ > kDeepest) fail("expected fewer levels");
+        Node node = [this] {
+            if (!take("not")) return compared();
+            std::vector<Node> parts;
+            parts.push_back(negated());
+            return made(Node::Kind::kNot, "not", std::move(parts));
+        }();
+        --depth_;
+        return node;
+    }
+    Node compared() {
+        // A ball named before `near` is not a measure.
+        if (kind_ == Kind::kName || kind_ == Kind::kText || kind_ == Kind::kNumber) {
+            const std::size_t here = at_;
+            const auto kind = kind_;
+            const std::string token = token_;
+            const double number = number_;
+            next();
+            if (take("near")) return near(token);
+            at_ = here;
+            kind_ = kind;
+            token_ = token;
+            number_ = number;
+        }
+        Node left = sum();
+        for (const char* word : {"==", "!=", "<=", ">=", "<", ">"}) {
+            if (!is(word)) continue;
+            next();
+            Node right = sum();
+            const bool order = word[0] == '<' || word[0] == '>';
+            if (order && !(is_number(left) && is_number(right)))
+                fail("expected numbers beside " + std::string(word));
+            return pair(Node::Kind::kCompare, word, std::move(left), std::move(right));
+        }
+        if (take("in")) return pair(Node::Kind::kIn, "in", std::move(left), sum());
+        return left;
+    }
+    Node near(const std::string& ball) {
+        Node place;
+        place.kind = Node::Kind::kMeasure;
+        place.row = row("distance");
+        place.arguments.ball = index(ball);
+        need("(");
+        std::vector<double> numbers = {signed_number()};
+        while (take(",")) numbers.push_back(signed_number());
+        need(")");
+        if (numbers.size() != 2 && numbers.size() != 3) fail("expected (X, Y) or (X, Y, METRES)");
+        Node limit;
+        limit.value = numbers.size() == 3 ? numbers[2] : kNear;
+        place.arguments.numbers = {numbers[0], numbers[1]};
+        return pair(Node::Kind::kCompare, "<=", std::move(place), std::move(limit));
+    }
+    Node sum() {
+        Node left = product();
+        while (is("+") || is("-")) {
+            const std::string word = token_;
+            next();
+            left = arithmetic(word, std::move(left), product());
+        }
+        return left;
+    }
+    Node product() {
+        Node left = single();
+        while (is("*") || is("/")) {
+            const std::string word = token_;
+            next();
+            left = arithmetic(word, std::move(left), single());
+        }
+        return left;
+    }
+    Node arithmetic(const std::string& word, Node left, Node right) const {
+        if (!is_number(left) || !is_number(right)) fail("expected numbers beside " + word);
+        return pair(Node::Kind::kSum, word, std::move(left), std::move(right));
+    }
+    Node single() {
+        Node node;
+        if (take("(")) {
+            node = either();
+            need(")");
+            return node;
+        }
+        if (kind_ == Kind::kNumber || is("-")) {
+            node.value = signed_number();
+            return node;
+        }
+        if (kind_ == Kind::kText) {
+            node.value = Texts{token_};
+            next();
+            return node;
+        }
+        if (kind_ != Kind::kName) fail("expected a measure, a number or a text in quotes");
+        return measure();
+    }
+    double signed_number() {
+        const bool minus = take("-");
+        if (kind_ != Kind::kNumber) fail("expected a number");
+        const double number = minus ? -number_ : number_;
+        next();
+        return number;
+    }
+
+    const Row* row(std::string_view name) const {
+        for (const Row& row : kRows)
+            if (name == row.info.name) return &row;
+        return nullptr;
+    }
+    int index(const std::string& id) const {
+        for (std::size_t i = 0; i < scene_.ball.size(); ++i)
+            if (scene_.ball[i].id == id) return static_cast<int>(i);
+        fail("the scene has no ball \"" + id + "\"");
+    }
+
+    Node measure() {
+        Node node;
+        node.kind = Node::Kind::kMeasure;
+        node.row = row(token_);
+        if (node.row == nullptr)
+            fail("expected a measure that carom describe measures lists; texts need quotes");
+        const std::string_view expected = node.row->info.arguments;
+        std::string how = node.row->info.name;
+        how.append("(").append(expected).append(")");
+        next();
+        node.arguments.game = game_;
+        std::vector<std::string> words;
+        if (take("(")) {
+            while (!is(")")) {
+                const bool minus = take("-");
+                if (kind_ == Kind::kEnd || kind_ == Kind::kSign) fail("expected " + how);
+                if (minus) token_.insert(0, 1, '-');
+                words.push_back(token_);
+                next();
+                if (!is(")")) need(",");
+            }
+            next();
+        }
+        std::size_t given = 0;
+        for (std::string_view rest = expected; !rest.empty();) {
+            const std::size_t end = rest.find(", ");
+            const std::string_view what = rest.substr(0, end);
+            rest = end == rest.npos ? "" : rest.substr(end + 2);
+            if (given == words.size()) {
+                if (what == "GAME" && game_) continue;
+                fail("expected " + how);
+            }
+            argument(node.arguments, what, words[given++]);
+        }
+        if (given != words.size()) fail("expected " + how);
+        return node;
+    }
+    void argument(Arguments& to, std::string_view what, const std::string& word) const {
+        if (what == "BALL") {
+            to.ball = index(word);
+        } else if (what == "GAME") {
+            to.game = game_of(word);
+        } else {
+            double number = 0.0;
+            const char* const end = word.data() + word.size();
+            const auto [ptr, error] = std::from_chars(word.data(), end, number);
+            if (error != std::errc() || ptr != end) fail("expected a number in place of \"" + word + "\"");
+            if (what == "K" && !(number >= 1.0 && number <= 1000.0)) fail("expected a number from 1 to 1000");
+            to.numbers.push_back(number);
+        }
+    }
+    Game game_of(const std::string& word) const {
+        std::string known;
+        for (std::size_t i = 0; i < names_of(Game{}).size(); ++i) {
+            if (word == names_of(Game{})[i]) return static_cast<Game>(i);
+            known += (i == 0 ? "" : ", ") + std::string(names_of(Game{})[i]);
+        }
+        fail("expected one of the games " + known + ", not \"" + word + "\"");
+    }
+
+    // [levels] Deeper ones could overflow the stack.
+    static constexpr int kDeepest = 100;
+    const std::string& text_;
+    const Scene& scene_;
+    std::optional<Game> game_;
+    std::size_t at_ = 0;
+    Kind kind_ = Kind::kEnd;
+    std::string token_;
+    double number_ = 0.0;
+    int depth_ = 0;
+};
+
+MeasureValue value_of(const Node& node, const Played& played) {
+    const auto part = [&](std::size_t i) { return value_of(node.parts[i], played); };
+    switch (node.kind) {
+        case Node::Kind::kValue:
+            return node.value;
+        case Node::Kind::kMeasure:
+            return node.row->value(played, node.arguments);
+        case Node::Kind::kOr:
+            return double(truth(part(0)) || truth(part(1)));
+        case Node::Kind::kAnd:
+            return double(truth(part(0)) && truth(part(1)));
+        case Node::Kind::kNot:
+            return double(!truth(part(0)));
+        case Node::Kind::kIn: {
+            const MeasureValue left = part(0), right = part(1);
+            const Texts* texts = std::get_if<Texts>(&right);
+            return double(texts != nullptr &&
+                          std::find(texts->begin(), texts->end(), text_of(left)) != texts->end());
+        }
+        case Node::Kind::kSum: {
+            const double a = std::get<double>(part(0)), b = std::get<double>(part(1));
+            return node.word == "+" ? a + b : node.word == "-" ? a - b : node.word == "*" ? a * b : a / b;
+        }
+        case Node::Kind::kCompare:
+            break;
+    }
+    const MeasureValue left = part(0), right = part(1);
+    if (node.word == "==" || node.word == "!=")
+        return double((text_of(left) == text_of(right)) == (node.word == "=="));
+    const double a = std::get<double>(left), b = std::get<double>(right);
+    return double(node.word == "<" ? a < b : node.word == ">" ? a > b : node.word == "<=" ? a <= b : a >= b);
+}
+
+}  // namespace
+
+std::span<const MeasureInfo> measures() {
+    static const std::vector<MeasureInfo> list = [] {
+        std::vector<MeasureInfo> all;
+        for (const Row& row : kRows) all.push_back(row.info);
+        return all;
+    }();
+    return list;
+}
+
+std::string text_of(const MeasureValue& value) {
+    if (const double* number = std::get_if<double>(&value)) {
+        if (std::isnan(*number)) return "";
+        char digits[32];
+        return std::string(digits, std::to_chars(digits, digits + sizeof digits, *number).ptr);
+    }
+    std::string text;
+    for (const std::string& one : std::get<Texts>(value)) {
+        if (!text.empty()) text += ';';
+        text += one;
+    }
+    return text;
+}
+
+Measure::Measure(const std::string& text, const Scene& scene, std::optional<Game> game)
+    : text_(text), root_(std::make_unique<Node>(Reader(text_, scene, game).whole())) {}
+Measure::~Measure() = default;
+Measure::Measure(Measure&&) noexcept = default;
+Measure& Measure::operator=(Measure&&) noexcept = default;
+
+bool Measure::is_truth() const {
+    using Kind = Node::Kind;
+    if (root_->kind == Kind::kMeasure) return std::string_view(root_->row->info.unit) == "truth";
+    return root_->kind != Kind::kValue && root_->kind != Kind::kSum;
+}
+
+bool Measure::is_number() const {
+    return games::is_number(*root_);
+}
+
+MeasureValue Measure::of(const Record& record) const {
+    return value_of(*root_, Played(record));
+}
+
+bool Measure::holds(const Record& record) const {
+    return truth(of(record));
+}
+
+}  // namespace carom::games

@@ -1,0 +1,398 @@
+#include "carom/games/solve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/draws.h"
+#include "base/splitmix64.h"
+#include "carom/engine/batch.h"
+#include "carom/engine/printable.h"
+#include "carom/engine/strike.h"
+
+namespace carom::games {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+// Shares of the budget: the first look at the whole space, the generations; the rest is for the figures.
+constexpr double kLook = 0.30, kBreed = 0.52, kReport = 0.10;
+// [shots] Of a candidate in the first look, and how many more the quarter that stays gets each time.
+constexpr std::size_t kFirst = 8, kMore = 3, kHalvings = 3;
+// Generations, how near to their parents they begin in parts of a range, and by how much that shrinks.
+constexpr int kGenerations = 6;
+constexpr double kNearby = 0.08, kShrink = 0.62;
+constexpr std::size_t kParents = 16;
+constexpr std::size_t kYoung = 24, kGrown = 120;
+// [-] Parts of a range by which two shots must differ in some input to be of two kinds.
+constexpr double kOtherKind = 0.12;
+// Errors whose cost is told.
+constexpr double kAimOff = 0.2, kSpeedOff = 0.05, kTipOff = 0.05, kPlaceOff = 0.01;
+
+struct Candidate {
+    std::vector<double> values;
+    std::size_t shots = 0, successes = 0;
+    double score() const {
+        return shots == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(shots);
+    }
+};
+
+/// The errors of one stroke, and the layout that it meets.
+struct Draw {
+    double aim, speed, side, height, elevation;
+    std::size_t layout;
+};
+
+class Solver {
+  public:
+    Solver(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options)
+        : scene_(scene), want_(want), isa_(isa), options_(options) {
+        if (!scene.cue)
+            throw std::invalid_argument("the scene has no [cue]; add one, so that a ball is struck");
+        for (std::size_t i = 0; i < scene.ball.size(); ++i)
+            if (scene.ball[i].id == scene.cue->ball) struck_ = i;
+        if (options.choices.empty()) throw std::invalid_argument("there is nothing to choose; give a range");
+        for (const Choice& choice : options.choices) {
+            if (!(choice.low <= choice.high) || !std::isfinite(choice.high - choice.low))
+                throw std::invalid_argument(choice.key + ": expected a range from a to b with a <= b");
+            if (choice.key.rfind("hit.", 0) == 0)
+                hit_ = ball_of(choice.key.substr(4));
+            else
+                SceneNumber(scene, choice.key);
+        }
+        // What every shot sets, whether it is chosen or not.
+        keys_ = {"cue.aim_deg", "cue.speed", "cue.offset.side", "cue.offset.height", "cue.elevation_deg"};
+        for (const Choice& choice : options.choices)
+            if (choice.key.rfind("hit.", 0) != 0 &&
+                std::find(keys_.begin(), keys_.end(), choice.key) == keys_.end())
+                keys_.push_back(choice.key);
+        chosen_ = keys_.size();
+        if (!options.layouts.empty()) {
+            for (const BallStart& ball : scene.ball) {
+                for (const char* axis : {".position.x", ".position.y"}) {
+                    const std::string key = "ball." + ball.id + axis;
+                    if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
+                }
+            }
+        }
+    }
+
+    std::vector<Solution> run() {
+        std::vector<Candidate> best = look();
+        double nearby = kNearby;
+        // A small budget has fewer generations.
+        const double bred = (kLook + kBreed) * static_cast<double>(options_.shots);
+        for (int generation = 0; generation < kGenerations && static_cast<double>(played_) < bred;
+             ++generation, nearby *= kShrink)
+            best = breed(std::move(best), nearby);
+        std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
+        // Shots that the search has not seen.
+        const auto each = std::max<std::size_t>(
+            100, static_cast<std::size_t>(kReport * static_cast<double>(options_.shots)) / kinds.size());
+        for (Candidate& kind : kinds) kind.shots = kind.successes = 0;
+        fresh_ = true;
+        play(kinds, each);
+        sort(kinds);
+        std::vector<Solution> solutions;
+        for (const Candidate& kind : kinds) solutions.push_back(solution(kind));
+        return solutions;
+    }
+
+  private:
+    int ball_of(const std::string& id) const {
+        for (std::size_t i = 0; i < scene_.ball.size(); ++i)
+            if (scene_.ball[i].id == id) return static_cast<int>(i);
+        throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
+    }
+
+    static void sort(std::vector<Candidate>& list) {
+        std::stable_sort(list.begin(), list.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
+    }
+
+    /// Shot number `index` of every candidate has these errors.
+    Draw draw(std::uint64_t index) const {
+        SplitMix64 random(options_.seed * 0x9e3779b97f4a7c15u + 2 * index + (fresh_ ? 1 : 0));
+        const Hand& hand = options_.hand;
+        Draw d{};
+        d.aim = hand.aim_deg * standard_normal(random);
+        d.speed = hand.speed * standard_normal(random);
+        d.side = hand.tip * standard_normal(random);
+        d.height = hand.tip * standard_normal(random);
+        d.elevation = hand.elevation_deg * standard_normal(random);
+        if (!options_.layouts.empty())
+            d.layout = static_cast<std::size_t>(random.below(static_cast<int>(options_.layouts.size())));
+        return d;
+    }
+
+    /// The shot as it is meant: a value for each of the keys that are chosen.
+    std::vector<double> meant(const std::vector<double>& values) const {
+        const Cue& cue = *scene_.cue;
+        std::vector<double> row(chosen_);
+        const std::array<double, 5> base = {cue.aim_deg, cue.speed, cue.side, cue.height, cue.elevation_deg};
+        std::copy(base.begin(), base.end(), row.begin());
+        Vec2 place = planar(scene_.ball[struck_].position);
+        double hit = std::numeric_limits<double>::quiet_NaN();
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const std::string& key = options_.choices[k].key;
+            if (key.rfind("hit.", 0) == 0) {
+                hit = values[k];
+                continue;
+            }
+            row[static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin())] =
+                values[k];
+            if (key == "ball." + cue.ball + ".position.x") place.x() = values[k];
+            if (key == "ball." + cue.ball + ".position.y") place.y() = values[k];
+        }
+        if (std::isnan(hit)) return row;
+        const auto radius = [this](std::size_t ball) {
+            return scene_.ball[ball].own.value_or(scene_.balls.size()).R;
+        };
+        const auto target = static_cast<std::size_t>(hit_);
+        const Vec2 way = planar(scene_.ball[target].position) - place;
+        const double reach = (radius(struck_) + radius(target)) / std::max(way.norm(), 1e-9);
+        row[0] = (std::atan2(way.y(), way.x()) + std::asin(std::clamp(hit * reach, -1.0, 1.0))) * kDegrees;
+        return row;
+    }
+
+    /// Plays the next shots of all candidates until each has `shots`.
+    void play(std::vector<Candidate>& candidates, std::size_t shots,
+              const std::function<void(std::size_t, const Record&)>& look = {}) {
+        // Rows of a batch are limited, so that memory is.
+        constexpr std::size_t kRows = 1 << 17;
+        for (std::size_t begin = 0; begin < candidates.size();) {
+            std::size_t rows = 0, end = begin;
+            while (end < candidates.size() && (rows == 0 || rows + shots <= kRows))
+                rows += shots - std::min(shots, candidates[end++].shots);
+            play_rows(std::span(candidates).subspan(begin, end - begin), shots, rows, look);
+            begin = end;
+        }
+    }
+
+    void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,
+                   const std::function<void(std::size_t, const Record&)>& look) {
+        if (rows == 0) return;
+        std::vector<std::vector<double>> columns(keys_.size());
+        for (auto& column : columns) column.reserve(rows);
+        std::vector<std::size_t> owner;
+        owner.reserve(rows);
+        for (std::size_t c = 0; c < candidates.size(); ++c) {
+            const std::vector<double> row = meant(candidates[c].values);
+            for (std::size_t i = candidates[c].shots; i < shots; ++i) {
+                const Draw d = draw(i);
+                owner.push_back(c);
+                columns[0].push_back(row[0] + turned_ + d.aim);
+                Cue cue = *scene_.cue;
+                cue.speed = row[1] * (1.0 + d.speed);
+                cue.side = row[2] + d.side;
+                cue.height = row[3] + d.height;
+                cue.elevation_deg = row[4] + d.elevation;
+                cue = legal_strike(cue);
+                columns[1].push_back(cue.speed);
+                columns[2].push_back(cue.side);
+                columns[3].push_back(cue.height);
+                columns[4].push_back(cue.elevation_deg);
+                for (std::size_t k = 5; k < chosen_; ++k) columns[k].push_back(row[k]);
+                for (std::size_t k = chosen_; k < keys_.size(); ++k) columns[k].push_back(place(k, d.layout));
+            }
+        }
+        std::vector<BatchColumn> batch;
+        for (std::size_t k = 0; k < keys_.size(); ++k) batch.push_back({keys_[k], columns[k]});
+        std::vector<std::uint8_t> held(rows, 0);
+        BatchOptions how;
+        how.threads = options_.threads;
+        how.stop = options_.stop;
+        how.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
+            held[shot] = record.stopped == StopReason::kAtRest && want_.holds(record);
+            if (look) look(shot, record);
+        };
+        std::vector<ShotStatus> status(rows);
+        BatchArrays out;
+        out.status = status.data();
+        simulate_many(scene_, rows, batch, isa_, how, out);
+        for (std::size_t i = 0; i < rows; ++i) candidates[owner[i]].successes += held[i];
+        for (Candidate& candidate : candidates) candidate.shots = std::max(candidate.shots, shots);
+        played_ += rows;
+        if (options_.progress) options_.progress(std::min(played_, options_.shots));
+    }
+
+    /// Of key k, which is ball.ID.position.x or .y, in a layout.
+    double place(std::size_t k, std::size_t layout) const {
+        const std::string& key = keys_[k];
+        const std::string id = key.substr(5, key.size() - 5 - 11);
+        const std::vector<BallStart>& balls = options_.layouts[layout].ball;
+        for (const BallStart& ball : balls)
+            if (ball.id == id) return key.back() == 'x' ? ball.position.x() : ball.position.y();
+        throw std::invalid_argument("a layout has no ball " + in_quotes(id));
+    }
+
+    /// Shots from which one figure beside the success is taken.
+    std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
+    double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
+
+    /// Halton's sequence, shifted by the seed, over the whole space.
+    std::vector<Candidate> look() {
+        const auto budget = kLook * static_cast<double>(options_.shots);
+        double cost = 0.0, share = 1.0, before = 0.0, shots = kFirst;
+        for (std::size_t round = 0; round < kHalvings; ++round, share /= 4.0, before = shots, shots *= kMore)
+            cost += share * (shots - before);
+        const auto count = std::max<std::size_t>(64, static_cast<std::size_t>(budget / cost));
+        SplitMix64 random(options_.seed);
+        std::vector<double> shift(options_.choices.size());
+        for (double& s : shift) s = random.uniform();
+        constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+        std::vector<Candidate> all(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < options_.choices.size(); ++k) {
+                double x = shift[k], part = 1.0;
+                const int base = kPrimes[k % kPrimes.size()];
+                for (std::size_t n = i + 1; n > 0; n /= static_cast<std::size_t>(base))
+                    x += (part /= base) * static_cast<double>(n % static_cast<std::size_t>(base));
+                x -= std::floor(x);
+                all[i].values.push_back(options_.choices[k].low + x * range(k));
+            }
+        }
+        std::size_t each = kFirst;
+        for (std::size_t round = 0; round < kHalvings; ++round, each *= kMore) {
+            play(all, each);
+            sort(all);
+            if (round + 1 < kHalvings) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
+        }
+        return different(all, 0.5 * kOtherKind, kParents);
+    }
+
+    /// Descendants of these, with those of them that are as good.
+    std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
+        const double budget = kBreed * static_cast<double>(options_.shots) / kGenerations;
+        const auto count = std::max<std::size_t>(
+            kParents, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
+        std::vector<Candidate> young;
+        SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
+        // The better half has three quarters of the descendants.
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t half = (parents.size() + 1) / 2;
+            const std::size_t from = i % 4 == 3
+                                         ? half + (i / 4) % std::max<std::size_t>(1, parents.size() - half)
+                                         : (i - i / 4) % half;
+            Candidate child;
+            child.values = parents[std::min(from, parents.size() - 1)].values;
+            for (std::size_t k = 0; k < child.values.size(); ++k)
+                child.values[k] = std::clamp(child.values[k] + nearby * range(k) * standard_normal(random),
+                                             options_.choices[k].low, options_.choices[k].high);
+            young.push_back(std::move(child));
+        }
+        play(young, kYoung);
+        sort(young);
+        young.resize(std::max<std::size_t>(kParents, young.size() / 4));
+        play(young, kGrown);
+        play(parents, kGrown);
+        young.insert(young.end(), parents.begin(), parents.end());
+        sort(young);
+        return different(young, 0.5 * nearby, kParents);
+    }
+
+    /// The best, without those that are near to a better one.
+    std::vector<Candidate> different(const std::vector<Candidate>& sorted, double apart,
+                                     std::size_t most) const {
+        std::vector<Candidate> kept;
+        for (const Candidate& candidate : sorted) {
+            const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+                double away = 0.0;
+                for (std::size_t k = 0; k < candidate.values.size(); ++k)
+                    if (range(k) > 0.0)
+                        away = std::max(away, std::abs(candidate.values[k] - other.values[k]) / range(k));
+                return away < apart;
+            });
+            if (!near) kept.push_back(candidate);
+            if (kept.size() == most) break;
+        }
+        return kept;
+    }
+
+    Solution solution(const Candidate& candidate) {
+        Solution found;
+        found.values = candidate.values;
+        found.shots = candidate.shots;
+        found.successes = candidate.successes;
+        found.scene = scene_;
+        const std::vector<double> row = meant(candidate.values);
+        for (std::size_t k = 0; k < chosen_; ++k) SceneNumber(scene_, keys_[k]).put(found.scene, row[k]);
+
+        // Which ball falls where, and what an error costs, of the same shots.
+        const std::size_t shots = detail_shots();
+        std::map<std::pair<int, int>, std::size_t> falls;
+        std::mutex guard;
+        std::vector<Candidate> again(1);
+        again[0].values = candidate.values;
+        play(again, shots, [&](std::size_t, const Record& record) {
+            const std::lock_guard lock(guard);
+            for (const Event& event : record.events)
+                if (event.type == EventType::kBallPocket) ++falls[{event.a, event.b}];
+        });
+        for (const auto& [fall, count] : falls)
+            found.falls.push_back(
+                {fall.first, fall.second, static_cast<double>(count) / static_cast<double>(shots)});
+        std::stable_sort(found.falls.begin(), found.falls.end(),
+                         [](const auto& a, const auto& b) { return a.share > b.share; });
+        for (std::size_t k = 0; k < options_.choices.size(); ++k) {
+            const std::string& key = options_.choices[k].key;
+            const bool place = key.find(".position.") != key.npos, tip = key.rfind("cue.offset", 0) == 0;
+            if (key == "cue.aim_deg" || key.rfind("hit.", 0) == 0) continue;
+            const bool speed = key == "cue.speed";
+            if (!place && !tip && !speed) continue;
+            const double by = speed ? kSpeedOff * candidate.values[k] : place ? kPlaceOff : kTipOff;
+            found.costs.push_back(cost(candidate, key, by,
+                                       speed   ? "m/s"
+                                       : place ? "m"
+                                               : "ball radii",
+                                       [&, k](Candidate& c, double off) { c.values[k] += off; }));
+        }
+        found.costs.push_back(
+            cost(candidate, "aim", kAimOff, "degrees", [this](Candidate&, double off) { turned_ = off; }));
+        return found;
+    }
+    template <class Off>
+    Solution::Cost cost(const Candidate& candidate, const std::string& input, double by, const char* unit,
+                        Off&& off) {
+        std::array<double, 2> share{};
+        for (const int side : {0, 1}) {
+            std::vector<Candidate> moved(1);
+            moved[0].values = candidate.values;
+            off(moved[0], side == 0 ? -by : by);
+            play(moved, detail_shots());
+            turned_ = 0.0;
+            share[static_cast<std::size_t>(side)] = moved[0].score();
+        }
+        return {input, by, unit, share[0], share[1]};
+    }
+    const Scene& scene_;
+    const Measure& want_;
+    kernel::Isa isa_;
+    const SolveOptions& options_;
+    std::size_t struck_ = 0;
+    int hit_ = -1;
+    std::vector<std::string> keys_;
+    std::size_t chosen_ = 0, played_ = 0;
+    std::uint64_t generation_ = 0;
+    bool fresh_ = false;
+    double turned_ = 0.0;  ///< [degrees] by which all aims are off
+};
+
+}  // namespace
+
+std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
+                            const SolveOptions& options) {
+    return Solver(scene, want, isa, options).run();
+}
+
+}  // namespace carom::games

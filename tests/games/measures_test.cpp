@@ -1,0 +1,140 @@
+// Measures and expressions: against the record, and what is refused.
+#include "carom/games/measures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "carom/games/shot.h"
+#include "support/engine_cases.h"
+#include "support/scene_files.h"
+
+namespace carom::test {
+namespace {
+
+using games::Measure;
+using games::MeasureError;
+using games::text_of;
+
+Scene scene_named(const std::string& name) {
+    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
+
+std::string asked(const std::string& text, const Scene& scene, const Record& record) {
+    return text_of(Measure(text, scene, games::Game::kEightBall).of(record));
+}
+
+TEST(Measures, TellWhatAShotDid) {
+    const Scene scene = scene_named("draw");
+    const Record record = simulate(plan_of(scene));
+    const auto is = [&](const std::string& text, const std::string& value) {
+        EXPECT_EQ(asked(text, scene, record), value) << text;
+    };
+    is("pocketed", "1");
+    is("pockets", "p3");
+    is("pocket_of(1)", "p3");
+    is("pocket_of(cue)", "");
+    is("balls_pocketed", "1");
+    is("any_pocketed and not scratch", "1");
+    is("scratch", "0");
+    is("\"1\" in pocketed", "1");
+    is("\"2\" in pocketed or 1 > 2", "0");
+    is("first_hit == \"1\"", "1");
+    is("pocket_of(1) == \"p3\" and duration < 4", "1");
+    is("cushions", "");
+    is("cushion_x(1)", "");
+    is("cue near (0.748, 1.792, 0.001)", "1");
+    is("cue near (0.748, 1.992)", "0");
+    is("\"cue\" near (0.7, 1.8)", "1");
+    is("distance(1, 0, 0)", "");
+    is("air_time(cue)", "0");
+    is("2 + 3 * -2 - 4 / 2", "-6");
+    is("(2 + 3) * 2", "10");
+    is("max_speed(cue) > 2.2 and max_speed(cue) < 2.4", "1");
+}
+
+TEST(Measures, CushionsOfTheStruckBallInOrder) {
+    const Scene scene = scene_named("three_cushion");
+    const Record record = simulate(plan_of(scene));
+    EXPECT_EQ(asked("foul(three_cushion)", scene, record), "");
+    EXPECT_EQ(asked("cushion_diamond(1) > 0 and cushion_diamond(1) < 4", scene, record), "1");
+    const std::string list = asked("cushions", scene, record);
+    EXPECT_EQ(std::count(list.begin(), list.end(), ';'), 3);
+    EXPECT_EQ(asked("cushion_y(5)", scene, record), "");
+}
+
+TEST(Measures, TravelIsThePathThatSamplesAdd) {
+    for (const char* name : {"three_cushion", "eight_ball_break", "jump", "masse"}) {
+        SCOPED_TRACE(name);
+        const std::string path = std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
+        if (!std::filesystem::exists(path)) continue;
+        const Scene scene = read_scene(path);
+        const Record record = simulate(plan_of(scene));
+        const int ball = games::index_of(record, scene.cue->ball);
+        double sum = 0.0, top = 0.0;
+        Vec3 last = record.state_at(ball, 0.0).position;
+        const int steps = 200000;
+        for (int k = 1; k <= steps; ++k) {
+            const BallState s = record.state_at(ball, record.duration * k / steps);
+            if (is_gone(s.state)) break;
+            sum += std::hypot(s.position.x() - last.x(), s.position.y() - last.y());
+            top = std::max(top, s.velocity.norm());
+            last = s.position;
+        }
+        const auto number = [&](const std::string& what) {
+            return std::get<double>(Measure(what + "(" + scene.cue->ball + ")", scene).of(record));
+        };
+        EXPECT_NEAR(number("travel"), sum, 1e-4 * sum);
+        EXPECT_NEAR(number("max_speed"), top, 1e-2 * top);
+        EXPECT_LE(number("rest_time"), record.duration);
+    }
+}
+
+TEST(Measures, BreaksAreJudgedByTheirGame) {
+    const Scene scene = scene_named("eight_ball_break");
+    const Record record = simulate(plan_of(scene));
+    EXPECT_EQ(asked("legal_break(eight_ball)", scene, record), "1");
+    EXPECT_EQ(asked("break_foul(eight_ball)", scene, record), "");
+    EXPECT_EQ(asked("driven >= 4", scene, record), "1");
+    // Without the game's balls there is nothing to judge.
+    const Scene two = scene_named("draw");
+    EXPECT_THROW(asked("foul", two, simulate(plan_of(two))), std::invalid_argument);
+}
+
+TEST(Measures, MistakesAreToldWhereTheyAre) {
+    const Scene scene = scene_named("draw");
+    const auto refused = [&](const std::string& text, const std::string& why) {
+        try {
+            Measure(text, scene);
+            FAIL() << text << " is taken";
+        } catch (const MeasureError& error) {
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+        }
+    };
+    refused("", "at its end: expected a measure");
+    refused("pocketed and", "at its end: expected a measure");
+    refused("potted", "carom describe measures");
+    refused("travel", "expected travel(BALL)");
+    refused("travel(7)", "the scene has no ball \"7\"");
+    refused("travel(cue, 1)", "expected travel(BALL)");
+    refused("cushion_x(0)", "from 1 to 1000");
+    refused("cushion_x(cue)", "expected a number");
+    refused("foul", "expected foul(GAME)");
+    refused("foul(chess)", "expected one of the games eight_ball");
+    refused("pocketed < 3", "expected numbers beside <");
+    refused("pocketed + 1", "expected numbers beside +");
+    refused("\"1", "closing quote");
+    refused("cue near 1", "expected (");
+    refused("cue near (1)", "expected (X, Y)");
+    refused("duration duration", "expected the end");
+    refused("1 $ 2", "expected the end");
+    refused(std::string(500, '(') + "1", "fewer levels");
+    refused("not " + std::string(400, ' ') + std::string(100, '('), "fewer levels");
+}
+
+}  // namespace
+}  // namespace carom::test

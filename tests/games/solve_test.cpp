@@ -1,0 +1,117 @@
+// The search for a shot: it finds what is there, its figures are fair, and threads change nothing.
+#include "carom/games/solve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/variation.h"
+#include "support/engine_cases.h"
+
+namespace carom::test {
+namespace {
+
+using games::Measure;
+using games::Solution;
+using games::SolveOptions;
+
+Scene scene_named(const std::string& name) {
+    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
+
+SolveOptions small() {
+    SolveOptions options;
+    options.shots = 30000;
+    options.best = 1;
+    return options;
+}
+
+TEST(Solve, FindsAPotFromAnyDirection) {
+    const Scene scene = scene_named("draw");
+    const Measure want("\"1\" in pocketed and not scratch", scene);
+    SolveOptions options = small();
+    options.choices = {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}};
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        options.seed = seed;
+        const std::vector<Solution> found = games::solve(scene, want, kernel::best_isa(), options);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_GT(static_cast<double>(found[0].successes), 0.9 * static_cast<double>(found[0].shots));
+        EXPECT_NEAR(found[0].values[0], 135.0, 2.0);
+        // Without a hand's errors the shot does what is wanted.
+        EXPECT_TRUE(want.holds(simulate(plan_of(found[0].scene))));
+    }
+}
+
+TEST(Solve, HitAimsAtItsBall) {
+    const Scene scene = scene_named("draw");
+    SolveOptions options = small();
+    options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
+    options.hand = {0.0, 0.0, 0.0, 0.0};
+    const Solution full =
+        games::solve(scene, Measure("first_hit == \"1\"", scene), kernel::best_isa(), options).at(0);
+    EXPECT_NEAR(full.scene.cue->aim_deg, 135.0, 1e-6);
+    EXPECT_EQ(full.successes, full.shots);
+    for (const double hit : {0.99, -0.99, 1.01, -1.01}) {
+        options.choices[0] = {"hit.1", hit, hit};
+        const Solution edge =
+            games::solve(scene, Measure("first_hit == \"1\"", scene), kernel::best_isa(), options).at(0);
+        EXPECT_EQ(edge.successes > 0, std::abs(hit) < 1.0) << hit;
+    }
+}
+
+TEST(Solve, ThreadsAndTheOrderOfPlayChangeNothing) {
+    const Scene scene = scene_named("side_bank");
+    const Measure want("\"1\" in pocketed", scene);
+    SolveOptions options = small();
+    options.best = 3;
+    options.choices = {{"cue.aim_deg", 50.0, 54.0}, {"cue.speed", 1.0, 4.0}};
+    options.threads = 1;
+    const std::vector<Solution> one = games::solve(scene, want, kernel::best_isa(), options);
+    options.threads = 2;
+    const std::vector<Solution> two = games::solve(scene, want, kernel::best_isa(), options);
+    ASSERT_EQ(one.size(), two.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(one[i].values, two[i].values);
+        EXPECT_EQ(one[i].successes, two[i].successes);
+    }
+}
+
+TEST(Solve, TheFiguresAreOfShotsThatTheSearchHasNotSeen) {
+    // A coin: no input decides, so that the best is half, however many candidates were tried.
+    const Scene scene = scene_named("draw");
+    const Measure want("x(cue) > 0.748", scene);
+    SolveOptions options = small();
+    options.choices = {{"cue.speed", 2.24, 2.26}};
+    options.hand = {0.5, 0.2, 0.05, 0.0};
+    const Solution found = games::solve(scene, want, kernel::best_isa(), options).at(0);
+    const double share = static_cast<double>(found.successes) / static_cast<double>(found.shots);
+    // The same shots again, with other errors.
+    options.seed = 99;
+    options.choices = {{"cue.speed", found.values[0], found.values[0]}};
+    const Solution again = games::solve(scene, want, kernel::best_isa(), options).at(0);
+    EXPECT_GT(share, 0.2);
+    EXPECT_LT(share, 0.8);
+    EXPECT_NEAR(share, static_cast<double>(again.successes) / static_cast<double>(again.shots), 0.05);
+}
+
+TEST(Solve, MistakesAreRefused) {
+    const Scene scene = scene_named("draw");
+    const Measure want("scratch", scene);
+    const auto refused = [&](std::vector<games::Choice> choices) {
+        SolveOptions options = small();
+        options.choices = std::move(choices);
+        EXPECT_THROW(games::solve(scene, want, kernel::best_isa(), options), std::invalid_argument);
+    };
+    refused({});
+    refused({{"cue.sped", 0.0, 1.0}});
+    refused({{"hit.7", 0.0, 1.0}});
+    refused({{"cue.speed", 2.0, 1.0}});
+    refused({{"cue.speed", 0.0, HUGE_VAL}});
+}
+
+}  // namespace
+}  // namespace carom::test

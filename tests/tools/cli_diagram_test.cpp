@@ -1,0 +1,82 @@
+// carom diagram: files that other programs open, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+class CliDiagram : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        if (contains(carom({"diagram", scene_, "-o", folder_.file("try.svg")}).err, "no diagrams"))
+            GTEST_SKIP() << "this build has no cairo";
+    }
+
+    std::string draw(const std::string& name, std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments = {"diagram", scene_, "-o", folder_.file(name)};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProcessResult result = carom(arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return read_file(folder_.file(name));
+    }
+
+    TemporaryFolder folder_;
+    std::string scene_ = folder_.write("shot.toml", kSmallScene);
+};
+
+TEST_F(CliDiagram, WritesTheFormatOfItsName) {
+    const std::string svg = draw("shot.svg"), pdf = draw("shot.pdf"), png = draw("shot.png");
+    EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    // Letters are outlines, so that every program shows the same.
+    EXPECT_FALSE(contains(svg, "<text"));
+    EXPECT_TRUE(pdf.starts_with("%PDF-"));
+    EXPECT_TRUE(contains(pdf, "%%EOF"));
+    EXPECT_TRUE(png.starts_with("\x89PNG\r\n"));
+}
+
+TEST_F(CliDiagram, TheSvgIsXml) {
+    draw("shot.svg", {"--title", "a < b & \"c\"", "--diamonds"});
+    const ProcessResult parsed = run_process(
+        {"python3", "-c", "import sys, xml.dom.minidom as m; m.parse(sys.argv[1])", folder_.file("shot.svg")},
+        {});
+    EXPECT_EQ(parsed.status, 0) << parsed.err;
+}
+
+TEST_F(CliDiagram, BlackAndWhiteHasGraysOnly) {
+    const std::string svg = draw("shot.svg", {"--black-and-white"});
+    std::size_t seen = 0;
+    for (std::size_t at = svg.find("rgb("); at != svg.npos; at = svg.find("rgb(", at + 1), ++seen) {
+        const std::string inside = svg.substr(at + 4, svg.find(')', at) - at - 4);
+        const std::string red = inside.substr(0, inside.find(','));
+        EXPECT_EQ(inside, red + "," + red + "," + red) << inside;
+    }
+    EXPECT_GT(seen, 10u);
+    EXPECT_NE(svg, draw("color.svg"));
+}
+
+TEST_F(CliDiagram, DrawsRecordsAndSeveralShotsOnAPage) {
+    ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
+    const std::string one = draw("one.svg"), two = draw("two.svg", {folder_.file("r.json")});
+    EXPECT_GT(two.size(), one.size());
+    const ProcessResult titles =
+        carom({"diagram", scene_, "-o", folder_.file("t.svg"), "--title", "a", "--title", "b"});
+    EXPECT_EQ(titles.status, 2);
+    EXPECT_TRUE(contains(titles.err, "2 titles for 1 shot")) << titles.err;
+}
+
+TEST_F(CliDiagram, RefusesOtherEndingsAndWritesNothing) {
+    const ProcessResult result = carom({"diagram", scene_, "-o", folder_.file("shot.gif")});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_TRUE(contains(result.err, ".svg, .pdf or .png")) << result.err;
+    EXPECT_EQ(carom({"diagram", folder_.file("none.toml"), "-o", folder_.file("x.svg")}).status, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("x.svg")));
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,76 @@
+// carom solve and carom break: what they print, write and refuse.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CliSolve : public ::testing::Test {
+  protected:
+    TemporaryFolder folder_;
+    const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
+};
+
+TEST_F(CliSolve, FindsAShotAndWritesIt) {
+    const std::string file = folder_.file("best.toml");
+    const ProcessResult result = carom({"solve", draw_, "--want", "\"1\" in pocketed", "--vary",
+                                        "cue.aim_deg=uniform(120,150)", "--shots", "2000", "-o", file});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(contains(result.out, "wanted: \"1\" in pocketed\n1. ")) << result.out;
+    EXPECT_TRUE(contains(result.out, "falls 1 into p3")) << result.out;
+    EXPECT_NEAR(read_scene(file).cue->aim_deg, 135.0, 2.0);
+    EXPECT_TRUE(contains(read_file(file), "# Found by carom for: "));
+    const Json json = Json::parse(
+        carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--json", "--hand", "aim=0"}).out);
+    EXPECT_EQ(json.at("solutions").at(0).at("values").size(), 3u);
+    EXPECT_TRUE(json.at("solutions").at(0).at("success").is_number());
+}
+
+TEST_F(CliSolve, RecommendsABreak) {
+    const std::string scene = folder_.file("b.toml"), page = folder_.file("b.html");
+    for (const char* game : {"nine_ball", "ten_ball"}) {
+        const ProcessResult result =
+            carom({"break", game, "--shots", "1000", "-o", scene, "--page", page, "--units", "inch"});
+        ASSERT_EQ(result.status, 0) << result.err;
+        EXPECT_TRUE(contains(result.out, "diamonds from the left rail")) << result.out;
+        EXPECT_TRUE(contains(result.out, " mph)")) << result.out;
+        EXPECT_EQ(carom({"check", scene}).status, 0);
+        EXPECT_TRUE(contains(read_file(page), "<html"));
+    }
+}
+
+TEST_F(CliSolve, MistakesSayWhatIsExpected) {
+    const auto refused = [&](std::vector<std::string> more, const std::string& why) {
+        more.insert(more.begin(), {"solve", draw_});
+        const ProcessResult result = carom(more);
+        EXPECT_EQ(result.status, 2);
+        EXPECT_TRUE(contains(result.err, why)) << result.err;
+    };
+    refused({"--want", "potted"}, "--want \"potted\"");
+    refused({"--want", "scratch", "--vary", "cue.speed=normal(1)"}, "expected KEY=uniform(a,b)");
+    refused({"--want", "scratch", "--vary", "cue.speed=uniform(2,1)"}, "with a <= b");
+    refused({"--want", "scratch", "--vary", "cue.speed=uniform(nan,1)"}, "");
+    refused({"--want", "scratch", "--vary", "cue.sped=uniform(1,2)"}, "cue.sped");
+    refused({"--want", "scratch", "--vary", "hit.9=uniform(0,1)"}, "has no ball \"9\"");
+    refused({"--want", "scratch", "--hand", "aim=-1"}, "--hand aim=-1: expected aim=DEGREES");
+    refused({"--want", "scratch", "--hand", "speed=3"}, "--hand speed=3: expected");
+    refused({"--want", "scratch", "--hand", "luck=1"}, "there is no \"luck\"");
+    refused({"--want", "scratch", "--shots", "10"}, "range 1000 to");
+    refused({"--want", "foul"}, "expected foul(GAME)");
+    EXPECT_EQ(carom({"break", "chess"}).status, 2);
+    EXPECT_EQ(carom({"break", "--rack", "gap=1"}).status, 2);
+    EXPECT_EQ(carom({"break", "--speed-max", "0"}).status, 2);
+    EXPECT_EQ(carom({"break", "--table", "snook"}).status, 2);
+}
+
+}  // namespace
+}  // namespace carom::test

@@ -1,0 +1,77 @@
+// carom diagram: shots drawn for a handout.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/console.h"
+#include "base/options.h"
+#include "base/output_file.h"
+#include "base/setup.h"
+#include "carom/engine/printable.h"
+#include "report/diagram.h"
+
+namespace carom::tools {
+namespace {
+
+struct DiagramArgs {
+    std::vector<std::string> shots;
+    std::vector<std::string> titles;
+    std::string output = "shot.svg";
+    std::string units = kUnits[0];
+    bool black_and_white = false;
+    bool diamonds = false;
+    bool speeds = true;
+};
+
+int run(const DiagramArgs& args) {
+    const std::string format = diagram_format(args.output);
+    if (args.titles.size() > args.shots.size())
+        throw UsageError(fmt::format("--title: {} for {}; give at most one for each",
+                                     counted(args.titles.size(), "title"),
+                                     counted(args.shots.size(), "shot")));
+    std::vector<DiagramShot> shots;
+    for (const std::string& path : args.shots) {
+        DiagramShot shot;
+        shot.title = shots.size() < args.titles.size()
+                         ? harmless(args.titles[shots.size()])
+                         : std::filesystem::path(harmless(path)).stem().string();
+        if (is_record(path)) {
+            shot.record = read_shot(path, {});
+        } else {
+            const Plan plan = plan_scene(path);
+            shot.cue = plan.scene.cue;
+            shot.record = simulate_plan(plan, {});
+        }
+        shots.push_back(std::move(shot));
+    }
+    DiagramStyle style;
+    style.color = !args.black_and_white;
+    style.diamond_numbers = args.diamonds;
+    style.speeds = args.speeds;
+    style.units = units_of(args.units);
+    OutputFile file(args.output);
+    file.write(draw_diagram(shots, style, format));
+    file.commit();
+    print(fmt::format("{}: {}\n", harmless(args.output), counted(shots.size(), "shot")));
+    return kOk;
+}
+
+}  // namespace
+
+void add_diagram(Options& program) {
+    auto [command, args] = program.command<DiagramArgs>(
+        "diagram", "Draw shots for a handout: the table to scale, balls, paths, the tip of the cue", run);
+    command.option("SHOT", &args.shots, "", "Scene files (TOML) or records (.json), one drawing each")
+        .required = true;
+    command.option("-o,--output", &args.output, "FILE", "The drawing: .svg, .pdf or .png");
+    command.option("--title", &args.titles, "TEXT",
+                   "Title of a shot, once for each (default: the file's name)");
+    command.flag("--black-and-white", args.black_and_white, "For printers without colour (default: off)");
+    command.flag("--diamonds", args.diamonds, "Number the diamonds (default: off)");
+    command.flag("--no-speeds", args.speeds, "Leave out the speeds beside contacts (default: off)");
+    command.option("--units", &args.units, "UNITS", "Units of the speeds").one_of({kUnits[0], kUnits[1]});
+}
+
+}  // namespace carom::tools

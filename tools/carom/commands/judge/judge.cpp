@@ -1,0 +1,307 @@
+// carom judge: the verdict on a shot in a game. carom next: the final table, as the scene of the next shot.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/game_state.h"
+#include "base/options.h"
+#include "base/output_file.h"
+#include "base/setup.h"
+#include "carom/engine/event_details.h"
+#include "carom/engine/printable.h"
+#include "carom/games/rules.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using games::Decision;
+using games::InHand;
+using games::Option;
+using games::State;
+using games::Verdict;
+
+/// What both commands ask about the game.
+struct GameArgs {
+    std::string game, state, state_out, ball, pocket;
+    bool safety = false, push_out = false;
+    int option = 1;
+};
+
+struct JudgeArgs {
+    std::string shot;
+    GameArgs game;
+    bool json = false;
+};
+
+struct NextArgs {
+    std::string scene, output = "next.toml", place;
+    GameArgs game;
+};
+
+/// The outcome of a shot: the verdict, and the option that is taken.
+struct Judged {
+    Verdict verdict;
+    Option option;
+};
+
+void write_text(const std::string& path, const std::string& text) {
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+/// Calls a function of the games, and turns its refusals into messages about the shot.
+template <class F>
+auto asked(const std::string& shot, F&& f) {
+    try {
+        return f();
+    } catch (const std::invalid_argument& refused) {
+        throw UsageError(fmt::format("{}: {}", harmless(shot), refused.what()));
+    }
+}
+
+Judged judged(const std::string& shot, const Record& record, const GameArgs& args) {
+    State before;
+    if (!args.state.empty()) {
+        before = read_state(args.state);
+        if (!args.game.empty() && game_of(args.game) != before.game)
+            throw UsageError(fmt::format("--game {}: the state in {} is of {}", args.game,
+                                         harmless(args.state), name(before.game)));
+    } else {
+        before = games::new_game(game_of(args.game));
+    }
+    const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
+    Verdict verdict = asked(shot, [&] { return games::judge(before, record, call); });
+    const auto options = static_cast<int>(verdict.options.size());
+    if (args.option > options)
+        throw UsageError(fmt::format("--option {}: there {} {}", args.option, options == 1 ? "is" : "are",
+                                     counted(verdict.options.size(), "option")));
+    Option option = verdict.options[static_cast<std::size_t>(args.option) - 1];
+    return {std::move(verdict), std::move(option)};
+}
+
+std::string foul_text(games::Game game, games::Foul foul) {
+    const std::string rule = games::rule_of(game, foul);
+    return name(foul) + (rule.empty() ? "" : " (" + rule + ")");
+}
+
+/// "player 2 shoots, cue ball in hand anywhere"
+std::string next_text(const State& state) {
+    if (state.over)
+        return state.winner < 0 ? "the game is over, nobody wins"
+                                : fmt::format("the game is over, player {} wins", state.winner + 1);
+    std::string text = fmt::format("player {} shoots", state.turn + 1);
+    if (state.in_hand == InHand::kAnywhere) text += ", cue ball in hand anywhere";
+    if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
+    if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
+    return text;
+}
+
+std::string verdict_text(const Judged& judged) {
+    const Verdict& verdict = judged.verdict;
+    const games::Game game = judged.option.state.game;
+    std::string text = verdict.fouls.empty() ? "fair" : "foul";
+    for (std::size_t i = 0; i < verdict.fouls.size(); ++i)
+        text += (i == 0 ? ": " : ", ") + foul_text(game, verdict.fouls[i]);
+    text += "\n";
+    if (verdict.points != 0) text += counted(static_cast<std::size_t>(verdict.points), "point") + " scored\n";
+    if (verdict.penalty != 0)
+        text += counted(static_cast<std::size_t>(verdict.penalty), "point") + " for the other player\n";
+    if (verdict.options.size() > 1) text += fmt::format("player {} chooses one of\n", verdict.chooser + 1);
+    for (std::size_t i = 0; i < verdict.options.size(); ++i) {
+        const Option& option = verdict.options[i];
+        if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, name(option.decision));
+        text += next_text(option.state) + "\n";
+        for (const games::Respot& back : option.respots)
+            text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",
+                                verdict.options.size() > 1 ? "     " : "", back.ball, back.place.x(),
+                                back.place.y());
+    }
+    return text;
+}
+
+std::string verdict_json(const Judged& judged) {
+    const Verdict& verdict = judged.verdict;
+    Json fouls = Json::array(), options = Json::array();
+    for (const games::Foul foul : verdict.fouls)
+        fouls.push_back({{"foul", name(foul)}, {"rule", games::rule_of(judged.option.state.game, foul)}});
+    for (const Option& option : verdict.options) {
+        Json respots = Json::array();
+        for (const games::Respot& back : option.respots)
+            respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
+        options.push_back(
+            {{"decision", name(option.decision)}, {"state", state_json(option.state)}, {"respots", respots}});
+    }
+    return Json{{"fouls", fouls},
+                {"points", verdict.points},
+                {"penalty", verdict.penalty},
+                {"chooser", verdict.chooser},
+                {"options", options}}
+               .dump() +
+           "\n";
+}
+
+int run_judge(const JudgeArgs& args) {
+    if (args.game.game.empty() && args.game.state.empty())
+        throw UsageError("give --game, or the state of a game with --state");
+    const Record record = read_shot(args.shot, {});
+    const Judged verdict = judged(args.shot, record, args.game);
+    if (!args.game.state_out.empty())
+        write_text(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
+    print(args.json ? verdict_json(verdict) : verdict_text(verdict));
+    return kOk;
+}
+
+/// The requested place of the cue ball, else the free one nearest to the head spot, or none.
+std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const Option& option) {
+    if (!args.place.empty()) {
+        const auto numbers = numbers_in<double, 2>(args.place, ',');
+        if (!numbers) throw UsageError(fmt::format("--place {}: expected X,Y in m", args.place));
+        const Vec2 place((*numbers)[0], (*numbers)[1]);
+        if (!asked(args.scene, [&] { return games::may_place(record, option, place); }))
+            throw UsageError(
+                fmt::format("--place {}: the cue ball may not lie there; choose another place", args.place));
+        return place;
+    }
+    if (option.state.in_hand == InHand::kNo) return std::nullopt;
+    const Table& table = record.table;
+    const Vec2 from = games::head_spot(table);
+    // Rings about the head spot, one ball radius apart.
+    const double step = record.balls.R;
+    const int rings = static_cast<int>(std::ceil((table.width + table.length) / step));
+    for (int ring = 0; ring <= rings; ++ring) {
+        const int places = std::max(1, 6 * ring);
+        for (int k = 0; k < places; ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / places - 0.5 * std::numbers::pi;
+            const Vec2 place = from + step * ring * Vec2(std::cos(angle), std::sin(angle));
+            if (games::may_place(record, option, place)) return place;
+        }
+    }
+    throw UsageError(fmt::format("{}: there is no free place for the cue ball", harmless(args.scene)));
+}
+
+/// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
+/// side.
+Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
+             const std::vector<std::string>& first) {
+    Cue cue = before;
+    cue.ball = ball;
+    cue.side = 0.0;
+    const auto struck =
+        std::find_if(table.ball.begin(), table.ball.end(), [&](const BallStart& b) { return b.id == ball; });
+    double least = HUGE_VAL;
+    for (const BallStart& other : table.ball) {
+        if (struck == table.ball.end() || other.id == ball) continue;
+        if (!first.empty() && std::find(first.begin(), first.end(), other.id) == first.end()) continue;
+        const Vec2 way = planar(other.position - struck->position);
+        if (way.norm() >= least) continue;
+        least = way.norm();
+        cue.aim_deg = std::atan2(way.y(), way.x()) * 180.0 / std::numbers::pi;
+    }
+    return cue;
+}
+
+int run_next(const NextArgs& args) {
+    if (is_record(args.scene))
+        throw UsageError(
+            fmt::format("{}: expected a scene file (TOML); a record does not say how balls and "
+                        "cushions are computed",
+                        harmless(args.scene)));
+    const Plan plan = plan_scene(args.scene);
+    const Record record = simulate_plan(plan, {});
+    std::string said = fmt::format("# The table after {}.\n", harmless(args.scene));
+    for (const Event& event : record.events) {
+        if (event.type == EventType::kBallPocket)
+            said += fmt::format("# {} fell into the {}.\n", harmless(record.tracks[event.a].id),
+                                met_name(record, event));
+        if (event.type == EventType::kBallOut)
+            said += fmt::format("# {} left the table.\n", harmless(record.tracks[event.a].id));
+    }
+    Scene next;
+    std::string ball = plan.scene.cue ? plan.scene.cue->ball : "";
+    std::vector<std::string> first;
+    if (args.game.game.empty() && args.game.state.empty()) {
+        next = scene_after(plan.scene, record);
+    } else {
+        const Judged verdict = judged(args.scene, record, args.game);
+        const Option& option = verdict.option;
+        if (option.state.over) {
+            print(verdict_text(verdict));
+            throw UsageError(
+                fmt::format("{}: the game is over; there is no next shot", harmless(args.scene)));
+        }
+        if (option.rerack())
+            throw UsageError(fmt::format("{}: the balls are racked again; write a scene with [rack]",
+                                         harmless(args.scene)));
+        next = asked(args.scene, [&] {
+            return games::table_after(plan.scene, record, option, place_of(args, record, option));
+        });
+        ball = games::cue_ball(option.state);
+        std::vector<std::string> ids;
+        for (const BallStart& b : next.ball) ids.push_back(b.id);
+        first = asked(args.scene, [&] { return games::legal(option.state, ids).first; });
+        said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
+                            next_text(option.state));
+        if (!args.game.state_out.empty())
+            write_text(args.game.state_out, state_json(option.state).dump(2) + "\n");
+    }
+    next.cue.reset();
+    const bool there =
+        std::any_of(next.ball.begin(), next.ball.end(), [&](const BallStart& b) { return b.id == ball; });
+    if (plan.scene.cue && there)
+        next.cue = next_cue(next, *plan.scene.cue, ball, first);
+    else
+        said += "# The struck ball is gone: place it as a [[ball]], and add a [cue].\n";
+    write_text(args.output, said + scene_text(next));
+    print(fmt::format("{}: {}\n", harmless(args.output), counted(next.ball.size(), "ball")));
+    return kOk;
+}
+
+void add_game(Options& command, GameArgs& args) {
+    command.option("--game", &args.game, "GAME", "The game; a state names it, too (default: none)")
+        .one_of(game_names());
+    command.option("--state", &args.state, "FILE.json",
+                   "The state before the shot (default: that before the break)");
+    command.option("--state-out", &args.state_out, "FILE.json",
+                   "Write the state after the shot (default: not written)");
+    command.option("--ball", &args.ball, "ID", "The ball that was called (default: none)");
+    command.option("--pocket", &args.pocket, "ID", "The pocket that was called (default: none)");
+    command.flag("--safety", args.safety, "Eight-ball: a safety was called (default: off)");
+    command.flag("--push-out", args.push_out, "Nine-ball: a push out was called (default: off)");
+    command.option("--option", &args.option, "N", "The choice that is taken, if there are several").in(1, 9);
+}
+
+}  // namespace
+
+void add_judge(Options& program) {
+    auto [command, args] = program.command<JudgeArgs>(
+        "judge", "Judge a shot by the rules of a game: fouls, points, whose turn, what comes back",
+        run_judge);
+    command.argument("SHOT", args.shot, "Scene file (TOML) or record (.json)").required = true;
+    add_game(command, args.game);
+    command.flag("--json", args.json, "Print the verdict as JSON (default: off)");
+}
+
+void add_next(Options& program) {
+    auto [command, args] = program.command<NextArgs>(
+        "next", "Write the scene of the next shot: the table as it rests, by the rules of a game if named",
+        run_next);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command.option("-o,--output", &args.output, "FILE.toml", "Scene file to write");
+    add_game(command, args.game);
+    command.option("--place", &args.place, "X,Y",
+                   "Place of the cue ball in hand, in m (default: the free place nearest to the head spot)");
+}
+
+}  // namespace carom::tools

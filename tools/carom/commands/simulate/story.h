@@ -1,0 +1,18 @@
+// What happened in a shot, told as a person would tell it.
+#pragma once
+
+#include <string>
+
+#include "base/units.h"
+#include "carom/engine/record.h"
+
+namespace carom::tools {
+
+/// One line per event. A long shot is told by its landmarks: the strike, the first contacts of the struck
+/// ball, and what falls or leaves the table. A line counts the contacts between two landmarks.
+std::string story(const Record& record, Units units);
+
+/// One line per event, however many there are.
+std::string all_events(const Record& record, Units units);
+
+}  // namespace carom::tools

@@ -1,0 +1,125 @@
+// carom solve: the shot that most surely does what is wanted.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "base/console.h"
+#include "base/game_state.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "base/statistics.h"
+#include "carom/engine/printable.h"
+#include "commands/solve/search.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using games::Choice;
+using games::Solution;
+
+struct SolveArgs {
+    std::string scene, game;
+    std::vector<std::string> want, vary;
+    int layouts = 64;
+    SearchArgs search;
+};
+
+std::optional<double> bound(std::string_view text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+/// "cue.speed=uniform(1,5)"
+Choice read_choice(const std::string& text) {
+    const std::size_t equals = text.find('='), open = text.find("uniform("), comma = text.rfind(',');
+    if (equals != text.npos && open == equals + 1 && comma != text.npos && text.back() == ')') {
+        const std::string_view whole = text;
+        const auto low = bound(whole.substr(open + 8, comma - open - 8)),
+                   high = bound(whole.substr(comma + 1, text.size() - comma - 2));
+        if (low && high && *low <= *high) return {text.substr(0, equals), *low, *high};
+    }
+    throw UsageError(fmt::format(
+        "--vary {}: expected KEY=uniform(a,b) with a <= b, as in cue.speed=uniform(1,5)", harmless(text)));
+}
+
+std::vector<Choice> default_choices() {
+    return {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}, {"cue.offset.height", -0.4, 0.4}};
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string whole;
+    for (const std::string& part : parts) whole += (whole.empty() ? "(" : " and (") + part + ")";
+    return parts.size() == 1 ? parts.front() : whole;
+}
+
+std::string told(const Solution& solution, const std::vector<Choice>& choices, int rank) {
+    std::string text =
+        fmt::format("{}. {}  of {}\n", rank, share_text(share_of(solution.successes, solution.shots)),
+                    counted(solution.shots, "shot"));
+    for (std::size_t k = 0; k < choices.size(); ++k)
+        text += fmt::format("     {:<24}{:.6g}\n", choices[k].key, solution.values[k]);
+    return text + falls_text(solution) + costs_text(solution);
+}
+
+int run(const SolveArgs& args) {
+    const Plan plan = plan_scene(args.scene);
+    std::vector<Choice> choices;
+    for (const std::string& text : args.vary) choices.push_back(read_choice(text));
+    if (choices.empty()) choices = default_choices();
+    std::optional<games::Game> game;
+    if (!args.game.empty()) game = game_of(args.game);
+    const std::string want = joined(args.want);
+    const std::vector<Scene> layouts = read_layouts(args.layouts, [&](const std::vector<std::string>& rules) {
+        return Variation(args.scene, rules, args.search.seed);
+    });
+    const std::vector<Solution> found =
+        search(plan.scene, args.scene, want, game, choices, layouts, args.search);
+    if (!args.search.output.empty()) write_best(args.search.output, found[0], want, args.search);
+    if (args.search.json) {
+        print(Json{{"want", want},
+                   {"hand", args.search.hand},
+                   {"seed", args.search.seed},
+                   {"solutions", solutions_json(found, choices)}}
+                  .dump() +
+              "\n");
+        return kOk;
+    }
+    std::string text = fmt::format("wanted: {}\n", harmless(want));
+    for (std::size_t i = 0; i < found.size(); ++i) text += told(found[i], choices, static_cast<int>(i) + 1);
+    print(text);
+    return kOk;
+}
+
+}  // namespace
+
+void add_solve(Options& program) {
+    auto [command, args] = program.command<SolveArgs>(
+        "solve", "Find the shot that most surely does what is wanted, with a hand that errs", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command
+        .option("--want", &args.want, "EXPRESSION",
+                "What the shot has to do (carom describe measures); several must all hold")
+        .required = true;
+    command.option(
+        "--vary", &args.vary, "KEY=uniform(a,b)",
+        "What the search may choose; hit.BALL=uniform(-1,1) aims at a ball (default: aim, speed and "
+        "height of the tip)");
+    command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
+        .one_of(game_names());
+    command
+        .option("--layouts", &args.layouts, "N", "Racks that the shot must cope with, if the scene has one")
+        .in(1, 100000);
+    add_search(command, args.search);
+}
+
+}  // namespace carom::tools

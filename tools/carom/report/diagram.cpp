@@ -1,0 +1,493 @@
+// The long side of the table runs to the right: x of the page is y of the table, and y of the page, which
+// points down, is x of the table. Each piece of a ball's motion is a parabola, which is a Bezier curve.
+#include "report/diagram.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "base/console.h"
+#include "carom/engine/event_details.h"
+#include "carom/engine/printable.h"
+#include "carom/render/draw_list.h"
+#include "carom/render/look.h"
+#include "carom/render/table_mesh.h"
+#include "page/table_shape.h"
+
+namespace carom::tools {
+namespace {
+
+namespace look = render::look;
+using Json = nlohmann::ordered_json;
+using Color = look::Color;
+
+// All in points of the page.
+constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 74.0;
+constexpr double kTitleSize = 15.0, kTextSize = 8.0;
+// [pixels per point] In a PNG.
+constexpr double kPngScale = 2.5;
+constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGray{0.55, 0.55, 0.55};
+// [m/s] Slower contacts are drawn without a speed.
+constexpr double kLeastSpeed = 0.05;
+// [m] Below this a path is a dot.
+constexpr double kLeastPath = 1e-4;
+
+Color mixed(const Color& a, const Color& b, double share) {
+    Color c{};
+    for (std::size_t i = 0; i < 3; ++i) c[i] = a[i] + share * (b[i] - a[i]);
+    return c;
+}
+
+/// One shot on the page.
+class Drawing {
+  public:
+    Drawing(cairo_t* cr, const DiagramShot& shot, const DiagramStyle& style)
+        : cr_(cr), shot_(shot), record_(shot.record), style_(style) {
+        std::vector<Vec2> visited;
+        for (const BallTrack& track : record_.tracks)
+            for (const Segment& s : track.segments)
+                if (!is_gone(s.state)) visited.push_back(planar(s.r));
+        mesh_ = render::make_table_mesh(record_.table, record_.balls.R, visited);
+        low_ = mesh_.bounds.low;
+        high_ = mesh_.bounds.high;
+        scale_ = kDrawingWidth / std::max(high_.y() - low_.y(), 1e-9);
+        for (const Event& event : record_.events)
+            if (struck_ < 0 && event.type == EventType::kCueStrike) struck_ = event.a;
+    }
+    double height() const { return kTitleHeight + scale_ * (high_.x() - low_.x()) + kInsetHeight; }
+
+    void draw() {
+        text(0.0, kTitleHeight - 10.0, shot_.title, kTitleSize, kBlack, 0.0);
+        cairo_save(cr_);
+        cairo_translate(cr_, 0.0, kTitleHeight);
+        draw_table();
+        for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_path(static_cast<int>(i));
+        draw_ghost();
+        for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_ball(static_cast<int>(i));
+        draw_cue();
+        if (style_.speeds) draw_speeds();
+        cairo_translate(cr_, 0.0, scale_ * (high_.x() - low_.x()));
+        draw_inset();
+        cairo_restore(cr_);
+    }
+
+  private:
+    double px(const Vec2& p) const { return scale_ * (p.y() - low_.y()); }
+    double py(const Vec2& p) const { return scale_ * (p.x() - low_.x()); }
+    void color(const Color& c, double alpha = 1.0) { cairo_set_source_rgba(cr_, c[0], c[1], c[2], alpha); }
+
+    /// @param side  0 begins at x, 0.5 is centred, 1 ends there
+    void text(double x, double y, const std::string& words, double size, const Color& c, double side) {
+        cairo_set_font_size(cr_, size);
+        cairo_text_extents_t extents;
+        cairo_text_extents(cr_, words.c_str(), &extents);
+        color(c);
+        cairo_move_to(cr_, x - side * extents.x_advance, y);
+        cairo_show_text(cr_, words.c_str());
+        cairo_new_path(cr_);
+    }
+    void stroke(const Color& c, double width) {
+        color(c);
+        cairo_set_line_width(cr_, width);
+        cairo_stroke(cr_);
+    }
+    void circle(const Vec2& center, double radius) {
+        cairo_new_sub_path(cr_);
+        cairo_arc(cr_, px(center), py(center), radius, 0.0, 2.0 * std::numbers::pi);
+    }
+
+    void outlines(const Json& loops, const Color& fill, bool edge) {
+        for (const Json& loop : loops) {
+            for (std::size_t i = 0; i + 1 < loop.size(); i += 2) {
+                const Vec2 p(loop[i].get<double>(), loop[i + 1].get<double>());
+                (i == 0 ? cairo_move_to : cairo_line_to)(cr_, px(p), py(p));
+            }
+            cairo_close_path(cr_);
+        }
+        color(fill);
+        edge ? cairo_fill_preserve(cr_) : cairo_fill(cr_);
+        if (edge) stroke(kBlack, 0.6);
+    }
+    /// The edge of the table: the box around its boards.
+    void frame(const Json& boards) {
+        Vec2 low = Vec2::Constant(HUGE_VAL), high = -low;
+        for (const Json& board : boards) {
+            for (const Json& loop : board.at("loops")) {
+                for (std::size_t i = 0; i + 1 < loop.size(); i += 2) {
+                    const Vec2 p(loop[i].get<double>(), loop[i + 1].get<double>());
+                    low = low.cwiseMin(p);
+                    high = high.cwiseMax(p);
+                }
+            }
+        }
+        if (boards.empty()) return;
+        cairo_rectangle(cr_, px(low), py(low), px(high) - px(low), py(high) - py(low));
+        stroke(kBlack, 0.8);
+    }
+    void draw_table() {
+        const Json shape = table_shape(mesh_);
+        const bool colored = style_.color;
+        // Light colours, because a page is read on paper.
+        for (const Json& board : shape.at("wood"))
+            outlines(board.at("loops"), colored ? mixed(look::kPlainWood, kWhite, 0.35) : kWhite, false);
+        frame(shape.at("wood"));
+        outlines(shape.at("trim"), colored ? look::kPlainPocket : kWhite, true);
+        outlines(shape.at("cloth"), colored ? mixed(look::kCloth, kWhite, 0.62) : kWhite, !colored);
+        outlines(shape.at("cushion"), colored ? mixed(look::kCloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.25),
+                 true);
+        outlines(shape.at("chalk"), colored ? kWhite : kGray, false);
+        for (const Json& hole : shape.at("holes")) {
+            const Json& center = hole.at("center");
+            circle({center[0].get<double>(), center[1].get<double>()},
+                   scale_ * hole.at("radius").get<double>());
+            color(colored ? look::kPlainPocket : kWhite);
+            cairo_fill_preserve(cr_);
+            stroke(kBlack, 0.6);
+        }
+        outlines(shape.at("inlay"), colored ? look::kInlay : kBlack, false);
+        if (style_.diamond_numbers) draw_diamond_numbers();
+    }
+    /// On the cushions, beside the diamonds of the rail.
+    void draw_diamond_numbers() {
+        const Table& t = record_.table;
+        if (!(t.width > 0.0 && t.length > 0.0)) return;
+        const Vec2 low = t.corner - 0.5 * (t.corner - mesh_.inner_low),
+                   far = t.corner + Vec2(t.width, t.length), high = far + 0.5 * (mesh_.inner_high - far);
+        const auto number = [&](const Vec2& at, int k) {
+            for (const Pocket& p : t.pockets)
+                if ((at - p.center).norm() < 1.6 * p.radius) return;
+            text(px(at), py(at) + 0.35 * kTextSize, fmt::format("{}", k), kTextSize,
+                 style_.color ? kWhite : kBlack, 0.5);
+        };
+        for (int k = 0; k <= 8; ++k)
+            for (const double x : {low.x(), high.x()}) number({x, t.corner.y() + t.length * k / 8.0}, k);
+        for (int k = 1; k < 4; ++k)
+            for (const double y : {low.y(), high.y()}) number({t.corner.x() + t.width * k / 4.0, y}, k);
+    }
+
+    Color ball_color(int ball) const {
+        const std::array<float, 3> c =
+            render::ball_style(record_.tracks[ball].id, record_.table.preset, ball).color;
+        return {c[0], c[1], c[2]};
+    }
+    /// A path must be visible on the cloth: the white ball's is black.
+    Color path_color(int ball) const {
+        if (!style_.color) return kBlack;
+        const Color c = ball_color(ball);
+        return look::is_bright(float(c[0] * c[0]), float(c[1] * c[1]), float(c[2] * c[2])) && ball == struck_
+                   ? kBlack
+                   : mixed(c, kBlack, 0.25);
+    }
+
+    /// When the ball first meets another one, or the end of the shot.
+    double first_contact(int ball) const {
+        for (const Event& event : record_.events) {
+            if (kind(event.type).partner != Partner::kBall) continue;
+            bool in = event.a == ball || event.b == ball;
+            if (event.type == EventType::kBallCluster) {
+                const std::vector<int>& cluster = record_.clusters[static_cast<std::size_t>(event.detail)];
+                in = in || std::find(cluster.begin(), cluster.end(), ball) != cluster.end();
+            }
+            if (in) return event.time;
+        }
+        return record_.duration;
+    }
+
+    void draw_path(int ball) {
+        const std::vector<Segment>& segments = record_.tracks[ball].segments;
+        const double contact = first_contact(ball);
+        double length = 0.0;
+        for (const bool dashed : {false, true}) {
+            bool begun = false;
+            Vec2 last, direction = Vec2::Zero();
+            for (std::size_t i = 0; i < segments.size(); ++i) {
+                const Segment& s = segments[i];
+                const double end = i + 1 < segments.size() ? segments[i + 1].start : record_.duration;
+                const double time = std::min(end - s.start, s.duration);
+                if (!(time > 0.0) || is_gone(s.state) || (s.start >= contact) != dashed) continue;
+                const Vec2 from = planar(s.r), to = planar(position_at(s, time)), v = planar(s.v);
+                if ((to - from).norm() < kLeastPath) continue;
+                if (!begun) cairo_move_to(cr_, px(from), py(from));
+                begun = true;
+                // The middle point of the parabola's control polygon, and the cubic curve that equals it.
+                const Vec2 middle = from + 0.5 * time * v;
+                const Vec2 c1 = from + 2.0 / 3.0 * (middle - from), c2 = to + 2.0 / 3.0 * (middle - to);
+                cairo_curve_to(cr_, px(c1), py(c1), px(c2), py(c2), px(to), py(to));
+                length += (to - from).norm();
+                direction = to - from;
+                last = to;
+            }
+            if (!begun) continue;
+            const double dash[] = {4.0, 2.5};
+            cairo_set_dash(cr_, dash, dashed ? 2 : 0, 0.0);
+            stroke(path_color(ball), ball == struck_ ? 1.5 : 1.1);
+            cairo_set_dash(cr_, dash, 0, 0.0);
+            if (dashed || contact >= record_.duration) arrow(last, direction, path_color(ball), ball);
+        }
+    }
+    /// The ball at rest at the end of its path, as a ring with an arrow.
+    void arrow(const Vec2& tip, const Vec2& direction, const Color& c, int ball) {
+        if (!(direction.norm() > 0.0)) return;
+        const double angle = std::atan2(py(tip + direction) - py(tip), px(tip + direction) - px(tip));
+        cairo_save(cr_);
+        cairo_translate(cr_, px(tip), py(tip));
+        cairo_rotate(cr_, angle);
+        cairo_move_to(cr_, 0.0, 0.0);
+        cairo_line_to(cr_, -7.0, 2.8);
+        cairo_line_to(cr_, -7.0, -2.8);
+        cairo_close_path(cr_);
+        color(c);
+        cairo_fill(cr_);
+        cairo_restore(cr_);
+        const BallState end = record_.state_at(ball, record_.duration);
+        if (is_gone(end.state)) return;
+        circle(planar(end.position), scale_ * record_.size(ball).R);
+        stroke(c, 0.7);
+    }
+
+    /// The struck ball where it first meets another one.
+    void draw_ghost() {
+        if (struck_ < 0) return;
+        const double time = first_contact(struck_);
+        if (time >= record_.duration) return;
+        const double R = scale_ * record_.size(struck_).R;
+        circle(planar(record_.state_at(struck_, time).position), R);
+        color(kWhite, 0.55);
+        cairo_fill_preserve(cr_);
+        const double dots[] = {1.4, 1.4};
+        cairo_set_dash(cr_, dots, 2, 0.0);
+        stroke(kBlack, 0.8);
+        cairo_set_dash(cr_, dots, 0, 0.0);
+    }
+
+    void draw_ball(int ball) {
+        const BallState s = record_.state_at(ball, 0.0);
+        if (is_gone(s.state)) return;
+        const render::BallStyle of = render::ball_style(record_.tracks[ball].id, record_.table.preset, ball);
+        const double R = scale_ * record_.size(ball).R;
+        const Vec2 center = planar(s.position);
+        const bool stripe = of.pattern == render::BallPattern::kStripe;
+        const bool white = !style_.color || stripe;
+        circle(center, R);
+        color(white ? kWhite : ball_color(ball));
+        cairo_fill_preserve(cr_);
+        cairo_save(cr_);
+        cairo_clip_preserve(cr_);
+        cairo_new_path(cr_);
+        if (stripe) {
+            cairo_rectangle(cr_, px(center) - R, py(center) - look::kStripe * R, 2.0 * R,
+                            2.0 * look::kStripe * R);
+            color(style_.color ? ball_color(ball) : kGray);
+            cairo_fill(cr_);
+        }
+        cairo_restore(cr_);
+        circle(center, R);
+        stroke(kBlack, 0.7);
+        if (of.number == 0) return;
+        circle(center, look::kSpot * R);
+        color(look::kIvory);
+        if (style_.color) cairo_fill_preserve(cr_);
+        cairo_new_path(cr_);
+        const double size = R * (of.number > 9 ? 0.85 : 1.0);
+        text(px(center), py(center) + 0.36 * size, fmt::format("{}", of.number), size, kBlack, 0.5);
+    }
+
+    /// The stick behind the ball that it strikes.
+    void draw_cue() {
+        if (!shot_.cue || struck_ < 0) return;
+        const double aim = shot_.cue->aim_deg * std::numbers::pi / 180.0;
+        const Vec2 along(std::cos(aim), std::sin(aim)), left(-along.y(), along.x());
+        const double R = record_.size(struck_).R;
+        const Vec2 tip =
+            planar(record_.state_at(struck_, 0.0).position) + shot_.cue->side * R * left - 1.3 * R * along;
+        const Vec2 butt = tip - 0.62 * along;
+        cairo_save(cr_);
+        cairo_rectangle(cr_, 0.0, 0.0, kDrawingWidth, scale_ * (high_.x() - low_.x()));
+        cairo_clip(cr_);
+        cairo_set_line_cap(cr_, CAIRO_LINE_CAP_ROUND);
+        for (const auto& [width, c] :
+             {std::pair(3.4, kBlack), std::pair(2.2, style_.color ? look::kInlay : kWhite)}) {
+            cairo_move_to(cr_, px(tip), py(tip));
+            cairo_line_to(cr_, px(butt), py(butt));
+            stroke(c, width);
+        }
+        cairo_set_line_cap(cr_, CAIRO_LINE_CAP_BUTT);
+        cairo_restore(cr_);
+    }
+
+    void draw_speeds() {
+        int told = 0;
+        for (std::size_t i = 0; i < record_.events.size() && told < 6; ++i) {
+            const Event& event = record_.events[i];
+            const EventKind& of = kind(event.type);
+            const bool contact = of.phase == EventPhase::kImpact &&
+                                 (of.partner == Partner::kBall || of.partner == Partner::kCushion);
+            if (!contact || (event.a != struck_ && !(of.partner == Partner::kBall && event.b == struck_)))
+                continue;
+            const EventDetails d = details_of(record_, i);
+            const BallAtEvent& ball = d.balls[event.a == struck_ ? 0 : 1];
+            const Vec2 place = planar(ball.after.position);
+            // Beside the path on the side that the ball comes from.
+            const Vec2 v = planar(ball.before.velocity);
+            if (v.norm() < kLeastSpeed) continue;
+            const Vec2 aside = v.norm() > 0.0 ? Vec2(v / v.norm()) : Vec2(0.0, 1.0);
+            const Vec2 at = place - 2.2 * record_.size(struck_).R * aside +
+                            1.1 * record_.size(struck_).R * Vec2(-aside.y(), aside.x());
+            const std::string words = speed_text(v.norm(), style_.units);
+            cairo_text_extents_t extents;
+            cairo_set_font_size(cr_, kTextSize);
+            cairo_text_extents(cr_, words.c_str(), &extents);
+            cairo_rectangle(cr_, px(at) - 0.5 * extents.x_advance - 1.5, py(at) - kTextSize + 1.0,
+                            extents.x_advance + 3.0, kTextSize + 2.0);
+            color(kWhite, 0.75);
+            cairo_fill(cr_);
+            text(px(at), py(at), words, kTextSize, kBlack, 0.5);
+            ++told;
+        }
+    }
+
+    /// Where the tip meets the ball, and the shot in words.
+    void draw_inset() {
+        const double r = 26.0, x = r + 4.0, y = r + 10.0;
+        std::string words;
+        if (shot_.cue && struck_ >= 0) {
+            const Cue& cue = *shot_.cue;
+            cairo_arc(cr_, x, y, r, 0.0, 2.0 * std::numbers::pi);
+            color(style_.color ? ball_color(struck_) : kWhite);
+            cairo_fill_preserve(cr_);
+            stroke(kBlack, 0.8);
+            for (const auto& [dx, dy] : {std::pair(r, 0.0), std::pair(0.0, r)}) {
+                cairo_move_to(cr_, x - dx, y - dy);
+                cairo_line_to(cr_, x + dx, y + dy);
+            }
+            stroke(kGray, 0.5);
+            // The offset is along the left of the player, who looks along the aim.
+            cairo_arc(cr_, x - r * cue.side, y - r * cue.height, 5.0, 0.0, 2.0 * std::numbers::pi);
+            color(style_.color ? Color{0.13, 0.35, 0.62} : kBlack);
+            cairo_fill(cr_);
+            words = fmt::format("cue {}, aim {:.2f} deg, elevation {:.0f} deg, tip {:.2f} {}, {:.2f} {}",
+                                speed_text(cue.speed, style_.units), cue.aim_deg, cue.elevation_deg,
+                                std::abs(cue.side), cue.side < 0.0 ? "right" : "left", std::abs(cue.height),
+                                cue.height < 0.0 ? "low" : "high");
+        }
+        const double left = words.empty() ? 0.0 : 2.0 * r + 16.0;
+        text(left, y - 8.0, words, 9.5, kBlack, 0.0);
+        text(left, y + 5.0, outcome(), 9.5, kBlack, 0.0);
+        text(left, y + 18.0,
+             "solid: before the ball meets another, dashed: after it; dotted ring: ghost ball", kTextSize,
+             kGray, 0.0);
+    }
+    std::string outcome() const {
+        std::string words;
+        for (const Event& event : record_.events) {
+            if (event.type != EventType::kBallPocket && event.type != EventType::kBallOut) continue;
+            if (!words.empty()) words += ", ";
+            words += event.type == EventType::kBallOut
+                         ? fmt::format("{} leaves the table", record_.tracks[event.a].id)
+                         : fmt::format("{} falls into the {}", record_.tracks[event.a].id,
+                                       met_name(record_, event));
+        }
+        return fmt::format("{}; {:.1f} s", words.empty() ? "nothing falls" : words, record_.duration);
+    }
+
+    cairo_t* cr_;
+    const DiagramShot& shot_;
+    const Record& record_;
+    const DiagramStyle& style_;
+    render::TableMesh mesh_;
+    Vec2 low_, high_;
+    double scale_ = 1.0;  ///< [points/m]
+    int struck_ = -1;
+};
+
+cairo_status_t append(void* to, const unsigned char* data, unsigned int length) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/// A cairo context that releases itself.
+struct Context {
+    explicit Context(cairo_surface_t* made) : surface(made), cr(cairo_create(made)) {}
+    ~Context() {
+        cairo_destroy(cr);
+        cairo_surface_destroy(surface);
+    }
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+    cairo_surface_t* surface;
+    cairo_t* cr;
+};
+
+/// Draws all shots, in two columns if there are several. @return the size of the page
+std::pair<double, double> draw_page(cairo_t* cr, const std::vector<DiagramShot>& shots,
+                                    const DiagramStyle& style) {
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    const std::size_t columns = shots.size() > 1 ? 2 : 1;
+    double y = kMargin;
+    for (std::size_t first = 0; first < shots.size(); first += columns) {
+        double highest = 0.0;
+        for (std::size_t i = first; i < std::min(first + columns, shots.size()); ++i) {
+            Drawing drawing(cr, shots[i], style);
+            cairo_save(cr);
+            cairo_translate(cr, kMargin + static_cast<double>(i - first) * (kDrawingWidth + kMargin), y);
+            drawing.draw();
+            cairo_restore(cr);
+            highest = std::max(highest, drawing.height());
+        }
+        y += highest + kMargin;
+    }
+    return {kMargin + static_cast<double>(columns) * (kDrawingWidth + kMargin), y};
+}
+
+}  // namespace
+
+std::string diagram_format(const std::string& path) {
+    for (const char* format : kDiagramFormats)
+        if (path.ends_with(format)) return format;
+    throw UsageError(fmt::format("{}: expected a name that ends with .svg, .pdf or .png", harmless(path)));
+}
+
+std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,
+                         const std::string& format) {
+    // The size is known once everything has been drawn, so the first pass draws into nothing.
+    std::pair<double, double> size;
+    {
+        const Context nowhere(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
+        size = draw_page(nowhere.cr, shots, style);
+    }
+    std::string bytes;
+    cairo_status_t status = CAIRO_STATUS_SUCCESS;
+    {
+        const bool png = format == ".png";
+        const auto pixels = [](double points) { return static_cast<int>(std::ceil(kPngScale * points)); };
+        const Context page(
+            png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(size.first), pixels(size.second))
+            : format == ".pdf"
+                ? cairo_pdf_surface_create_for_stream(append, &bytes, size.first, size.second)
+                : cairo_svg_surface_create_for_stream(append, &bytes, size.first, size.second));
+        if (png) cairo_scale(page.cr, kPngScale, kPngScale);
+        cairo_set_source_rgb(page.cr, 1.0, 1.0, 1.0);
+        cairo_paint(page.cr);
+        draw_page(page.cr, shots, style);
+        status = cairo_status(page.cr);
+        if (png && status == CAIRO_STATUS_SUCCESS)
+            status = cairo_surface_write_to_png_stream(page.surface, append, &bytes);
+        cairo_surface_finish(page.surface);
+    }
+    if (status != CAIRO_STATUS_SUCCESS)
+        throw std::runtime_error(
+            fmt::format("the diagram cannot be drawn: {}", cairo_status_to_string(status)));
+    return bytes;
+}
+
+}  // namespace carom::tools

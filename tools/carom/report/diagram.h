@@ -1,0 +1,37 @@
+// Shots as a drawing for a printed page: the table to scale, the balls where they begin, the paths they take.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "carom/engine/record.h"
+#include "carom/engine/scene.h"
+
+namespace carom::tools {
+
+struct DiagramShot {
+    std::string title;
+    Record record;
+    std::optional<Cue> cue;  ///< nothing if only the record is known
+};
+
+struct DiagramStyle {
+    bool color = true;
+    bool diamond_numbers = false;
+    bool speeds = true;  ///< beside the contacts of the struck ball
+    Units units = Units::kMetric;
+};
+
+/// The formats, by file extension.
+inline constexpr const char* kDiagramFormats[] = {".svg", ".pdf", ".png"};
+
+/// Which of them a file has. @throws UsageError for another ending, and in a build without cairo
+std::string diagram_format(const std::string& path);
+
+/// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error
+std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,
+                         const std::string& format);
+
+}  // namespace carom::tools

@@ -1,0 +1,19 @@
+// Stands in for diagram.cpp in a build without cairo.
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/console.h"
+#include "report/diagram.h"
+
+namespace carom::tools {
+
+std::string diagram_format(const std::string&) {
+    throw UsageError("this build of carom has no diagrams; install libcairo2-dev and build it again");
+}
+
+std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {
+    throw std::runtime_error("this build cannot draw diagrams");
+}
+
+}  // namespace carom::tools

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Checks widths and phrases (CONTRIBUTING.md, "House style"); called by tools/lint.
+
+    tools/words.py [FILE ...]     without files: every file of the project that git knows
+
+No line of code or prose is wider than 110 columns, except what cannot be broken: tables, links, addresses and
+commands in Markdown, and data. No comment or page uses the phrases below, which were this project's worst habits.
+Exit status 1: there are findings, each printed as FILE:LINE: what is wrong.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+WIDTH = 110
+CODE = {".h", ".cpp", ".c", ".py", ".pyi", ".js", ".mjs", ".ts", ".css", ".frag", ".vert", ".cmake", ".sh"}
+# Data, history, and the page that lists what not to write.
+LEFT_OUT = ("lab/notes/", "tests/data/", "tests/fuzz/corpus/", "lab/data/", "CHANGELOG.md", "CONTRIBUTING.md")
+PHRASES = {
+    r"\bso (much|many)\b(?! that)": "the number or the amount",
+    r"\bbut for\b": "except for",
+    r"\bways? of (the|a) balls?\b": "path",
+    r"\bof its own accord\b": "by itself",
+    r"\bmay be wrong by\b": "tolerance, or error",
+    r"\bnothing of (it|them|this)\b": "none of it",
+    r"\bas it comes\b": "unchanged",
+    r"\bwho (asks|calls|reads|wants|needs)\b": "the caller, or the reader",
+    r"\bthat is there\b": "existing",
+    r"\bin touch\b": "touching",
+}
+
+
+def texts(path, lines):
+    """The lines in which phrases are looked for: prose outside code blocks, and comments."""
+    fenced = False
+    for number, line in enumerate(lines, 1):
+        if path.suffix == ".md":
+            if line.lstrip().startswith("```"):
+                fenced = not fenced
+            elif not fenced:
+                yield number, line
+        elif match := re.search(r"(//|#|/\*|^\s*\*|\"\"\")(.*)", line):
+            yield number, match.group(2)
+
+
+def too_wide(path, lines):
+    fenced = False
+    for number, line in enumerate(lines, 1):
+        if path.suffix == ".md" and line.lstrip().startswith("```"):
+            fenced = not fenced
+        if len(line) <= WIDTH or "http" in line:
+            continue
+        if path.suffix == ".md" and (fenced or line.lstrip().startswith(("|", "<!--", "[", "!["))):
+            continue
+        yield number
+
+
+def main(arguments):
+    listed = subprocess.run(["git", "ls-files"], capture_output=True, text=True, check=True).stdout
+    named = arguments or listed.split("\n")
+    found = 0
+    for path in map(pathlib.Path, filter(None, named)):
+        if str(path).startswith(LEFT_OUT) or not path.is_file():
+            continue
+        script = not path.suffix and path.read_bytes()[:2] == b"#!"
+        if path.suffix not in CODE | {".md"} and path.name != "CMakeLists.txt" and not script:
+            continue
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for number in too_wide(path, lines):
+            print(f"{path}:{number}: wider than {WIDTH} columns")
+            found += 1
+        if path.name == pathlib.Path(__file__).name:
+            continue
+        for number, text in texts(path, lines):
+            for phrase, better in PHRASES.items():
+                if re.search(phrase, text, re.IGNORECASE):
+                    print(f"{path}:{number}: \"{re.search(phrase, text, re.IGNORECASE).group()}\": write {better}")
+                    found += 1
+    return found > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
