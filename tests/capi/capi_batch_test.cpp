@@ -1,5 +1,5 @@
-// The C interface in bulk: batches, segments, states, the
-// next scene; each against the call that gives one at a time.
+// The C interface in bulk: batches, segments, states, the next scene; each compared with the call for a
+// single one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -189,7 +189,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
     EXPECT_EQ(carom_record_states(record.get(), 0, nullptr, nullptr, nullptr), CAROM_OK);
 }
 
-// A shot from where the last one ended; what fell is gone, and who is struck is asked anew.
+// A shot from where the last one ended: fallen balls are gone, and the struck ball is chosen again.
 TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     const ScenePtr scene = scene_of("eight_ball_break");
     const RecordPtr first = play(scene.get());
@@ -211,7 +211,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     ASSERT_EQ(carom_scene_set_cue(next, carom_record_ball_id(rest.get(), 0), &cue), CAROM_OK);
     EXPECT_GT(carom_record_duration(play(next).get()), 0.5);
 
-    // Cut in two: what goes on ends where the whole shot does, but for the rounding of the times.
+    // Cut in two, the continued run ends where the whole shot does, except for the rounding of the times.
     const ScenePtr bank = scene_of("side_bank");
     const RecordPtr whole = play(bank.get()), half = play(bank.get(), 0.8);
     ASSERT_EQ(carom_scene_from_record(half.get(), &next), CAROM_OK);
@@ -222,7 +222,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_EQ(next, nullptr);
 }
 
-// In one call what a record and a cue make together, checked.
+// Does in one call what a record and a cue do together, with the same checks.
 TEST(CApiBatch, TheNextSceneWithItsStrike) {
     const RecordPtr first = play(scene_of("eight_ball_break").get());
     carom_cue cue;
@@ -239,7 +239,7 @@ TEST(CApiBatch, TheNextSceneWithItsStrike) {
     ASSERT_EQ(carom_record_hash(play(by_hand).get(), b), CAROM_OK);
     EXPECT_STREQ(a, b);
 
-    // A ball that is not there, or does not rest, is not struck.
+    // A ball that does not exist, or is not at rest, cannot be struck.
     EXPECT_EQ(carom_next_scene(first.get(), "nobody", &cue, &next), CAROM_BAD_SCENE);
     EXPECT_EQ(next, nullptr);
     const RecordPtr half = play(scene_of("side_bank").get(), 0.1);

@@ -1,4 +1,4 @@
-// A scene written out reads back to the same scene, and scenes built in code are checked like files.
+// A written-out scene reads back to the same scene, and scenes built in code are checked like files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every key of the format that can stand in a written-out scene, none at its default.
+/// Every key that a written-out scene may contain, none at its default.
 constexpr char kEveryKey[] = R"([table]
 cloth = "tournament"
 bed = [-1, -2, 7, 8]

@@ -1,4 +1,4 @@
-// Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
+// Many scenes from one file: keys, distributions, and that a shot depends only on what it should.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/sweep_columns.h"
@@ -38,7 +38,7 @@ class VariationTest : public testing::Test {
     Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
         return Variation(folder_.write("s.toml", text_), rules, seed);
     }
-    /// The message of a rule that has to fail.
+    /// The message of a rule that must fail.
     std::string error_of(const std::string& rule) {
         try {
             vary({rule});
@@ -103,7 +103,7 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_EQ(alone.shot(999).values, alone.shot(999).values);
     EXPECT_NE(alone.fingerprint(), among.fingerprint());
     EXPECT_NE(alone.fingerprint(), other_seed.fingerprint());
-    // A written-down value: changing the generator would change every sweep that was ever published.
+    // A fixed value: changing the generator would change every published sweep.
     EXPECT_EQ(alone.shot(0).values[0], "1.1117882243348463");
     EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
 }
@@ -198,7 +198,7 @@ Scene without_places(Scene scene) {
     return scene;
 }
 
-// The quick way makes the scene that the file would, or says that it cannot.
+// The fast route makes the scene that the file would, or says that it cannot.
 TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
         const Variation v = vary(rules);

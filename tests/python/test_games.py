@@ -30,13 +30,11 @@ def test_noise_has_names_and_is_the_same_for_a_seed():
 
 
 def test_noise_is_what_a_sweep_draws(tmp_path):
-    scene = carom.Scene(
-        ball=[{"id": "cue", "position": [0.5, 0.5]}],
-        cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
+    scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}],
+                        cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
     (tmp_path / "s.toml").write_text(scene.text())
-    rules = [
-        "cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)",
-        "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
+    rules = ["cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)",
+             "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
     header, rows = program_sweep(tmp_path, tmp_path / "s.toml", rules, 20, 5)
     strikes = games.noisy(
         np.tile([4.0, 30.0, 9.0, 0.1, 0.0], (20, 1)), games.Noise(0.2, 0.3, 0.4, 0.01, 0.02), 5)
@@ -60,33 +58,27 @@ def test_a_noisy_strike_is_legal_whatever_it_was():
 
 
 RACKS = {
-    "eight_ball": {
-        "table": "nine_foot", "balls": "pool", "rack": "eight_ball",
-        "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
-    "nine_ball": {
-        "table": "nine_foot", "balls": "pool", "rack": "nine_ball",
-        "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "eight_ball": {"table": "nine_foot", "balls": "pool", "rack": "eight_ball",
+                   "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "nine_ball": {"table": "nine_foot", "balls": "pool", "rack": "nine_ball",
+                  "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
     "three_cushion": {"table": "carom", "balls": "carom", "rack": "three_cushion"},
-    "snooker": {
-        "table": "snooker", "balls": "snooker", "rack": "snooker",
-        "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
-    "sum_to_three": {
-        "table": "carom", "balls": "carom",
-        "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
+    "snooker": {"table": "snooker", "balls": "snooker", "rack": "snooker",
+                "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
+    "sum_to_three": {"table": "carom", "balls": "carom",
+                     "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
 }
 
 
 def test_a_new_game_and_what_is_legal():
     state = games.new_game("eight_ball")
-    assert state == games.State(
-        "eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"), False, (0, 0), "red",
-        False)
+    assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"),
+                                False, (0, 0), "red", False)
     assert games.legal(state, ["cue", "8", "1"]) == games.Legal(["cue"], ["8", "1"], [], "head string", False)
     later = state._replace(opening=False, in_hand="no", group=("solids", "stripes"))
     assert games.legal(later, ["cue", "8", "1", "9"]).callable == ["1"]
-    assert games.legal(
-        games.new_game("three_cushion", first=1),
-        carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
+    assert games.legal(games.new_game("three_cushion", first=1),
+                       carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
     for bad in (
         lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3),
         lambda: games.legal(state._replace(over=True), ["8"])
@@ -102,9 +94,8 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
-        ball=[
-            {"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
-            {"id": "9", "position": [0.7, 1.0]}],
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
         cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
     )
     record = carom.simulate(scene)
@@ -129,9 +120,8 @@ def test_respots_come_back_exactly():
     scene = carom.Scene(
         table="snooker",
         balls="snooker",
-        ball=[
-            {"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]},
-            {"id": "1", "position": [0.5, 2.0]}],
+        ball=[{"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]},
+              {"id": "1", "position": [0.5, 2.0]}],
         cue={"speed": 1.5, "aim_deg": 45.0, "offset": [0.0, -0.2]},
     )
     record = carom.simulate(scene)

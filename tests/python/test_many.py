@@ -15,9 +15,8 @@ RANDOM = np.random.default_rng(7)
 
 def cues(n):
     return np.column_stack(
-        [
-            RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n),
-            RANDOM.uniform(-0.3, 0.3, n)]
+        [RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n),
+         RANDOM.uniform(-0.3, 0.3, n)]
     )
 
 

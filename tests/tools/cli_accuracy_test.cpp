@@ -1,5 +1,4 @@
-// carom accuracy: what it prints and writes. Times are
-// measured, and no test asserts one; errors are repeatable.
+// carom accuracy: what it prints and writes. No test asserts a measured time; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <string>

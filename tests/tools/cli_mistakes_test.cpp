@@ -86,7 +86,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
     refused("-o: empty file name", sweep(""));
-    // Files that are not there yet, under two names.
+    // Files that do not exist yet, under two names.
     fs::create_symlink(same, folder_.file("to_same"));
     fs::create_symlink("to_same", folder_.file("to_link"));
     fs::create_directory_symlink(".", folder_.file("here"));
@@ -114,8 +114,7 @@ TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
     refused("--at 99: the shot ends at", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
     for (const char* option : {"--at", "--from"})
         for (const char* late : {"99", "1e16", "1e17", "1e300"})
-            refused(": the shot ends at",
-                    {"render", scene_, option, late, "-o", folder_.file("%d.png")});
+            refused(": the shot ends at", {"render", scene_, option, late, "-o", folder_.file("%d.png")});
     EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
     const std::string one = folder_.file("f.png");
     const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
@@ -143,7 +142,8 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         other.push_back("--resume");
         const ProcessResult result = render(other);
         EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
+        EXPECT_TRUE(
+            contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
             << result.err;
     }
     std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
@@ -200,7 +200,7 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }
 
-// A shell's >>: what was there before stays, and what is printed comes after.
+// A shell's >>: earlier contents stay, and the output comes after them.
 TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     const std::string log = folder_.file("log.txt");
     const std::string hash = carom({"simulate", scene_, "--hash"}).out;
@@ -244,12 +244,12 @@ TEST_F(Mistakes, AShardReplacesNoOther) {
     EXPECT_EQ(read_file(output), first);
 }
 
-// Others may write in the folder, too.
+// Others may also write in the folder.
 TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
     const std::string record = folder_.file(std::string(240, 'r') + ".json");
     EXPECT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     EXPECT_TRUE(fs::exists(record));
-    // Rights stay, and links to nothing are followed.
+    // Permissions stay, and dangling links are followed.
     const std::string secret = folder_.write("secret.csv", "");
     fs::permissions(secret, fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(carom({"simulate", scene_, "--events", secret}).status, 0);

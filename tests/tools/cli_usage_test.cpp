@@ -90,7 +90,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 TEST(CliUsage, HelpNamesEveryDefault) {
     for (const char* command :
          {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
-        // Options begin with two blanks and a dash; their text may go on in the lines below.
+        // Options begin with two spaces and a dash; their text may continue on the lines below.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
@@ -179,7 +179,7 @@ TEST(CliCheck, PrintsThePlan) {
           "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
-    // Where none is named, every kernel has its own.
+    // By default, every kernel has its own.
     const std::string free = carom_isa("", {"check", scene}).out;
     const std::string impacts = kernel::name(kernel::fastest_isa(kernel::KernelKind::kTolerance)),
                       clusters = kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase));

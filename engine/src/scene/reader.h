@@ -69,6 +69,10 @@ class Section {
     double number_of(const toml::node& node, const std::string& what, const Interval& allowed) const {
         return number(node, what, allowed);
     }
+    /// A text in a section inside this one that is read later, and checked then; nothing if there is none.
+    std::optional<std::string> peek(std::string_view section, std::string_view key) const {
+        return table_ != nullptr ? (*table_)[section][key].value<std::string>() : std::nullopt;
+    }
 
     /// Refuses values that a file could not have, in the order of the rows.
     template <class T, std::size_t kRows>

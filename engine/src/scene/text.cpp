@@ -91,9 +91,11 @@ std::string scene_text(const Scene& scene) {
     write_table(out, scene.table);
     write_fields(out, "[balls]\n", kBallPresetFields, scene);
     write_fields(out, "", kBallFields, scene.balls);
+    if (scene.cue_ball) write_fields(out, "[balls.cue]\n", kSizeFields, *scene.cue_ball);
     for (const BallStart& ball : scene.ball) {
         write_fields(out, "[[ball]]\n", kBallStartFields, ball);
-        if (ball.own) write_fields(out, "", kSizeFields, *ball.own);
+        const bool is_cue_ball = scene.cue_ball && ball.id == scene.cue_ball_id();
+        if (ball.own || is_cue_ball) write_fields(out, "", kSizeFields, scene.size_of(ball));
     }
     if (scene.cue) write_fields(out, "[cue]\n", kCueFields, *scene.cue);
     write_fields(out, "[physics]\n", kPhysicsFields, scene.physics);
