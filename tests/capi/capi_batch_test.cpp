@@ -232,8 +232,8 @@ TEST(CApiBatch, ARunWithoutEndHasALimitOfEvents) {
     const auto says_so = [](const std::string& text) {
         for (const char* part :
              {"simulation stopped at t = ", " s after 1000000 events: ",
-              "add [stop] with events if more shall come, or with time", "last events:\n", " ball_cloth cue",
-              "balls that move (id state x y vx vy wx wy wz):\n  cue airborne "})
+              "allow more with [stop] events, or end the run earlier with [stop] time", "last events:\n",
+              " ball_cloth cue", "balls that move (id state x y vx vy wx wy wz):\n  cue airborne "})
             EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
     };
     carom_record* record = nullptr;
