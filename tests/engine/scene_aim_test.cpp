@@ -1,6 +1,8 @@
 // Aims as people say them, and numbers with units.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -124,16 +124,18 @@ def test_a_verdict_is_of_one_record():
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
-        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]}, {"id": "9", "position": [0.7, 1.0]}],
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
         cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
     )
     record, other = carom.simulate(scene), carom.simulate(scene.replace(**{"cue.speed": 3.9}))
-    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=[{"id": "x", "position": [0.5, 0.4]}], cue={"ball": "x", "speed": 0.1}))
+    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=[{"id": "x", "position": [0.5, 0.4]}],
+                                     cue={"ball": "x", "speed": 0.1}))
     verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
     option = verdict.options[0]
     for of_another in (other, one):
         for kept in (option, pickle.loads(pickle.dumps(option)), copy.deepcopy(verdict).options[0]):
-            with pytest.raises(ValueError, match="the verdict is of another record; give the record that was judged"):
+            with pytest.raises(ValueError, match="the verdict is of another record; give the record"):
                 games.may_place(of_another, kept, (0.7, 0.5))
             with pytest.raises(ValueError, match="the verdict is of another record"):
                 games.next_scene(of_another, kept, place=(0.7, 0.5))
@@ -145,19 +147,23 @@ def test_a_verdict_is_of_one_record():
     mine = games.Option(decision, state, respots)
     assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
     assert games.may_place(other, mine, (0.7, 0.5))
-    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that the option was judged by'):
+    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
         games.may_place(one, mine, (0.7, 0.5))
     with pytest.raises(ValueError, match='the record has no ball "black"'):
         games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))
 
 
 def test_a_verdict_of_a_loaded_record_is_of_that_record(tmp_path):
-    scene = carom.Scene(ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.3, 0.6]}, {"id": "9", "position": [0.7, 1.0]}], cue={"speed": 1.0})
+    scene = carom.Scene(
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.3, 0.6]},
+              {"id": "9", "position": [0.7, 1.0]}], cue={"speed": 1.0})
     record = carom.simulate(scene)
     record.save(tmp_path / "shot.json")
     verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
     place = (0.5, 0.5) if verdict.next.in_hand != "no" else None
-    assert games.next_scene(carom.Record.load(tmp_path / "shot.json"), verdict, place=place, scene=scene) == games.next_scene(record, verdict, place=place)
+    loaded = carom.Record.load(tmp_path / "shot.json")
+    assert games.next_scene(loaded, verdict, place=place, scene=scene) == games.next_scene(
+        record, verdict, place=place)
 
 
 def test_respots_come_back_exactly():
