@@ -129,7 +129,8 @@ def test_a_verdict_is_of_one_record():
         cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
     )
     record, other = carom.simulate(scene), carom.simulate(scene.replace(**{"cue.speed": 3.9}))
-    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=[{"id": "x", "position": [0.5, 0.4]}],
+    lone = [{"id": "x", "position": [0.5, 0.4]}]
+    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=lone,
                                      cue={"ball": "x", "speed": 0.1}))
     verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
     option = verdict.options[0]

@@ -171,8 +171,8 @@ def test_a_run_without_end_has_a_limit_of_events():
     # A ball that all but never stops bouncing.
     scene = carom.Scene(balls={"e_t": 0.9999999}, ball=[{"height": 0.1}])
     message = re.compile(
-        r"simulation stopped at t = [0-9.]+ s after 1000000 events: .*allow more with \[stop\] events, or end "
-        r"the run earlier with \[stop\] time\n"
+        r"simulation stopped at t = [0-9.]+ s after 1000000 events: .*allow more with \[stop\] events, or "
+        r"end the run earlier with \[stop\] time\n"
         r"last events:\n(  [0-9.]+ ball_cloth cue *\n){8}balls that move .*\n  cue airborne ",
         re.DOTALL,
     )
