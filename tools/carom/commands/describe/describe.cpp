@@ -180,31 +180,6 @@ std::string wrapped(const std::string& page) {
     return out;
 }
 
-/// Breaks lines that are wider than a page of the documents, at blanks outside of code.
-std::string wrapped(const std::string& text) {
-    constexpr std::size_t kWidth = 110;
-    std::string out;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = text.find('\n', begin);
-        std::string line = text.substr(begin, end - begin);
-        begin = end == text.npos ? text.size() : end + 1;
-        const std::string indent = line.starts_with("* ") ? "  " : "";
-        while (line.size() > kWidth) {
-            std::size_t at = line.npos;
-            bool code = false;
-            for (std::size_t i = 0; i < line.size() && (i <= kWidth || at == line.npos); ++i) {
-                if (line[i] == '`') code = !code;
-                if (line[i] == ' ' && !code && i > 2) at = i;
-            }
-            if (at == line.npos) break;
-            out += line.substr(0, at) + "\n";
-            line = indent + line.substr(at + 1);
-        }
-        out += line + "\n";
-    }
-    return out;
-}
-
 std::string command_line_page(const Options& program) {
     std::string commands, statuses;
     for (const Options& command : program.commands) page_command(commands, command, program.name);
@@ -346,7 +321,7 @@ constexpr struct {
 } kFormats[] = {{"man", man_page},
                 {"bash", bash_completion},
                 {"zsh", zsh_completion},
-                {"command-line", [](const Options& program) { return wrapped(command_line_page(program)); }},
+                {"command-line", command_line_page},
                 {"scene-schema", [](const Options&) { return scene_schema(); }},
                 {"record-schema", [](const Options&) { return record_schema(); }},
                 {"scene-format", [](const Options&) { return scene_format(); }},
