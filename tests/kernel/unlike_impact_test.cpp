@@ -185,7 +185,6 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
     for (const ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         Generator rng(82);
         for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-6, 1e-8, 1e-10}) {
-            double worst = 0.0;
             for (int n = 0; n < 1500; ++n) {
                 Impact i = unlike(rng);
                 i.params.cloth_slip = slip;
@@ -193,10 +192,8 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
                 if (n % 5 == 1) i.params.e_b = n % 2;
                 const double error =
                     difference(solve(i, tolerance), solve(i, 1e-13), i.params.R) / approach_speed(i);
-                worst = std::max(worst, error / tolerance);
                 EXPECT_LT(error, tolerance) << n;
             }
-            RecordProperty("worst", std::to_string(worst));
         }
     }
 }
@@ -230,7 +227,7 @@ TEST(UnlikeImpact, KeepsTheToleranceWhereSlipsVanish) {
             i.ball1.w[2] = 30.0 * decades(-8.0);
             i.ball2.w[0] = 1e-5 * decades(-1.0);
         }
-        const ImpactResult truth = solve(i, 1e-12);
+        const ImpactResult truth = solve(i, 1e-11);
         ASSERT_EQ(truth.status, ImpactStatus::kOk);
         for (const double tolerance : {1e-3, 1e-6, 1e-8})
             EXPECT_LT(difference(solve(i, tolerance), truth, R), tolerance)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from conftest import program_sweep
@@ -114,6 +117,54 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     assert games.judge(verdict.next, carom.simulate(after)).points in (0, 1)
     with pytest.raises(ValueError, match="before its balls were at rest"):
         games.judge(state, carom.simulate(scene, until=0.1))
+
+
+def test_a_verdict_is_of_one_record():
+    # The same balls, a little slower: what holds for one shot is not told of the other.
+    scene = carom.Scene(
+        table="nine_foot",
+        balls="pool",
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
+        cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
+    )
+    record, other = carom.simulate(scene), carom.simulate(scene.replace(**{"cue.speed": 3.9}))
+    lone = [{"id": "x", "position": [0.5, 0.4]}]
+    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=lone,
+                                     cue={"ball": "x", "speed": 0.1}))
+    verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
+    option = verdict.options[0]
+    for of_another in (other, one):
+        for kept in (option, pickle.loads(pickle.dumps(option)), copy.deepcopy(verdict).options[0]):
+            with pytest.raises(ValueError, match="the verdict is of another record; give the record"):
+                games.may_place(of_another, kept, (0.7, 0.5))
+            with pytest.raises(ValueError, match="the verdict is of another record"):
+                games.next_scene(of_another, kept, place=(0.7, 0.5))
+        with pytest.raises(ValueError, match="the verdict is of another record"):
+            games.next_scene(of_another, verdict, place=(0.7, 0.5))
+    assert games.may_place(record, pickle.loads(pickle.dumps(option)), (0.7, 0.5))
+    # An option is a tuple of three, and one that is made by hand is of any record that has its balls.
+    decision, state, respots = option
+    mine = games.Option(decision, state, respots)
+    assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
+    assert games.may_place(other, mine, (0.7, 0.5))
+    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
+        games.may_place(one, mine, (0.7, 0.5))
+    with pytest.raises(ValueError, match='the record has no ball "black"'):
+        games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))
+
+
+def test_a_verdict_of_a_loaded_record_is_of_that_record(tmp_path):
+    scene = carom.Scene(
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.3, 0.6]},
+              {"id": "9", "position": [0.7, 1.0]}], cue={"speed": 1.0})
+    record = carom.simulate(scene)
+    record.save(tmp_path / "shot.json")
+    verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
+    place = (0.5, 0.5) if verdict.next.in_hand != "no" else None
+    loaded = carom.Record.load(tmp_path / "shot.json")
+    assert games.next_scene(loaded, verdict, place=place, scene=scene) == games.next_scene(
+        record, verdict, place=place)
 
 
 def test_respots_come_back_exactly():

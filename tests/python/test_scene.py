@@ -125,7 +125,8 @@ def test_replace_says_what_is_wrong(draw_scene):
         carom.SceneError,
         draw_scene.replace,
         ({"cue.speed": -1}, r"draw.toml: cue.speed = -1 is out of range"),
-        ({"ball.nobody.position": [0, 0]}, r"draw.toml: ball.nobody.position: the scene has no such \[\[ball\]\]"),
+        ({"ball.nobody.position": [0, 0]},
+         r"draw.toml: ball.nobody.position: the scene has no such \[\[ball\]\]"),
         ({"cue.sped": 1}, "unknown key"),
     )
 

@@ -1,6 +1,7 @@
 // Rules that involve several sections of a scene.
 #include <fmt/format.h>
 
+#include <limits>
 #include <algorithm>
 #include <cmath>
 #include <string>

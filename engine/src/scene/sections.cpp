@@ -13,6 +13,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
+#include "scene/aim.h"
 #include "scene/rack.h"
 
 namespace carom::detail {
@@ -103,8 +104,10 @@ void read_rack(const Section& top, Scene& scene) {
 
 void read_cue(const Section& top, Scene& scene) {
     Cue cue;
-    const auto s = top.read("cue", kCueFields, cue);
+    const auto s = top.section("cue", joined(keys_of(kCueFields, Files::kScene), kAimKeys));
     if (!s) return;
+    s->read(kCueFields, cue);
+    read_aim(*s, scene, cue);
     cue.where = s->where();
     check_cue(*s, scene, cue);
     scene.cue = cue;

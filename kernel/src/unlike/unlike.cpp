@@ -21,7 +21,7 @@ constexpr int kSweeps = 24;
 // Where a slip between the balls grows slowly from zero, the forces are stiff and stretches short. After so
 // many of them the rest is solved to ten times the tolerance, and so on; and after the last, without
 // friction.
-constexpr int kManyStretches = 400, kStretches = 4800;
+constexpr int kManyStretches = 1500, kStretches = 10000;
 // [tolerances] What one stretch may leave, by its sweeps and by its nodes.
 constexpr double kSweepsLeave = 0.02, kNodesLeave = 0.1;
 // [tolerances] A slip between the balls below this has ended.
