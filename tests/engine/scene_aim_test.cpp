@@ -1,11 +1,11 @@
 // Aims as people say them, and numbers with units.
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <vector>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "carom/engine/event_details.h"
 #include "carom/engine/variation.h"

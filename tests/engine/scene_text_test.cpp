@@ -1,6 +1,7 @@
 // A written-out scene reads back to the same scene, and scenes built in code are checked like files.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -128,6 +129,21 @@ void collect_keys(const nlohmann::json& node, std::set<std::string>& keys) {
 }
 
 // Guards against a key that is added to the format and forgotten here.
+// "-0" was read as an integer, which has no sign: the shot from the text had other bits.
+TEST(SceneText, KeepsTheSignOfZero) {
+    const Scene scene = parse_scene(
+        "[[ball]]\nposition = [0.4, 0.5]\nvelocity = [-0.0, 1]\nspin = [-0.0, -0.0, -0.0]\n[[ball]]\nid = "
+        "\"b\"\n"
+        "position = [0.8, 0.5]\n[cue]\nball = \"b\"\naim_deg = -0.0\n",
+        "(test)");
+    const Scene again = parse_scene(scene_text(scene), "(text)");
+    EXPECT_TRUE(std::signbit(again.ball[0].velocity.x()));
+    EXPECT_FALSE(std::signbit(again.ball[0].velocity.y()));
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::signbit(again.ball[0].spin[k]));
+    EXPECT_TRUE(std::signbit(again.cue->aim_deg));
+    EXPECT_EQ(scene_text(again), scene_text(scene));
+}
+
 TEST(SceneText, WritesEveryKeyOfTheFormat) {
     std::ifstream file(CAROM_SOURCE_DIR "/docs/reference/scene.schema.json");
     std::set<std::string> keys;

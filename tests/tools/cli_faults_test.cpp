@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "base/file_lock.h"
+#include "base/output_file.h"
 #include "carom/engine/printable.h"
 #include "cli.h"
 
@@ -246,7 +248,17 @@ TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
     const int writes = ::open(other.c_str(), O_RDWR);
     ASSERT_EQ(::flock(writes, LOCK_EX), 0);
     folder_.write(".carom.tmp.not", "mine");
+    const std::string pipe = folder_.file(".carom.3.0.tmp"), link = folder_.file(".carom.4.0.tmp");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    fs::create_symlink(scene_, link);
+    // What another program has begun stays until it is whole.
+    OutputFile begun(folder_.file("other.txt"));
+    begun.write("whole");
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
+    begun.commit();
+    EXPECT_EQ(read_file(folder_.file("other.txt")), "whole");
+    EXPECT_TRUE(fs::exists(pipe));
+    EXPECT_TRUE(fs::is_symlink(link));
     EXPECT_FALSE(fs::exists(left));
     EXPECT_TRUE(fs::exists(other)) << "another program writes it";
     EXPECT_TRUE(fs::exists(folder_.file(".carom.tmp.not")));
@@ -265,7 +277,18 @@ TEST_F(Faults, TwoRendersDoNotShareFrames) {
             << result.err;
         EXPECT_FALSE(fs::exists(frame(0)));
     }
+    {
+        // Of another run over one frame: others of that kind may draw meanwhile, a film may not.
+        const FileLock lock(pattern() + ".lock", false);
+        EXPECT_EQ(carom(command).status, 1);
+        EXPECT_FALSE(fs::exists(frame(0)));
+        std::vector<std::string> one = command;
+        one.insert(one.end(), {"--frame", "0"});
+        EXPECT_EQ(carom(one).status, 0);
+        EXPECT_TRUE(fs::exists(frame(0)));
+    }
     EXPECT_EQ(carom(command).status, 0);
+    EXPECT_FALSE(fs::exists(pattern() + ".lock"));
 }
 
 TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {

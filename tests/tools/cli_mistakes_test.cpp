@@ -104,7 +104,50 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would overwrite the input", {"render", "./s.toml", "-o", "s.toml"});
     fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
+    // One file that has two names on the disk.
+    fs::create_hard_link(scene_, folder_.file("twin.toml"));
+    refused("would replace what is read", {"simulate", scene_, "-o", folder_.file("twin.toml")});
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
+    EXPECT_EQ(carom({"simulate", scene_, "--events", "/dev/stdout", "--samples", "/dev/stdout", "--sample-dt",
+                     "0.1"})
+                  .status,
+              0);
+    // Not all that is below /dev is a device.
+    if (!fs::is_directory("/dev/shm")) return;
+    const std::string shared = "/dev/shm/carom." + std::to_string(::getpid()) + ".json";
+    refused("name the same file", {"simulate", scene_, "-o", shared, "--events", shared});
+    EXPECT_FALSE(fs::exists(shared));
+    fs::copy_file(scene_, shared);
+    refused("would replace what is read", {"simulate", shared, "-o", shared});
+    EXPECT_EQ(read_file(shared), before);
+    fs::remove(shared);
+}
+
+// A pattern becomes names: the scene was drawn over, or removed as a frame of another picture.
+TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
+    const std::string before = read_file(scene_);
+    const std::string as_frame = folder_.file("s00002.png"), in_percent = folder_.file("p%d.png");
+    fs::copy_file(scene_, as_frame);
+    fs::copy_file(scene_, in_percent);
+    fs::create_symlink(scene_, folder_.file("l7.png"));
+    const auto both = [&](const std::string& input, const std::string& pattern) {
+        refused("would replace what is read", {"render", input, "-o", pattern, "--size", "32x18"});
+        refused("would replace what is read",
+                {"render", input, "-o", pattern, "--size", "32x18", "--at", "0.1"});
+    };
+    both(as_frame, folder_.file("s%05d.png"));
+    both(folder_.path().string() + "/./s00002.png", folder_.file("s%05d.png"));
+    both(scene_, folder_.file("l%d.png"));
+    refused("would replace what is read",
+            {"render", in_percent, "-o", folder_.file("p%%d.png"), "--size", "32x18", "--at", "0.1"});
+    const std::string cwd = fs::current_path().string();
+    fs::current_path(folder_.path());
+    fs::copy_file(scene_, "sheet.png");
+    refused("would replace what is read", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
+    refused("would replace what is read", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
+    fs::current_path(cwd);
+    for (const std::string& name : {scene_, as_frame, in_percent, folder_.file("sheet.png")})
+        EXPECT_EQ(read_file(name), before) << name;
 }
 
 TEST_F(Mistakes, PicturesHaveNamesOfPictures) {

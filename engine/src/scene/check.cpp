@@ -1,9 +1,9 @@
 // Rules that involve several sections of a scene.
 #include <fmt/format.h>
 
-#include <limits>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <unordered_map>
 
