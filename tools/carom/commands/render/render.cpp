@@ -198,16 +198,10 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
 /// record that was not profiled has no costs; its bar shows only drawing, reading back and encoding.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-<<<<<<< HEAD
-    // Events before the first and after the last shown frame belong to frames that are not shown.
-    const double before = std::ceil(options.from * options.fps);
-    const auto first = static_cast<long>(before);
-=======
-    // Events before the first and after the last frame that is shown belong to frames that are not shown.
-    // All of those before stand in one frame that is not shown.
+    // Events before the first and after the last shown frame belong to frames that are not shown. All of the
+    // earlier ones are in one such frame.
     const long first = options.from > 0.0 ? 1 : 0;
     const double before = options.from > 0.0 ? 1.0 / options.fps : 0.0;
->>>>>>> w2
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
     auto costs = costs_by_frame(record, options.from - before, options.fps, first + frames + 1);
     options.simulate_ms = [costs = std::move(costs), first](long k) {
