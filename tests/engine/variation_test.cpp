@@ -279,7 +279,7 @@ TEST_F(VariationTest, AllShotsHaveTheSameBalls) {
         const VariedShot shot = v.shot(i);
         EXPECT_EQ(shot.scene.has_value(), shot.values[0] == "3");
         if (shot.scene) continue;
-        EXPECT_NE(shot.error.find("its balls are not those"), std::string::npos);
+        EXPECT_NE(shot.error.find("its balls differ from those"), std::string::npos);
     }
 }
 
@@ -294,7 +294,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.sped=uniform(1,2)", "unknown key \"sped\" in [cue]; the keys there are preset, ball, speed,"},
         {"cue.sped=uniform(1,2)", "; did you mean speed?"},
         {"cue.aim=normal(0.1)", "unknown key \"aim\" in [cue]"},
-        {"cue.aim=normal(0.1)", "; did you mean aim_deg?"},
+        {"cue.aimdeg=normal(0.1)", "; did you mean aim_deg?"},
         {"ball.cue.positoin=list([1,1])", "; did you mean position?"},
         {"effects.squrt=list(true)", "; did you mean squirt?"},
         {"quue.speed=uniform(1,2)", "unknown section or key \"quue\""},
@@ -329,7 +329,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=list()", "list has 0 values"},
         {"physics.cushion=list(smooth)", "strings in double quotes"},
         {"cue.speed=list(\"fast\")",
-         "none of the first 100 shots is a valid scene; shot 0: cue.speed must be a number"},
+         "none of the first 100 shots is a valid scene; shot 0: cue.speed must be a number, or a number"},
         {"cue.speed=uniform(-2,-1)", "none of the first 100 shots is a valid scene; shot 0: cue.speed = -"},
     };
     for (const auto& c : cases)

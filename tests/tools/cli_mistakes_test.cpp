@@ -60,7 +60,8 @@ TEST_F(Mistakes, MistypedKeysAndValuesNameTheNearest) {
             {"sweep", scene_, "--vary", "cue.sped=normal(1)", "--count", "2", "-o", folder_.file("t.csv")});
     const std::string picture = folder_.file("f.png");
     refused(
-        "--camera: palyer not in {top,rail,player,follow}; did you mean player? See carom render --help\n",
+        "--camera: palyer: expected one of {top,rail,player,follow}; did you mean player? See carom render "
+        "--help\n",
         {"render", scene_, "--at", "0", "--camera", "palyer", "-o", picture});
     refused("; did you mean trails?\n",
             {"render", scene_, "--at", "0", "--overlay", "spin,trial", "-o", picture});
@@ -81,8 +82,8 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would overwrite the input", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
     refused("would overwrite the input", sweep(scene_));
     refused("would overwrite the input", {"margin", scene_, "--no-render", "--csv", scene_});
-    refused("-o -: give a name", sweep("-"));
-    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
+    refused("-o -: expected a file name", sweep("-"));
+    refused("--csv -: expected a file name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
     refused("-o: empty file name", sweep(""));
@@ -106,7 +107,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     EXPECT_EQ(read_file(scene_), before);
     // One file that has two names on the disk.
     fs::create_hard_link(scene_, folder_.file("twin.toml"));
-    refused("would replace what is read", {"simulate", scene_, "-o", folder_.file("twin.toml")});
+    refused("would overwrite the input", {"simulate", scene_, "-o", folder_.file("twin.toml")});
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
     EXPECT_EQ(carom({"simulate", scene_, "--events", "/dev/stdout", "--samples", "/dev/stdout", "--sample-dt",
                      "0.1"})
@@ -118,7 +119,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("name the same file", {"simulate", scene_, "-o", shared, "--events", shared});
     EXPECT_FALSE(fs::exists(shared));
     fs::copy_file(scene_, shared);
-    refused("would replace what is read", {"simulate", shared, "-o", shared});
+    refused("would overwrite the input", {"simulate", shared, "-o", shared});
     EXPECT_EQ(read_file(shared), before);
     fs::remove(shared);
 }
@@ -131,20 +132,20 @@ TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
     fs::copy_file(scene_, in_percent);
     fs::create_symlink(scene_, folder_.file("l7.png"));
     const auto both = [&](const std::string& input, const std::string& pattern) {
-        refused("would replace what is read", {"render", input, "-o", pattern, "--size", "32x18"});
-        refused("would replace what is read",
+        refused("would overwrite the input", {"render", input, "-o", pattern, "--size", "32x18"});
+        refused("would overwrite the input",
                 {"render", input, "-o", pattern, "--size", "32x18", "--at", "0.1"});
     };
     both(as_frame, folder_.file("s%05d.png"));
     both(folder_.path().string() + "/./s00002.png", folder_.file("s%05d.png"));
     both(scene_, folder_.file("l%d.png"));
-    refused("would replace what is read",
+    refused("would overwrite the input",
             {"render", in_percent, "-o", folder_.file("p%%d.png"), "--size", "32x18", "--at", "0.1"});
     const std::string cwd = fs::current_path().string();
     fs::current_path(folder_.path());
     fs::copy_file(scene_, "sheet.png");
-    refused("would replace what is read", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
-    refused("would replace what is read", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
+    refused("would overwrite the input", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
+    refused("would overwrite the input", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
     fs::current_path(cwd);
     for (const std::string& name : {scene_, as_frame, in_percent, folder_.file("sheet.png")})
         EXPECT_EQ(read_file(name), before) << name;
@@ -237,8 +238,8 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
     EXPECT_FALSE(contains(samples.out, "final positions"));
     EXPECT_FALSE(fs::exists("-"));
-    refused("-o -: give a name", sweep("-"));
-    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
+    refused("-o -: expected a file name", sweep("-"));
+    refused("--csv -: expected a file name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }
@@ -283,7 +284,7 @@ TEST_F(Mistakes, AShardReplacesNoOther) {
     const std::string output = folder_.file("a.csv");
     ASSERT_EQ(carom(sweep(output, {"--shard", "1/2"})).status, 0);
     const std::string first = read_file(output);
-    refused("perhaps of another shard", sweep(output, {"--shard", "2/2"}));
+    refused("perhaps from another shard", sweep(output, {"--shard", "2/2"}));
     EXPECT_EQ(read_file(output), first);
 }
 

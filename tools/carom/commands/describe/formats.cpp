@@ -252,7 +252,7 @@ std::string scene_schema() {
         effects["properties"][effect.keyword] = {
             {"type", "boolean"}, {"description", "force it into the plan (true) or out of it (false)"}};
     Json cue = object_of(kCueFields, Cue{}, kScene);
-    const Json pair = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}};
+    const Json pair = {{"type", "array"}, {"items", Json::object()}, {"minItems", 2}, {"maxItems", 2}};
     const auto described = [](Json value, const char* what) {
         value["description"] = what;
         return value;
@@ -264,7 +264,8 @@ std::string scene_schema() {
     aims["ghost"] = described(pair, "[\"1\", \"p3\"]: ball 1 towards the middle of the pocket");
     aims["aim_diamond"] = described(pair, "[\"foot\", 2.5]: a place on the head, foot, left or right rail");
     aims["ball_speed"] =
-        described(Json{{"type", {"number", "string"}}}, "of the struck ball, in place of speed [m/s]");
+        described(Json{{"type", {"number", "string"}}, {"minimum", 0}, {"maximum", kMaxSpeed}},
+                  "of the struck ball, in place of speed [m/s]");
     Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "carom scene"}};
     schema.update(object_schema());
     schema["properties"] = {{"table", table},
