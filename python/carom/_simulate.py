@@ -189,6 +189,8 @@ def _columns_of(
         raise ValueError("there is nothing that says how many shots: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
+    if n > 2**31:
+        raise ValueError(f"shots = {n} is out of range; it must be at most {2**31}")
     columns: list[tuple[str, NDArray[np.float64]]] = []
     for name, keys, values in given:
         if len(values) != n:

@@ -38,7 +38,7 @@ class State(NamedTuple):
     @property
     def cue_ball(self) -> str:
         """The ball that the player strikes: "cue", of three-cushion "white" or "yellow"."""
-        return _carom.cue_ball(self)
+        return _carom.cue_ball(_fitting(self))
 
 
 class Call(NamedTuple):
@@ -123,6 +123,8 @@ def new_game(game: str, first: int = 0, target: int = 0) -> State:
 
     Raises ValueError for another game.
     """
+    _check_whole("first", first)
+    _check_whole("target", target)
     return State(*_carom.new_game(game, first, target))
 
 
@@ -135,7 +137,7 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
 
     Raises ValueError where the game is over, or has no ball left to play at.
     """
-    return Legal(*_carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls)))
+    return Legal(*_carom.legal(_fitting(state), list(balls.ids if isinstance(balls, Scene) else balls)))
 
 
 @checked
@@ -149,7 +151,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
 
     Raises ValueError for a record that does not end at rest, in which no cue strikes, that lacks the game's balls, and for a game that is over.
     """
-    fouls, points, penalty, options, chooser = _carom.judge(state, record._native, call)
+    fouls, points, penalty, options, chooser = _carom.judge(_fitting(state), record._native, call)
     return Verdict([Foul(*foul) for foul in fouls], points, penalty, [_option(record.hash(), *option) for option in options], chooser)
 
 
@@ -157,6 +159,21 @@ def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tup
     option = Option(decision, State(*state), [Respot(*respot) for respot in respots])
     option._record = record
     return option
+
+
+def _check_whole(name: str, value: int) -> None:
+    # The extension module takes 32 bits, and has the narrower ranges.
+    if not -(2**31) <= value < 2**31:
+        raise ValueError(f"{name} = {value} is out of range; it must be {'0 or 1' if name in ('first', 'turn', 'winner') else '0 to 1000000000'}")
+
+
+def _fitting(state: State) -> State:
+    for name in ("turn", "points", "target", "winner", "fouls"):
+        value = getattr(state, name)
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, int):
+                _check_whole(name, number)
+    return state
 
 
 def _check_record(option: Option, record: Record) -> None:
@@ -171,6 +188,7 @@ def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
     Raises ValueError for an option of another record.
     """
     _check_record(option, record)
+    _fitting(option.state)
     return _carom.may_place(record._native, option, _two(place))
 
 

@@ -42,10 +42,12 @@ std::string shell_word(const std::string& argument);
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Writes results to standard output. A progress line on the terminal is removed first. A failure to write is
-/// an error.
+/// Writes results to standard output, as harmless(): names of files may hold anything. A progress line on the
+/// terminal is removed first. A failure to write is an error.
 /// @throws OutputClosed, std::runtime_error
 void print(std::string_view text);
+/// The same with what is no text.
+void print_bytes(std::string_view bytes);
 void flush_output();
 
 /// Writes one line to standard error, which begins with the name of the program.

@@ -12,7 +12,6 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
 #include "report/csv.h"
 #include "report/table.h"
@@ -218,7 +217,7 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, harmless(args.scene)));
+        print(summary(record, args.scene));
     if (args.list) print(event_list(record));
     if (args.profile) print(profile_report(record));
     return status;
