@@ -430,8 +430,8 @@ def test_a_shot_without_an_end_is_truncated_and_says_why():
 
 
 def test_a_run_that_cannot_go_on_is_truncated_too():
-    balls = [{"id": "cue", "position": [0.4, 0.4]}, {"id": "b", "position": [0.6, 0.4], "mass": 0.34}]
-    scene = carom.Scene(balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls,
+    balls = [{"id": "cue", "position": [0.4, 0.4]}, {"id": "b", "position": [0.6, 0.4], "height": 0.1}]
+    scene = carom.Scene(balls={"e_t": 0.9999999}, ball=balls,
                         cue={"speed": 1.0, "aim_deg": 0.0})
     env = carom.gym.make_env("Pot", scene=scene)
     env.reset(seed=1, options={"scene": scene})
