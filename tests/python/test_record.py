@@ -84,8 +84,8 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
 def test_events_are_those_of_the_program(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--events", tmp_path / "e.csv")
     rows = rows_of(tmp_path / "e.csv")[1:]
-    assert [
-        (float(time), kind, a, b) for time, kind, a, b, *_ in rows] == carom.simulate(break_scene).event_list()
+    listed = carom.simulate(break_scene).event_list()
+    assert [(float(time), kind, a, b) for time, kind, a, b, *_ in rows] == listed
 
 
 def test_segments_hold_the_closed_form(draw_scene):
