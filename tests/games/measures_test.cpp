@@ -109,7 +109,7 @@ TEST(Measures, MistakesAreToldWhereTheyAre) {
     const Scene scene = scene_named("draw");
     const auto refused = [&](const std::string& text, const std::string& why) {
         try {
-            Measure(text, scene);
+            const Measure taken(text, scene);
             FAIL() << text << " is taken";
         } catch (const MeasureError& error) {
             EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();

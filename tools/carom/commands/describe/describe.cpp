@@ -173,7 +173,7 @@ std::string wrapped(const std::string& page) {
                 space = line.rfind(' ', space - 1);
             if (space == line.npos || space <= indent.size()) break;
             out += line.substr(0, space) + "\n";
-            line = indent + line.substr(space + 1);
+            line.replace(0, space + 1, indent);
         }
         out += line + "\n";
     }
