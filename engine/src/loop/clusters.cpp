@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "contact/place.h"
 
@@ -186,7 +187,7 @@ bool Clusters::closes_still(double v_n) const {
     });
 }
 
-long Clusters::resolve(double v_n, bool friction) {
+std::int64_t Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     const double R = balls_.radius(members_.front().ball);  // equal for all members
     if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
@@ -201,11 +202,11 @@ long Clusters::resolve(double v_n, bool friction) {
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall};
-    long steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
-                           : map_.compliant(members_, contacts_, settings, v_n);
+    std::int64_t steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
+                                   : map_.compliant(members_, contacts_, settings, v_n);
     if (in_space_ && steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
-        const long more = map_.compliant_in_space(members_, contacts_, settings, v_n);
+        const std::int64_t more = map_.compliant_in_space(members_, contacts_, settings, v_n);
         steps = more < 0 ? more : steps + more;
     }
     // Friction and a wedge can press balls together forever: the cluster is then solved as rigid.

@@ -20,7 +20,7 @@ constexpr double kClusterLookAhead = 2.0;
 // [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
-constexpr long kRigidSweeps = 100000;
+constexpr std::int64_t kRigidSweeps = 100000;
 
 }  // namespace
 
@@ -151,8 +151,9 @@ double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterC
 
 }  // namespace
 
-long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                           const ClusterSettings& settings, double V) {
+std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
+                                   const std::vector<ClusterContact>& contacts,
+                                   const ClusterSettings& settings, double V) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
     load(balls, settings.R, V, 2);
@@ -171,17 +172,17 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      on_cache_line(numbers_),
                                      places_.data(),
                                      curvature(L, settings)};
-    const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
-                                          kClusterLookAhead, kClusterTimeLimit);
+    const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
+                                                  kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 2);
     unload(settings.R, V, 2, balls);
     return steps;
 }
 
-long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
-                                    const std::vector<ClusterContact>& contacts,
-                                    const ClusterSettings& settings, double V) {
+std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
+                                            const std::vector<ClusterContact>& contacts,
+                                            const ClusterSettings& settings, double V) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
     load(balls, settings.R, V, 3);
@@ -191,7 +192,7 @@ long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
     const double before = energy(3);
-    const long steps = kernel::contact_phase_in_space(
+    const std::int64_t steps = kernel::contact_phase_in_space(
         {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), curvature(L, settings)},
         law_of(settings, V), settings.longest_step, kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
@@ -200,8 +201,8 @@ long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     return steps;
 }
 
-long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                       double e_b, double R) {
+std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                               double e_b, double R) {
     std::vector<Vec3>& v = velocity_;
     v.clear();
     for (const ClusterBall& b : balls) v.push_back(b.v);
@@ -209,7 +210,7 @@ long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<Cluste
     impulse.assign(contacts.size() + balls.size(), 0.0);
     double scale = 0.0;
     for (const Vec3& x : v) scale = std::max(scale, length3(x));
-    long sweeps = 0;
+    std::int64_t sweeps = 0;
     for (; sweeps < kRigidSweeps; ++sweeps) {
         double change = 0.0;
         for (std::size_t c = 0; c < contacts.size(); ++c) {

@@ -4,6 +4,7 @@
 // cannot claim.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -70,19 +71,20 @@ class ClusterMap {
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
     /// -1 if the contacts did not separate within kClusterTimeLimit.
-    long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                   const ClusterSettings& settings, double V);
+    std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                           const ClusterSettings& settings, double V);
 
     /// The same in space, if a ball flies or may leave the cloth: without the cloth, which reacts next.
     /// Ignores `turn` and the friction of the cloth.
-    long compliant_in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                            const ClusterSettings& settings, double V);
+    std::int64_t compliant_in_space(std::vector<ClusterBall>& balls,
+                                    const std::vector<ClusterContact>& contacts,
+                                    const ClusterSettings& settings, double V);
 
     /// Rigid: v := (1 + e) P(v) - e v, where P gives the nearest velocities that close no contact (equations
     /// 7, 8) and press no ball on the cloth (r_z not above R) into it; frictionless. Returns the number of
     /// sweeps.
-    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double e_b,
-               double R);
+    std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                       double e_b, double R);
 
   private:
     void load(const std::vector<ClusterBall>& balls, double R, double V, int axes);
