@@ -42,7 +42,7 @@ const std::array<Rooms, 5> kRooms = {{
     {"tools/carom/commands",
      {},
      {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
-      "diagram", "judge", "solve", "margin"}},
+      "diagram", "judge", "play", "solve", "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
 /// Public headers that say what a station of the engine made
