@@ -1,5 +1,5 @@
-// The hashes in WebAssembly are those of the native program: for every scene of scenes/, and for 2000 variations
-// of them with other models, marches and numbers.
+// The hashes in WebAssembly are those of the native program: for every scene of scenes/, and for 2000
+// variations of them with other models, marches and numbers.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";

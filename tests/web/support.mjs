@@ -10,9 +10,11 @@ export const carom = await import(path.join(PACKAGE, "index.js"));
 
 /** The native program; tests that compare with it are skipped without it. */
 export const PROGRAM = process.env.CAROM_PROGRAM || path.join(SOURCE, "build/release/carom");
-export const withoutProgram = existsSync(PROGRAM) ? false : `${PROGRAM} is missing; build it, or set CAROM_PROGRAM`;
+export const withoutProgram = existsSync(PROGRAM) ? false
+  : `${PROGRAM} is missing; build it, or set CAROM_PROGRAM`;
 
-export const scenes = readdirSync(path.join(SOURCE, "scenes")).filter((name) => name.endsWith(".toml")).sort();
+export const scenes =
+  readdirSync(path.join(SOURCE, "scenes")).filter((name) => name.endsWith(".toml")).sort();
 export const sceneText = (name) => readFileSync(path.join(SOURCE, "scenes", name), "utf8");
 
 /** Runs the native program. @returns what it prints, or "" if it fails */

@@ -11,7 +11,8 @@ export class CaromError extends Error {
 }
 
 /** How balls move, in the order of the numbers in `states`. */
-export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed", "falling", "airborne", "out"];
+export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed", "falling", "airborne",
+  "out"];
 
 /** How shots of simulateMany end, in the order of the numbers in `status`. */
 export const STATUSES = ["at_rest", "time", "events", "endless", "invalid", "failed"];
@@ -185,7 +186,8 @@ export class Shot extends Held {
   stateAt(ball, time) {
     const i = typeof ball === "string" ? this.balls.indexOf(ball) : ball;
     if (!(i >= 0 && i < this.balls.length)) throw new RangeError(`no ball is called ${ball}`);
-    const {numbers, states} = this.states(time), at = (k) => Array.from(numbers.subarray(9 * i + k, 9 * i + k + 3));
+    const {numbers, states} = this.states(time);
+    const at = (k) => Array.from(numbers.subarray(9 * i + k, 9 * i + k + 3));
     return {state: STATES[states[i]], position: at(0), velocity: at(3), spin: at(6)};
   }
   after() {
@@ -246,5 +248,6 @@ export const games = {
   start: (game, {first = 0, target = 0} = {}) => JSON.parse(call("carom_game_new", game, first, target)),
   legal: (state, scene) => JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle)),
   judge: (state, shot, announced = {}) =>
-    new Verdict(call("carom_game_judge", shot.handle, JSON.stringify(state), JSON.stringify(announced)), shot),
+    new Verdict(
+      call("carom_game_judge", shot.handle, JSON.stringify(state), JSON.stringify(announced)), shot),
 };

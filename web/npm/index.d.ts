@@ -3,8 +3,7 @@
 
 /** Loads carom.wasm, once. Without `source`, from the file beside the package. */
 export function init(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module
-  | Promise<Response>):
-  Promise<void>;
+  | Promise<Response>): Promise<void>;
 
 /** The version of carom, such as "0.2.0". */
 export function version(): string;
@@ -20,7 +19,8 @@ export class CaromError extends Error {
   readonly reason: string;
 }
 
-export type BallState = "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out";
+export type BallState =
+  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out";
 export const STATES: readonly BallState[];
 export const STATUSES: readonly ("at_rest" | "time" | "events" | "endless" | "invalid" | "failed")[];
 
@@ -234,7 +234,8 @@ export class Verdict {
   }[];
   /** Whether the cue ball may lie there [m]. */
   mayPlace(x: number, y: number, option?: number): boolean;
-  /** The next scene. `place`: of the cue ball in hand [m]; without it, near the head spot. @throws CaromError */
+  /** The next scene. `place`: of the cue ball in hand [m]; without it, near the head spot.
+   * @throws CaromError */
   next(choice?: {option?: number; place?: [number, number] | null}): Scene;
   free(): void;
 }

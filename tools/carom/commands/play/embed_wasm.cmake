@@ -1,4 +1,5 @@
-# Writes carom.wasm, which is base64 of gzip in the file WASM, into a C++ file. Without WASM, the text is empty:
+# Writes carom.wasm, which is base64 of gzip in the file WASM, into a C++ file. Without WASM, the text is
+# empty:
 # cmake -DWASM=carom.wasm.gz.b64 -DOUTPUT=play_wasm.cpp -P embed_wasm.cmake
 set(text)
 if(WASM)

@@ -80,7 +80,7 @@ int run(const PlayArgs& args) {
 
 void add_play(Options& program) {
     auto [command, args] =
-        program.command<PlayArgs>("play", "Write a page to play on: aim, shoot, follow a game, share shots", run);
+        program.command<PlayArgs>("play", "Write a page to play on: aim, shoot, follow a game", run);
     command.argument("SCENE", args.scene, "Scene file (TOML) to begin with (default: a practice table)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write");
     command.option("--lock", &args.lock, "KEYS",

@@ -36,7 +36,8 @@
   const field = (label, ...inputs) => make("label", {class: "field"}, make("span", {}, label), ...inputs);
   const says = make("p", {class: "says", role: "status", "aria-live": "polite"});
   const stageBox = make("div", {class: "tables", tabindex: "0", role: "application",
-    "aria-label": "Table. Left and right: aim. Up and down: speed. W A S D: tip. Space: shoot. Escape: back."});
+    "aria-label":
+      "Table. Left and right: aim. Up and down: speed. W A S D: tip. Space: shoot. Escape: back."});
   const clock = make("output", {class: "clock"});
   const scrub = make("input", {type: "range", min: "0", max: "1", step: "any", class: "scrub",
     "aria-label": "Time in seconds", oninput: () => { run(false); show(Number(scrub.value)); }});
@@ -48,7 +49,8 @@
     button(icon(ICONS.back), "Previous event", () => jump(-1)), playButton,
     button(icon(ICONS.next), "Next event", () => jump(1)), clock, make("span", {class: "room"}),
     back, next, undo,
-    select("Speed of playback", SPEEDS.map((x) => [String(x), `${x} ×`]), "1", (x) => { speed = Number(x); }),
+    select("Speed of playback", SPEEDS.map((x) => [String(x), `${x} ×`]), "1",
+      (x) => { speed = Number(x); }),
     select("Predicted paths", [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], paths,
       (x) => { paths = x; show(now); }));
   const stage = make("section", {class: "stage card", "aria-label": "The table"}, stageBox,
@@ -99,8 +101,8 @@
   const callRow = make("div", {class: "bar"}, callBall, callPocket, make("label", {}, safety, " safety"));
   const pushRow = make("div", {class: "bar"}, make("label", {}, pushOut, " push out"));
   const gameCard = make("section", {class: "card"},
-    make("h2", {}, "Game"), make("div", {class: "bar"}, gameBox, textButton("Start again", () => newGame(gameBox.value))),
-    gameText, callRow, pushRow, options);
+    make("h2", {}, "Game"), make("div", {class: "bar"}, gameBox,
+      textButton("Start again", () => newGame(gameBox.value))), gameText, callRow, pushRow, options);
 
   // ---- Events.
   const list = make("ol", {class: "events"});
@@ -123,27 +125,29 @@
     return {key, input, element: field(label, input)};
   });
   const whichBall = select("Ball to place", [], "", () => showPlace());
-  const placeX = make("input", {type: "number", step: "any", "aria-label": "x", onchange: () => typedPlace()});
-  const placeY = make("input", {type: "number", step: "any", "aria-label": "y", onchange: () => typedPlace()});
+  const [placeX, placeY] = ["x", "y"].map((name) => make("input",
+    {type: "number", step: "any", "aria-label": name, onchange: () => typedPlace()}));
   const placeUnit = make("span", {});
   const unitBox = select("Units", [["metric", "metric"], ["inch", "inches, mph"]], units,
     (x) => { units = x; tell(); listEvents(); showPlace(); });
   const setup = make("details", {class: "card setup"}, make("summary", {}, "Table, balls, units"),
-    field("Table", tableBox), field("Cloth", clothBox), field("Cushions", cushionBox), field("Units", unitBox),
+    field("Table", tableBox), field("Cloth", clothBox), field("Cushions", cushionBox),
+    field("Units", unitBox),
     make("fieldset", {}, make("legend", {}, "Place a ball ", placeUnit), whichBall, placeX, placeY),
     make("fieldset", {class: "materials"}, make("legend", {}, "Balls"), ...materials.map((m) => m.element)));
   for (const box of [tableBox, clothBox, cushionBox]) box.disabled = locked("table");
 
   const sceneText = make("textarea", {spellcheck: "false", "aria-label": "Scene file", rows: "18"});
   const sceneError = make("p", {class: "error", role: "alert"});
-  const dialog = make("dialog", {"aria-label": "Scene file"}, make("h2", {}, "Scene file"), sceneText, sceneError,
-    make("div", {class: "bar"}, textButton("Use this scene", () => useText()),
+  const dialog = make("dialog", {"aria-label": "Scene file"}, make("h2", {}, "Scene file"), sceneText,
+    sceneError, make("div", {class: "bar"}, textButton("Use this scene", () => useText()),
       textButton("Copy", () => copy(sceneText.value)), textButton("Every value", () => {
         sceneText.value = scene.everything;
       }), make("label", {class: "file"}, "Open … ", make("input", {type: "file", accept: ".toml,text/plain",
         onchange: async (e) => { sceneText.value = await e.target.files[0].text(); }})),
       make("span", {class: "room"}), textButton("Close", () => dialog.close())));
-  const address = make("input", {readonly: "", "aria-label": "Address of this shot", class: "address", hidden: ""});
+  const address = make("input",
+    {readonly: "", "aria-label": "Address of this shot", class: "address", hidden: ""});
   const hashText = make("code", {title: "Hash of all bits of this shot"});
   const shareCard = make("section", {class: "card"}, make("div", {class: "bar"},
     textButton("Share by address", () => share()),
@@ -152,13 +156,15 @@
       sceneError.textContent = "";
       dialog.showModal();
     })), address, make("p", {class: "hash"}, "Hash ", hashText));
-  const keys = make("p", {class: "keys"}, "Drag a ball to move it, drag elsewhere to aim. Keys on the table: ← → aim " +
-    "(shift: 1°, alt: 0.01°), ↑ ↓ speed, W A S D tip, space shoot, Esc back, Ctrl+Z undo.");
+  const keys = make("p", {class: "keys"}, "Drag a ball to move it, drag elsewhere to aim. " +
+    "Keys on the table: ← → aim (shift: 1°, alt: 0.01°), ↑ ↓ speed, W A S D tip, space shoot, Esc back, " +
+    "Ctrl+Z undo.");
   document.body.append(
     make("header", {}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead)),
     make("main", {class: "play"}, stage,
       make("div", {class: "side"}, stroke, gameCard, events, setup, shareCard, keys)),
-    make("footer", {}, make("p", {}, "Made by ", make("code", {}, page.command), `, carom ${carom.version()}`)), dialog);
+    make("footer", {},
+      make("p", {}, "Made by ", make("code", {}, page.command), `, carom ${carom.version()}`)), dialog);
 
   // ---- Scenes and shots.
   function say(text, bad = false) {
@@ -422,9 +428,11 @@
     const {state} = game;
     if (state.in_hand === "no" || id !== scene.cue?.ball)
       return "In a game only the cue ball may be moved, and only in hand.";
-    if (game.judged) return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not lie there.";
+    if (game.judged)
+      return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not lie there.";
     const line = scene.table.corner[1] + scene.table.length / 4;
-    return state.in_hand === "head string" && y >= line ? "For the break the cue ball is behind the head string." : null;
+    return state.in_hand === "head string" && y >= line
+      ? "For the break the cue ball is behind the head string." : null;
   }
   function put(id, x, y, settings) {
     const why = refusal(id, x, y);
@@ -436,7 +444,8 @@
   let held = null, pointed = null, asked = false;
   const placeOf = (event) => {
     const box = view.over.getBoundingClientRect();
-    return view.projection.table((event.clientX - box.left) * view.dense, (event.clientY - box.top) * view.dense);
+    return view.projection.table((event.clientX - box.left) * view.dense,
+      (event.clientY - box.top) * view.dense);
   };
   function press(event) {
     if (now > 0 || playing || event.button !== 0) return;
@@ -492,7 +501,8 @@
     if (event.ctrlKey || event.metaKey) return;
     const aiming = {arrowleft: () => nudge("aim_deg", step), arrowright: () => nudge("aim_deg", -step),
       arrowup: () => nudge("speed", step), arrowdown: () => nudge("speed", -step),
-      a: () => moveTip(0.02, 0), d: () => moveTip(-0.02, 0), w: () => moveTip(0, 0.02), s: () => moveTip(0, -0.02)};
+      a: () => moveTip(0.02, 0), d: () => moveTip(-0.02, 0),
+      w: () => moveTip(0, 0.02), s: () => moveTip(0, -0.02)};
     const watching = {arrowleft: () => show(now - 1 / 60), arrowright: () => show(now + 1 / 60),
       arrowup: () => jump(-1), arrowdown: () => jump(1)};
     const action = (now > 0 ? watching : aiming)[key];
@@ -532,7 +542,8 @@
       const score = state.points.some((x) => x > 0) ? ` Points: ${state.points.join(" to ")}.` : "";
       const groups = state.game === "eight_ball" && state.group[state.turn] !== "open"
         ? ` Plays ${state.group[state.turn]}.` : "";
-      const first = may.first.length > 0 && may.first.length < 8 ? ` Hit first: ${may.first.join(", ")}.` : "";
+      const few = may.first.length > 0 && may.first.length < 8;
+      const first = few ? ` Hit first: ${may.first.join(", ")}.` : "";
       gameText.textContent = `${sentence(may.text)}.${groups}${first}${score}`;
       callRow.hidden = may.callable.length === 0;
       pushRow.hidden = !may.mayPushOut;
@@ -561,7 +572,8 @@
     const chooser = verdict.chooser >= 0 ? `Player ${verdict.chooser + 1} chooses:` : "";
     options.append(make("p", {}, verdictWords(verdict), " ", chooser));
     verdict.options.forEach((option, i) => {
-      const label = verdict.options.length > 1 ? `${sentence(option.decision)}: ${option.text}` : sentence(option.text);
+      const several = verdict.options.length > 1;
+      const label = sentence(several ? `${option.decision}: ${option.text}` : option.text);
       options.append(option.state.over ? make("p", {}, `${label}.`) : textButton(label, () => nextShot(i)));
     });
   }
@@ -606,7 +618,8 @@
   }
   async function share() {
     const fragment = await fragmentOf(scene.toml, shot.hash);
-    if (fragment.length > LONGEST_FRAGMENT) return say("This scene is too long for an address; copy its file.", true);
+    if (fragment.length > LONGEST_FRAGMENT)
+      return say("This scene is too long for an address; copy its file.", true);
     history.replaceState(null, "", fragment);
     address.value = location.href;
     address.hidden = false;
@@ -621,12 +634,14 @@
       candidate = Scene.parse(sceneText.value, "scene");
       simulate(candidate, {seconds: TIME_LIMIT}).free();
     } catch (error) {
-      sceneError.textContent = error.line > 0 ? `Line ${error.line}: ${error.reason}` : error.reason || error.message;
-      if (error.line > 0) {
-        const lines = sceneText.value.split("\n"), start = lines.slice(0, error.line - 1).join("\n").length + (error.line > 1 ? 1 : 0);
+      const {line} = error, reason = error.reason || error.message;
+      sceneError.textContent = line > 0 ? `Line ${line}: ${reason}` : reason;
+      if (line > 0) {
+        const lines = sceneText.value.split("\n");
+        const start = lines.slice(0, line - 1).reduce((sum, text) => sum + text.length + 1, 0);
         sceneText.focus();
-        sceneText.setSelectionRange(start, start + lines[error.line - 1].length);
-        sceneText.scrollTop = Math.max(0, (error.line - 4) * sceneText.scrollHeight / lines.length);
+        sceneText.setSelectionRange(start, start + lines[line - 1].length);
+        sceneText.scrollTop = Math.max(0, (line - 4) * sceneText.scrollHeight / lines.length);
       }
       return;
     }
@@ -649,7 +664,7 @@
     }
     if (!shot) return "The scene in the address cannot be played.";
     return shot.hash === found.hash ? `The same bits as where this address was made: ${shot.hash}.`
-      : `Other bits than where this address was made (${found.hash} there): another version of carom made it.`;
+      : `Other bits than where this address was made (${found.hash}): another version of carom made it.`;
   }
 
   // ---- Size and start.
@@ -661,7 +676,10 @@
     show(now);
   }
   window.addEventListener("resize", () => requestAnimationFrame(lay));
-  window.addEventListener("hashchange", async () => { const said = await openAddress(); if (said) say(said); });
+  window.addEventListener("hashchange", async () => {
+    const said = await openAddress();
+    if (said) say(said);
+  });
   const opened = await openAddress();
   if (!shot) begin(page.scene || startOf("", "nine_foot"), false);
   if (opened) say(opened);

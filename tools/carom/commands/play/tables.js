@@ -25,9 +25,11 @@ function startOf(game, table, seed = 1) {
   const [w, l] = {nine_foot: [1.27, 2.54], eight_foot: [1.17, 2.34], seven_foot: [0.9906, 1.9812],
     seven_foot_bar: [0.9906, 1.9812], snooker: [1.7526, 3.5433]}[table];
   const at = (x, y) => [(x * w).toFixed(4), (y * l).toFixed(4)];
-  if (game === "eight_ball") return head + balls + rack("eight_ball") + ball("cue", ...at(0.45, 0.22)) + cue("cue", 8, 90);
+  if (game === "eight_ball")
+    return head + balls + rack("eight_ball") + ball("cue", ...at(0.45, 0.22)) + cue("cue", 8, 90);
   if (game === "nine_ball")
-    return head + balls + rack("nine_ball", "spot_ball = 9\n") + ball("cue", ...at(0.4, 0.22)) + cue("cue", 8, 84);
+    return head + balls + rack("nine_ball", "spot_ball = 9\n") + ball("cue", ...at(0.4, 0.22)) +
+      cue("cue", 8, 84);
   const ids = snooker ? ["red1", "black", "blue"] : ["1", "8", "9"];
   return head + balls + ball("cue", ...at(0.42, 0.25)) + ball(ids[0], ...at(0.6, 0.6)) +
     ball(ids[1], ...at(0.25, 0.8)) + ball(ids[2], ...at(0.75, 0.35)) + cue("cue", 3, 78);

@@ -39,8 +39,8 @@ function eventWords(e, units) {
 }
 
 /** Events that a player wants to know, without changes of motion. */
-const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw", "ball_pocket",
-  "ball_out"].includes(e.type);
+const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
+  "ball_pocket", "ball_out"].includes(e.type);
 
 /** The verdict on a shot in a sentence. */
 function verdictWords(verdict) {
