@@ -2,7 +2,8 @@
 "use strict";
 
 const TABLES = [["nine_foot", "nine-foot"], ["eight_foot", "eight-foot"], ["seven_foot", "seven-foot"],
-  ["seven_foot_bar", "seven-foot bar"], ["snooker", "snooker"], ["english_pool", "English pool"], ["carom", "carom"]];
+  ["seven_foot_bar", "seven-foot bar"], ["snooker", "snooker"], ["english_pool", "English pool"],
+  ["carom", "carom"]];
 const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "tournament"],
   ["match_heated", "heated, match"]];
 const CUSHIONS = [["", "as the balls"], ["han_2005", "han_2005"], ["mathavan_2010", "mathavan_2010"],
