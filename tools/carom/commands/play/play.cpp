@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -65,12 +67,14 @@ int run(const PlayArgs& args) {
         return true;
     }();
     static_cast<void>(added);
-    const std::string html = page_html("carom",
-                                       {"dom.js", "motion.js", "look.js", "stage.js", "core.js", "share.js",
-                                        "words.js", "tip.js", "tables.js", "play.js"},
-                                       {{"wasm", '"' + std::string(kPlayWasm) + '"'},
-                                        {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}},
-                                       {{"play.css"}, true});
+    const std::vector<std::string> scripts = {"dom.js",   "motion.js", "look.js", "stage.js",  "core.js",
+                                              "share.js", "words.js",  "tip.js",  "tables.js", "play.js"};
+    const std::vector<PageData> data = {{"wasm", '"' + std::string(kPlayWasm) + '"'},
+                                        {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}};
+    PageExtras extras;
+    extras.styles.emplace_back("play.css");
+    extras.wasm = true;
+    const std::string html = page_html("carom", scripts, data, extras);
     write_report(args.output, html);
     print(fmt::format("{}: open it in a browser; {} kB\n", args.output, (html.size() + 500) / 1000));
     return kOk;
