@@ -3,8 +3,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/console.h"
@@ -35,12 +37,51 @@ Json locked_keys(const std::string& list) {
         const std::size_t end = std::min(list.find(',', begin), list.size());
         const std::string key = list.substr(begin, end - begin);
         const std::string part = key.substr(0, key.find('.'));
-        if (part != "cue" && part != "ball" && part != "balls" && part != "table")
-            throw UsageError(fmt::format(
-                "--lock {}: expected keys of [cue], [[ball]], [balls] or [table], such as cue.speed,ball",
-                harmless(list)));
+        if (part != "cue" && part != "ball" && part != "balls" && part != "table" && part != "physics")
+            throw UsageError(
+                fmt::format("--lock {}: expected keys of [cue], [[ball]], [balls], [table] or [physics], "
+                            "such as cue.speed,ball",
+                            harmless(list)));
         keys.push_back(key);
         begin = end + 1;
+    }
+    return keys;
+}
+
+/// The first comment of a scene file, up to its first full stop or colon.
+std::string title_of(std::string_view scene) {
+    scene.remove_prefix(std::min(scene.find_first_not_of("# "), scene.size()));
+    return std::string(scene.substr(0, scene.find_first_of(".:\n")));
+}
+
+/// The scenes that come with carom: a list of {name, title, text} by title.
+Json shipped_scenes() {
+    Json scenes = Json::array();
+    for (const PageFile& file : play_files()) {
+        const std::string_view name = file.name;
+        if (name.ends_with(".toml"))
+            scenes.push_back({{"name", name}, {"title", title_of(file.text)}, {"text", file.text}});
+    }
+    std::sort(scenes.begin(), scenes.end(),
+              [](const Json& a, const Json& b) { return a.at("title") < b.at("title"); });
+    return scenes;
+}
+
+/// The keys that a page can set, by section: numbers, names and lists of numbers.
+Json keys_to_set() {
+    const auto schema = std::find_if(play_files().begin(), play_files().end(), [](const PageFile& file) {
+        return std::string_view(file.name) == "scene.schema.json";
+    });
+    const Json sections = Json::parse(schema->text).at("properties");
+    Json keys;
+    for (const char* section : {"table", "balls", "physics"}) {
+        for (const auto& [key, about] : sections.at(section).at("properties").items()) {
+            const bool list = about.at("type") == "array";
+            if (list && about.at("items").at("type") != "number") continue;
+            keys[section][key] = {{"type", about.at("type")},
+                                  {"description", about.value("description", "")}};
+            if (about.contains("enum")) keys[section][key]["enum"] = about.at("enum");
+        }
     }
     return keys;
 }
@@ -51,6 +92,8 @@ int run(const PlayArgs& args) {
     check_page_path("-o", args.output);
     Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());
     page["lock"] = locked_keys(args.lock);
+    page["scenes"] = shipped_scenes();
+    page["keys"] = keys_to_set();
     page["scene"] = "";
     if (!args.scene.empty()) {
         if (is_record(args.scene))
@@ -66,11 +109,12 @@ int run(const PlayArgs& args) {
     }();
     static_cast<void>(added);
     const std::string html =
-        page_html("carom", {"dom.js", "motion.js", "look.js", "stage.js", "core.js", "share.js", "words.js",
-                            "tip.js", "tables.js", "play.js"},
+        page_html("carom",
+                  {"dom.js", "motion.js", "look.js", "stage.js", "core.js", "share.js", "words.js", "tip.js",
+                   "tables.js", "paper.js", "extras.js", "play.js"},
                   {{"wasm", '"' + std::string(kPlayWasm) + '"'},
                    {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}},
-                  {{"play.css"}, true});
+                  {{"play.css", "extras.css"}, true});
     write_report(args.output, html);
     print(fmt::format("{}: open it in a browser; {} kB\n", args.output, (html.size() + 500) / 1000));
     return kOk;

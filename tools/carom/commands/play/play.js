@@ -155,7 +155,8 @@
       sceneText.value = scene.toml;
       sceneError.textContent = "";
       dialog.showModal();
-    })), address, make("p", {class: "hash"}, "Hash ", hashText));
+    }), ...playExtras(page, {scene: () => scene, shot: () => shot, change, begin: (toml) => begin(toml), locked})),
+  address, make("p", {class: "hash"}, "Hash ", hashText));
   const keys = make("p", {class: "keys"}, "Drag a ball to move it, drag elsewhere to aim. " +
     "Keys on the table: ← → aim (shift: 1°, alt: 0.01°), ↑ ↓ speed, W A S D tip, space shoot, Esc back, " +
     "Ctrl+Z undo.");

@@ -1,0 +1,71 @@
+// The shot on white paper, for printing.
+"use strict";
+
+/** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes to
+ * the right, its x down. */
+function drawnOnPaper(record, shape, styles, cue) {
+  const {low, high} = shape.bounds, at = (x, y) => [y - low[1], x - low[0]];
+  const text = (x, y) => at(x, y).map((v) => v.toFixed(4)).join(" ");
+  const outline = (loop) => {
+    const corners = [];
+    for (let i = 0; i < loop.length; i += 2) corners.push(text(loop[i], loop[i + 1]));
+    return `M${corners.join("L")}Z`;
+  };
+  const filled = (loops, fill) =>
+    make("path", {d: loops.map(outline).join(""), fill, stroke: "#000", "stroke-width": 0.003});
+  const circle = (x, y, r, attributes) => {
+    const [cx, cy] = at(x, y);
+    return make("circle", {cx, cy, r, stroke: "#000", "stroke-width": 0.002, ...attributes});
+  };
+  const bright = ([red, green, blue]) => 0.3 * red + 0.6 * green + 0.1 * blue > 0.75;
+  const ink = (i) => bright(styles[i].color) ? "#555" : cssColour(styles[i].color);
+  const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"), filled(shape.cushion, "#dcd8cf"),
+    filled(shape.inlay, "#000"),
+    ...shape.holes.map(({center, radius}) => circle(center[0], center[1], radius, {fill: "#666"}))];
+  record.tracks.forEach((track, i) => {
+    const pieces = track.segments.map((s, k) => {
+      const until = track.segments[k + 1]?.start ?? record.duration;
+      const tau = Math.min(until - s.start, s.duration ?? Infinity);
+      if (isGone(s.state) || s.state === "falling" || !(tau > 0)) return "";
+      const bend = [0, 1].map((j) => s.r[j] + 0.5 * tau * s.v[j]);
+      const end = [0, 1].map((j) => s.r[j] + tau * (s.v[j] + 0.5 * tau * s.a[j]));
+      return `M${text(s.r[0], s.r[1])}Q${text(...bend)} ${text(...end)}`;
+    });
+    parts.push(make("path", {d: pieces.join(""), fill: "none", stroke: ink(i), "stroke-width": 0.006}));
+    const end = stateAt(record, i, record.duration), R = radiusOf(record, i);
+    if (!isGone(end.state))
+      parts.push(circle(end.r[0], end.r[1], R,
+        {fill: "none", stroke: ink(i), "stroke-width": 0.004, "stroke-dasharray": "0.012 0.008"}));
+  });
+  record.tracks.forEach((track, i) => {
+    const [x, y] = stateAt(record, i, 0).r, R = radiusOf(record, i), {color, pattern, number} = styles[i];
+    const fill = pattern === "stripe" ? "#fff" : cssColour(color), [cx, cy] = at(x, y);
+    parts.push(circle(x, y, R, {fill, ...(pattern === "stripe" ? {stroke: cssColour(color), "stroke-width": 0.3 * R} : {})}));
+    if (number > 0)
+      parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle", class: "on-paper",
+        fill: pattern === "stripe" || bright(color) ? "#000" : "#fff"}, track.id));
+  });
+  const struck = cue === null ? -1 : record.tracks.findIndex((track) => track.id === cue.ball);
+  if (struck >= 0) {
+    const [x, y] = stateAt(record, struck, 0).r, R = radiusOf(record, struck), angle = cue.aim_deg * Math.PI / 180;
+    const back = (s) => text(x - s * Math.cos(angle), y - s * Math.sin(angle));
+    parts.push(make("path", {d: `M${back(1.5 * R)}L${back(0.6)}`, stroke: "#000", "stroke-width": 0.009}));
+  }
+  const [wide, tall] = [high[1] - low[1], high[0] - low[0]];
+  return make("svg", {viewBox: `0 0 ${wide.toFixed(4)} ${tall.toFixed(4)}`}, ...parts);
+}
+
+/** Puts the shot onto paper whenever the page is printed. `play`: {scene(), shot()} */
+function printsShots(play) {
+  const paper = make("section", {class: "paper", "aria-hidden": "true"});
+  document.body.append(paper);
+  window.addEventListener("beforeprint", () => {
+    const scene = play.scene(), shot = play.shot(), {cue} = scene, {shape, styles} = scene.look();
+    const tip = cue && `tip ${cue.side.toFixed(2)} R left, ${cue.height.toFixed(2)} R up`;
+    const stroke = cue === null ? "" : `${cue.ball}: aim ${cue.aim_deg.toFixed(2)}°, ${withUnit("metric", "speed", cue.speed)}, ` +
+      `${tip}, cue raised by ${cue.elevation_deg.toFixed(1)}°. `;
+    const fell = shot.outcome.balls.filter((ball) => ball.pocket).map((ball) => `${ball.id} in ${ball.pocket}`);
+    paper.replaceChildren(drawnOnPaper(shot.record, shape, styles, cue),
+      make("p", {}, stroke, fell.length > 0 ? `${fell.join(", ")}. ` : "", `${shot.duration.toFixed(2)} s, hash ${shot.hash}.`));
+  });
+}
