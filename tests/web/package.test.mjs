@@ -90,6 +90,8 @@ test("until and seconds end a shot", () => {
   const scene = Scene.parse(sceneText("snooker_break.toml"));
   assert.equal(simulate(scene, {until: 0.5}).duration, 0.5);
   assert.throws(() => simulate(scene, {seconds: 0}), (error) => error.kind === "limit");
+  const broken = Scene.parse(sceneText("eight_ball_break.toml"));
+  assert.throws(() => simulate(broken, {events: 60}), (error) => error.kind === "limit");
 });
 
 test("many shots are the single shots", () => {

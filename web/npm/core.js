@@ -196,8 +196,8 @@ export class Shot extends Held {
   }
 }
 
-export function simulate(scene, {until = -1, seconds = 60} = {}) {
-  return new Shot(call("carom_simulate", scene.handle, until, seconds), scene);
+export function simulate(scene, {until = -1, seconds = 60, events = 1e6} = {}) {
+  return new Shot(call("carom_simulate", scene.handle, until, seconds, events), scene);
 }
 
 const ARRAYS = {status: [Uint8Array, 0], duration: [Float64Array, 0], events: [BigInt64Array, 0],

@@ -164,9 +164,10 @@ export class Shot {
   free(): void;
 }
 
-/** Simulates a shot. `until`: stop there [s]. `seconds`: of computing, after which it throws (60).
+/** Simulates a shot. `until`: stop there [s]. `seconds` of computing (60) and number of `events` (1e6): beyond
+ * them it throws.
  * @throws CaromError */
-export function simulate(scene: Scene, options?: {until?: number; seconds?: number}): Shot;
+export function simulate(scene: Scene, options?: {until?: number; seconds?: number; events?: number}): Shot;
 
 export interface Batch {
   shots: number;

@@ -122,17 +122,19 @@ using carom::web::WebScene;
 using carom::web::WebShot;
 
 /// @param until   [s] of the shot; negative: the scene's own end
-/// @param seconds of computing, after which the call fails
-CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds) {
+/// @param seconds of computing, and most_events: beyond them the call fails
+CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds, double most_events) {
     return guarded([&] {
         using carom::web::Clock;
         const auto start = Clock::now();
         carom::SimulateOptions options;
         if (until >= 0.0) options.until = until;
         options.progress = [&](std::size_t events, double) {
-            if (std::chrono::duration<double>(Clock::now() - start).count() > seconds)
-                throw carom::web::TooLong("the shot has " + std::to_string(events) +
-                                          " events so far and takes too long; allow more seconds");
+            const bool late = std::chrono::duration<double>(Clock::now() - start).count() > seconds;
+            if (!late && static_cast<double>(events) <= most_events) return;
+            throw carom::web::TooLong("the shot has " + std::to_string(events) + " events so far, which " +
+                                      (late ? "takes too long" : "is too many") +
+                                      "; give it an end in [stop], or allow more");
         };
         auto shot = std::make_unique<WebShot>();
         shot->scene = scene->scene;

@@ -13,9 +13,12 @@
   }
   document.body.lastChild.remove();
 
-  const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4], TIME_LIMIT = 2;  // [times real time], [s] of computing
+  const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];  // [times real time]
+  const LIMITS = {seconds: 2, events: 20000};  // of one shot, so that no scene stops the page
   const UNDO_LIMIT = 200;
   const locked = (key) => page.lock.some((name) => key === name || key.startsWith(`${name}.`));
+  // A page that holds something fast shows its own scene only.
+  const fixed = page.lock.length > 0;
   const calm = prefers("reduced-motion: reduce");
   let scene, shot, view, look, units = "metric", paths = "all", speed = 1;
   let now = 0, playing = false, started = 0, contactsOnly = true, rotations = null;
@@ -102,7 +105,7 @@
   const pushRow = make("div", {class: "bar"}, make("label", {}, pushOut, " push out"));
   const gameCard = make("section", {class: "card"},
     make("h2", {}, "Game"), make("div", {class: "bar"}, gameBox,
-      textButton("Start again", () => newGame(gameBox.value))), gameText, callRow, pushRow, options);
+      textButton("Start again", () => newGame(gameBox.value), {disabled: fixed ? "" : null})), gameText, callRow, pushRow, options);
 
   // ---- Events.
   const list = make("ol", {class: "events"});
@@ -135,12 +138,13 @@
     field("Units", unitBox),
     make("fieldset", {}, make("legend", {}, "Place a ball ", placeUnit), whichBall, placeX, placeY),
     make("fieldset", {class: "materials"}, make("legend", {}, "Balls"), ...materials.map((m) => m.element)));
-  for (const box of [tableBox, clothBox, cushionBox]) box.disabled = locked("table");
+  for (const box of [tableBox, gameBox]) box.disabled = fixed || locked("table");
+  for (const box of [clothBox, cushionBox]) box.disabled = locked("table");
 
   const sceneText = make("textarea", {spellcheck: "false", "aria-label": "Scene file", rows: "18"});
   const sceneError = make("p", {class: "error", role: "alert"});
   const dialog = make("dialog", {"aria-label": "Scene file"}, make("h2", {}, "Scene file"), sceneText,
-    sceneError, make("div", {class: "bar"}, textButton("Use this scene", () => useText()),
+    sceneError, make("div", {class: "bar"}, textButton("Use this scene", () => useText(), {disabled: fixed ? "" : null}),
       textButton("Copy", () => copy(sceneText.value)), textButton("Every value", () => {
         sceneText.value = scene.everything;
       }), make("label", {class: "file"}, "Open … ", make("input", {type: "file", accept: ".toml,text/plain",
@@ -177,7 +181,7 @@
   function use(candidate) {
     let played;
     try {
-      played = simulate(candidate, {seconds: TIME_LIMIT});
+      played = simulate(candidate, LIMITS);
     } catch (error) {
       candidate.free();
       say(error.reason || error.message, true);
@@ -633,7 +637,7 @@
     let candidate;
     try {
       candidate = Scene.parse(sceneText.value, "scene");
-      simulate(candidate, {seconds: TIME_LIMIT}).free();
+      simulate(candidate, LIMITS).free();
     } catch (error) {
       const {line} = error, reason = error.reason || error.message;
       sceneError.textContent = line > 0 ? `Line ${line}: ${reason}` : reason;
@@ -658,6 +662,7 @@
       return error.message;
     }
     if (found === null) return null;
+    if (fixed) return "This page shows its own scene only, not that of the address.";
     try {
       begin(found.toml, false);
     } catch (error) {
