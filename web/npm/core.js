@@ -133,6 +133,11 @@ export function version() {
   return call("carom_version");
 }
 
+// The C++ library of WebAssembly writes numbers with 17 digits; most need fewer to be read back to the bit.
+const TEXTS_AND_NUMBERS = /'[^'\n]*'|"(?:[^"\\\n]|\\.)*"|#.*|-?\d+\.\d{14,}(?:e[+-]?\d+)?/g;
+const shortened = (toml) =>
+  toml.replace(TEXTS_AND_NUMBERS, (found) => /^[-\d]/.test(found) ? String(Number(found)) : found);
+
 /** A scene: table, balls, cue. It never changes; with() makes another one. */
 export class Scene extends Held {
   #described = null;
@@ -146,7 +151,7 @@ export class Scene extends Held {
     call("carom_scene_change", this.handle, JSON.stringify(flat(changes)));
     return new Scene();
   }
-  get toml() { return call("carom_scene_source", this.handle); }
+  get toml() { return shortened(call("carom_scene_source", this.handle)); }
   get everything() { return call("carom_scene_text", this.handle); }
   describe() { return this.#described ??= JSON.parse(call("carom_scene_describe", this.handle)); }
   get balls() { return this.describe().balls; }

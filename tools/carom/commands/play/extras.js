@@ -76,7 +76,7 @@ function settingsDialog(keys, play) {
 
 /** The controls. `play`: {scene(), shot(), change(changes), begin(toml), locked(key)} */
 function playExtras(page, play) {
-  const open = make("select", {"aria-label": "Open a scene", onchange: () => {
+  const open = make("select", {class: "open", "aria-label": "Open a scene", onchange: () => {
     const chosen = page.scenes.find(({name}) => name === open.value);
     open.value = "";
     if (chosen) play.begin(chosen.text);

@@ -4,14 +4,15 @@
 
 (async () => {
   const page = pageData("page"), {Scene, simulate, games} = carom;
-  document.body.append(make("p", {class: "loading", role: "status"}, "Loading carom …"));
+  const loading = make("p", {class: "loading", role: "status"}, "Loading carom …");
+  document.body.append(loading);
   try {
     await carom.start(await wasmOfPage(pageData("wasm")));
   } catch (error) {
-    document.body.lastChild.textContent = `This browser cannot run carom: ${error.message}`;
+    loading.textContent = `This browser cannot run carom: ${error.message}`;
     return;
   }
-  document.body.lastChild.remove();
+  loading.remove();
 
   const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];  // [times real time]
   const LIMITS = {seconds: 2, events: 20000};  // of one shot, so that no scene stops the page
@@ -200,12 +201,24 @@
 
   /** A new table: looks and outlines are made again. */
   function begin(toml, remember = true, before = null) {
-    const candidate = Scene.parse(toml);
+    const candidate = Scene.parse(toml), game0 = game, count = past.length;
     if (remember && scene) keep();
     game = before;
+    if (useElsewhere(candidate)) return;
+    game = game0;
+    past.length = count;
+  }
+  /** Shows a scene with other balls or another table. @returns whether it can be played */
+  function useElsewhere(candidate) {
+    const shown = view;
     run(false);
-    if (!use(candidate)) return;
-    redraw();
+    view = null;  // it has other balls
+    if (use(candidate)) {
+      redraw();
+      return true;
+    }
+    view = shown;
+    return false;
   }
   function redraw() {
     look = scene.look();
@@ -608,8 +621,7 @@
     options.replaceChildren();
     callPocket.value = "";
     safety.checked = pushOut.checked = false;
-    run(false);
-    if (use(after)) redraw();
+    useElsewhere(after);
   }
 
   // ---- Files and addresses.
