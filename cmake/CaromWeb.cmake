@@ -1,5 +1,6 @@
 # For the preset wasm: the libraries that carom needs, for WebAssembly. All are headers of this machine,
-# except Box2D, of which carom uses the tree of boxes; its two sources are compiled here. tools/web fetches them.
+# except Box2D, of which carom uses the tree of boxes; its two sources are compiled here. tools/web fetches
+# them.
 #
 # find_package() finds these targets by the files in CMAKE_FIND_PACKAGE_REDIRECTS_DIR, so that the libraries'
 # own CMake files need not know about WebAssembly.

@@ -5,10 +5,26 @@
 #if defined(__cplusplus) && defined(__EMSCRIPTEN__)
 #include <charconv>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #if _LIBCPP_VERSION < 14000
+namespace std {
+/// The shortest text that reads back to the same bits.
+inline to_chars_result to_chars(char* first, char* last, double value) {
+    constexpr int kMostDigits = 17;
+    char text[32];
+    int size = 0;
+    for (int digits = 1; digits <= kMostDigits; ++digits) {
+        size = snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, nullptr) == value) break;
+    }
+    if (last - first < size) return {last, errc::value_too_large};
+    memcpy(first, text, static_cast<size_t>(size));
+    return {first + size, errc()};
+}
+}  // namespace std
 _LIBCPP_BEGIN_NAMESPACE_STD
 template <class To, class From>
 constexpr To bit_cast(const From& from) noexcept {

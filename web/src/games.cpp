@@ -1,4 +1,5 @@
 // Games: what is legal, the verdict on a shot, the next scene.
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -59,7 +60,7 @@ CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebSce
         carom::web::give(nullptr, carom::web::dumped({{"cueBalls", legal.cue_balls},
                                                       {"first", legal.first},
                                                       {"callable", legal.callable},
-                                                      {"inHand", name(legal.in_hand)},
+                                                      {"inHand", carom::name(legal.in_hand)},
                                                       {"mayPushOut", legal.may_push_out},
                                                       {"text", carom::tools::next_text(before)}}));
     });

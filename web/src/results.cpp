@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "carom/version.h"
 #include "web.h"
 
 namespace carom::web {

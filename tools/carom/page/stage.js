@@ -89,7 +89,10 @@ class TableView {
     for (const {i, x, y, r, p, R} of this.seen)
       this.pictures[i].draw(context, projection, lamp, x, y, r, p, R, this.orientation(i, t));
     if (ghost !== null) this.ghosts(context, ghost, t);
-    if (ends) this.ghosts(context, this.record, this.record.duration, only);
+    if (ends) {
+      const moves = (i) => this.record.tracks[i].segments.length > 1 && (only < 0 || i === only);
+      this.ghosts(context, this.record, this.record.duration, moves);
+    }
     for (const ball of this.seen) {
       if (ball.i !== marked) continue;
       context.lineWidth = 2 * this.dense;
@@ -129,10 +132,10 @@ class TableView {
     context.restore();
   }
 
-  /** Outlines of another record's balls on this table. */
-  ghosts(context, record, t, only = -1) {
+  /** Outlines of a record's balls at t, of those that are wanted. */
+  ghosts(context, record, t, wanted = () => true) {
     for (const {i, state, x, y, r} of this.balls(record, t)) {
-      if (isGone(state.state) || (only >= 0 && i !== only)) continue;
+      if (isGone(state.state) || !wanted(i)) continue;
       context.beginPath();
       context.arc(x, y, r, 0, 7);
       context.globalAlpha = 0.45;

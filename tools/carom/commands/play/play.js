@@ -178,8 +178,9 @@
     says.classList.toggle("error", bad);
   }
 
-  /** Simulates a scene and shows it, or says why that cannot be. @returns whether it can */
-  function use(candidate) {
+  /** Simulates a scene and shows it, or says why that cannot be. `fresh`: it has other balls or
+   * another table. @returns whether it can */
+  function use(candidate, fresh = false) {
     let played;
     try {
       played = simulate(candidate, LIMITS);
@@ -193,6 +194,7 @@
     shot = played;
     verdict = null;
     rotations = null;
+    if (fresh) view = null;
     show(0);
     later();
     return true;
@@ -201,24 +203,14 @@
 
   /** A new table: looks and outlines are made again. */
   function begin(toml, remember = true, before = null) {
-    const candidate = Scene.parse(toml), game0 = game, count = past.length;
+    const candidate = Scene.parse(toml), gameBefore = game, kept = past.length;
+    say("");
     if (remember && scene) keep();
     game = before;
-    if (useElsewhere(candidate)) return;
-    game = game0;
-    past.length = count;
-  }
-  /** Shows a scene with other balls or another table. @returns whether it can be played */
-  function useElsewhere(candidate) {
-    const shown = view;
     run(false);
-    view = null;  // it has other balls
-    if (use(candidate)) {
-      redraw();
-      return true;
-    }
-    view = shown;
-    return false;
+    if (use(candidate, true)) return redraw();
+    game = gameBefore;
+    past.length = kept;
   }
   function redraw() {
     look = scene.look();
@@ -258,14 +250,14 @@
     run(false);
     const before = scene;
     if (remember) keep();
-    if (!use(candidate)) {
+    const shape = Object.keys(changes).some((key) => /^(table|balls\.radius)/.test(key));
+    if (!use(candidate, shape)) {
       if (remember) past.pop();
       tell();
       return false;
     }
     if (before !== scene) before.free();
     say("");
-    const shape = Object.keys(changes).some((key) => /^(table|balls\.radius)/.test(key));
     if (shape) redraw();
     return true;
   }
@@ -307,7 +299,10 @@
         view.draw(now, {trails: "ball"});
       }
     }
-    document.body.classList.toggle("aiming", aiming);
+    if (aiming !== document.body.classList.contains("aiming")) {
+      document.body.classList.toggle("aiming", aiming);
+      label();
+    }
     clock.textContent = `${now.toFixed(2)} s of ${shot.duration.toFixed(2)}`;
     scrub.max = String(shot.duration);
     scrub.value = String(now);
@@ -345,12 +340,16 @@
     context.restore();
   }
 
+  function label() {
+    const name = playing ? "Pause" : now === 0 ? "Shoot" : "Play";
+    playButton.replaceChildren(icon(playing ? ICONS.pause : ICONS.play), name === "Shoot" ? "Shoot" : "");
+    playButton.setAttribute("aria-label", `${name} (space)`);
+    playButton.title = `${name} (space)`;
+  }
   function run(on) {
     if (on === playing) return;
     playing = on;
-    playButton.replaceChildren(icon(on ? ICONS.pause : ICONS.play));
-    playButton.setAttribute("aria-label", on ? "Pause (space)" : "Shoot (space)");
-    playButton.title = playButton.getAttribute("aria-label");
+    label();
     if (!on) { show(now); return; }
     if (now >= shot.duration) now = 0;
     if (now === 0) { keep(); judge(); }
@@ -621,7 +620,8 @@
     options.replaceChildren();
     callPocket.value = "";
     safety.checked = pushOut.checked = false;
-    useElsewhere(after);
+    run(false);
+    if (use(after, true)) redraw();
   }
 
   // ---- Files and addresses.

@@ -21,7 +21,7 @@ function startOf(game, table, seed = 1) {
   const rack = (name, more = "") => `[rack]\ngame = "${name}"\ngap = 1e-4\nseed = ${seed}\n${more}`;
   if (game === "three_cushion" || (carom && game === ""))
     return head + balls + ball("white", 0.893, 0.71) + ball("yellow", 0.71, 0.71) + ball("red", 0.71, 2.13) +
-      cue("white", 4, 102);
+      cue("white", 4, 98.5);
   const [w, l] = {nine_foot: [1.27, 2.54], eight_foot: [1.17, 2.34], seven_foot: [0.9906, 1.9812],
     seven_foot_bar: [0.9906, 1.9812], snooker: [1.7526, 3.5433]}[table];
   const at = (x, y) => [(x * w).toFixed(4), (y * l).toFixed(4)];

@@ -14,27 +14,33 @@ function withUnit(units, kind, x) {
 
 /** What happened, for the list of events. */
 function eventWords(e, units) {
+  const text = ballWords(e, units);
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+const named = (id) => (id === "cue" ? "the cue ball" : id);
+function ballWords(e, units) {
+  const ball = named(e.ball), other = named(e.other);
   const speed = (x) => (x === null ? "" : withUnit(units, "speed", x));
   const at = e.diamond === null ? "" : ` at diamond ${e.diamond.toFixed(1)}`;
   const rail = `the ${e.otherName}`;
   switch (e.type) {
-    case "cue_strike": return `The cue strikes ${e.ball}: ${speed(e.speed)}`;
+    case "cue_strike": return `the cue strikes ${ball}: ${speed(e.speed)}`;
     case "ball_ball": {
       const cut = e.cut === null ? "" : `, cut ${(e.cut * 180 / Math.PI).toFixed(0)}°`;
-      return `${e.ball} hits ${e.other} at ${speed(e.closing)}${cut}`;
+      return `${ball} hits ${other} at ${speed(e.closing)}${cut}`;
     }
-    case "ball_cluster": return `${e.balls.join(", ")} meet at once`;
-    case "ball_cushion": return `${e.ball} bounces off ${rail}${at}: ${speed(e.speed)}`;
-    case "ball_jaw": return `${e.ball} bounces off a jaw, ${e.otherName}: ${speed(e.speed)}`;
-    case "ball_pocket": return `${e.ball} is in the ${e.otherName}`;
-    case "ball_edge": return `${e.ball} crosses the edge of the ${e.otherName}`;
-    case "ball_cloth": return `${e.ball} lands on the cloth`;
-    case "ball_out": return `${e.ball} leaves the table`;
-    case "slide_roll": return `${e.ball} begins to roll: ${speed(e.speed)}`;
-    case "roll_stop": return `${e.ball} stops`;
-    case "roll_spin": return `${e.ball} stops and spins on the spot`;
-    case "spin_stop": return `${e.ball} stops spinning`;
-    default: return `${e.ball}: ${e.type.replaceAll("_", " ")}${e.other ? ` ${e.other}` : ""}`;
+    case "ball_cluster": return `${e.balls.map(named).join(", ")} meet at once`;
+    case "ball_cushion": return `${ball} bounces off ${rail}${at}: ${speed(e.speed)}`;
+    case "ball_jaw": return `${ball} bounces off a jaw, ${e.otherName}: ${speed(e.speed)}`;
+    case "ball_pocket": return `${ball} is in the ${e.otherName}`;
+    case "ball_edge": return `${ball} crosses the edge of the ${e.otherName}`;
+    case "ball_cloth": return `${ball} lands on the cloth`;
+    case "ball_out": return `${ball} leaves the table`;
+    case "slide_roll": return `${ball} begins to roll: ${speed(e.speed)}`;
+    case "roll_stop": return `${ball} stops`;
+    case "roll_spin": return `${ball} stops and spins on the spot`;
+    case "spin_stop": return `${ball} stops spinning`;
+    default: return `${ball}: ${e.type.replaceAll("_", " ")}${e.other ? ` ${e.other}` : ""}`;
   }
 }
 
