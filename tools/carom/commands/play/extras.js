@@ -13,8 +13,8 @@ function sectionOf(toml, section) {
   return values;
 }
 
-/** A dialog with every key of some sections. `keys`: {section: {key: {type, enum, description}}}. `play`: as of
- * playExtras. @returns a function that opens it */
+/** A dialog with every key of some sections. `keys`: {section: {key: {type, enum, description}}}. `play`: as
+ * for playExtras. @returns a function that opens it */
 function settingsDialog(keys, play) {
   const wrong = make("p", {class: "error", role: "alert"}), form = make("div", {class: "settings"});
   /** What an input says, or a sentence why it says nothing. */
@@ -63,8 +63,9 @@ function settingsDialog(keys, play) {
     }));
     if (focused) document.getElementById(focused)?.focus();
   };
-  const dialog = make("dialog", {"aria-label": "Table, balls and physics"}, make("h2", {}, "Table, balls and physics"),
-    wrong, form, make("div", {class: "bar"}, make("span", {class: "room"}),
+  const title = "Table, balls and physics";
+  const dialog = make("dialog", {"aria-label": title}, make("h2", {}, title), wrong, form,
+    make("div", {class: "bar"}, make("span", {class: "room"}),
       make("button", {type: "button", onclick: () => dialog.close()}, "Close")));
   document.body.append(dialog);
   return () => {
@@ -80,9 +81,11 @@ function playExtras(page, play) {
     const chosen = page.scenes.find(({name}) => name === open.value);
     open.value = "";
     if (chosen) play.begin(chosen.text);
-  }}, make("option", {value: ""}, "Open …"), ...page.scenes.map(({name, title}) => make("option", {value: name}, title)));
+  }}, make("option", {value: ""}, "Open …"),
+  ...page.scenes.map(({name, title}) => make("option", {value: name}, title)));
   const settings = settingsDialog(page.keys, play);
   printsShots(play);
   const button = (text, onclick) => make("button", {type: "button", onclick}, text);
-  return [page.lock.length > 0 ? null : open, button("All values …", settings), button("Print", () => print())];
+  return [page.lock.length > 0 ? null : open, button("All values …", settings),
+    button("Print", () => print())];
 }

@@ -1,8 +1,8 @@
 // The shot on white paper, for printing.
 "use strict";
 
-/** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes to
- * the right, its x down. */
+/** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes
+ * to the right, its x down. */
 function drawnOnPaper(record, shape, styles, cue) {
   const {low, high} = shape.bounds, at = (x, y) => [y - low[1], x - low[0]];
   const text = (x, y) => at(x, y).map((v) => v.toFixed(4)).join(" ");
@@ -19,8 +19,8 @@ function drawnOnPaper(record, shape, styles, cue) {
   };
   const bright = ([red, green, blue]) => 0.3 * red + 0.6 * green + 0.1 * blue > 0.75;
   const ink = (i) => bright(styles[i].color) ? "#555" : cssColour(styles[i].color);
-  const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"), filled(shape.cushion, "#dcd8cf"),
-    filled(shape.inlay, "#000"),
+  const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"),
+    filled(shape.cushion, "#dcd8cf"), filled(shape.inlay, "#000"),
     ...shape.holes.map(({center, radius}) => circle(center[0], center[1], radius, {fill: "#666"}))];
   record.tracks.forEach((track, i) => {
     const pieces = track.segments.map((s, k) => {
@@ -39,15 +39,18 @@ function drawnOnPaper(record, shape, styles, cue) {
   });
   record.tracks.forEach((track, i) => {
     const [x, y] = stateAt(record, i, 0).r, R = radiusOf(record, i), {color, pattern, number} = styles[i];
-    const fill = pattern === "stripe" ? "#fff" : cssColour(color), [cx, cy] = at(x, y);
-    parts.push(circle(x, y, R, {fill, ...(pattern === "stripe" ? {stroke: cssColour(color), "stroke-width": 0.3 * R} : {})}));
+    const [cx, cy] = at(x, y), striped = pattern === "stripe", ring = 0.3 * R;
+    parts.push(striped
+      ? circle(x, y, R - ring / 2, {fill: "#fff", stroke: cssColour(color), "stroke-width": ring})
+      : circle(x, y, R, {fill: cssColour(color)}));
     if (number > 0)
-      parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle", class: "on-paper",
-        fill: pattern === "stripe" || bright(color) ? "#000" : "#fff"}, track.id));
+      parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle",
+        class: striped || bright(color) ? "on-paper" : "on-paper on-dark"}, track.id));
   });
   const struck = cue === null ? -1 : record.tracks.findIndex((track) => track.id === cue.ball);
   if (struck >= 0) {
-    const [x, y] = stateAt(record, struck, 0).r, R = radiusOf(record, struck), angle = cue.aim_deg * Math.PI / 180;
+    const [x, y] = stateAt(record, struck, 0).r, R = radiusOf(record, struck);
+    const angle = cue.aim_deg * Math.PI / 180;
     const back = (s) => text(x - s * Math.cos(angle), y - s * Math.sin(angle));
     parts.push(make("path", {d: `M${back(1.5 * R)}L${back(0.6)}`, stroke: "#000", "stroke-width": 0.009}));
   }
@@ -61,11 +64,13 @@ function printsShots(play) {
   document.body.append(paper);
   window.addEventListener("beforeprint", () => {
     const scene = play.scene(), shot = play.shot(), {cue} = scene, {shape, styles} = scene.look();
-    const tip = cue && `tip ${cue.side.toFixed(2)} R left, ${cue.height.toFixed(2)} R up`;
-    const stroke = cue === null ? "" : `${cue.ball}: aim ${cue.aim_deg.toFixed(2)}°, ${withUnit("metric", "speed", cue.speed)}, ` +
-      `${tip}, cue raised by ${cue.elevation_deg.toFixed(1)}°. `;
-    const fell = shot.outcome.balls.filter((ball) => ball.pocket).map((ball) => `${ball.id} in ${ball.pocket}`);
+    const offset = (x, one, other) => `${Math.abs(x).toFixed(2)} R ${x < 0 ? other : one}`;
+    const speed = cue && withUnit("metric", "speed", cue.speed);
+    const stroke = cue === null ? [] : [`Ball ${cue.ball} is struck at ${speed}`,
+      `aim ${cue.aim_deg.toFixed(2)}°`, `tip ${offset(cue.side, "left", "right")} and ` +
+      `${offset(cue.height, "above", "below")} the centre`, `cue raised by ${cue.elevation_deg.toFixed(1)}°`];
+    const fell = shot.outcome.balls.filter(({pocket}) => pocket).map(({id, pocket}) => `${id} in ${pocket}`);
     paper.replaceChildren(drawnOnPaper(shot.record, shape, styles, cue),
-      make("p", {}, stroke, fell.length > 0 ? `${fell.join(", ")}. ` : "", `${shot.duration.toFixed(2)} s, hash ${shot.hash}.`));
+      make("p", {}, `${stroke.concat(fell).join(", ")}. ${shot.duration.toFixed(2)} s, hash ${shot.hash}.`));
   });
 }

@@ -106,7 +106,8 @@
   const pushRow = make("div", {class: "bar"}, make("label", {}, pushOut, " push out"));
   const gameCard = make("section", {class: "card"},
     make("h2", {}, "Game"), make("div", {class: "bar"}, gameBox,
-      textButton("Start again", () => newGame(gameBox.value), {disabled: fixed ? "" : null})), gameText, callRow, pushRow, options);
+      textButton("Start again",
+      () => newGame(gameBox.value), {disabled: fixed ? "" : null})), gameText, callRow, pushRow, options);
 
   // ---- Events.
   const list = make("ol", {class: "events"});
@@ -145,7 +146,8 @@
   const sceneText = make("textarea", {spellcheck: "false", "aria-label": "Scene file", rows: "18"});
   const sceneError = make("p", {class: "error", role: "alert"});
   const dialog = make("dialog", {"aria-label": "Scene file"}, make("h2", {}, "Scene file"), sceneText,
-    sceneError, make("div", {class: "bar"}, textButton("Use this scene", () => useText(), {disabled: fixed ? "" : null}),
+    sceneError, make("div", {class: "bar"}, textButton("Use this scene", () => useText(),
+      {disabled: fixed ? "" : null}),
       textButton("Copy", () => copy(sceneText.value)), textButton("Every value", () => {
         sceneText.value = scene.everything;
       }), make("label", {class: "file"}, "Open … ", make("input", {type: "file", accept: ".toml,text/plain",
@@ -160,8 +162,8 @@
       sceneText.value = scene.toml;
       sceneError.textContent = "";
       dialog.showModal();
-    }), ...playExtras(page, {scene: () => scene, shot: () => shot, change, begin: (toml) => begin(toml), locked})),
-  address, make("p", {class: "hash"}, "Hash ", hashText));
+    }), ...playExtras(page, {scene: () => scene, shot: () => shot, change, locked,
+      begin: (toml) => begin(toml)})), address, make("p", {class: "hash"}, "Hash ", hashText));
   const keys = make("p", {class: "keys"}, "Drag a ball to move it, drag elsewhere to aim. " +
     "Keys on the table: ← → aim (shift: 1°, alt: 0.01°), ↑ ↓ speed, W A S D tip, space shoot, Esc back, " +
     "Ctrl+Z undo.");
