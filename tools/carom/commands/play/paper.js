@@ -17,7 +17,7 @@ function drawnOnPaper(record, shape, styles, cue) {
     const [cx, cy] = at(x, y);
     return make("circle", {cx, cy, r, stroke: "#000", "stroke-width": 0.002, ...attributes});
   };
-  const bright = ([red, green, blue]) => 0.3 * red + 0.6 * green + 0.1 * blue > 0.75;
+  const bright = ([red, green, blue], than = 0.75) => 0.3 * red + 0.6 * green + 0.1 * blue > than;
   const ink = (i) => bright(styles[i].color) ? "#555" : cssColour(styles[i].color);
   const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"),
     filled(shape.cushion, "#dcd8cf"), filled(shape.inlay, "#000"),
@@ -33,7 +33,7 @@ function drawnOnPaper(record, shape, styles, cue) {
     });
     parts.push(make("path", {d: pieces.join(""), fill: "none", stroke: ink(i), "stroke-width": 0.006}));
     const end = stateAt(record, i, record.duration), R = radiusOf(record, i);
-    if (!isGone(end.state))
+    if (!isGone(end.state) && track.segments.length > 1)
       parts.push(circle(end.r[0], end.r[1], R,
         {fill: "none", stroke: ink(i), "stroke-width": 0.004, "stroke-dasharray": "0.012 0.008"}));
   });
@@ -45,7 +45,7 @@ function drawnOnPaper(record, shape, styles, cue) {
       : circle(x, y, R, {fill: cssColour(color)}));
     if (number > 0)
       parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle",
-        class: striped || bright(color) ? "on-paper" : "on-paper on-dark"}, track.id));
+        class: striped || bright(color, 0.6) ? "on-paper" : "on-paper on-dark"}, track.id));
   });
   const struck = cue === null ? -1 : record.tracks.findIndex((track) => track.id === cue.ball);
   if (struck >= 0) {
