@@ -57,9 +57,8 @@ HEADERS = {
     "vector": r"std::vector<",
 }
 # The standard guarantees that each of the headers on the right includes the one on the left.
-BROUGHT = {
-    "exception": {"stdexcept"}, "string_view": {"string"},
-    "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
+BROUGHT = {"exception": {"stdexcept"}, "string_view": {"string"},
+           "utility": {"algorithm", "map", "memory", "optional", "tuple", "vector"}}
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = [ROOT / folder for folder in ("kernel/include", "engine/include", "render/include", "capi/include",
                                         "kernel", "kernel/src", "lab", "lab/carom",

@@ -43,9 +43,8 @@ def libraries(build):
     """Shared libraries that the program and libcarom.so need directly."""
     found = set()
     for binary in [build / "carom", *sorted(build.glob("capi/libcarom.so"))]:
-        needed = set(re.findall(
-            r"\(NEEDED\).*\[(.*)\]",
-            output_of("readelf", "-d", str(binary), env={**os.environ, "LC_ALL": "C"})))
+        needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]",
+                                output_of("readelf", "-d", str(binary), env={**os.environ, "LC_ALL": "C"})))
         for name, path in re.findall(r"^\s*(\S+) (?:=> )?(\S*)", output_of("ldd", str(binary)), re.M):
             if name in needed and path.startswith("/"):
                 found.add(os.path.realpath(path))
@@ -55,9 +54,8 @@ def libraries(build):
 def owners(paths):
     """path -> package. dpkg may list a file under its name from before /usr was merged."""
     names = {name: path for path in paths for name in (path, path.removeprefix("/usr"))}
-    text = subprocess.run(
-        ["dpkg-query", "-S", *sorted(names)], text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL).stdout
+    text = subprocess.run(["dpkg-query", "-S", *sorted(names)], text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL).stdout
     found = {}
     for line in text.splitlines():
         package, separator, name = line.partition(": ")

@@ -41,9 +41,8 @@ def configure(path):
         "docs_dir": "pages",
         "nav": navigation(),
         "use_directory_urls": False,
-        "theme": {
-            "name": "material", "font": False,
-            "features": ["navigation.sections", "navigation.top", "search.highlight"]},
+        "theme": {"name": "material", "font": False,
+                  "features": ["navigation.sections", "navigation.top", "search.highlight"]},
         "plugins": ["search"],
         "markdown_extensions": ["tables", "fenced_code", "sane_lists", {"toc": {"permalink": True}}],
     }, indent=1))

@@ -4,7 +4,8 @@
     tools/words.py [FILE ...]     without files: every file of the project that git knows
 
 No line of code or prose is wider than 110 columns, except what cannot be broken: tables, links, addresses and
-commands in Markdown, and data. No comment or page uses the phrases below, which were this project's worst habits.
+commands in Markdown, and data. No comment or page uses the
+phrases below, which were this project's worst habits.
 Exit status 1: there are findings, each printed as FILE:LINE: what is wrong.
 """
 import pathlib
@@ -73,8 +74,8 @@ def main(arguments):
             continue
         for number, text in texts(path, lines):
             for phrase, better in PHRASES.items():
-                if re.search(phrase, text, re.IGNORECASE):
-                    print(f"{path}:{number}: \"{re.search(phrase, text, re.IGNORECASE).group()}\": write {better}")
+                if bad := re.search(phrase, text, re.IGNORECASE):
+                    print(f'{path}:{number}: "{bad.group()}": write {better}')
                     found += 1
     return found > 0
 

@@ -87,9 +87,8 @@ def score(act: Callable[[NDArray[np.float32]], Actions], shots: int, seed: int) 
     part, z = float((rewards > 0).mean()), 1.96
     middle = (part + z * z / (2 * shots)) / (1 + z * z / shots)
     wide = z * math.sqrt(part * (1 - part) / shots + z * z / (4 * shots * shots)) / (1 + z * z / shots)
-    return {
-        "potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()),
-        "shots": shots}
+    return {"potted": part, "low": middle - wide, "high": middle + wide, "reward": float(rewards.mean()),
+            "shots": shots}
 
 
 def train(steps: int, seed: int) -> Any:
@@ -136,9 +135,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=400_000, help="shots to learn from")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument(
-        "--shots", type=int, default=4000,
-        help="shots to count pots in, on layouts not used for learning")
+    parser.add_argument("--shots", type=int, default=4000,
+                        help="shots to count pots in, on layouts not used for learning")
     parser.add_argument("--model", help="write the model to this .zip file")
     parser.add_argument("--report", help="write the figures to this .json file")
     parser.add_argument("--picture", help="draw nine shots to this file; needs matplotlib")

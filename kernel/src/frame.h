@@ -76,7 +76,7 @@ template <bool kAnyMasses>
 inline bool in_range(const ImpactParams& p) {
     return finite(p.R) && p.R > 0.0 && finite(p.m) && p.m > 0.0 && finite(p.mu_s1) && p.mu_s1 >= 0.0 &&
            finite(p.mu_s2) && p.mu_s2 >= 0.0 && finite(p.mu_b) && p.mu_b >= 0.0 && p.e_b >= 0.0 &&
-           p.e_b <= 1.0 && (kAnyMasses || p.mass_ratio == 1.0);
+           p.e_b <= 1.0 && (kAnyMasses || (p.mass_ratio == 1.0 && p.radius_ratio == 1.0));
 }
 
 // Checks the input and projects it into the contact frame. Any status except kOk means that there is nothing

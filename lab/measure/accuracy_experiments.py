@@ -97,9 +97,8 @@ NOISE = (
     ("march N=10000", lambda t: physics(t, "substeps = 10000")),
     ("march N=1000", lambda t: physics(t, "substeps = 1000")),
     ("cue ball 1e-4 m off (a very good camera)", lambda t: physics(moved(t, 1e-4), TIGHT)),
-    (
-        "ball-ball friction a tenth more",
-        lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
+    ("ball-ball friction a tenth more",
+     lambda t: physics(balls(t, "mu_b_fit = [0.0109461, 0.1188, 1.088]"), TIGHT)),
     ("restitution 0.95 -> 0.94", lambda t: physics(balls(t, "e_b = 0.94"), TIGHT)),
     ("model inelastic (closed form)", lambda t: physics(t, 'ball_ball = "inelastic"')),
 )
@@ -122,9 +121,8 @@ def measure_noise(program, folder, count):
             if kind != "break":
                 continue
             for model in CLUSTERS:
-                best = min(
-                    (final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)),
-                    key=lambda r: r[1])
+                best = min((final(program, scene, physics(text, f'clusters = "{model}"')) for _ in range(3)),
+                           key=lambda r: r[1])
                 near = final(program, scene, physics(moved(text, 1e-9), f'clusters = "{model}"'))[0]
                 clusters.append({"seed": seed, "model": model, "ns": best[1], "cluster_ns": best[2],
                                  "events": best[3], "apart": apart(reference, best[0]),
@@ -296,9 +294,8 @@ def draw_gain(plt, shots, folder):
         own = [s for s in shots if s["class"] == kind]
         left.plot([s["ball_hits"] for s in own], [s["gain"] for s in own], ".", color=colour, label=kind)
         points = collapse(own)
-        right.plot(
-            [p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3,
-            color=colour)
+        right.plot([p[0] * p[1] for p in points], [p[0] * p[1] * p[2] for p in points], ".", markersize=3,
+                   color=colour)
     slope, start = fit_of_gain(shots)
     most = max(s["ball_hits"] for s in shots)
     left.plot([0, most], [10 ** start, 10 ** (start + slope * most)], "k--", linewidth=0.8)

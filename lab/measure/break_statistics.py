@@ -53,9 +53,8 @@ def breaks():
         ("eight-ball, bar table, side, 20 um",
          scene("eight_ball", "seven_foot_bar", 2e-5, (0.28, 0.40), straight_at(bar_foot, (0.28, 0.40))),
          SPEED, "8", ("success", 82, 124, "the same")),
-        (
-            "eight-ball, 9 ft, middle, 50 um", scene("eight_ball", "nine_foot", 5e-5, (0.635, 0.55), 90.0),
-            SPEED, "8", None),
+        ("eight-ball, 9 ft, middle, 50 um", scene("eight_ball", "nine_foot", 5e-5, (0.635, 0.55), 90.0),
+         SPEED, "8", None),
         *((
             f"eight-ball, 9 ft, middle, {name}", scene("eight_ball", "nine_foot", gap, (0.635, 0.55), 90.0),
             SPEED, "8", None)
@@ -105,9 +104,8 @@ def row(carom, name, text, speed, money, real, count):
         path, out = pathlib.Path(folder, "break.toml"), pathlib.Path(folder, "out.csv")
         path.write_text(text)
         vary = [f"--vary={v}" for v in VARY + [f"cue.speed={speed}"]]
-        subprocess.run(
-            [carom, "sweep", path, *vary, "--count", str(count), "--seed", "1", "-o", out], check=True,
-            capture_output=True)
+        subprocess.run([carom, "sweep", path, *vary, "--count", str(count), "--seed", "1", "-o", out],
+                       check=True, capture_output=True)
         with open(out, newline="") as table:
             shots = [r for r in csv.DictReader(table) if r["outcome"] == "at_rest"]
     fallen = [[b for b in r["pocketed"].split(";") if b] for r in shots]
@@ -133,9 +131,8 @@ def main():
     parser.add_argument(
         "-o", "--output", type=pathlib.Path, help="page whose table is written anew (default: print)")
     args = parser.parse_args()
-    lines = [
-        "| break | a ball falls | balls | cue ball falls | success | 8, 9 or 10 falls | s | counted |",
-        "|---|---|---|---|---|---|---|---|"]
+    lines = ["| break | a ball falls | balls | cue ball falls | success | 8, 9 or 10 falls | s | counted |",
+             "|---|---|---|---|---|---|---|---|"]
     lines += [row(args.carom, *each, args.count) for each in breaks()]
     table = "\n".join(lines) + "\n"
     if not args.output:

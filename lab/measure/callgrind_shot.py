@@ -104,9 +104,8 @@ def main():
     build = pathlib.Path(args.build)
     if not (build / "CMakeCache.txt").exists():
         sys.exit(f"callgrind_shot.py: {build} is not a build folder; run cmake --preset release first")
-    subprocess.run(
-        ["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True,
-        stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", str(build), "--target", "carom_shot_probe"], check=True,
+                   stdout=subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
         kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
     # One dump is before the first round (set-up, first detection), then one per round; the last has the end

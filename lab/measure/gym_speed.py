@@ -103,9 +103,8 @@ def over_pooltool(shots):
         balls = {name: pt.Ball.create(name, xy=tuple(place)) for name, place in zip(("cue", "1"), places)}
         system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
         side, height = 0.5 * action[3:] / np.sqrt(2)
-        system.cue.set_state(
-            V0=3.15 + 2.85 * action[2], phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side,
-            b=height)
+        system.cue.set_state(V0=3.15 + 2.85 * action[2],
+                             phi=np.degrees(np.arctan2(action[1], action[0])) % 360, a=side, b=height)
         pt.simulate(system, inplace=True)
         fallen = [name for name, ball in system.balls.items() if ball.state.s == pt.constants.pocketed]
         reward = -1.0 if "cue" in fallen else float("1" in fallen)
@@ -120,9 +119,8 @@ def over_pooltool(shots):
 
 def pooltool_rate(shots):
     with side_by_side_shots.pooltool_environment() as python:
-        out = subprocess.run(
-            [python, __file__, "--inside", "--shots", str(shots)], check=True, capture_output=True,
-            text=True).stdout
+        out = subprocess.run([python, __file__, "--inside", "--shots", str(shots)], check=True,
+                             capture_output=True, text=True).stdout
     return json.loads(out.strip().splitlines()[-1])
 
 

@@ -90,9 +90,8 @@ def main():
     bars(folder, "memory", "Loads and stores a step (cachegrind, v3)",
          {r["name"]: {"loads": r["loads"], "stores": r["stores"]} for r in grind if r["isa"] == "v3"},
          "references")
-    bars(
-        folder, "branches", "Mispredicted branches a step (cachegrind)", by(grind, "isa", "mispredicted"),
-        "branches")
+    bars(folder, "branches", "Mispredicted branches a step (cachegrind)", by(grind, "isa", "mispredicted"),
+         "branches")
     bars(folder, "cache", "First-level cache misses in 1000 steps (cachegrind)",
          by(grind, "isa", lambda r: max(0.0, 1000 * r["l1_misses"])), "misses")
     mca = data["mca"]["rows"]

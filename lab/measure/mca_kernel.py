@@ -132,9 +132,8 @@ def body(lines):
 
 
 def simulate(code, cpu, triple="x86_64-linux-gnu"):
-    command = [
-        "llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis",
-        "-register-file-stats"]
+    command = ["llvm-mca", f"-mtriple={triple}", f"-mcpu={cpu}", "-iterations=300", "-bottleneck-analysis",
+               "-register-file-stats"]
     run = subprocess.run(command, input="\n".join(code) + "\n", capture_output=True, text=True)
     if run.returncode != 0:
         return None

@@ -72,9 +72,8 @@ def main():
     titles = ["a ball falls, the cue ball stays", "the cue ball falls", "balls that fall"]
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.6), dpi=100, sharey=True, layout="constrained")
     for panel, values, title in zip(axes, maps, titles):
-        image = panel.imshow(
-            values, origin="lower", extent=(*AIM, *SPEED), aspect="auto", cmap="viridis", vmin=0,
-            interpolation="nearest")
+        image = panel.imshow(values, origin="lower", extent=(*AIM, *SPEED), aspect="auto", cmap="viridis",
+                             vmin=0, interpolation="nearest")
         panel.axvline(middle, color="white", linewidth=0.6, linestyle=":")
         panel.set_title(title, fontsize=10)
         panel.set_xlabel("aim [degrees]")

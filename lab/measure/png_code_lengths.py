@@ -38,9 +38,8 @@ FRAMES = {
 
 # Deflate's codes for lengths of 3 to 258: the shortest length of each of the 29 codes, and the number of
 # extra bits.
-BASE = [
-    3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195,
-    227, 258]
+BASE = [3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163,
+        195, 227, 258]
 EXTRA = [0] * 8 + [1] * 4 + [2] * 4 + [3] * 4 + [4] * 4 + [5] * 4 + [0]
 CODE_OF_RUN = np.array([0] + [max(i for i in range(29) if BASE[i] <= 3 * n) for n in range(1, SEGMENT + 1)])
 EXTRA_OF_RUN = np.array(EXTRA)[CODE_OF_RUN]

@@ -40,9 +40,8 @@ def play(folder, count):
         to = [b - a for a, b in zip(places["cue"], places["1"])]
         system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
         aim = pt.ptmath.angle(__import__("numpy").array([*to, 0.0])) * 180 / 3.141592653589793
-        system.cue.set_state(
-            V0=rng.uniform(0.8, 3.0), phi=aim + rng.uniform(-2, 2), a=rng.uniform(-0.3, 0.3),
-            b=rng.uniform(-0.3, 0.3), theta=0)
+        system.cue.set_state(V0=rng.uniform(0.8, 3.0), phi=aim + rng.uniform(-2, 2), a=rng.uniform(-0.3, 0.3),
+                             b=rng.uniform(-0.3, 0.3), theta=0)
         pt.simulate(system, inplace=True)
         system.save(os.path.join(folder, f"shot{i:03d}.json"))
 
@@ -108,9 +107,8 @@ def impacts(system):
             for name, nose_height in (
                 ("cushion", height), ("cushion, normal as in pooltool", R + (height - R) * R / lever)
             ):
-                ours = carom.kernel.ball_cushion(
-                    before[0], normal, model="stronge", e_c=params["e_c"], f_c=params["f_c"],
-                    height=nose_height)
+                ours = carom.kernel.ball_cushion(before[0], normal, model="stronge", e_c=params["e_c"],
+                                                 f_c=params["f_c"], height=nose_height)
                 name = name if straight else name.replace("cushion", "jaw")
                 found[name].append(
                     float(max(np.abs(ours - after[0])[1, :2].max(), R * np.abs(ours - after[0])[2].max())))

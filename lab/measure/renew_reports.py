@@ -176,12 +176,10 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=str(ROOT / "build/release"))
     parser.add_argument("--quick", action="store_true", help="fewer impacts, shots and repeats")
-    parser.add_argument(
-        "--accuracy", type=lab_note, default="lab/notes/2026-11-accuracy_experiments.md",
-        help="note to write (%(default)s)")
-    parser.add_argument(
-        "--margins", type=lab_note, default="lab/notes/2026-11-margins.md",
-        help="note to write (%(default)s)")
+    parser.add_argument("--accuracy", type=lab_note, default="lab/notes/2026-11-accuracy_experiments.md",
+                        help="note to write (%(default)s)")
+    parser.add_argument("--margins", type=lab_note, default="lab/notes/2026-11-margins.md",
+                        help="note to write (%(default)s)")
     names = sorted({*ACCURACY, *MARGINS})
     parser.add_argument("--only", nargs="+", choices=names, help="renew these only (default: all)")
     options = parser.parse_args()

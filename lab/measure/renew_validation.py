@@ -48,9 +48,8 @@ def summary(all_rows):
         groups.setdefault((row["title"], row["variant"]), []).append(row)
         if row["keys"] and row["keys"] != row["variant"]:
             keys[(row["variant"], f"`{row['preset']}` with `{row['keys']}`")] = None
-    lines = [
-        "| case | what | trust | variant | model | free | within | worst |",
-        "|---|---|---|---|---|---|---|---|"]
+    lines = ["| case | what | trust | variant | model | free | within | worst |",
+             "|---|---|---|---|---|---|---|---|"]
     last = None
     for (title, variant), group in groups.items():
         ids = [group[0]["case"], group[-1]["case"]]

@@ -84,9 +84,8 @@ def many(shots):
 
     scene, best = scene_of(shots[0]), 1e9
     xy = np.tile([[place for place in s["balls"].values()] for s in shots], (40, 1, 1))
-    params = {
-        key: np.tile([s[name] for s in shots], 40)
-        for key, name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
+    params = {key: np.tile([s[name] for s in shots], 40) for key,
+              name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
     for _ in range(5):
         start = time.thread_time()
         batch = carom.simulate_many(scene, xy=xy, params=params)

@@ -60,9 +60,8 @@ def table(plan, path):
         csv = os.path.join(folder, "t.csv")
         words = [word for rule in plan.vary for word in ("--vary", rule)]
         before = children()
-        subprocess.run(
-            [PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv],
-            check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([PROGRAM, "sweep", path, *words, "--count", str(plan.shots), "--jobs", "1", "-o", csv],
+                       check=True, stdout=subprocess.DEVNULL)
         return children() - before, os.path.getsize(csv)
 
 

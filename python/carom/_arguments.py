@@ -76,6 +76,12 @@ def _named(name: str) -> _Kind:
     return _Kind(f"{article} {name}", lambda value: name in (base.__name__ for base in type(value).__mro__))
 
 
+def _plural(words: str) -> str:
+    """Turns "a string or a list of numbers" into "strings or lists of numbers"."""
+    nouns = [word.removeprefix("an ").removeprefix("a ").partition(" of ") for word in words.split(" or ")]
+    return " or ".join(f"{noun}s{of}{items}" for noun, of, items in nouns)
+
+
 def _with_items(whole: _Kind, inner: _Kind, count: int | None) -> _Kind:
     def takes(value: Any) -> bool:
         if not whole.takes(value) or count not in (None, len(value)):
@@ -83,8 +89,8 @@ def _with_items(whole: _Kind, inner: _Kind, count: int | None) -> _Kind:
         # An iterator can be read only once, and not here.
         return isinstance(value, Iterator) or all(map(inner.takes, value))
 
-    items = "items" if count is None else f"{count} items"
-    return _Kind(f"{whole.words} of {items} that are each {inner.words}", takes)
+    items = _plural(inner.words) if count is None else f"{count} {_plural(inner.words)}"
+    return _Kind(f"{whole.words} of {items}", takes)
 
 
 def _kind(annotation: ast.expr) -> _Kind:

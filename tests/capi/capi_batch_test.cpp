@@ -1,5 +1,5 @@
-// The C interface in bulk: batches, segments, states, the
-// next scene; each against the call that gives one at a time.
+// The C interface in bulk: batches, segments, states, the next scene; each compared with the call for a
+// single one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -189,7 +189,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
     EXPECT_EQ(carom_record_states(record.get(), 0, nullptr, nullptr, nullptr), CAROM_OK);
 }
 
-// A shot from where the last one ended; what fell is gone, and who is struck is asked anew.
+// A shot from where the last one ended: fallen balls are gone, and the struck ball is chosen again.
 TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     const ScenePtr scene = scene_of("eight_ball_break");
     const RecordPtr first = play(scene.get());
@@ -211,7 +211,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     ASSERT_EQ(carom_scene_set_cue(next, carom_record_ball_id(rest.get(), 0), &cue), CAROM_OK);
     EXPECT_GT(carom_record_duration(play(next).get()), 0.5);
 
-    // Cut in two: what goes on ends where the whole shot does, but for the rounding of the times.
+    // Cut in two, the continued run ends where the whole shot does, except for the rounding of the times.
     const ScenePtr bank = scene_of("side_bank");
     const RecordPtr whole = play(bank.get()), half = play(bank.get(), 0.8);
     ASSERT_EQ(carom_scene_from_record(half.get(), &next), CAROM_OK);
@@ -222,7 +222,41 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_EQ(next, nullptr);
 }
 
-// In one call what a record and a cue make together, checked.
+// A ball that all but never stops bouncing: what a run may hold has a limit, in each of a batch as well.
+TEST(CApiBatch, ARunWithoutEndHasALimitOfEvents) {
+    carom_scene* parsed = nullptr;
+    ASSERT_EQ(carom_scene_parse("[balls]\ne_t = 0.9999999\n[[ball]]\nheight = 0.1\n", "endless", &parsed),
+              CAROM_OK)
+        << carom_last_error();
+    const ScenePtr scene(parsed, carom_scene_free);
+    const auto says_so = [](const std::string& text) {
+        for (const char* part :
+             {"simulation stopped at t = ", " s after 1000000 events: ",
+              "allow more with [stop] events, or end the run earlier with [stop] time", "last events:\n",
+              " ball_cloth cue", "balls that move (id state x y vx vy wx wy wz):\n  cue airborne "})
+            EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+    };
+    carom_record* record = nullptr;
+    EXPECT_EQ(carom_simulate(scene.get(), -1.0, &record), CAROM_FAILED);
+    EXPECT_EQ(record, nullptr);
+    says_so(carom_last_error());
+
+    // The second of them comes to rest, the third is to stop sooner.
+    const BatchPtr batch =
+        many(scene.get(), {"balls.e_t", "stop.events"}, {0.9999999, 0.5, 0.9999999, 2e6, 2e6, 50.0}, 3, 2);
+    EXPECT_EQ(carom_batch_status(batch.get())[1], CAROM_SHOT_AT_REST);
+    EXPECT_EQ(carom_batch_status(batch.get())[2], CAROM_SHOT_EVENTS);
+    EXPECT_EQ(carom_batch_events(batch.get())[2], 50);
+    EXPECT_EQ(carom_batch_status(batch.get())[0], CAROM_SHOT_EVENTS);
+    EXPECT_EQ(carom_batch_events(batch.get())[0], 2000000);
+    const BatchPtr usual = many(scene.get(), {"balls.e_t"}, {0.9999999, 0.5}, 2, 2);
+    EXPECT_EQ(carom_batch_status(usual.get())[0], CAROM_SHOT_FAILED);
+    EXPECT_EQ(carom_batch_status(usual.get())[1], CAROM_SHOT_AT_REST);
+    says_so(carom_batch_message(usual.get(), 0));
+    EXPECT_STREQ(carom_batch_message(usual.get(), 1), "");
+}
+
+// Does in one call what a record and a cue do together, with the same checks.
 TEST(CApiBatch, TheNextSceneWithItsStrike) {
     const RecordPtr first = play(scene_of("eight_ball_break").get());
     carom_cue cue;
@@ -239,7 +273,7 @@ TEST(CApiBatch, TheNextSceneWithItsStrike) {
     ASSERT_EQ(carom_record_hash(play(by_hand).get(), b), CAROM_OK);
     EXPECT_STREQ(a, b);
 
-    // A ball that is not there, or does not rest, is not struck.
+    // A ball that does not exist, or is not at rest, cannot be struck.
     EXPECT_EQ(carom_next_scene(first.get(), "nobody", &cue, &next), CAROM_BAD_SCENE);
     EXPECT_EQ(next, nullptr);
     const RecordPtr half = play(scene_of("side_bank").get(), 0.1);

@@ -38,7 +38,7 @@ VerdictPtr judged(const carom_game_state& state, const carom_record* record,
     return {verdict, carom_verdict_free};
 }
 
-/// The one falls, and the cue ball behind it.
+/// The one falls, followed by the cue ball.
 const char* const kScratch =
     "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[[ball]]\nid = \"1\"\nposition = [0.2, 0.2]\n"
     "[[ball]]\nid = \"9\"\nposition = [0.7, 1.0]\n[cue]\nspeed = 4.0\naim_deg = 225.0\noffset = [0.0, 0.4]\n";

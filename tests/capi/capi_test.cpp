@@ -95,7 +95,7 @@ TEST(CApi, ABadImpactIsNamedAndTheOthersAreSolved) {
         in2.insert(in2.end(), object, object + 9);
     }
     in1[9 * 66 + 3] = std::nan("");
-    in1[9 * 3 + 4] = -1.0;  // goes away
+    in1[9 * 3 + 4] = -1.0;  // moving away
     std::vector<double> out1(in1.size()), out2(in1.size());
     std::int32_t status[70];
     EXPECT_EQ(carom_collide_balls_batch(70, in1.data(), in2.data(), &kParams, 1, 1e-6, out1.data(),
@@ -229,7 +229,7 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
 }
 
-// A host calls from a thread of its own, whose stack may be small.
+// A host calls from its own thread, whose stack may be small.
 TEST(CApi, AKeyOfManyPartsLeavesTheHostAlone) {
     std::string text = "[[ball]]\na";
     for (int i = 0; i < 40000; ++i) text += ".a";
@@ -253,7 +253,7 @@ TEST(CApi, AKeyOfManyPartsLeavesTheHostAlone) {
 }
 
 TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {
-    // No cushion is within reach of the one; no cushion is of interest to the other.
+    // No cushion is within reach of one ball; the other ball only spins.
     for (const char* text : {"[stop]\ntime = 0.2\n[physics]\ngravity = 0\n[[ball]]\nvelocity = [1, 0]\n",
                              "[stop]\nevents = 7\n[balls]\nmu_sp = 0\n[[ball]]\nspin = [0, 0, 5]\n"}) {
         Handles h;
@@ -283,12 +283,12 @@ TEST(CApi, EveryNumberOfTheBallsHasAName) {
     EXPECT_EQ(get("mu_b_fall"), 1.088);
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_b_more", 0.2), CAROM_OK);
     EXPECT_EQ(get("mu_b_more"), 0.2);
-    // One number takes the place of the fit, as in a scene file.
+    // One number replaces the fit, as in a scene file.
     ASSERT_EQ(carom_scene_set_ball_param(h.scene, "mu_b", 0.05), CAROM_OK);
     EXPECT_EQ(get("mu_b"), 0.05);
     EXPECT_EQ(get("mu_b_more"), 0.0);
     EXPECT_EQ(get("mu_b_fall"), 0.0);
-    // A number of its own each: none changes another.
+    // Each has its own number: none changes another.
     const char* names[] = {"radius",    "mass",      "mu_s", "mu_r", "mu_sp", "mu_b",
                            "mu_b_more", "mu_b_fall", "e_b",  "e_c",  "f_c"};
     double next = 0.01;
@@ -361,7 +361,7 @@ TEST(CApi, WritesTheSceneAsAFile) {
     EXPECT_EQ(carom_scene_text(nullptr, nullptr, 0), static_cast<std::size_t>(-1));
 }
 
-// A cue of which nothing is said: in a file, in C++ and in C.
+// A cue with all defaults: in a file, in C++ and in C.
 TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
     carom_cue c;
     carom_cue_init(&c);
@@ -381,7 +381,7 @@ TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
     }
 }
 
-// No cue is no strike, whatever a cue would be: the ball stays.
+// Without a cue there is no strike, whatever the defaults: the ball stays.
 TEST(CApi, WithoutACueNothingIsStruck) {
     Scene scene = parse_scene("[[ball]]\n", "x");
     EXPECT_FALSE(scene.cue);

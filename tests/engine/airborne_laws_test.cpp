@@ -1,5 +1,5 @@
-// Impacts of balls off the cloth: reference values, worked out apart from the engine with 30 digits, and the
-// laws that they keep (docs/reference/physics.md, "Balls in the air"). Pool balls, mu_s = 0.2, e_t = 0.5.
+// Impacts of balls off the cloth: reference values, computed independently of the engine with 30 digits, and
+// the laws they obey (docs/reference/physics.md, "Balls in the air"). Pool balls, mu_s = 0.2, e_t = 0.5.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -99,8 +99,8 @@ TEST(Cloth, LandingsOfTheReference) {
     EXPECT_EQ(on_cloth({{0.0, 0.0, -2.0}, {0.0, 0.0, -1.0}}, balls(), true).w.z(), 0.0) << "not past 0";
 }
 
-// What all landings keep: v - (2/5) R (z x w), the direction of
-// the slip; and their books: energy, the 2/7 of a slip that ends.
+// What all landings conserve: v - (2/5) R (z x w) and the direction of the slip; and their balance: energy,
+// and the 2/7 of a slip that ends.
 TEST(Cloth, LandingsKeepTheirLaws) {
     Generator random(22);
     int gripped = 0;
@@ -185,8 +185,8 @@ double total_energy(const FreePair& p, const Velocities& one, const Velocities& 
     return energy(one, p.size1.R, p.size1.m) + energy(two, p.size2.R, p.size2.m);
 }
 
-// Momentum, the spins about the line of centres, equal
-// kicks to both surfaces, energy, another observer's speed.
+// Momentum, the spins about the line of centres, equal impulses on both surfaces, energy, another observer's
+// speed.
 TEST(FreeBalls, KeepTheirLaws) {
     Generator random(5);
     for (int k = 0; k < 20000; ++k) {
@@ -341,8 +341,8 @@ TEST(RaisedCue, AMasse) {
     expect_close(after.w, {-33.9832332068009, 69.8418617914362, -91.8102076746507}, "w");
 }
 
-// Coriolis: all forces of the cloth act at the contact, so the velocity at which the ball rolls at last
-// depends neither on e_t, nor on mu_s, nor on the number of bounces.
+// Coriolis: all forces of the cloth act at the contact, so the final rolling velocity depends neither on e_t,
+// nor on mu_s, nor on the number of bounces.
 TEST(RaisedCue, CoriolisTheorem) {
     const StruckBall struck = strike(cue_of(0.567, 3.2, 45.0, 0.4, 0.1), {kR, kM}, true, Vertical::kKeep);
     const Vec2 want(2.13892308218161, 0.749564766943755);

@@ -35,7 +35,7 @@ bool same(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
     return true;
 }
 
-// What a model says that it reads is what changes its result.
+// A model's result changes with exactly the parameters that it says it reads.
 TEST(BallBall, ModelsReadWhatTheySay) {
     for (const BallBallModelInfo* model : kModels) {
         const BallBallModelInfo& info = *model;
@@ -99,8 +99,8 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
     }
 }
 
-// Momentum and angular momentum about the contact are kept,
-// energy falls, Coulomb's limit holds or the slip ends.
+// Momentum and angular momentum about the contact are conserved, energy falls, and either Coulomb's limit
+// holds or the slip ends.
 TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
     const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
         two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};
@@ -174,7 +174,7 @@ TEST(Unequal, HeadOnElastic) {
     const double v = record.state_at(0, std::nextafter(hit->time, 0.0)).velocity.y();
     EXPECT_NEAR(record.state_at(0, hit->time).velocity.y(), v * 0.4 / 0.6, 1e-14);
     EXPECT_NEAR(record.state_at(1, hit->time).velocity.y(), v * 1.0 / 0.6, 1e-14);
-    // Each rolls by its own radius afterwards.
+    // Each then rolls by its own radius.
     const BallState small = record.state_at(1, hit->time + 0.9);
     ASSERT_EQ(small.state, MotionState::kRolling);
     EXPECT_NEAR(small.spin.x() * 0.02, -small.velocity.y(), 1e-14);
@@ -199,15 +199,15 @@ TEST(Unequal, CushionAndCueTakeTheBallsOwn) {
 // Random scenes with a heavy, large ball among small ones: every law holds after every event.
 TEST(Unequal, RandomScenesKeepEveryLaw) {
     reference::Generator rng(6);
-    int hits = 0, held = 0;
+    int hits = 0;
     for (int i = 0; i < 300; ++i) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 1.6, 0.03);
-        scene.physics.clusters = ClusterModel::kSequential;
+        if (i % 3 == 0) scene.physics.clusters = ClusterModel::kSequential;
         scene.physics.ball_ball =
             i % 2 ? (i % 4 == 1 ? &kMathavan : ball_ball_model("inelastic")) : ball_ball_model("elastic");
-        const bool radii = i % 4 == 0;
-        if (radii) scene.balls.mu_b = 0.0;
+        const bool radii = i % 4 <= 1;
+        if (i % 4 == 0) scene.balls.mu_b = 0.0;
         scene.stop.events = 40;
         for (int k = 0; k < 4; ++k) {
             const BallSize own{radii || i % 2 == 0 ? rng.uniform(0.02, 0.045) : scene.balls.R,
@@ -218,19 +218,12 @@ TEST(Unequal, RandomScenesKeepEveryLaw) {
             scene.ball.back().own = own;
             scene.ball.back().position.z() = own.R;
         }
-        try {
-            hits += count(run_verified(scene), EventType::kBallBall);
-        } catch (const SimulationError& error) {
-            EXPECT_NE(std::string(error.what()).find("of different size"), std::string::npos) << error.what();
-            ++held;
-        }
+        hits += count(run_verified(scene), EventType::kBallBall);
     }
-    std::printf("%d impacts; %d of 300 runs came to a contact that is not modelled\n", hits, held);
     EXPECT_GT(hits, 250);
-    EXPECT_LE(held, 10);
 }
 
-// A size that is written out but is that of all balls changes nothing.
+// A size that is written out but equals that of all balls changes nothing.
 TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
     const std::string two = "[[ball]]\nvelocity = [0.1, 2]\n[[ball]]\nid = \"1\"\nposition = [0.64, 1.2]\n";
     const Scene plain = scene_of(two), written = scene_of(two + "radius = 0.028575\nmass = 0.170097\n");
@@ -238,7 +231,7 @@ TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
     EXPECT_EQ(simulate(plan_of(plain)).hash(), simulate(plan_of(written)).hash());
 }
 
-// [physics] march: the two forms are close to each other and each is the kernel's own.
+// [physics] march: the two forms are close to each other, and each is the kernel's.
 TEST(Substeps, AreSummedOrMarchedAsPublished) {
     const std::string two =
         "[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity = [0.3, 2]\n[[ball]]\nid = \"b\"\nposition = "
@@ -258,29 +251,28 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
         "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\n[[ball]]\nid = \"b\"\nradius = 0.03\n";
     const std::string heavy =
         "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\n[[ball]]\nid = \"b\"\nmass = 0.2\n";
+    const std::string third = "[[ball]]\nid = \"c\"\nposition = [0.9, 0.9]\n";
+    for (const std::string& two : {big, heavy}) {
+        EXPECT_EQ(error_of(two), "");
+        EXPECT_EQ(error_of(two + third), "");
+        EXPECT_EQ(error_of(two + "[physics]\nsubsteps = 1000\n"), "");
+        EXPECT_EQ(error_of(two + third + "[physics]\nball_ball = \"elastic\"\n"), "");
+        EXPECT_EQ(error_of(two + "[balls]\nmu_b = 0\n"), "");
+    }
+    EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
     EXPECT_EQ(
-        error_of(big),
+        error_of(big + "[physics]\nball_ball = \"inelastic\"\n"),
         "s.toml:4:1: balls \"a\" and \"b\" differ in size: friction between balls of different radius acts "
-        "on a tilted line of centres, for which this model has no formula; use physics.ball_ball = "
-        "\"two_step\" or set balls.mu_b = 0");
+        "on a tilted line of centres, for which the model inelastic has no formula; use physics.ball_ball = "
+        "\"mathavan\" or set balls.mu_b = 0");
     const auto refused = [](const std::string& why) {
         return "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan " + why +
-               "; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0";
+               "; use physics.ball_ball = \"two_step\"";
     };
-    EXPECT_EQ(error_of(heavy), "");
-    EXPECT_EQ(error_of(heavy + "[physics]\nsubsteps = 1000\n"),
-              refused("with substeps needs balls of equal mass"));
-    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.01\n"), refused("accepts mass ratios up to 10"));
-    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 0.1\nmu_s = 0.8\n"),
-              refused("accepts balls.mu_s up to 0.75 with these masses"));
-    EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
-    EXPECT_EQ(error_of(heavy + "[balls]\nmu_b = 0\n"), "");
-    EXPECT_EQ(error_of(big + "[balls]\nmu_b = 0\n"), "");
-    EXPECT_EQ(error_of(big + "[physics]\nball_ball = \"elastic\"\n"), "");
+    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 1e-7\n"), refused("accepts mass ratios up to 1000000"));
     EXPECT_EQ(
-        error_of(heavy + "[[ball]]\nid = \"c\"\nposition = [0.9, 0.9]\n[physics]\nball_ball = \"elastic\"\n"),
-        "s.toml:4:1: balls \"a\" and \"b\" differ in size: clusters = \"compliant\" needs balls of equal "
-        "size; set physics.clusters = \"sequential\"");
+        error_of(big + "[balls]\nmu_s = 1\nmu_b = 1\n"),
+        refused("has no solution with balls.mu_s = 1 and a friction of 1 between balls of these sizes"));
     // The overlap is that of two spheres on one cloth.
     const std::string near =
         "[balls]\nmu_b = 0\n[[ball]]\nposition = [0.3, 0.5]\nradius = 0.04\n[[ball]]\nid = \"b\"\n"

@@ -1,5 +1,5 @@
-// Batches: the same bits as shot by shot, whatever the number
-// of threads; what fails is a status; keys of numbers.
+// Batches: the same bits as shot by shot, whatever the number of threads; failures are statuses; keys of
+// numbers.
 #include "carom/engine/batch.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST(Batch, HasTheBitsOfSingleShots) {
     }
 }
 
-// Positions that overlap or lie in a cushion, values out of their ranges, speeds of a struck ball.
+// Positions that overlap or are in a cushion, values out of range, speeds of a struck ball.
 TEST(Batch, WhatIsInvalidIsAStatus) {
     SplitMix64 random(4);
     const Scene scene = scene_of("side_bank");
@@ -256,17 +256,14 @@ TEST(Batch, ARefusedEffectIsAStatusWithItsReason) {
 }
 
 TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
-    // Balls of different mass that come to rest against each other have no model.
+    // A ball that comes down exactly on another one balances for ever.
     Scene scene = empty_scene();
-    scene.physics.clusters = ClusterModel::kSequential;
-    scene.balls.mu_b = scene.balls.mu_b_more = 0.0;
-    scene.balls.e_b = 0.0;
-    add_ball(scene, "a", 0.0, 0.0, 0.5, 0.0);
-    add_ball(scene, "b", 0.2, 0.0);
-    scene.ball[1].own = BallSize{scene.balls.R, 2.0 * scene.balls.m};
+    add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R + 0.1));
+    scene.ball[0].height = 0.1;
+    add_ball(scene, "b", 0.0, 0.0);
     Columns columns(3);
-    columns.keys = {"ball.a.velocity.x"};
-    columns.values = {{-0.5, 0.5, -0.4}};
+    columns.keys = {"ball.a.position.x"};
+    columns.values = {{-0.5, 0.0, -0.4}};
     const Batch batch = columns.play(scene, 2);
     EXPECT_EQ(batch.status[0], ShotStatus::kAtRest);
     EXPECT_EQ(batch.status[2], ShotStatus::kAtRest);
@@ -275,7 +272,6 @@ TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
     EXPECT_EQ(batch.messages[0].shot, 1u);
     EXPECT_NE(batch.messages[0].text.find("simulation stopped at t = "), std::string::npos);
     // Played by itself, it also has the record up to there.
-    scene.ball[0].velocity.x() = 0.5;
     try {
         simulate(make_plan(scene, kIsa));
         ADD_FAILURE() << "the run went on";
@@ -310,7 +306,7 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
         EXPECT_EQ(xy[2 * i], whole.x[i]);
         EXPECT_EQ(xy[2 * i + 1], whole.y[i]);
     }
-    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which is none
+    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which has no result
     EXPECT_EQ(pocket, whole.pocket);
     EXPECT_EQ(hash, whole.hash);
     ASSERT_EQ(messages.size(), 1u);
@@ -380,8 +376,8 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
-// A judge sees the record of every shot that has a result, with
-// and without all balls, and what it throws ends the batch.
+// A judge sees the record of every shot that has a result, with and without all balls; its exceptions end the
+// batch.
 TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     SplitMix64 random(17);
     const Scene scene = scene_of("side_bank");
@@ -453,7 +449,7 @@ TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
 
 TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
     const std::string text = read_source("scenes/draw.toml");
-    // Of the second, not every value is a number of the scene.
+    // In the second, one value is not a number of the scene.
     for (const std::vector<std::string>& rules :
          {std::vector<std::string>{"cue.aim_deg=normal(2)", "cue.speed=uniform(-0.1,4)"},
           std::vector<std::string>{"cue.aim_deg=normal(2)",
@@ -590,7 +586,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
             simulate(plan, buffers, of_record, kept, options);
             EXPECT_EQ(of_record, outcome);
             EXPECT_EQ(kept, want);
-            // Nor do the orientations of the shot before stay.
+            // Nor do the orientations of the previous shot remain.
             EXPECT_EQ(kept.orientation_at(0, 1.0).coeffs(), want.orientation_at(0, 1.0).coeffs());
             EXPECT_EQ(fmt::format("{:016x}", outcome.hash), want.hash());
             EXPECT_EQ(outcome.clusters, static_cast<int>(want.clusters.size()));
@@ -602,7 +598,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
     }
 }
 
-// A plan that is made again decides as one made anew.
+// A plan that is remade decides like a new one.
 TEST(Planner, DecidesAsMakePlan) {
     SplitMix64 random(8);
     Scene scene = scene_of("side_bank");

@@ -1,5 +1,5 @@
 // Clusters with a ball in the air, or of a model in which balls leave the cloth: the map in space against an
-// integration of its own (support/moving_contacts.h), and whole scenes.
+// independent integration (support/moving_contacts.h), and whole scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,8 +64,9 @@ Vec3 momentum(const std::vector<ClusterBall>& balls) {
     return sum;
 }
 
-/// Largest difference [V] of a velocity between the map and the integration, at the instant without contacts
-/// at which they agree best: a slow contact that comes some 2 L/V after the others may be decided either way.
+/// Largest difference [V] of a velocity between the map and the integration, at the contact-free instant at
+/// which they agree best: whether a slow contact some 2 L/V after the others counts may be decided either
+/// way.
 double error_of(std::vector<ClusterBall> balls, const MovingLaw& law, double V) {
     std::vector<MovingBall> start;
     for (const ClusterBall& b : balls)
@@ -161,8 +162,8 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
     }
 }
 
-// Where all is level and nothing presses on the cloth, the map in space is the one in the plane: both turn
-// the normals, one by the places and one by a law of their own.
+// If everything is level and nothing presses on the cloth, the map in space equals the one in the plane: both
+// turn the normals, one by positions and one by its own law.
 TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     Generator rng(83);
     double worst = 0.0;
@@ -188,8 +189,7 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     EXPECT_LT(worst, 1e-5);
 }
 
-// Two balls that move on together close at the rounding of
-// their speeds, which has no end: nothing waits for it.
+// Two balls moving together close at the rounding of their speeds, without end: nothing waits for them.
 TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
     const double V = 2.0, D = 2.0 * kPoolR;
     std::vector<ClusterBall> balls{ball(0, {0.0, -D, kPoolR}, {0.0, V, 0.0}), ball(1, {0.0, 0.0, kPoolR}),
@@ -206,7 +206,7 @@ TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
     EXPECT_NEAR(balls[3].v.x(), 0.2 * V, 1e-15 * V);
 }
 
-// As rigid bodies: the ball that comes down goes up again, and nothing goes through the cloth.
+// As rigid bodies: the ball that comes down goes up again, and nothing passes through the cloth.
 TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
     const double root3 = std::sqrt(3.0), height = std::sqrt(8.0 / 3.0) * kPoolR;
     for (const double e : {0.0, 0.5, 1.0}) {
@@ -216,7 +216,7 @@ TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
                                        ball(3, {0.0, 0.0, kPoolR + height}, {0.0, 0.0, -2.0})};
         const double before = energy(balls);
         ClusterMap map;
-        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), e, kPoolR), 0);
+        EXPECT_GT(map.rigid(balls, contacts_of(balls, 1e-6), {.R = kPoolR, .e_b = e}), 0);
         EXPECT_LE(energy(balls), before * (1.0 + 1e-12));
         EXPECT_NEAR(length(planar(momentum(balls))), 0.0, 1e-12);
         for (int b = 0; b < 3; ++b) EXPECT_GE(balls[b].v.z(), -1e-12);
@@ -260,7 +260,7 @@ TEST(ClusterInSpace, ADroppedBallPushesAllThreeApart) {
     EXPECT_EQ(count(run_verified(on_three("clusters = \"sequential\"\n")), EventType::kBallCluster), 0);
 }
 
-// A third ball that flies by makes it a cluster in space, though the two that meet lie on the cloth.
+// A third ball flying by makes it a cluster in space, although the two that meet are on the cloth.
 TEST(ClusterInSpace, TheThirdBallMayFly) {
     Scene scene = empty_scene();
     add_ball(scene, "one", Vec3(0.0, 0.0, kPoolR), Vec3(0.0, 2.0, 0.0));
@@ -277,8 +277,8 @@ TEST(ClusterInSpace, TheThirdBallMayFly) {
     EXPECT_EQ(record.clusters.front().size(), 3u);
 }
 
-// 8 m/s along a ball at rest, 0.2 m/s towards it, and a third ball that flies within reach: the contact opens
-// in the map as the two pass each other. The same cluster came again 10 000 times.
+// 8 m/s along a ball at rest, 0.2 m/s towards it, and a third ball flying within reach: the contact opens in
+// the map as the two pass each other. The same cluster was repeated 10 000 times.
 TEST(ClusterInSpace, AGlancingContactOpensWhereTheBallsStay) {
     const Scene scene = parse_scene(
         "[[ball]]\nposition = [0.240011, 1.994503]\nheight = 0.0001\n"

@@ -1,6 +1,6 @@
-// Clusters whose balls move during the contact: against an integration of their own
-// (support/moving_contacts.h), and continuous in the place of a third ball, where an impact stops to be a
-// cluster, too.
+// Clusters whose balls move during the contact: against an independent integration
+// (support/moving_contacts.h), and continuous in the position of a third ball, including where an impact
+// stops being a cluster.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using namespace test;
 
 constexpr double kBallR = 0.028575;  // [m] of pool balls
 
-/// The state in which a ball comes into an event at `time`, or in which it goes on.
+/// The state in which a ball enters an event at `time`, or in which it leaves it.
 MovingBall state(const Record& record, int ball, double time, bool after) {
     const std::vector<Segment>& list = record.tracks[ball].segments;
     std::size_t k = 0;
@@ -49,9 +49,9 @@ double difference(const MovingBall& a, const MovingBall& b) {
     return std::hypot(a.v[0] - b.v[0], a.v[1] - b.v[1]);
 }
 
-/// Largest difference of a velocity after the first cluster of a break, in units of the speed of the cue
-/// ball. Whether a slow contact that comes some 2 L/V after the others still belongs to a cluster may be
-/// decided either way; so the integration counts at that instant without contacts at which it agrees best.
+/// Largest difference of a velocity after the first cluster of a break, in units of the cue ball's speed.
+/// Whether a slow contact some 2 L/V after the others belongs to the cluster may be decided either way, so
+/// the integration is taken at the contact-free instant at which it agrees best.
 double first_cluster_error(double gap, double speed, double aim_deg) {
     const Scene scene =
         parse_scene("[rack]\ngame = \"eight_ball\"\ngap = " + std::to_string(gap) +
@@ -124,7 +124,7 @@ Record play(const Three& three) {
 struct Outcome3 {
     std::array<double, 9> motion;
     std::vector<EventType> impacts;
-    bool whole;  // no impact near the end of what is run, where it would come or not
+    bool whole;  // no impact near the end of the run, where it might or might not happen
 };
 
 Outcome3 outcome(const Three& three) {
@@ -153,7 +153,7 @@ double difference(const Outcome3& a, const Outcome3& b) {
     return most;
 }
 
-// A third ball that nearly touches: from the touch to a gap where the impacts come one after the other.
+// A third ball that nearly touches: from touching to a gap at which the impacts follow one another.
 TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
     struct Case {
         double angle, gap, error;
@@ -233,8 +233,8 @@ double largest_jump(Three from, const Three& to, int parts) {
     return most;
 }
 
-// Where a third ball gets out of reach, and where its contact becomes an impact of its own, one formula takes
-// over from another. What is left is the step of the one and the regularisation of its friction.
+// Where a third ball gets out of reach, and where its contact becomes a separate impact, one formula takes
+// over from another. What remains is the step of the one and the regularisation of its friction.
 TEST(MovingCluster, NothingJumpsInTheGapAndTheAngle) {
     for (const double mu_b : {0.0, 0.05}) {
         double worst = 0.0;

@@ -1,5 +1,5 @@
-// Which balls take part in an impact: the boxes find whom a plain look at all balls finds, in whatever order,
-// and an impact among thousands looks at no more balls than one among a hundred.
+// Which balls take part in an impact: the boxes find the same balls as a plain search of all, in whatever
+// order, and an impact among thousands examines no more balls than one among a hundred.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -16,8 +16,7 @@ namespace {
 
 using namespace test;
 
-/// A crowd: n balls (n a square) with gaps of about a third
-/// of a radius, fast ones, slow ones and resting ones.
+/// A crowd: n balls (n a square) with gaps of about a third of a radius, some fast, some slow, some at rest.
 Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
     Scene scene = friction ? empty_scene() : frictionless();
     scene.stop.events = events;
@@ -39,12 +38,12 @@ Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
     return scene;
 }
 
-/// A ball as it comes into an event.
+/// A ball as it enters an event.
 struct Comer {
     Vec2 r, v;
 };
 
-/// The rule of the cluster model as docs/reference/physics.md has it, told by looking at every ball.
+/// The rule of the cluster model as in docs/reference/physics.md, applied by examining every ball.
 class FullScan {
   public:
     FullScan(const Record& record, double R) : R_(R), now_(record.tracks.size()), tracks_(record.tracks) {}
@@ -111,7 +110,7 @@ TEST(ClusterSearch, FindsWhomAFullScanFinds) {
         for (const int n : {25, 400, 3969}) {
             const Scene scene = crowd(n, 2000, 17, friction);
             Plan plan = plan_of(scene);
-            plan.box_travel = 0.1;  // boxes that say next to nothing of where a ball is going
+            plan.box_travel = 0.1;  // boxes that say next to nothing about where a ball is going
             const Record record = simulate(plan);
             FullScan scan(record, scene.balls.R);
             std::size_t pairs = 0, clusters = 0;
@@ -119,7 +118,7 @@ TEST(ClusterSearch, FindsWhomAFullScanFinds) {
                 const Event& e = record.events[k];
                 const bool cluster = e.type == EventType::kBallCluster;
                 if (!cluster && e.type != EventType::kBallBall) continue;
-                // The record does not tell what came first at one instant.
+                // The record does not say what came first at one instant.
                 if (k > 0 && record.events[k - 1].time == e.time) continue;
                 scan.go_to(e.time);
                 std::vector<int> took_part{std::min(e.a, e.b), std::max(e.a, e.b)};
@@ -172,7 +171,7 @@ TEST(ClusterSearch, TheOrderOfTheBallsDoesNotMatter) {
     }
 }
 
-// Balls that are alike may have their size from [balls] or each from itself.
+// Equal balls may have their size from [balls] or each from its own.
 TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
     Scene scene = empty_scene();
     const BallSize large{0.035, 0.2};
@@ -190,7 +189,7 @@ TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
     EXPECT_EQ(other.hash(), one.hash());
 }
 
-/// Balls that an impact looks at beside its own two, on average.
+/// Balls that an impact examines besides its own two, on average.
 double looks_per_impact(const Scene& scene) {
     const Plan plan = plan_of(scene);
     const SimulateOptions options;

@@ -68,8 +68,8 @@ Result run(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
     return {balls, energy(balls) / before, steps};
 }
 
-// The limit of a slow impact, whose balls do not move during the contact: normals stay. The power of 2
-// changes no bit but those of the turning, which is 1e-10.
+// The limit of a slow impact, whose balls do not move during the contact, so the normals stay. The power of 2
+// changes only the bits of the turning, which is 1e-10.
 Result run_slow(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
     constexpr double kSlow = 0x1p-30;
     for (ClusterBall& b : balls) b.v *= kSlow, b.w *= kSlow;
@@ -163,8 +163,8 @@ TEST(Cluster, SlowPairFirst) {
     EXPECT_LE(fast.steps, 310) << "of a touching rack";
 }
 
-// Large friction is stiff where it sticks: there steps have six or eight stages
-// and reach further. Of four stages these racks took 483, 1233 and 2747.
+// Large friction is stiff while it sticks: there, steps have six or eight stages and reach further. With four
+// stages these racks took 483, 1233 and 2747.
 TEST(Cluster, LargeFriction) {
     const double mu_b[] = {0.2, 0.4, 0.8};
     const long most[] = {365, 600, 970};
@@ -200,7 +200,7 @@ TEST(Cluster, ThreeBalls) {  // H2
         // Rigid: the same by symmetry, momentum and restitution, to rounding.
         ClusterMap map;
         std::vector<ClusterBall> rigid = balls;
-        map.rigid(rigid, contacts_of(rigid), e[k], kR);
+        map.rigid(rigid, contacts_of(rigid), settings(0.0, 0.0, e[k]));
         EXPECT_NEAR(rigid[0].v.y(), 1.0 - 0.6 * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[2].v.norm(), 0.2 * std::sqrt(3.0) * (1.0 + e[k]), 1e-12) << e[k];
         EXPECT_NEAR(rigid[1].v.x(), -rigid[2].v.x(), 1e-12) << e[k];
@@ -370,8 +370,7 @@ TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
 }
 
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {
-    // Scene files refuse speeds below 1e-60 m/s; balls may
-    // come to have them. Below 1e-100 m/s they are at rest.
+    // Scene files refuse speeds below 1e-60 m/s, but balls may reach them. Below 1e-100 m/s they are at rest.
     for (const double speed : {1e-60, 5e-77, 1e-80, 1e-100, 1e-150}) {
         Scene scene = parse_scene(
             "[[ball]]\n[[ball]]\nid = \"b1\"\nposition = [0.15715, 0.5]\n"

@@ -86,8 +86,8 @@ TEST(Cushion, ReferenceVectorsOfStronge) {
     EXPECT_EQ(worst.checked, 40);
 }
 
-// Where f_c > tan(theta) the reference lets the cloth pull
-// (its load is not clamped): those cases say nothing.
+// If f_c > tan(theta), the reference lets the cloth pull (its load is not clamped), so those cases mean
+// nothing.
 TEST(Cushion, ReferenceVectorsOfMathavan2010) {
     const Worst worst =
         compare(cushion_model("mathavan_2010"), "mathavan_2010_fine", [](const CushionContact& p) {
@@ -155,8 +155,8 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
             SCOPED_TRACE(std::string(name(model)) + " " + std::to_string(i));
             ASSERT_TRUE(v.allFinite() && w.allFinite());
             EXPECT_LE(energy(x.contact, v, w), energy(x.contact, x.v, x.w) * (1.0 + 1e-13));
-            // Han's restitution along the inclined normal does not see what strong topspin adds; the ball may
-            // keep some of its way.
+            // Han's restitution along the inclined normal does not include what strong topspin adds; the ball
+            // may keep moving into the cushion a little.
             EXPECT_GE(v.x(), model == &kHan2005 ? -0.1 * x.v.norm() : 0.0);
             EXPECT_EQ(v.z(), 0.0);
             // Mirror in x: a polar vector turns its y, an axial one its x and z.
@@ -168,7 +168,7 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
     }
 }
 
-// All velocities twice as large, twice as large afterwards: no model has a speed of its own.
+// Doubling all velocities doubles them afterwards: no model has a speed scale.
 TEST(Cushion, EveryModelIsHomogeneous) {
     reference::Generator rng(8);
     for (int i = 0; i < 400; ++i) {
@@ -183,7 +183,7 @@ TEST(Cushion, EveryModelIsHomogeneous) {
     }
 }
 
-// One row a model, and a scene file may ask for each.
+// One row per model, and a scene file may select each.
 TEST(Cushion, TheTableHasEveryModelOnce) {
     EXPECT_GE(kCushionModels.size(), 5u);
     for (const CushionModelInfo* model : kCushionModels) {
@@ -275,8 +275,8 @@ TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
     }
 }
 
-// Signs that every model with friction owes (tests/README.md): running side widens the rebound,
-// check side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
+// Signs that every model with friction must have (tests/README.md): running side widens the rebound, check
+// side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
 TEST(Cushion, RunningAndCheckSide) {
     for (const CushionModelInfo* model : kCushionModels) {
         if (!model->reads_friction) continue;
@@ -375,7 +375,7 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
     EXPECT_LE(off.back(), 5e-5);
 }
 
-// Any scene that the reader lets pass: the model ends, or says that it did not (then it changes nothing).
+// For any scene that the reader accepts, the model ends or says that it did not (and then changes nothing).
 TEST(Cushion, Mathavan2010EndsOrSaysSo) {
     reference::Generator rng(13);
     int solved = 0, refused = 0;

@@ -1,4 +1,4 @@
-// The detector alone: no impact is resolved, no shot simulated. Where balls are is set by hand.
+// The detector alone: no impact is resolved, no shot simulated. Positions of balls are set by hand.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -79,7 +79,7 @@ TEST(Detector, FindsTheContactOfTwoBalls) {
     const Candidate next = parts.detector.next();
     EXPECT_NEAR(next.time, (1.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
     EXPECT_EQ(next.contact, (Contact{0, With::kBall, 1}));
-    // Asked again without an event, it says the same.
+    // Asked again without an event, it gives the same answer.
     EXPECT_EQ(parts.detector.next().time, next.time);
 }
 
@@ -172,7 +172,7 @@ TEST(Detector, AgreesWithEveryPairTakenByHand) {
             ASSERT_EQ(next.time, expected.time) << "seed " << seed;
             if (next.time == kNever) continue;
             ++moving;
-            // At equal times the detector has an order of its own (OrderAtOneInstant).
+            // At equal times the detector has its own order (OrderAtOneInstant).
             ties += !(next.contact == expected.contact);
         }
     }

@@ -1,9 +1,9 @@
-// What each effect costs, and profiling: a bare scene, and the same with one thing added. For
+// The cost of each effect, and of profiling: a bare scene, and the same with one thing added. For
 // lab/measure/effects_cost and the callgrind test.
 //
-//   effects_probe list           names of the cases, with the effect's own functions and how the case differs
-//   effects_probe run CASE N     N runs of one case; prints the events of one run
-//   effects_probe time CASE      nanoseconds per event, the smallest of many runs
+//   effects_probe list names of the cases, with the effect's own functions and how the case differs
+//   effects_probe run CASE N N runs of one case; prints the events of one run
+//   effects_probe time CASE nanoseconds per event, the smallest of many runs
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -51,7 +51,7 @@ Scene bare() {
 
 struct Case {
     const char* name;       // of the effect
-    const char* functions;  // its own, as callgrind names them; separated by blanks
+    const char* functions;  // its functions, as callgrind names them; separated by spaces
     const char* what;       // for the table
     void (*add)(Scene&);
     bool profile = false;

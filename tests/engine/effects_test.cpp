@@ -1,5 +1,5 @@
-// Only what a scene calls for: decisions, refusals, late
-// need, and proofs that a skipped effect changes no bit.
+// Only the effects a scene needs: decisions, refusals, late need, and proofs that a skipped effect changes no
+// bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -148,7 +148,7 @@ const Zero kZeros[] = {
      }},
 };
 
-// Skipped, and forced on with nothing to do: the same record, bit for bit.
+// Skipped, or forced on with nothing to do: the same record, bit for bit.
 TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
     for (const Zero& zero : kZeros) {
         reference::Generator rng(20261121);
@@ -174,7 +174,7 @@ TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
     }
 }
 
-// Everything forced on, in scenes that need only some of it: the plan leaves out nothing that shows.
+// Everything forced on, in scenes that need only some of it: the plan skips nothing that matters.
 TEST(Effects, PlanAndEverythingOnGiveTheSameRecord) {
     reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
@@ -224,7 +224,7 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     EXPECT_EQ(decision(alone, "cushions").reason,
               "none within reach: ball cue, the only one that moves, goes no farther than 0.459 m");
     EXPECT_EQ(verify(simulate(alone), alone), std::nullopt);
-    // With another ball in its way nothing bounds the shot; beyond its reach it changes nothing.
+    // With another ball in its path nothing bounds the shot; beyond its reach that ball changes nothing.
     const std::string other = "[[ball]]\nid = \"1\"\nposition = [0.635, ";
     const Plan hit = plan_of_text(slow + other + "1.6]\n");
     EXPECT_TRUE(hit.pairs);
@@ -239,7 +239,7 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     EXPECT_TRUE(plan_of_text("[[ball]]\nposition = [0.6, 0.6]\n").geometry.pockets.empty());
 }
 
-// Scenes near the bound of their reach: what is skipped is never met.
+// Scenes near the limit of their reach: what is skipped is never met.
 TEST(Effects, ReachIsNeverTooShort) {
     reference::Generator rng(99);
     int skipped = 0, met = 0;
@@ -307,8 +307,8 @@ TEST(Effects, LateNeedIsCaught) {
               std::string::npos);
 }
 
-// Two balls that move and cannot meet within the time: each goes on along
-// its own segments. The first one of b would lead through a, if it lasted.
+// Two balls that move and cannot meet in time: each continues along its own segments. The first segment of b
+// would lead through a, if it lasted.
 TEST(Effects, VerifyKnowsThatSegmentsEnd) {
     Scene scene = empty_scene();
     scene.table = {};

@@ -48,7 +48,7 @@ TEST(EventDetails, AHalfBallHitHasItsCutAngleSpeedAndImpulse) {
         EXPECT_NEAR(d.impulse, scene.balls.m * speed * std::cos(cut), 1e-12);
         EXPECT_NEAR(d.lost, 0.0, 1e-13);
         EXPECT_TRUE(std::isnan(d.diamond));
-        // The point of contact lies in the middle of equal balls, on the line of centres.
+        // The point of contact is in the middle of equal balls, on the line of centres.
         const Vec3 middle = 0.5 * (d.balls[0].after.position + d.balls[1].after.position);
         EXPECT_LT((d.point - middle).norm(), 1e-12);
         EXPECT_NEAR(d.normal.x(), -std::cos(cut), 1e-9);

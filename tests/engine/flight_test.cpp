@@ -43,7 +43,7 @@ TEST(Flight, TimesOfTheReference) {
     EXPECT_EQ(over, kNever) << "a hop over the ball";
 }
 
-/// The first of 4000 looks at which the gap is below 0, or kNever.
+/// The first of 4000 samples at which the gap is below 0, or kNever.
 double sampled(const std::function<double(double)>& gap, double horizon) {
     constexpr int kLooks = 4000;
     for (int k = 1; k <= kLooks; ++k) {
@@ -61,7 +61,7 @@ struct Found {
         if (t < kNever) {
             ++contacts;
             worst = std::max(worst, std::abs(gap(t)));
-            // Nothing is deep before the contact, and it goes on inwards after it.
+            // Nothing is deep before the contact, and the motion continues inwards after it.
             if (seen < t) ++missed;
             if (!(gap(t + 1e-7) < gap(t))) ++false_ones;
         } else if (seen < kNever) {
@@ -104,7 +104,7 @@ TEST(Flight, RandomFlightsAgainstSampling) {
         const Vec3 to = from + Vec3(0.0, 0.3, 0.0);
         if (to_line(0.0) > 0.0 && length3(r - from) > reach && length3(r - to) > reach) {
             const double t = flight_to_line(f, from, {0.0, 1.0}, 0.3, reach);
-            // The ends are points of their own: a path that comes in over one of them is theirs.
+            // The ends are separate points: a path that comes in over one of them meets that end.
             const double end1 = flight_to_circle(f, from, 0.0, reach),
                          end2 = flight_to_circle(f, to, 0.0, reach);
             const double end = std::min(end1, end2);

@@ -59,7 +59,7 @@ TEST(HardContacts, HeadOnBreakOnTheAxis) {
     }
 }
 
-// H1: the mirror image of an off-axis break is the mirror image of its result. To rounding: a ball on the
+// H1: the mirror image of an off-axis break gives the mirror image of its result, to rounding: a ball on the
 // axis of the rack adds the forces of its two sides one after the other.
 TEST(HardContacts, MirroredBreak) {
     for (const double gap : {0.0, 1e-4}) {

@@ -1,4 +1,4 @@
-// Cushions at the edge of what a scene may say: extreme spins, and noses that a ball does not leave at once.
+// Cushions at the limits of scenes: extreme spins, and noses that a ball does not leave at once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ double deepest(const Record& record, const Plan& plan) {
     return depth;
 }
 
-// A ball an ulp from a cushion, which its spin drives into it:
-// the touch is slower than the rounding of its surface's speed.
+// A ball an ulp from a cushion, driven into it by its spin: the touch is slower than the rounding of its
+// surface speed.
 TEST(ExtremeSpin, DrivesNoBallThroughACushion) {
     Scene scene = empty_scene();
     scene.table.cushions = {{"c", {-1.0, 0.0}, {1.0, 0.0}, 0.036576}};
@@ -105,8 +105,8 @@ Scene high_nose(double height, double e_c, double f_c) {
     return scene;
 }
 
-// han_2005 leaves a ball that still closes where e_c < 1 / c^2
-// - 1. It was met again at the same instant, 2 to 15 times.
+// If e_c < 1 / c^2 - 1, han_2005 leaves a ball that still closes. It was hit again at the same instant, 2 to
+// 15 times.
 TEST(HighNose, IsOneEvent) {
     for (const double height : {1.28, 1.45, 1.55, 1.6, 1.8, 1.99}) {
         for (const double e_c : {0.0, 0.05, 0.25, 0.5}) {
@@ -138,7 +138,7 @@ Table corner() {
     return table;
 }
 
-// A ball straight into two jaws comes straight back; it went off at 33 degrees.
+// A ball straight into two jaws comes straight back; once it left at 33 degrees.
 TEST(TwoAtOnce, BetweenTwoJawsAndBackOnTheAxis) {
     Scene scene = empty_scene();
     scene.table = two_jaws(0.05, 0.03);
@@ -166,8 +166,8 @@ TEST(TwoAtOnce, IntoACornerAndBackOnTheDiagonal) {
     }
 }
 
-// Without friction each of two walls at right angles turns
-// its own share of the velocity round, as if it were alone.
+// Without friction, each of two walls at right angles reverses its own component of the velocity, as if it
+// were alone.
 TEST(TwoAtOnce, RightAnglesDoNotDisturbEachOther) {
     Scene scene = frictionless();
     scene.balls.e_c = 0.8;
@@ -210,7 +210,7 @@ Scene frozen_between_jaws(reference::Generator& random) {
     add_ball(scene, "frozen", 0.0, y);
     const double from = random.uniform(-1.2, 1.2), away = 2.0 * R + random.uniform(0.0, 0.2),
                  speed = random.uniform(0.5, 6.0);
-    // Each in a statement of its own: in which order a call's arguments are drawn is the compiler's choice.
+    // Each in a separate statement: the compiler chooses the order in which a call's arguments are drawn.
     const double aside = random.uniform(-0.1, 0.1);
     Vec3 spin;
     for (int k = 0; k < 3; ++k) spin[k] = random.uniform(-80.0, 80.0);

@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-// H32: 1e6 events of 16 elastic disks: energy and distances
-// stay. In ten parts, each from where the last one stopped.
+// H32: 1e6 events of 16 elastic discs: energy and distances are conserved. In ten parts, each from where the
+// last one stopped.
 TEST(HardLong, AMillionEvents) {
     Scene scene = frictionless();
     scene.table = box(1.0, 2.0, 0.036576);

@@ -78,7 +78,7 @@ TEST(HardRoots, CatchUp) {
     }
 }
 
-// H12: powers of two in length and time change no bit but the exponent.
+// H12: powers of two in length and time change only exponents.
 TEST(HardRoots, ScalesBitwise) {
     const auto scaled = [](double L, double T) {
         Scene scene = empty_scene();
@@ -198,7 +198,7 @@ TEST(HardRoots, SlowTouch) {
     const double t = time_to_ball(a, b, 2.0 * R);
     EXPECT_GT(t, 1e-4);
     EXPECT_LT(t, 1e-3);
-    // It opens where they go the other way.
+    // It opens if they point the other way.
     Path from = b;
     from.a = -3.0 * a.a;
     EXPECT_EQ(time_to_ball(Path{a.r, a.v, -a.a, a.horizon, true, true, a.surface}, from, 2.0 * R), kNever);

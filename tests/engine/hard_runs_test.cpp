@@ -47,7 +47,7 @@ Scene centred_break(ClusterModel clusters = ClusterModel::kCompliant) {
     return scene;
 }
 
-// H33: the shot's place in the caller's time enters no computation.
+// H33: the shot's time in the caller's clock enters no computation.
 TEST(HardRuns, TimeFarFromZero) {
     const Plan plan = plan_of(centred_break());
     SimulateOptions late;
@@ -108,7 +108,7 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
     }
 }
 
-// H35: frictionless and elastic, turned round: back to the start.
+// H35: frictionless and elastic, reversed: back to the start.
 TEST(HardRuns, TimeReversal) {
     for (const int events : {10, 30, 50}) {
         Scene scene = frictionless();
@@ -174,7 +174,7 @@ TEST(HardRuns, PermutedIdsBitwise) {
     }
 }
 
-// H39: stopped, written, read and taken up again: the same bits; also in the middle of resting contacts.
+// H39: stopped, written, read and continued: the same bits, even in the middle of resting contacts.
 TEST(HardRuns, Restart) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential})
@@ -241,8 +241,8 @@ TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     }
 }
 
-// Without friction, runs come to times at which a place has
-// no digits left: balls were then in cushions, or past them.
+// Without friction, runs reach times at which a position has no digits left: balls were then in cushions, or
+// past them.
 TEST(HardRuns, EndWhereTheDigitsEnd) {
     const auto cushion = [](const char* from, const char* to, const char* height) {
         return std::string("[[table.cushion]]\nfrom = ") + from + "\nto = " + to + "\nheight = " + height +
@@ -250,7 +250,7 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
     };
     const char *corner = "[1.2824842797119858, 0.9884300685668194]", *low = "0.001", *high = "0.040005";
     const std::string scenes[] = {
-        // a fast ball with much spin in a wedge, left over with 1e-12 m/s
+        // a fast ball with much spin in a wedge, left with 1e-12 m/s
         cushion("[1.6, 1.4]", "[0.0, 1.9]", low) + cushion("[0.46, -0.35]", "[1.6, 1.4]", low) +
             "[balls]\nmu_s = 0.0\nf_c = 0.0\n[[ball]]\nvelocity = [197.9, 29.0, 0.0]\n"
             "spin = [-9872.7, -88722.9, 66775.8]\n",

@@ -1,5 +1,5 @@
-// Jams that a scan of crowded scenes found (support/crowded_scenes.h,
-// lab/notes/2026-11-jams.md): they end, and keep the laws.
+// Jams found by a scan of crowded scenes (support/crowded_scenes.h, lab/notes/2026-11-jams.md): they end, and
+// keep the laws.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace {
 
 using namespace test;
 
-// A shot into a touching pack: a cluster parted what three contacts
-// had held, and they were held again, 700 times at one instant.
+// A shot into a touching pack: a cluster separated what three contacts had held, and they were held again,
+// 700 times at one instant.
 TEST(Jams, ClustersThatRepeatEnd) {
     for (const std::uint64_t seed : {7328u, 15806u})
         settles_within(*family_scene("touching_pack", seed), 10000);
@@ -53,8 +53,8 @@ TEST(Jams, TraysAndZigzagsComeToRest) {
     settles_within(*family_scene("zigzag", 61), 30000);
 }
 
-// Two balls between two walls keep any impulse of the step that friction has left without a solution: it
-// loaded the cloth 2000 times, and each interval of 1e-5 s began with it again.
+// Two balls between two walls keep any impulse of the step that friction left without a solution: it loaded
+// the cloth 2000 times, and each interval of 1e-5 s began with it again.
 TEST(Jams, NoImpulseIsLeftBetweenTwoWalls) {
     settles_within(*family_scene("row_between_walls", 82), 2000);
 }
@@ -67,8 +67,8 @@ TEST(Jams, BallsAtRestAreStruck) {
     EXPECT_EQ(what_breaks(*family_scene("tray", 113)), "");
 }
 
-// Racks and trays that jam: closing speeds had no solution, so that balls went into each other or a cushion
-// by up to 1.4e-7 m, and steps without friction let the energy rise.
+// Racks and trays that jam: closing speeds had no solution, so balls went into each other or a cushion by up
+// to 1.4e-7 m, and steps without friction let the energy rise.
 TEST(Jams, JamsHaveASolution) {
     for (const std::uint64_t seed : {27u, 42u, 128u, 227u})
         EXPECT_EQ(what_breaks(*family_scene("rack_in_box/wide", seed)), "") << seed;
@@ -77,14 +77,14 @@ TEST(Jams, JamsHaveASolution) {
     EXPECT_EQ(what_breaks(*family_scene("tray/extreme", 130)), "");
 }
 
-// Friction whose direction is that of the middle of the interval drove on
-// a ball whose slip had turned round: the energy rose to the sixfold.
+// Friction in the direction of the middle of the interval drove on a ball whose slip had reversed: the energy
+// rose sixfold.
 TEST(Jams, GuidedFrictionDrivesNothing) {
     EXPECT_EQ(what_breaks(*family_scene("rings/extreme", 37)), "");
 }
 
-// An impact ended the only contact of a ball that it did not
-// strike: that ball must not go on as if it were pushed.
+// An impact ended the only contact of a ball that it did not strike: that ball must not continue as if it
+// were pushed.
 TEST(Jams, WhatAnImpactLeavesIsFree) {
     EXPECT_EQ(what_breaks(RandomScene(115203).make()), "");
 }
@@ -99,15 +99,15 @@ TEST(Jams, LockedBallsAreNotDriven) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box", 9409)), "");
 }
 
-// Friction that leaves no solution is left out for 30 ms; what it would
-// have changed set intervals of 3e-5 s, and the run did not end in 2.5 s.
+// Friction that leaves no solution is ignored for 30 ms; what it would have changed set intervals of 3e-5 s,
+// and the run did not end in 2.5 s.
 TEST(Jams, FrictionWithoutASolutionSetsNoInterval) {
     settles_within(*family_scene("row_between_walls", 879), 1500);
     settles_within(*family_scene("row_between_walls", 6852), 2500);
 }
 
-// Balls lock each other: over an interval friction has no solution, at an instant it has. It was left out for
-// less than 1e-4 s at a time, and the runs did not end in 2.5 s.
+// Balls lock each other: friction has no solution over an interval, but has one at an instant. It was ignored
+// for less than 1e-4 s at a time, and the runs did not end in 2.5 s.
 TEST(Jams, BallsThatLockStopAtAnInstant) {
     settles_within(*family_scene("rings/extreme", 507), 4000);
     EXPECT_LE(segments_of(run_verified(*family_scene("rack_in_box/extreme", 406))), 6000u);
@@ -122,8 +122,8 @@ TEST(Jams, AnImpactDoesNotGoBackAndForthForLong) {
     EXPECT_LE(run_verified(*family_scene("zigzag/wide", 5646)).events.size(), 4000u);
 }
 
-// What an unfinished solution says of an interval means nothing where there is no
-// solution: it was cut to 1e-5 s, or friction was left out over so short a one.
+// If there is no solution, an unfinished one says nothing about an interval: the interval was cut to 1e-5 s,
+// or friction was ignored for as short a time.
 TEST(Jams, IntervalsWithoutASolutionAreNotCut) {
     EXPECT_LE(segments_of(run_verified(*family_scene("row_between_walls/extreme", 542))), 4000u);
     EXPECT_LE(segments_of(run_verified(*family_scene("row_between_walls/extreme", 728))), 2500u);
@@ -220,8 +220,7 @@ TEST(Jams, WhatRoundingAddsUpToIsNoOverlap) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box/extreme", 7687)), "");
 }
 
-// Balls that move and cannot meet: each is looked at along
-// its own segments, not along the first one for ever.
+// Balls that move and cannot meet: each is followed along its own segments, not along the first one forever.
 TEST(Jams, SkippedPairsAreJudgedAlongTheirSegments) {
     EXPECT_EQ(what_breaks(*family_scene("funnel/extreme", 4999)), "");
     EXPECT_EQ(what_breaks(*family_scene("tray/extreme", 7225)), "");

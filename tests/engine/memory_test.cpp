@@ -36,8 +36,8 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
     return counted(size);
 }
-// The buffers of std::stable_partition come from here. A sanitizer
-// has a form of its own, which would not go together with free().
+// The buffers of std::stable_partition come from here. A sanitizer has its own form, which would not match
+// free().
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     try {
         return counted(size);
@@ -81,7 +81,7 @@ namespace {
 
 using namespace test;
 
-// Counts at the end of the first and of the last round of the loop: what lies between is the loop alone.
+// Counts at the end of the first and of the last round of the loop: the difference is the loop alone.
 struct LoopCount {
     long first = -1, last = 0, first_bytes = 0;
     std::size_t events = 0;
@@ -136,7 +136,7 @@ bool has_resting_contacts(const Record& record) {
                        [](const Event& e) { return kind(e.type).phase == EventPhase::kHold; });
 }
 
-// Of a batch: what the first shots took is enough for the others, unless balls rest against something.
+// In a batch, what the first shots took is enough for the others, unless balls rest against something.
 TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
     for (const char* file : {"draw", "three_cushion", "side_bank", "eight_ball_break"}) {
         const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml");
@@ -161,8 +161,8 @@ TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
             if (shot < 20) continue;
             without_memory += allocations == before;
             if (allocations == before) continue;
-            // A longer shot, or a larger cluster, than all before
-            // needs longer lists: not when it is played again.
+            // A shot that is longer, or has a larger cluster, than all before needs longer lists, but not
+            // when it is played again.
             const long once_more = allocations;
             simulator.play(change, options);
             const long more = allocations - once_more;
@@ -184,8 +184,9 @@ TEST(Memory, ALongRunOnlyDoublesItsLog) {
     }
 }
 
-// Set-up is linear in the balls. What operator new gave out is counted, also what was given back; the nodes
-// of Box2D's tree come from malloc and are added: at most four a block of 64 boxes, for its list doubles.
+// Set-up is linear in the balls. Counted is what operator new gave out, even if it was given back; the nodes
+// of Box2D's tree come from malloc and are added: at most four per block of 64 boxes, because its list
+// doubles.
 TEST(Memory, UnderAKilobyteABall) {
     double per_ball[2];
     int k = 0;

@@ -96,7 +96,7 @@ TEST(Motion, SlowBallComesToRestInOneEvent) {  // H21
 }
 
 // Seed 145147 of the other family of random scenes: a thousand impacts at one instant, each with half the
-// speed of the last one. The spin in place of the ball counts for nothing: zigzag/wide 31974.
+// speed of the last. Spin about the vertical counts for nothing: zigzag/wide 31974.
 TEST(Motion, SpeedsThatFrictionCannotBeDividedByAreRest) {
     const MotionParams params{.R = 0.028575, .slide = 1.962, .roll = 0.0981, .spin = 10.9};
     for (const double speed : {1e-310, 5e-309, 1e-260, 1e-163}) {

@@ -1,4 +1,4 @@
-// What a mistyped name stands near to.
+// Which name a mistyped one resembles.
 #include "base/nearest.h"
 
 #include <gtest/gtest.h>
@@ -23,20 +23,20 @@ TEST(DidYouMean, NamesWhatIsNear) {
     } kCases[] = {
         {"sped", "; did you mean speed?"},       // a letter is missing
         {"speeed", "; did you mean speed?"},     // one too many
-        {"spead", "; did you mean speed?"},      // another one
-        {"psede", "; did you mean speed?"},      // two pairs that are swapped
+        {"spead", "; did you mean speed?"},      // a different one
+        {"psede", "; did you mean speed?"},      // two swapped pairs
         {"blal", "; did you mean ball?"},        // of four letters only one may be wrong: a swap is one
-        {"Speed", "; did you mean speed?"},      // keys are written small
+        {"Speed", "; did you mean speed?"},      // keys are lower case
         {"aim", "; did you mean aim_deg?"},      // the unit is missing
-        {"speed_mps", "; did you mean speed?"},  // or there is one
+        {"speed_mps", "; did you mean speed?"},  // or one too many
         {"elev", "; did you mean elevation_deg?"},
     };
     for (const auto& c : kCases) EXPECT_EQ(did_you_mean(c.word, kCueKeys), c.says) << c.word;
 }
 
 TEST(DidYouMean, IsSilentWhereNothingIsNear) {
-    // "bats" is two letters of four from ball, "a" a stem of nothing,
-    // and "mass" is there: the word is wrong for another reason.
+    // "bats" shares two of four letters with ball, "a" begins nothing, and "mass" exists: the word is wrong
+    // for another reason.
     for (const char* word : {"", "a", "wind", "bats", "colour", "mass", "sxxxd"})
         EXPECT_EQ(did_you_mean(word, kCueKeys), "") << word;
     EXPECT_EQ(did_you_mean(std::string(1 << 20, 's'), kCueKeys), "");

@@ -1,4 +1,4 @@
-// The scene of the next shot: what is gone is gone, and the rest lies where it rests, to the bit.
+// The scene of the next shot: lost balls are gone, and the others are where they rest, to the bit.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -26,8 +26,8 @@ Cue strike(const std::string& ball, double speed, double aim_deg) {
     return cue;
 }
 
-/// Plays `shots` shots one after the other; every scene has the
-/// balls of the one before it that are not gone, to the bit.
+/// Plays `shots` shots one after the other; every scene has the remaining balls of the previous one, to the
+/// bit.
 TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     std::size_t gone = 0;
@@ -52,7 +52,7 @@ TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
         EXPECT_EQ(next.table, scene.table);
         EXPECT_EQ(next.balls, scene.balls);
         EXPECT_EQ(next.physics, scene.physics);
-        // As a file it is the same scene, and the same shot.
+        // Written to a file it is the same scene, and the same shot.
         EXPECT_EQ(played(next).hash(), played(parse_scene(scene_text(next), "next")).hash());
         scene = next;
     }

@@ -1,4 +1,4 @@
-// Pockets: a ball whose centre passes the edge falls, and comes back over it where it has not sunk too far
+// Pockets: a ball whose centre passes the edge falls, and comes back over it if it has not sunk too far
 // (docs/reference/physics.md, "Pockets").
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
     EXPECT_EQ(r.events[1].type, EventType::kBallPocket);
     EXPECT_NEAR(r.events[1].time - r.events[0].time, std::sqrt(2.0 * kRadius / kG), 1e-15);
     EXPECT_EQ(r.tracks[0].pocket, 0);
-    // On the way it falls freely and moves on.
+    // On the way it falls freely and keeps moving.
     const double tau = 0.05;
     const BallState s = r.state_at(0, r.events[0].time + tau);
     EXPECT_EQ(s.state, MotionState::kFalling);
@@ -63,7 +63,7 @@ TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
     EXPECT_NEAR(energy_at(r, r.events[0].time + tau), energy_at(r, 0.0), 1e-15);
 }
 
-/// [m/s] After a ball has crossed the middle of the hole; 0 where it falls.
+/// [m/s] After a ball has crossed the middle of the hole; 0 if it falls.
 double across(double speed) {
     const double t = 2.0 * kHole / speed;
     return climbs(speed, 0.5 * kG * t * t / kRadius, kRadius, kG).value_or(0.0);
@@ -83,7 +83,7 @@ TEST(Pocket, AFastBallComesBackOverTheEdge) {
     EXPECT_GT(left, 1.5);
 }
 
-// Above a speed the ball crosses the hole, below it stays; in between is no gap.
+// Above some speed the ball crosses the hole, below it stays; there is no gap between.
 TEST(Pocket, TheSpeedThatCrosses) {
     double falls = 0.5, crosses = 4.0;
     while (crosses - falls > 1e-9) {
@@ -95,7 +95,7 @@ TEST(Pocket, TheSpeedThatCrosses) {
     EXPECT_NEAR(crosses, 1.9636, 1e-4);
 }
 
-// A ball that cuts across the rim has fallen little and is slow outwards: what decides is its speed, sqrt(2 g
+// A ball that cuts across the rim has fallen little and moves outwards slowly: its speed decides, sqrt(2 g
 // radius), not how far in it is. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
 TEST(Pocket, OverTheRim) {
     for (const double depth : {1e-4, 1e-3, 3e-3}) {
@@ -138,7 +138,7 @@ Scene at_corner(double speed, double angle_deg, double gap) {
     return scene;
 }
 
-// A pocket at the edge of the table has a back, and what comes to it is in.
+// A pocket at the edge of the table has a back, and a ball that reaches it is in.
 TEST(Pocket, TheBackOfACorner) {
     Scene scene = at_corner(7.0, 45.0, 0.571425);
     const Record r = run(scene);

@@ -1,6 +1,6 @@
-// Presets of balls, cloths and cues: what they set, what a file overrides, and
-// how they do beside what was measured on real tables (docs/reference/physics.md,
-// "Where the numbers come from"), the known misses of the models included.
+// Presets of balls, cloths and cues: what they set, what a file overrides, and how they compare with
+// measurements on real tables (docs/reference/physics.md, "Where the numbers come from"), including the
+// models' known misses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,11 +70,11 @@ TEST(Presets, SnookerCushionIsTheMeasuredOneUpToTwoMetresPerSecond) {
         EXPECT_NEAR(rebound("snooker", v).first, speed, 0.05) << v;
     // A restitution that does not fall with the speed misses what is faster.
     EXPECT_GT(rebound("snooker", 3.5).first, 2.789 + 0.3);
-    // The impulse of a free ball leaves a quarter of the speed to the slate.
+    // The impulse of a free ball loses a quarter of the speed to the slate.
     EXPECT_LT(rebound("snooker_classic", 1.0).first, 0.948 - 0.2);
 }
 
-// With fits the cushions are the measured ones at every speed, which no number alone is.
+// With fits the cushions match the measurements at every speed, which no single number does.
 TEST(Presets, FitsMeetTheCushionsAtEverySpeed) {
     const double snooker[][2] = {{1.0, 0.948}, {1.5, 1.404}, {2.0, 1.816},
                                  {2.5, 2.184}, {3.0, 2.508}, {3.5, 2.789}};
@@ -88,7 +88,7 @@ TEST(Presets, FitsMeetTheCushionsAtEverySpeed) {
             << v;
 }
 
-/// [degrees] By how much a cue ball without spin throws the object ball.
+/// [degrees] How far a cue ball without spin throws the object ball.
 double throw_at(const std::string& keys, double v, double cut_deg) {
     const double R = carom::make_ball_params("pool").R, cut = cut_deg * std::numbers::pi / 180.0;
     const double x = 2.0 * R * std::sin(cut), y = 2.0 * R * std::cos(cut) + 1e-7;
@@ -105,7 +105,7 @@ TEST(Presets, PoolBallsThrowAsMeasured) {
     for (const double v : {0.447, 1.341, 3.129}) EXPECT_NEAR(throw_at("", v, 10.0), 1.5, 0.5) << v;
     EXPECT_NEAR(throw_at("", 0.447, 35.0), 5.5, 0.5);
     EXPECT_LT(throw_at("", 3.129, 30.0), 0.5 * throw_at("", 0.447, 30.0));
-    // One friction for all speeds throws half as much, and at every speed the same.
+    // A single friction for all speeds throws half as much, and the same at every speed.
     EXPECT_LT(throw_at("preset = \"pool_classic\"", 0.447, 35.0), 3.0);
     EXPECT_NEAR(throw_at("preset = \"pool_classic\"", 3.129, 35.0),
                 throw_at("preset = \"pool_classic\"", 0.447, 35.0), 0.01);
@@ -154,7 +154,7 @@ TEST(Presets, CushionTouch) {
                  carom::SceneError);
 }
 
-// A leather tip gives the ball 1.73 / 2 of what one gives that loses nothing.
+// A leather tip gives the ball 1.73 / 2 of what a lossless one gives.
 TEST(Presets, TheTipTakesItsShare) {
     const auto speed = [](const std::string& keys) {
         return run("[[ball]]\n[cue]\nspeed = 2\n" + keys).state_at(0, 0.0).velocity.norm();
@@ -192,7 +192,7 @@ TEST(Presets, WhatIsWrittenComesBeforeThePreset) {
     EXPECT_STREQ(name(s.physics.cushion), "han_2005");
 }
 
-// The coefficients of before there were measured ones: sizes differ, the rest is one set.
+// The coefficients used before there were measured ones: sizes differ, the rest is one set.
 TEST(Presets, ClassicPresets) {
     for (const char* game : {"pool", "snooker", "carom"}) {
         const Scene s =
@@ -205,7 +205,7 @@ TEST(Presets, ClassicPresets) {
     }
 }
 
-// One number takes the place of the fit that the preset brings; a fit takes the place of the preset's number.
+// One number replaces the preset's fit, and a fit replaces the preset's number.
 TEST(Presets, OneFrictionReplacesTheOtherOfThePreset) {
     const Scene number = parse_scene("[balls]\nmu_b = 0.05\n" + kBall, "preset.toml");
     EXPECT_EQ(number.balls.mu_b, 0.05);
@@ -240,6 +240,45 @@ TEST(Presets, CuesByKind) {
     const carom::Cue own = cue("mass = 0.5\npreset = \"plain\"\nrestitution = 0.7");
     EXPECT_EQ((std::vector<double>{own.mass, own.end_mass, own.restitution}),
               (std::vector<double>{0.5, 0.00844, 0.7}));
+}
+
+TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
+    const std::string balls =
+        "[[ball]]\nposition = [0.6, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.6, 1.0]\n";
+    const auto scene = [&](const std::string& text) {
+        const Scene read = parse_scene(balls + text, "preset.toml");
+        const std::string written = carom::scene_text(read);
+        EXPECT_EQ(carom::scene_text(parse_scene(written, "preset.toml")), written) << text;
+        return read;
+    };
+    const Scene bar = scene("[balls]\npreset = \"bar_box_oversized\"\n");
+    EXPECT_NEAR(bar.size_of(bar.ball[0]).R, 0.0603 / 2.0, 2e-5);
+    EXPECT_NEAR(bar.size_of(bar.ball[0]).m, 0.200, 1e-3);
+    EXPECT_EQ(bar.ball[0].position.z(), bar.size_of(bar.ball[0]).R);
+    EXPECT_FALSE(bar.ball[1].own);
+    const Scene heavy = scene("[balls]\npreset = \"bar_box_heavy\"\n");
+    EXPECT_EQ(heavy.size_of(heavy.ball[0]).R, heavy.balls.R);
+    EXPECT_NEAR(heavy.size_of(heavy.ball[0]).m, 0.191, 1e-3);
+    const Scene pub = scene("[balls]\npreset = \"english_pool\"\n");
+    EXPECT_NEAR(pub.balls.R, 0.0508 / 2.0, 1e-12);
+    EXPECT_NEAR(pub.size_of(pub.ball[0]).R, 0.0476 / 2.0, 2e-5);
+    EXPECT_LT(pub.size_of(pub.ball[0]).m, pub.balls.m);
+    // Any preset may have one, and of this one a part.
+    const Scene own = scene("[balls]\npreset = \"pool\"\n[balls.cue]\nmass = 0.2\n");
+    EXPECT_EQ(own.size_of(own.ball[0]), (carom::BallSize{own.balls.R, 0.2}));
+    const Scene part = scene("[balls]\npreset = \"bar_box_oversized\"\ncue = { mass = 0.21 }\n");
+    EXPECT_EQ(part.size_of(part.ball[0]), (carom::BallSize{bar.size_of(bar.ball[0]).R, 0.21}));
+    // It is the ball that the cue strikes.
+    const Scene other = scene("[balls]\npreset = \"bar_box_heavy\"\n[cue]\nball = \"1\"\n");
+    EXPECT_FALSE(other.ball[0].own);
+    EXPECT_TRUE(other.ball[1].own);
+    // What the ball itself says wins, and if that is the common size.
+    const Scene plain = parse_scene(
+        "[[ball]]\nradius = 0.028575\nmass = 0.170097\n"
+        "[balls]\npreset = \"bar_box_oversized\"\n",
+        "preset.toml");
+    EXPECT_FALSE(plain.ball[0].own);
+    EXPECT_FALSE(parse_scene(carom::scene_text(plain), "preset.toml").ball[0].own);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How often a run tells of its progress, and so how soon it can be ended.
+// How often a run reports its progress, and so how soon it can be stopped.
 #include "support/gas.h"
 
 #include <stdexcept>
@@ -46,7 +46,7 @@ TEST(Progress, AShortRunTellsNothing) {
     EXPECT_EQ(calls_of(gas(16, 64, 7), 64).count, 1u);
 }
 
-// Sixty-four marches of ten million steps would be a minute without a look at the signal.
+// Sixty-four marches of ten million steps would be a minute without checking for the signal.
 TEST(Progress, IsToldAfterEveryLongRound) {
     Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
     const Calls compliant = calls_of(scene, 1000000);

@@ -1,4 +1,4 @@
-// 30 000 seeded scenes of two families to rest without a violation, and the regressions they brought
+// 30 000 seeded scenes of two families to rest without a violation, the regressions they revealed
 // (support/random_scenes.h), and some scenes of crowded families and natural shots. With CAROM_RANDOM_SCENES
 // in the environment, a scan of other seeds instead (support/scene_scan.h).
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace {
 
 using namespace test;
 
-// Sanitizers take thirty times as long, and look for what many scenes do alike.
+// Sanitizers take thirty times as long, and look for errors that many scenes share.
 #ifdef CAROM_SANITIZED
 constexpr int kScenes = 2000, kOtherScenes = 1000;
 #else
@@ -69,7 +69,7 @@ TEST(RandomScenes, WithFitsAndNoses) {
 
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
 
-/// The seven-foot table's cushion and jaw where a ball stood at their join.
+/// The seven-foot table's cushion and jaw, with a ball at their join.
 Table cushion_and_jaw() {
     Table table;
     table.width = 0.9906;
@@ -88,7 +88,7 @@ Scene smooth_scene(ClusterModel clusters = ClusterModel::kSequential) {
     return scene;
 }
 
-// A ball held to a cushion lets go of it at the cushion's end. It went round for ever there.
+// A ball held at a cushion lets go at the cushion's end. It went round forever there.
 TEST(RandomSceneRegressions, OffTheEndOfACushion) {
     Scene scene = smooth_scene();
     scene.table.cushions = {{"c3", {0.0, 0.091001722787781708}, {0.0, 0.91508373076875005}, 0.036576}};
@@ -99,7 +99,7 @@ TEST(RandomSceneRegressions, OffTheEndOfACushion) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-// A ball that has stopped stays: a velocity of 1e-20 m/s was stopped again and again.
+// A stopped ball stays: a velocity of 1e-20 m/s was stopped again and again.
 TEST(RandomSceneRegressions, StoppedPushedBall) {
     Scene scene = smooth_scene();
     scene.balls.mu_s = 0.05;
@@ -182,8 +182,8 @@ TEST(RandomSceneRegressions, ContactOpensByTheForcesOfItsInterval) {
     settles_within(scene, 4000);
 }
 
-// A row of balls against a cushion, driven by spin: bounces of 1e-8 m/s each 7e-9 s. The contact behind the
-// one that met first is pressed together, and held (seed 21755).
+// A row of balls against a cushion, driven by spin: bounces of 1e-8 m/s every 7e-9 s. The contact behind the
+// first one is pressed together, and held (seed 21755).
 TEST(RandomSceneRegressions, RowOfSlowBouncesIsHeld) {
     Scene scene = smooth_scene(ClusterModel::kRigid);
     scene.table = box(1.0, 2.0, 0.036576);
@@ -239,7 +239,7 @@ TEST(RandomSceneRegressions, SlipsThatEnd) {
     EXPECT_EQ(what_breaks(RandomScene(33636, DrawOrder::kFirstFirst).make()), "");
 }
 
-// The first attempt at an interval follows the last one: of a run that stopped as of one that did not.
+// The first attempt at an interval follows the last one, whether or not the run was stopped between them.
 TEST(CrowdedScenes, GoOnWithTheSameBits) {
     int held = 0;
     for (const char* family : {"tray", "frozen_rail_row", "rack_in_box", "touching_pack"}) {
@@ -261,8 +261,7 @@ TEST(CrowdedScenes, GoOnWithTheSameBits) {
     EXPECT_GT(held, 50);
 }
 
-/// Scenes in which contacts do not end well yet
-/// (lab/notes/2026-11-jams.md): whoever mends one strikes it out.
+/// Scenes in which contacts do not end well yet (lab/notes/2026-11-jams.md): if you fix one, remove it here.
 struct Open {
     const char* family;
     std::uint64_t seed;
@@ -280,8 +279,8 @@ bool is_open(const std::string& family, std::uint64_t seed) {
 /// A small share of the families for long campaigns (lab/measure/campaign).
 class Families : public testing::TestWithParam<std::string> {};
 
-// A glancing contact of a cluster opened in the map and closed on in the loop: of raised breaks, one of
-// thirty stood still at an instant. tools/slow runs 20 000.
+// A glancing contact of a cluster opened in the map and kept closing in the loop: one raised break in thirty
+// stood still at an instant. tools/slow runs 20 000.
 std::uint64_t seeds_of(const std::string& family) {
     if (family == "raised_break") return kScenes / 20;
     return natural_shot(family, 0) ? 50 : 10;
@@ -338,8 +337,8 @@ void order_changes_nothing(const std::string& family, std::uint64_t seed) {
                 << family << ", seed " << seed;
 }
 
-// Of events at one instant the first depended on matches that had been played with earlier motions, and so on
-// the list of balls: in seed 33 of rack_in_box the events came in another order.
+// The first of several events at one instant depended on matches played with earlier motions, and so on the
+// list of balls: in seed 33 of rack_in_box the order of events changed.
 TEST(SceneFamilies, TheOrderOfTheBallsChangesNothing) {
     for (const char* family : {"rack_in_box", "narrow_channel", "rings", "touching", "between_frozen",
                                "eight_ball_break", "raised_break"})
@@ -357,7 +356,7 @@ TEST(SceneFamilies, AreKnownByName) {
 }  // namespace
 }  // namespace carom
 
-// ctest hands over which test to run: with that it is a test, whatever the environment says.
+// ctest passes the name of the test to run: then it is a test, whatever the environment says.
 int main(int count, char** arguments) {
     const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
     if (wanted != nullptr && count == 1) return carom::test::scan_scenes(wanted);

@@ -46,7 +46,7 @@ TEST(RestingContacts, TopspinPushesALine) {
         EXPECT_NEAR(record.state_at(0, roll->time).position.y(), row.x, 1e-6) << label;
         EXPECT_NEAR(record.state_at(0, 0.3).velocity.y() / 0.3, row.a, 1e-8) << label;
         EXPECT_LE(record.events.size(), 20u) << label;
-        // Afterwards all roll alike, still in touch.
+        // Afterwards all roll alike, still touching.
         for (int i = 1; i <= row.pushed; ++i)
             EXPECT_NEAR(record.state_at(i, 0.9).position.y() - record.state_at(i - 1, 0.9).position.y(),
                         2.0 * R, 1e-11)
@@ -85,8 +85,8 @@ TEST(RestingContacts, ObliqueSpinIntoACushion) {
     EXPECT_LE(record.events.size(), 12u);
 }
 
-// A ball that its spin holds at a cushion is struck along the cushion:
-// the contact goes on. Struck into the cushion, it ends in a bounce.
+// A ball held at a cushion by its spin is struck along the cushion: the contact continues. Struck into the
+// cushion, it ends in a bounce.
 TEST(RestingContacts, GoesOnThroughAnImpactThatHardlyMovesIt) {
     for (const bool oblique : {false, true}) {
         Scene scene = empty_scene();

@@ -1,5 +1,5 @@
-// Groups of balls in resting contacts: one small scene for each class of
-// failure that the random scenes brought, and the solver of their forces.
+// Groups of balls in resting contacts: one small scene for each class of failure that the random scenes
+// revealed, and the solver of their forces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,8 @@ TEST(RestingGroups, WedgeOfNearlyOppositeNormals) {
     }
 }
 
-// The capture has to converge in such a wedge: swept contact
-// by contact, the ball got 5.6e-12 m deep into the cushion.
+// The capture must converge in such a wedge: swept contact by contact, the ball got 5.6e-12 m deep into the
+// cushion.
 TEST(RestingGroups, WedgeOfACushionAndASlowBall) {
     Scene scene = empty_scene();
     scene.table = make_table("seven_foot");
@@ -176,7 +176,7 @@ TEST(RestingGroups, WedgeWithGreatForcesDoesNotCreep) {
     EXPECT_EQ(what_breaks(scene), "");
 }
 
-// By rows, as the problem wants it by columns.
+// By rows; the problem wants them by columns.
 void set_matrix(Complementarity& problem, const std::vector<double>& rows) {
     const std::size_t n = problem.size;
     for (std::size_t c = 0; c < n; ++c) {
@@ -253,7 +253,7 @@ TEST(Complementarity, RoundingDoesNotDecide) {
     }
 }
 
-// More contacts than needed share their load evenly.
+// Redundant contacts share their load evenly.
 TEST(Complementarity, EqualContactsShareEvenly) {
     Complementarity problem;
     problem.resize(3);

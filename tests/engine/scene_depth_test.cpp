@@ -1,5 +1,5 @@
-// Keys with thousands of parts and brackets within brackets are refused before they overflow a stack, small
-// stacks too, and nothing else is.
+// Keys with thousands of parts, and brackets within brackets, are refused before they overflow a stack, even
+// a small one; nothing else is refused.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -57,7 +57,7 @@ TEST(SceneDepth, AKeyOfManyPartsIsRefusedWhereverItStands) {
                 EXPECT_NE(error_of(text).find(want), std::string::npos) << text.substr(0, 200);
         }
     }
-    // The message of a key that is only wrong is about that.
+    // The message about a key that is only wrong says just that.
     for (const std::string& text : all_places(dotted(kMaxKeyParts))) {
         EXPECT_EQ(error_of(text).find("parts"), std::string::npos) << error_of(text);
         EXPECT_NE(error_of(text), "");
@@ -67,7 +67,7 @@ TEST(SceneDepth, AKeyOfManyPartsIsRefusedWhereverItStands) {
 TEST(SceneDepth, TheMessageNamesThePlace) {
     EXPECT_EQ(error_of("[cue]\n  " + dotted(40) + " = 1\n"),
               "s.toml:2:34: this key has more than 16 parts, more than any key of a scene; remove some dots");
-    // Columns count characters, not bytes, as those of toml++ do.
+    // Columns count characters, not bytes, like those of toml++.
     EXPECT_EQ(error_of("x = [\"\u00e4\u00f6\", " + std::string(40, '[')).substr(0, 14), "s.toml:1:27: b");
     EXPECT_EQ(error_of("x = " + std::string(40, '[')),
               "s.toml:1:21: brackets are nested more than 16 deep here; close some above, or nest fewer");
@@ -86,7 +86,7 @@ TEST(SceneDepth, NestedValuesAreRefused) {
     }
 }
 
-// Both limits at once are what goes deepest.
+// Both limits at once are the deepest.
 TEST(SceneDepth, SmallStacksAreEnough) {
     const auto nested = [](int parts, int deep) {
         const std::string key = dotted(parts);
@@ -111,7 +111,7 @@ TEST(SceneDepth, SmallStacksAreEnough) {
     EXPECT_NE(errors[8].find("parts"), std::string::npos) << errors[8];
 }
 
-// One of these for every reason that dots and brackets are no parts and no depth.
+// One for every reason why dots and brackets may be neither parts nor depth.
 TEST(SceneDepth, OtherDotsAndBracketsAreAllowed) {
     const std::string dots(100, '.'), open(100, '['), numbers = dotted(400, "5, 0");
     const std::string texts[] = {
@@ -136,7 +136,7 @@ TEST(SceneDepth, OtherDotsAndBracketsAreAllowed) {
     for (const std::string& text : texts) {
         const auto deep = detail::too_deep(text);
         EXPECT_FALSE(deep) << text << "\n" << (deep ? deep->what : "");
-        // Valid TOML indeed: what is wrong with it is only that the keys are unknown.
+        // Valid TOML: the only fault is that the keys are unknown.
         if (text[0] != '#') {
             EXPECT_NE(error_of(text).find("unknown section or key"), std::string::npos) << text << "\n"
                                                                                         << error_of(text);
@@ -148,7 +148,7 @@ TEST(SceneDepth, OtherDotsAndBracketsAreAllowed) {
     EXPECT_TRUE(detail::too_deep(lists + std::string(kMaxNesting, '[')));
 }
 
-// toml++ says better what is wrong with them.
+// toml++ describes their fault better.
 TEST(SceneDepth, SectionsThatAreNotClosedAreNotCounted) {
     std::string text;
     for (int i = 0; i < 100; ++i) text += "[table\n[[ball\n";

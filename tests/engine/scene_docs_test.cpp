@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 using test::code;
 using test::error_of;
 
-// A section as it is opened in a file, and the name that the reader gives it.
+// A section as it is opened in a file, and its name in the reader's messages.
 struct Place {
     const char* open;
     const char* name;
@@ -40,7 +40,7 @@ const Place kSections[] = {{"[table]", "table"},
                            {"[stop]", "stop"},
                            {"[render]", "render"}};
 
-// What the reader says about a key that it does not know.
+// The reader's message about an unknown key.
 std::set<std::string> keys_of_reader(const Place& place) {
     const std::string message = error_of(std::string(place.open) + "\nno_such_key = 1\n");
     const std::string before = "the keys there are ";
@@ -95,7 +95,7 @@ TEST(SceneDocs, EveryKeyOfTheReaderIsDescribedAndNoOther) {
     }
 }
 
-// A scene of a text, without the places of what it holds: a line more moves them.
+// A scene from a text, without the source locations, which an extra line would move.
 Scene without_places(const std::string& text) {
     Scene scene = parse_scene(text, "s.toml");
     for (BallStart& ball : scene.ball) ball.where = {};
@@ -104,7 +104,7 @@ Scene without_places(const std::string& text) {
     return scene;
 }
 
-// The section with nothing in it, and with one key at the default that is stated: the same scene.
+// An empty section, and one key at the stated default: the same scene.
 void expect_default(const std::string& section, const std::string& key, const std::string& value) {
     std::string before, after;
     if (section == "rack")
@@ -180,7 +180,7 @@ TEST(SceneDocs, EffectsNameKeysThatExist) {
     EXPECT_EQ(keywords, table);
 }
 
-// What the reader says about a choice that it does not know: "...; use a, b or c".
+// The reader's message about an unknown choice: "...; use a, b or c".
 std::set<std::string> choices_of_reader(const std::string& section, const std::string& key) {
     const std::string message =
         error_of("[" + section + "]\n" + key + " = \"no such choice\"\n[[ball]]\nposition = [0.3, 0.3]\n");
@@ -242,7 +242,7 @@ std::string digits(double x, bool integer) {
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-// Whether the reader refuses a value for being out of its range; other rules may still refuse it.
+// Whether the reader refuses a value because it is out of range; other rules may still refuse it.
 bool in_range(const std::string& head, const std::string& key, const std::string& value) {
     const std::string message = error_of(head + key + " = " + value + "\n");
     EXPECT_EQ(message.find("not valid TOML"), std::string::npos) << message;
@@ -250,7 +250,7 @@ bool in_range(const std::string& head, const std::string& key, const std::string
     return message.find("is out of range") == std::string::npos;
 }
 
-// What a key needs in front of it to be read at all.
+// What must precede a key for it to be read at all.
 std::string opening(const std::string& name, const std::string& key) {
     for (const Place& place : kSections) {
         if (name != place.name) continue;
@@ -306,14 +306,16 @@ TEST(SceneSchema, RangesAreThoseOfTheReader) {
             object = object.at(name);
         if (object.at("type") == "array") object = object.at("items");
         for (const auto& [key, value] : object.at("properties").items()) {
-            const std::string head = opening(name, key), type = value.at("type");
+            // A number that may carry a unit is a string, too.
+            const nlohmann::json& types = value.at("type");
+            const std::string head = opening(name, key), type = types.is_array() ? types[0] : types;
             if (type == "number" || type == "integer") {
                 expect_range(head, key, value, [](const std::string& x) { return x; });
                 ++numbers;
             }
             if (type != "array" || !value.at("items").contains("type") || name == "table") continue;
             const Json& item = value.at("items");
-            // The last number of a velocity may be left out.
+            // The last number of a velocity may be omitted.
             const std::size_t count = value.at("maxItems"), least = value.at("minItems");
             EXPECT_EQ(least, count - (key == "velocity" ? 1 : 0)) << key;
             for (std::size_t k = 0; k < count; ++k) {

@@ -47,7 +47,7 @@ TEST(Math, RadiansNearWholeQuadrants) {
     for (int k = -636000; k <= 636000; k += 7) {
         const double x = static_cast<double>(k * (std::numbers::pi_v<long double> / 2));
         const SinCos a = sin_cos(x);
-        // glibc reduces the extended argument exactly. exact.
+        // glibc reduces the extended argument exactly.
         worst = std::fmax(worst, ulps(a.sin, std::sin(static_cast<long double>(x))));
         worst = std::fmax(worst, ulps(a.cos, std::cos(static_cast<long double>(x))));
     }

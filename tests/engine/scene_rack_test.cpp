@@ -1,4 +1,4 @@
-// Racks: who stands where, how exactly, and that seeds reproduce.
+// Racks: which ball is where, how exactly, and that seeds reproduce.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -140,7 +140,7 @@ TEST(Racks, SeedsReproduceAndDiffer) {
     EXPECT_TRUE(differs);
 }
 
-// Written down: a change of the generator or of the order of its draws changes everybody's racks.
+// Fixed values: a change of the generator, or of the order of its draws, would change everybody's racks.
 TEST(Racks, SeedOneIsThisRack) {
     const Scene s = rack("gap = 0\n");
     const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
@@ -161,7 +161,7 @@ TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
                 rack(std::string("jitter = 1e-4\ngap = ") + gap + "\nseed = " + std::to_string(seed) + "\n");
             EXPECT_GE(closest_pair(s), 2 * kR - 1e-15);
             for (std::size_t i = 0; i < 15; ++i) {
-                // Which ball stands where depends on the seed: compare with the nearest place.
+                // The seed decides which ball is where: compare with the nearest place.
                 double best = 1e9;
                 for (std::size_t j = 0; j < 15; ++j) {
                     best = std::fmin(best, (at(s, i) - at(still, j)).cwiseAbs().maxCoeff());
@@ -264,8 +264,8 @@ TEST(Rack, NineOnTheSpot) {
     EXPECT_EQ(at(one, 0), Vec2(0.635, 1.905));
 }
 
-// Turned about its place the rack keeps all distances; a
-// quarter turn counter-clockwise takes the rows from +y to -x.
+// Turned about its place, the rack keeps all distances; a quarter turn counter-clockwise takes the rows from
+// +y to -x.
 TEST(Rack, PlaceAndAngle) {
     const Scene s = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\n"),
                 turned = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\nangle_deg = 90\n");

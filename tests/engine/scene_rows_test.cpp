@@ -1,5 +1,5 @@
-// Every member of a struct that a scene describes has a row, or is named here as
-// one that no file has: this does not compile until a member that is added does.
+// Every member of a struct that a scene describes has a row, or is named here as one that no file has: a new
+// member breaks the build until it has one or the other.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace carom {
 
-/// Stands for a value of any type in an initializer.
+/// Converts to any type in an initializer.
 struct Anything {
     template <class T>
     requires(!detail::kIsOptional<T>) operator T() const;  // NOLINT: the conversion is what it is for
@@ -26,7 +26,7 @@ constexpr bool has_members(std::index_sequence<kFirst...>, std::index_sequence<k
     };
 }
 
-/// Members of an aggregate. Where Eigen's vectors are optional, they have to come last and be told.
+/// Members of an aggregate. Optional Eigen vectors must come last, and their number must be given.
 template <class T, std::size_t kOptional = 0, std::size_t kMost = 20>
 constexpr std::size_t members() {
     if constexpr (has_members<T>(std::make_index_sequence<kMost>(), std::make_index_sequence<kOptional>()))

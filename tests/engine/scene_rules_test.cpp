@@ -31,7 +31,8 @@ using carom::test::toml_files;
 
 const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 
-// What a number of any size is read as: the nearest double, or a message with the digits as they are written.
+// How a number of any size is read: as the nearest double, or with a message that shows the digits as
+// written.
 TEST(Numbers, AreReadOrRefusedWithTheirDigits) {
     constexpr char kOut[] = " is out of range; it must be at least 0 and at most 1000000 m/s";
     const struct {
@@ -57,7 +58,7 @@ TEST(Numbers, AreReadOrRefusedWithTheirDigits) {
 
 // The first line of each file is a comment with the whole message. `*` stands for what toml++ words or counts
 // differently from version to version (syntax errors), and for lists of keys or choices, which
-// scene_docs_test compares with the schema. The list of the sections is whole in unknown_section.toml.
+// scene_docs_test compares with the schema. The list of sections is complete in unknown_section.toml.
 TEST(BadScenes, GiveTheirExactMessage) {
     const auto files = toml_files(std::filesystem::path(CAROM_TEST_DATA) / "bad_scenes");
     ASSERT_GE(files.size(), 25u);
@@ -104,8 +105,8 @@ TEST(Scenes, FilesThatCannotBeRead) {
     EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
     const std::string folder = CAROM_TEST_DATA;
     EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
-    // What is there but out of reach is not said to be missing. (A
-    // folder without permissions keeps nobody out who is root.)
+    // A file that exists but is out of reach is not reported as missing. (A folder without permissions does
+    // not stop root.)
     const auto loop =
         std::filesystem::temp_directory_path() / ("carom_loop_" + std::to_string(::getpid()) + ".toml");
     std::filesystem::create_symlink(loop, loop);
@@ -399,8 +400,7 @@ TEST(Rest, OnlyWhatCanHappenCounts) {
     EXPECT_EQ(error_of("[balls]\nmu_r = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
 }
 
-// Whatever is in a file, it is read or refused with a place
-// in it; it never crashes and nothing else is thrown.
+// Any file is read, or refused with a location; it never crashes and nothing else is thrown.
 TEST(Scenes, BrokenTextIsRefusedInTheSameForm) {
     const std::string good =
         read_file(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes" / "eight_ball_break.toml");

@@ -38,8 +38,8 @@ double first(const Record& r, EventType type) {
     return -1.0;
 }
 
-/// How far the cue ball ends in front of where it was when the
-/// balls met, along the diagonal of the three straight-in shots.
+/// How far the cue ball ends in front of its position when the balls met, along the diagonal of the three
+/// straight-in shots.
 double advance_after_contact(const Record& r) {
     const double hit = first(r, EventType::kBallBall);
     EXPECT_GT(hit, 0.0);
@@ -93,8 +93,8 @@ TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
     EXPECT_EQ(r.stopped, carom::StopReason::kAtRest);
 }
 
-// The wing ball stands at the end of the third row on the side of the cue ball, and only the model that takes
-// the contacts of a rack as one impact of elastic bodies sends it into the corner beside it.
+// The wing ball is at the end of the third row on the side of the cue ball; only the model that treats the
+// contacts of a rack as one impact of elastic bodies sends it into the nearby corner.
 TEST(SceneShots, TheWingBallFallsAndTellsTheModelsApart) {
     const auto falls = [](ClusterModel model) {
         Scene scene = carom::read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/wing_ball.toml");
@@ -119,7 +119,7 @@ TEST(SceneShots, HelloMeetsTwice) {
     EXPECT_EQ(r.duration, 4.0);
 }
 
-/// What a ball meets, in order: ids of balls, cushions and jaws.
+/// What a ball hits, in order: ids of balls, cushions and jaws.
 std::vector<std::string> met_by(const Record& r, int ball) {
     std::vector<std::string> met;
     for (const carom::Event& e : r.events) {
@@ -142,7 +142,7 @@ TEST(SceneShots, MasseGoesAroundYellow) {
     const Record r = run("masse");
     ASSERT_FALSE(met_by(r, 0).empty());
     EXPECT_EQ(met_by(r, 0)[0], "red");
-    // Right of yellow first, then left of where it started out for.
+    // Right of yellow first, then left of its initial direction.
     const double hit = first(r, EventType::kBallBall);
     double most = 0.0;
     for (double t = 0.0; t < hit; t += 0.01) most = std::max(most, place(r, 0, t).x());
@@ -174,7 +174,7 @@ TEST(SceneShots, JumpPotPotsYellow) {
     EXPECT_EQ(met_by(r, 0)[0], "yellow");
     EXPECT_NE(r.tracks[2].pocket, -1);
     EXPECT_EQ(r.tracks[0].pocket, -1);
-    // Red stands in the way of the path to yellow.
+    // Red blocks the path to yellow.
     const Vec2 way = (place(r, 0, 0.05) - place(r, 0, 0.0)).normalized();
     EXPECT_LT(std::abs(carom::cross(way, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
 }
@@ -190,7 +190,7 @@ TEST(SceneShots, SwerveGoesAroundYellow) {
 
 TEST(SceneShots, RaisedBreakArrivesInTheAir) {
     const Record r = run("raised_break");
-    const double hit = first(r, EventType::kBallCluster);  // the rack and a ball in the air, in one
+    const double hit = first(r, EventType::kBallCluster);  // the rack and a ball in the air together
     EXPECT_TRUE(is_up(r, 0, hit - 1e-3) || is_up(r, static_cast<int>(r.tracks.size()) - 1, hit - 1e-3));
 }
 

@@ -1,4 +1,4 @@
-// The tables that come with the program.
+// The built-in tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ bool same(const Vec2& a, const Vec2& b) {
     return (a - b).cwiseAbs().maxCoeff() <= 1e-15;
 }
 
-// tests/data/seven_foot_table.json holds the numbers (and where they are from). Its ids number the cushions
-// and jaws by their place; a straight cushion N and our c<N> are the same one.
+// tests/data/seven_foot_table.json holds the numbers and their sources. Its ids number the cushions and jaws
+// by position; a straight cushion N and our c<N> are the same.
 TEST(SevenFoot, AgreesWithTheReferenceTable) {
     std::ifstream in(std::string(CAROM_TEST_DATA) + "/seven_foot_table.json");
     const nlohmann::json want = nlohmann::json::parse(in);
@@ -230,7 +230,7 @@ TEST(Tables, UnknownPresetIsRefused) {
     EXPECT_THROW(make_table(""), std::invalid_argument);
 }
 
-// Published sizes; what is not published is said to be so in table_presets.cpp.
+// Published sizes; table_presets.cpp says which sizes are not published.
 TEST(Tables, PublishedSizes) {
     EXPECT_NEAR(make_table("eight_foot").length, 2.3368, 1e-12);
     EXPECT_NEAR(make_table("eight_foot").width, 1.1684, 1e-12);
@@ -239,8 +239,8 @@ TEST(Tables, PublishedSizes) {
     EXPECT_NEAR(make_table("snooker").cushions[0].height, 1.4 * 0.02625, 1e-15);
 }
 
-// Every pocket takes a ball that rolls at its middle, and
-// none takes one that rolls along a rail past a corner's jaw.
+// Every pocket takes a ball rolling at its middle, and none takes one that rolls along a rail past a corner's
+// jaw.
 TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
     for (const char* preset : {"eight_foot", "snooker"}) {
         const Table t = make_table(preset);

@@ -52,7 +52,7 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
     }
 }
 
-// Breaks of random speed, line and gap: none runs into the cap, none breaks a law.
+// Breaks of random speed, line and gap: none reaches the cap, none breaks a law.
 TEST(Scenes, SeededBreaks) {
     reference::Generator rng(20261121);
     std::size_t most = 0;

@@ -1,5 +1,4 @@
-// Boxes, tournament and rejects only leave out: the events are the same to the last bit whichever way they
-// are looked for.
+// Boxes, tournament and rejects only skip: the events are the same to the last bit whichever search is used.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -107,7 +106,7 @@ TEST(EventQueue, TheFirstOnesAreTheLeast) {
     }
 }
 
-// Random paths, many of them aimed so that they pass at about the reach.
+// Random paths, many of them aimed to pass at about the reach.
 TEST(Rejects, NeverLeaveOutAContact) {
     Generator rng(11);
     int rejected = 0, contacts = 0;
@@ -119,7 +118,7 @@ TEST(Rejects, NeverLeaveOutAContact) {
                   rolls,    true};
         Path other{vec(0.5), Vec2::Zero(), Vec2::Zero(), kInfinity, true, false};
         if (rng.uniform() < 0.5) {
-            // The place of the first ball at some time, and from there a diameter to any side, nearly.
+            // The position of the first ball at some time, and from there about a diameter to any side.
             const double t = rng.uniform() * ball.horizon, share = 1.0 + 1e-7 * rng.uniform(-5.0, 5.0);
             const SinCos side = sin_cos_deg(rng.uniform(0.0, 360.0));
             other.r = ball.r + t * (ball.v + 0.5 * t * ball.a) + 2.0 * R * share * Vec2(side.cos, side.sin);
@@ -191,14 +190,14 @@ TEST(Search, ARunThatStoppedGoesOnWithTheSameBits) {
     }
 }
 
-// Balls that fly apart for ever have no next event, and the search must say so.
+// Balls that fly apart forever have no next event, and the search must say so.
 TEST(Search, BallsThatPartForGoodEndTheRun) {
     Scene scene = frictionless();
     for (int i = 0; i < 6; ++i) {
         const SinCos away = sin_cos_deg(60.0 * i);
         add_ball(scene, std::to_string(i), away.cos, away.sin, away.cos, away.sin);
     }
-    // Two side by side, near each other for ever.
+    // Two side by side, near each other forever.
     add_ball(scene, "left", 0.0, 0.0, 0.1, 0.1);
     add_ball(scene, "right", 0.05, -0.05, 0.1, 0.1);
     for (const Way& way : kWays) {

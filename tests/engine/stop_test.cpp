@@ -1,4 +1,4 @@
-// How a run ends: at rest, at its time, at its number of events, and where nothing more can happen.
+// How a run ends: at rest, at its time limit, at its event limit, or because nothing more can happen.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Endless {
     Scene scene;
 };
 
-/// Motion without end to which, from some time before kStop on, nothing more happens.
+/// Endless motion in which nothing more happens from some time before kStop on.
 std::vector<Endless> endless_scenes() {
     std::vector<Endless> all;
     const auto add = [&all](const char* name, MotionState state, const std::function<void(Scene&)>& build) {
@@ -110,7 +110,7 @@ TEST(Stop, TheTimeOfTheCallStopsItToo) {
     }
 }
 
-// Events that never come: the run ends, and does not say that it is at rest.
+// Events that never come: the run ends, and does not claim to be at rest.
 TEST(Stop, ANumberOfEventsThatIsNotReachedEndsTheRunAtTheLastEvent) {
     for (Endless& c : endless_scenes()) {
         if (!c.scene.table.cushions.empty()) continue;
@@ -139,8 +139,8 @@ TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
     EXPECT_EQ(record.events.size(), 3u);
 }
 
-// A ball that all but never stops bouncing. What a run may hold
-// has a limit, also where the scene names none or a larger one.
+// A ball that almost never stops bouncing. The size of a run is limited, even if the scene sets no limit or a
+// larger one.
 TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
     Scene scene = empty_scene();
     scene.balls.e_t = 0.9999999;

@@ -37,7 +37,7 @@ double throw_deg(double phi, double v, bool rolls, double w_z, double fall, doub
     return (phi * kDegree - std::atan2(u.y(), u.x())) / kDegree;
 }
 
-// T10: Alciatore, TP A.14. Positive: towards the way the cue ball came.
+// T10: Alciatore, TP A.14. Positive: towards the side from which the cue ball came.
 double formula_deg(double phi, double v, bool rolls, double R_wz) {
     const double s = std::sin(phi * kDegree), c = std::cos(phi * kDegree);
     const double along = v * s - R_wz, up = rolls ? v * c : 0.0;
@@ -110,7 +110,7 @@ TEST(Throw, FrictionFallsWithTheSlip) {
     EXPECT_NEAR(p.ball_friction()(7.1), 0.01, 0.0001);
 }
 
-// In the model mathavan the fit enters by the friction that the impact takes.
+// In the model mathavan the fit enters through the friction of the impact.
 TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     Scene fit = empty_scene();
     fit.stop.events = 1;

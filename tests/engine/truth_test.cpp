@@ -1,5 +1,5 @@
-// Statements of tests/README.md in whole shots: T6 to T9, and what a cushion owes a ball
-// that rolls on afterwards.
+// Statements of tests/README.md in whole shots: T6 to T9, and how a cushion affects a ball that then rolls
+// again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ using namespace test;
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 
-// The object ball stands at cut angle phi; the cue ball comes along +x at 1 m/s with R w_y = roll.
+// The object ball is at cut angle phi; the cue ball comes along +x at 1 m/s with R w_y = roll.
 struct Hit {
     Record record;
     double time;  // of the impact
     Vec3 cue(double t) const { return record.state_at(0, t).velocity; }
     Vec3 object(double t) const { return record.state_at(1, t).velocity; }
-    // After both have come to roll.
+    // After both have begun to roll.
     double settled() const {
         double t = time;
         for (const Event& e : record.events)
@@ -76,7 +76,8 @@ TEST(Truth, T8ThirtyDegreeRule) {
     EXPECT_NEAR(turned_deg(hit(30.0, 1.0, 0.95).cue(hit(30.0, 1.0, 0.95).settled())), 32.265, 1e-3);
 }
 
-// Draw: the way back is about three times the cut angle. The numbers are exact, the rule is one of thumb.
+// Draw: the path back is at about three times the cut angle. The numbers are exact; the rule is a rule of
+// thumb.
 TEST(Truth, T9TrisectRule) {
     const double table[][3] = {{10.0, 30.5, 24.8}, {20.0, 57.7, 48.6}, {30.0, 80.8, 70.9}};
     for (const auto& row : table) {
@@ -88,8 +89,8 @@ TEST(Truth, T9TrisectRule) {
     }
 }
 
-// Section 8: a ball that rolls into a cushion leaves it sliding, and what topspin is left bends its path back
-// towards the cushion before it rolls again; straight in, it returns slower than e_c.
+// Section 8: a ball that rolls into a cushion leaves it sliding, and its remaining topspin bends its path
+// back towards the cushion before it rolls again; straight in, it returns slower than e_c.
 TEST(Truth, AfterACushionTheBallSlidesThenRollsAndTopspinBendsItBack) {
     for (const CushionModelInfo* model :
          {&kHan2005, cushion_model("mathavan_2010"), cushion_model("impulse"), cushion_model("stronge")}) {

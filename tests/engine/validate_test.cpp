@@ -1,5 +1,5 @@
-// Scenes built in code are refused in the words in which files are: by every bad scene that a struct can
-// hold, and by random mistakes, against the way over the text.
+// Scenes built in code are refused with the same words as files: for every bad scene that a struct can hold,
+// and for random mistakes, compared with the route through a text.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::string by_struct(const Scene& scene) {
     return message_of([&] { validate(scene); });
 }
 
-/// The way over the text, whose places are those of a text that nobody wrote.
+/// The route through a text, whose locations belong to a text that nobody wrote.
 std::string by_text(const Scene& scene) {
     try {
         parse_scene(scene_text(scene), scene.file);
@@ -75,7 +75,7 @@ void own_outline(Scene& scene) {
 
 using Mistake = std::function<void(Scene&)>;
 
-/// What each file of bad scenes gets wrong, in a struct.
+/// The mistake of each bad scene file, made in a struct.
 const std::map<std::string, Mistake>& mistakes() {
     static const double kInfinity = std::numeric_limits<double>::infinity();
     static const std::map<std::string, Mistake> all = {
@@ -161,6 +161,12 @@ const std::map<std::string, Mistake>& mistakes() {
              s.ball[0].height = 0.1;
              s.ball[0].position.z() += 0.1;
          }},
+        {"ball_behind_rail",
+         [](Scene& s) {
+             place(s, 0, -0.05, 1.0);
+             s.ball[0].height = 0.2;
+             s.ball[0].position.z() += 0.2;
+         }},
         {"bed_without_surface", [](Scene& s) { s.table.bed = Rectangle(0.0, 1.0, 2.0, 1.0); }},
         {"bed_of_planar_scene",
          [](Scene& s) {
@@ -188,8 +194,7 @@ const std::map<std::string, Mistake>& mistakes() {
     return all;
 }
 
-/// Mistakes in the way a file says something, which a struct
-/// does not have: syntax, types, keys, names of models, racks.
+/// Mistakes in the form of a file, which a struct cannot have: syntax, types, keys, names of models, racks.
 const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "ball_single_brackets",
                                         "camera_and_eye",
@@ -229,8 +234,8 @@ const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "wrong_type_integer",
                                         "wrong_type_number",
                                         "wrong_type_string"};
-/// The same rule as another file's, in a place that only
-/// the way over the text has to show: see OfRandomMistakes.
+/// The same rule as another file's, in a place that only the route through the text can show: see
+/// OfRandomMistakes.
 const std::set<std::string> kSameRule = {"in_jaw", "above_jaw", "in_own_cushion", "rack_does_not_fit"};
 
 TEST(Validate, SaysOfEveryBadSceneWhatTheReaderSays) {
@@ -251,13 +256,13 @@ TEST(Validate, SaysOfEveryBadSceneWhatTheReaderSays) {
     }
 }
 
-/// A scene of some balls on some table, with numbers of which some are wrong.
+/// A scene of some balls on some table, with some wrong numbers.
 Scene random_scene(SplitMix64& random) {
     static const char* const kTables[] = {"seven_foot", "nine_foot", "snooker", "carom"};
     Scene s;
     s.file = "s";
     s.table = make_table(kTables[random.below(4)]);
-    use_balls(s, kBallPresets[random.below(6)]);
+    use_balls(s, kBallPresets[random.below(std::size(kBallPresets))]);
     const int count = 1 + random.below(6);
     for (int i = 0; i < count; ++i) {
         BallStart ball;
@@ -343,7 +348,7 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
     EXPECT_GT(kinds.size(), 20u);
 }
 
-// What no file can say at all.
+// What no file can express.
 TEST(Validate, RefusesWhatNoFileCanSay) {
     Scene scene = good();
     scene.physics.ball_ball = nullptr;

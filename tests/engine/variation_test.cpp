@@ -1,4 +1,4 @@
-// Many scenes from one file: keys, distributions, and that a shot depends on nothing but what it should.
+// Many scenes from one file: keys, distributions, and that a shot depends only on what it should.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/sweep_columns.h"
@@ -38,7 +38,7 @@ class VariationTest : public testing::Test {
     Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
         return Variation(folder_.write("s.toml", text_), rules, seed);
     }
-    /// The message of a rule that has to fail.
+    /// The message of a rule that must fail.
     std::string error_of(const std::string& rule) {
         try {
             vary({rule});
@@ -103,7 +103,7 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_EQ(alone.shot(999).values, alone.shot(999).values);
     EXPECT_NE(alone.fingerprint(), among.fingerprint());
     EXPECT_NE(alone.fingerprint(), other_seed.fingerprint());
-    // A written-down value: changing the generator would change every sweep that was ever published.
+    // A fixed value: changing the generator would change every published sweep.
     EXPECT_EQ(alone.shot(0).values[0], "1.1117882243348463");
     EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
 }
@@ -198,7 +198,7 @@ Scene without_places(Scene scene) {
     return scene;
 }
 
-// The quick way makes the scene that the file would, or says that it cannot.
+// The fast route makes the scene that the file would, or says that it cannot.
 TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
         const Variation v = vary(rules);
@@ -279,7 +279,7 @@ TEST_F(VariationTest, AllShotsHaveTheSameBalls) {
         const VariedShot shot = v.shot(i);
         EXPECT_EQ(shot.scene.has_value(), shot.values[0] == "3");
         if (shot.scene) continue;
-        EXPECT_NE(shot.error.find("its balls are not those"), std::string::npos);
+        EXPECT_NE(shot.error.find("its balls differ from those"), std::string::npos);
     }
 }
 
@@ -294,7 +294,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.sped=uniform(1,2)", "unknown key \"sped\" in [cue]; the keys there are preset, ball, speed,"},
         {"cue.sped=uniform(1,2)", "; did you mean speed?"},
         {"cue.aim=normal(0.1)", "unknown key \"aim\" in [cue]"},
-        {"cue.aim=normal(0.1)", "; did you mean aim_deg?"},
+        {"cue.aimdeg=normal(0.1)", "; did you mean aim_deg?"},
         {"ball.cue.positoin=list([1,1])", "; did you mean position?"},
         {"effects.squrt=list(true)", "; did you mean squirt?"},
         {"quue.speed=uniform(1,2)", "unknown section or key \"quue\""},
@@ -329,7 +329,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=list()", "list has 0 values"},
         {"physics.cushion=list(smooth)", "strings in double quotes"},
         {"cue.speed=list(\"fast\")",
-         "none of the first 100 shots is a valid scene; shot 0: cue.speed must be a number"},
+         "none of the first 100 shots is a valid scene; shot 0: cue.speed must be a number, or a number"},
         {"cue.speed=uniform(-2,-1)", "none of the first 100 shots is a valid scene; shot 0: cue.speed = -"},
     };
     for (const auto& c : cases)

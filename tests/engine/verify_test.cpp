@@ -1,4 +1,4 @@
-// The judge judged: a record that breaks a law is caught, by the law's name.
+// The judge judged: a record that breaks a law is caught, and the law named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace carom::test {
 namespace {
 
-/// Two balls that roll behind one another on a table; the second is hit, and both come to rest.
+/// Two balls rolling behind one another on a table; the second is hit, and both come to rest.
 Plan roll_and_hit() {
     Scene scene = empty_scene();
     scene.table = make_table("nine_foot");
@@ -58,7 +58,7 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
          }},
         {"U3", "deep in a jaw",
          [&](Record& r) {
-             // Just beyond the end of a cushion, where its round end is and the cushion is not.
+             // Just beyond the end of a cushion, where its round end is but the cushion is not.
              const CushionLine& line = plan.geometry.cushions.front();
              for (Segment& s : r.tracks[1].segments) s.r.head<2>() = line.from - 0.005 * line.direction;
          }},
@@ -114,8 +114,8 @@ void spoil_impact(Record& record, double share) {
     record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
 }
 
-// The limit of U5 has the slack of the tolerance, and no more: 4000 right shots
-// are called right, and a speed that is wrong by some tolerances is called wrong.
+// The limit of U5 has the slack of the tolerance, and no more: 4000 correct shots pass, and a speed that is
+// off by some tolerances fails.
 TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     for (const double tolerance : {1e-3, 1e-6}) {
         reference::Generator random(5);
@@ -151,7 +151,7 @@ Plan roll_past(bool cushion) {
     return plan_of(scene);
 }
 
-// Nothing of this is seen at an event.
+// None of this shows at an event.
 TEST(Verify, LooksBetweenEvents) {
     const struct {
         const char *law, *says;
@@ -165,6 +165,11 @@ TEST(Verify, LooksBetweenEvents) {
         {"U3", "deep in a cushion", true,
          [](Record& r) {
              for (Segment& s : r.tracks[0].segments) s.r.x() = -0.08;
+         }},
+        // It rests there from the start.
+        {"U3", "deep in a cushion", true,
+         [](Record& r) {
+             for (Segment& s : r.tracks[1].segments) s.r.x() = -0.08;
          }},
         {"U3", "passes through a cushion", true,
          [](Record& r) {

@@ -12,7 +12,7 @@ namespace {
 
 using carom::tools::ImpactSettings;
 
-// By tolerance and by the published march, for the closed forms see the cushions.
+// By tolerance and by the published march; the cushions cover the closed forms.
 void answer(std::string_view line, ImpactSettings settings) {
     const carom::tools::ImpactAnswer got = carom::tools::answer_impact(line, settings);
     if (got.json.find('\n') != std::string::npos) std::abort();

@@ -1,5 +1,5 @@
-// Any text as a number, wherever a scene or a rule takes one:
-// it is refused, or it is the number that the text says.
+// Any text as a number, wherever a scene or a rule takes one: it is refused, or it is the number that the
+// text says.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@ void expect(bool holds) {
     if (!holds) std::abort();
 }
 
-/// As a number: the nearest double of the digits, and of an integer no other one.
+/// As a number: the double nearest to the digits; an integer must be exact.
 void check_number(double got, const std::string& text) {
     expect(got == std::strtod(text.c_str(), nullptr));
 }

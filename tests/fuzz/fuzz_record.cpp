@@ -1,5 +1,5 @@
-// Any text as a record file: read it, then ask of it what rendering asks. Refusing is right; a crash, a hang
-// or a NaN is a finding.
+// Any text as a record file: read it, then query it as rendering does. Refusing is right; a crash, a hang or
+// a NaN is a finding.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -11,7 +11,7 @@
 
 namespace {
 
-// Enough for every kind of event to come, few enough for hundreds of runs a second.
+// Enough for every kind of event, few enough for hundreds of runs per second.
 constexpr std::int64_t kEvents = 60;
 constexpr std::size_t kBalls = 12;
 constexpr int kSubsteps = 1000;
@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (small) check_finite(carom::simulate(plan));
     } catch (const carom::SceneError&) {
     } catch (const carom::SimulationError&) {
-        // A run that cannot go on says so: also an answer.
+        // A run that cannot continue says so, which is also an answer.
     }
     return 0;
 }

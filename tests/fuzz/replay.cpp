@@ -1,5 +1,5 @@
-// Runs every file of the folders that are named through one fuzz
-// target: the corpus as a plain test, built by any compiler.
+// Runs every file of the given folders through one fuzz target: the corpus as a plain test, built by any
+// compiler.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

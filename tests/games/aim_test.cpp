@@ -1,4 +1,4 @@
-// Aim help: every aim that is found is played, and pots the ball.
+// Aiming aid: every aim found is played, and pots the ball.
 #include "carom/games/aim.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ Cue center_ball(double speed) {
     return cue;
 }
 
-/// Plays the aim: whether the ball falls into the pocket, and how many cushions it met before.
+/// Plays the aim: whether the ball falls into the pocket, and how many cushions it hit before.
 struct Fate {
     bool fell = false;
     int cushions = 0;
@@ -81,7 +81,7 @@ TEST(Aim, LinesIntoPocketsTouchNothing) {
     const std::vector<PocketLine> lines = games::pocket_lines(scene, "1");
     ASSERT_EQ(lines.size(), 6u);
     for (const PocketLine& line : lines) EXPECT_TRUE(line.open()) << line.pocket;
-    // From the middle of the table opposite pockets are alike.
+    // From the middle of the table, opposite pockets are alike.
     for (std::size_t k = 0; k < 3; ++k) {
         const PocketLine &a = lines[k], &b = lines[k + 3];
         EXPECT_NEAR(a.width_deg, b.width_deg, 1e-6);
@@ -135,7 +135,7 @@ TEST(Aim, ThrowIsCompensated) {
     EXPECT_TRUE(played(scene, *aim.cue, "1", "p4").fell);
 }
 
-// Places, speeds and offsets at random, and all pockets that are open within 70 degrees of cut.
+// Random places, speeds and offsets, and all pockets that are open within 70 degrees of cut.
 TEST(Aim, PotsAtRandom) {
     SplitMix64 random(21);
     int found = 0, tried = 0, shots = 0, none = 0;
@@ -191,7 +191,7 @@ TEST(Aim, SaysWhyThereIsNone) {
     EXPECT_THROW(games::aim_pot(far, center_ball(3.0), "cue", "p3"), std::invalid_argument);
 }
 
-// A millimetre and more from the long rail: the facing of the corner guides the ball.
+// A millimetre or more from the long rail, the corner's facing guides the ball.
 TEST(Aim, ABallOnTheRailRunsAlongIt) {
     for (const double x : {0.03, 0.035, 0.04}) {
         const Scene scene = pool_scene({0.25, 1.0}, {x, 0.6});

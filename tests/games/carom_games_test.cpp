@@ -1,4 +1,4 @@
-// Three-cushion as the Union Mondiale de Billard plays it, and sum to three.
+// Three-cushion by the rules of the Union Mondiale de Billard, and sum to three.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,5 @@
-// Eight-ball: the sentences of the WPA's Rules of Play (15
-// March 2016) as shots. A test has the number of its rule.
+// Eight-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test has the number of
+// its rule.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -51,7 +51,7 @@ State playing(Group own) {
     return state;
 }
 
-/// A shot on which the cue ball meets `first`, and `potted` falls into p1.
+/// A shot in which the cue ball hits `first`, and `potted` falls into p1.
 Record potted(const std::vector<std::string>& ids, const std::string& first,
               const std::vector<std::string>& down) {
     Told told = table(ids);
@@ -128,7 +128,7 @@ TEST(EightBall, Rule33gABallOffTheTableOnTheBreakStaysOut) {
     EXPECT_EQ(decisions(v), (Decisions{Decision::kPlayOn, Decision::kTakeInHand}));
     EXPECT_EQ(v.options[1].state.in_hand, InHand::kHeadString);
     EXPECT_TRUE(v.respots().empty());
-    // But for the eight.
+    // Except the eight.
     const Verdict eight = judge(break_shot(), full_rack().hit("cue", "1").out("8").pocket("3").record());
     EXPECT_FALSE(eight.next().over);
     EXPECT_EQ(eight.respots().size(), 1u);
@@ -145,7 +145,7 @@ TEST(EightBall, Rule34TheFirstCalledBallDecidesTheGroups) {
     const Verdict v = judge(playing(Group::kOpen), potted({"1", "9"}, "1", {"1"}), {"1", "p1"});
     EXPECT_EQ(v.next().turn, 0);
     EXPECT_EQ(v.next().group, (std::array{Group::kSolids, Group::kStripes}));
-    // One of the other group may be met first while the table is open.
+    // A ball of the other group may be hit first while the table is open.
     const Verdict w = judge(playing(Group::kOpen), potted({"1", "9"}, "1", {"9"}), {"9", "p1"});
     EXPECT_EQ(w.next().group, (std::array{Group::kStripes, Group::kSolids}));
 }
@@ -174,11 +174,11 @@ TEST(EightBall, Rule35ACalledBallGoesOnAndAnotherDoesNot) {
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"}), {"1", "p2"}).next().turn, 1);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"}), {"2", "p1"}).next().turn, 1);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"})).next().turn, 1);
-    // What falls beside the call stays down and does no harm.
+    // Balls that fall besides the called one stay down and do no harm.
     const Verdict both = judge(playing(Group::kSolids), potted(ids, "1", {"9", "1"}), {"1", "p1"});
     EXPECT_EQ(both.next().turn, 0);
     EXPECT_TRUE(both.respots().empty());
-    // A ball of the other group is nobody's call.
+    // A ball of the other group cannot be called.
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"9"}), {"9", "p1"}).next().turn, 1);
 }
 
@@ -208,7 +208,7 @@ TEST(EightBall, Rule38aTheEightWithAFoulLoses) {
 
 TEST(EightBall, Rule38bTheEightBeforeTheGroupLoses) {
     EXPECT_EQ(judge(playing(Group::kSolids), potted({"1"}, "1", {"8"}), {"8", "p1"}).next().winner, 1);
-    // With the last ball of the group in one shot, too.
+    // With the last ball of the group in the same shot, too.
     EXPECT_EQ(judge(playing(Group::kSolids), potted({"1"}, "1", {"1", "8"}), {"8", "p1"}).next().winner, 1);
     EXPECT_EQ(judge(playing(Group::kOpen), potted({"1", "9"}, "1", {"8"}), {"8", "p1"}).next().winner, 1);
 }
@@ -273,7 +273,7 @@ TEST(EightBall, Rule611FromBehindTheHeadStringABallBehindItIsReachedOverTheStrin
     EXPECT_EQ(judge(state, straight.record()).fouls, (Fouls{Foul::kBehindHeadString}));
     const Told around = Told(told).passes("cue", 0.6, 2.4).hit("cue", "1").cushion("1");
     EXPECT_TRUE(judge(state, around.record()).fouls.empty());
-    // In hand anywhere there is no such line.
+    // In hand anywhere, there is no such line.
     state.in_hand = InHand::kAnywhere;
     EXPECT_TRUE(judge(state, straight.record()).fouls.empty());
 }

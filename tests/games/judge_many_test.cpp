@@ -1,4 +1,4 @@
-// Batches that judge: what the rules say of every shot by itself, whatever the number of threads.
+// Batches that judge: what the rules say about every shot by itself, whatever the number of threads.
 #include "carom/games/judge_many.h"
 
 #include <gtest/gtest.h>
@@ -44,8 +44,8 @@ const std::vector<GameScene>& game_scenes() {
     return list;
 }
 
-/// Tables with balls anywhere, some of them gone, and strikes
-/// at random; now and then a jump, or none that a scene takes.
+/// Tables with balls anywhere, some of them gone, and random strikes; now and then a jump, or an illegal
+/// strike.
 struct RandomTables {
     Scene base;
     std::vector<std::string> keys = {"cue.aim_deg", "cue.speed", "cue.elevation_deg"};
@@ -140,7 +140,7 @@ games::Call call_of(const games::State& state, const Scene& scene, const Record&
     return {};
 }
 
-/// How often something was seen in a game.
+/// How often something happened in a game.
 struct Seen {
     int fouls = 0, fair = 0, points = 0, turns = 0, back = 0, refused = 0;
 };
@@ -215,7 +215,7 @@ TEST(JudgeMany, SaysWhatTheRulesSayOfEveryShot) {
     }
 }
 
-// As judge() does: a table without a ball that the game needs is a mistake of the caller's.
+// Like judge(): a table without a ball that the game needs is the caller's mistake.
 TEST(JudgeMany, RefusesATableWithoutItsBalls) {
     RandomTables tables(game_scenes()[1], 40);
     for (std::size_t b = 0; b < tables.base.ball.size(); ++b)

@@ -1,5 +1,5 @@
-// Nine-ball: the sentences of the WPA's Rules of Play (15
-// March 2016) as shots. A test has the number of its rule.
+// Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test has the number of
+// its rule.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -79,7 +79,7 @@ TEST(NineBall, Rule24AfterAFairBreakAPushOutNeedsNeitherBallNorCushion) {
     EXPECT_EQ(push.options[1].state.turn, 0);
     EXPECT_FALSE(push.options[0].state.may_push_out);
     EXPECT_TRUE(judge(second_shot(), nine_table(1).record(), kPush).fouls.empty());
-    // Not announced, it is an ordinary shot; nor is there one later in the rack.
+    // Unannounced, it is an ordinary shot; and there is none later in the rack.
     EXPECT_EQ(judge(second_shot(), nine_table(1).hit("cue", "4").record()).fouls,
               (Fouls{Foul::kWrongBallFirst, Foul::kNoCushion}));
     EXPECT_EQ(judge(playing(), nine_table(1).record(), kPush).fouls, (Fouls{Foul::kNoBallHit}));
@@ -135,7 +135,7 @@ TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
         const Verdict v = judge(state, foul);
         EXPECT_FALSE(v.next().over);
         EXPECT_EQ(v.next().fouls[0], k);
-        // A fair shot of the other player is between, and does not count.
+        // A fair shot of the other player in between does not count.
         state = judge(v.next(), fair).next();
         EXPECT_EQ(state.turn, 0);
     }
@@ -143,7 +143,7 @@ TEST(NineBall, Rule614ThreeFoulsInARowLoseTheRack) {
     EXPECT_TRUE(third.next().over);
     EXPECT_EQ(third.next().winner, 1);
     EXPECT_EQ(third.fouls.back(), Foul::kThirdFoul);
-    // A fair shot of one's own ends the row.
+    // A player's own fair shot ends the series.
     EXPECT_EQ(judge(state, fair).next().fouls[0], 0);
 }
 
@@ -157,7 +157,8 @@ TEST(NineBall, NumbersThatWouldOverflowAreRefused) {
         }
 }
 
-// An option that brings back a ball, with a record or a scene that does not have it: nothing is read outside.
+// An option that respots a ball, with a record or a scene that does not have it: nothing is read out of
+// bounds.
 TEST(NineBall, AnOptionOfAnotherRecordIsRefused) {
     const Record record = nine_table(1).hit("cue", "2").pocket("9").record();
     const Record other = Told().ball("cue", 0.6, 0.3).ball("1", 0.6, 1.0).strike("cue").record();

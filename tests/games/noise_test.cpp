@@ -1,4 +1,4 @@
-// Execution noise: the errors that are promised, the same for a seed, and always a strike that a scene takes.
+// Execution noise: the promised errors, the same for a seed, and always a legal strike.
 #include "carom/games/noise.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(Noise, HasItsDeviations) {
     }
 }
 
-// Strikes at every end of what a scene takes, with noise as large as the range.
+// Strikes at every limit, with noise as large as the range.
 TEST(Noise, IsAlwaysAStrikeThatASceneTakes) {
     Scene scene = empty_scene();
     add_ball(scene, "cue", 0.5, 0.5);

@@ -1,5 +1,5 @@
-// Rules on shots that the engine plays: what is read from
-// a record, and whole games by players who hit at random.
+// Rules on shots that the engine plays: what is read from a record, and whole games by players who hit at
+// random.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
             EXPECT_EQ(outcome.approach_cushions, before) << aim;
         }
     }
-    // A hair's breadth away it is not frozen.
+    // A hair's breadth away, it is not frozen.
     EXPECT_TRUE(shot_of(simulate(plan_of(carom_scene({R + 1e-5, 1.42}, 180.0, 5.0)))).touches[0].driven);
 }
 
@@ -124,12 +124,12 @@ TEST(RealShots, TheFarthestPlaceIsThatOfManySamples) {
     }
 }
 
-/// Players who hit at a legal ball and hope. Every game that a rule knows has to go on to a legal scene.
+/// Players who hit at a legal ball and hope. Every game must continue to a legal scene.
 class RandomPlayers {
   public:
     RandomPlayers(Game game, std::uint64_t seed) : game_(game), random_(seed) { rack(); }
 
-    /// Plays to the end, or so many shots.
+    /// Plays to the end, or this many shots.
     void play(int shots) {
         state_ = games::new_game(game_, 0, 5);
         while (shots-- > 0 && !state_.over) shot();
@@ -211,14 +211,14 @@ class RandomPlayers {
                   verdict.chooser >= 0 && game_ != Game::kSnooker);
         const Shot shot = shot_of(record);
         for (const Option& option : verdict.options) {
-            // Only what is gone comes back, or what touches in three-cushion; once each.
+            // Only lost balls are respotted, or touching ones in three-cushion; once each.
             std::set<std::string> back;
             for (const games::Respot& r : option.respots) {
                 EXPECT_TRUE(back.insert(r.ball).second);
                 EXPECT_TRUE(shot.gone(games::index_of(record, r.ball)) ||
                             option.decision == games::Decision::kSpotTouching);
             }
-            // A foul never leaves the turn with the player without the other's choice.
+            // A foul never leaves the turn with the player unless the other one chooses so.
             const bool final = option.state.over || verdict.chooser >= 0 || game_ == Game::kSnooker;
             EXPECT_TRUE(verdict.fouls.empty() || final || option.state.turn != state_.turn);
             respots += static_cast<int>(option.respots.size());

@@ -155,7 +155,7 @@ TEST(Snooker, InHandTheCueBallIsInTheD) {
 }
 
 TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
-    // The one red lies behind the black as seen from the cue ball.
+    // The only red is hidden behind the black, as seen from the cue ball.
     Told told("snooker");
     told.ball("cue", 0.889, 2.0)
         .ball("black", 0.889, 2.3)
@@ -166,7 +166,7 @@ TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
     EXPECT_TRUE(v.next().free_ball);
     EXPECT_EQ(games::legal(v.next(), std::vector<std::string>{"cue", "black", "1", "blue"}).callable,
               (std::vector<std::string>{"black", "1", "blue"}));
-    // Not where one of its edges is covered only in part, and not without a foul.
+    // Not if one of its edges is covered only in part, and not without a foul.
     const Verdict open =
         judge(on(BallOn::kRed), Told(told).hit("cue", "blue").rests("black", 1.2, 2.3).record());
     EXPECT_FALSE(open.next().free_ball);

@@ -1,4 +1,4 @@
-// Balls come back to the table exactly, and onto no other one.
+// Balls are respotted exactly, and onto no other ball.
 #include "carom/games/spots.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Spots, Rule14ASpottedBallTouchesWhatIsInTheWayButNotTheCueBall) {
     EXPECT_GE((touching - spot).squaredNorm(), 4.0 * kBallR * kBallR);
     EXPECT_NEAR(games::spot_on_long_string(pool, spot, kBallR, cue).y() - spot.y(),
                 2.0 * kBallR + games::kSpotGap, 1e-15);
-    // All of the string to the foot rail is blocked: towards the middle.
+    // The whole string to the foot rail is blocked: towards the middle.
     std::vector<Lying> blocked;
     for (double y = spot.y(); y < pool.length; y += 2.0 * kBallR)
         blocked.push_back({{spot.x() + 0.001, y}, kBallR, 0.0});
@@ -80,7 +80,7 @@ TEST(Spots, NeverOverlapAndAreTheNearestAtRandom) {
         ASSERT_LE(place.y(), pool.length - kBallR);
         moved += place != spot;
         back += place.y() < spot.y();
-        // No place nearer on the same side is free; towards the foot rail all of them are tried first.
+        // No nearer place on the same side is free; towards the foot rail all of them are tried first.
         const double step = place.y() < spot.y() ? -1e-4 : 1e-4;
         for (int k = 0; std::abs(k * step) < std::abs(place.y() - spot.y()) - 1e-12; ++k)
             ASSERT_FALSE(is_free(spot + Vec2(0.0, k * step), kBallR, others)) << round << " " << k;

@@ -82,7 +82,7 @@ HertzLaw random_law(reference::Generator& rng) {
 
 TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
     reference::Generator rng(
-        9);  // a seed at which an open contact between those that overlap would shorten a step
+        9);  // with this seed, an open contact between overlapping balls would shorten a step
     std::set<std::size_t> sizes, stages;
     for (int k = 0; k < 300; ++k) {
         const Cluster start = random_cluster(rng);
@@ -165,7 +165,7 @@ TEST(ContactPhase, TheClothBetweenStepsIsOfSecondOrder) {
     }
 }
 
-// A cloth on which no ball slides is stiff. It does not limit the step.
+// A cloth on which no ball slides is stiff, but does not limit the step.
 TEST(ContactPhase, StickAtTheClothNeedsNoShorterSteps) {
     HertzLaw law = pool_law(1e-2);
     law.mu_s = 20.0;
@@ -207,8 +207,8 @@ TEST(ContactPhase, NeverGainsEnergy) {
     }
 }
 
-// A contact lasts about 2.5 L/V. Nothing is computed after the last one, and nothing of one that comes later
-// than the look-ahead.
+// A contact lasts about 2.5 L/V. Nothing is computed after the last one, nor for one that comes later than
+// the look-ahead.
 TEST(ContactPhase, StopsWhenNothingCloses) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;
@@ -225,9 +225,9 @@ TEST(ContactPhase, StopsWhenNothingCloses) {
     EXPECT_NEAR(near.motion[11], 0.950625, 1e-4) << "comes in 1.7 L/V";
 }
 
-// Two balls that move on together close or open at the rounding of their
-// speeds, without end; and what has hardly any restitution opens long after its
-// force has gone. Such phases took all their time, and then counted as jammed.
+// Two balls moving together close or open at the rounding of their speeds, without end; and a contact with
+// hardly any restitution opens long after its force has gone. Such phases took all their time, and then
+// counted as jammed.
 TEST(ContactPhase, EndsWhenNothingIsLeftToDo) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;

@@ -1,6 +1,6 @@
-// The bits of the kernels, as hashes that hold on every processor: this machine's
-// instruction sets, and another processor that builds the same sources. The impacts are
-// made of + - * / alone, because the sin and pow of libraries differ between processors.
+// The bits of the kernels, as hashes that hold on every processor: for this machine's instruction sets, and
+// for another processor that builds the same sources. The impacts use only + - * /, because sin and pow
+// differ between libraries.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The instruction set of every kernel: by name, and where none is named.
+// The instruction set of every kernel: by name, and by default.
 #include "carom/kernel/isa.h"
 
 #include <gtest/gtest.h>

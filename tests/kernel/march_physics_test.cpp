@@ -1,5 +1,5 @@
-// Physical truths that the march must show (tests/README.md): T6 to T8, T12, T13, T15. An Euler
-// march of N steps errs by up to (1 + e) v_n / N, so those that are limits are asked within that.
+// Physical truths that the march must show (tests/README.md): T6 to T8, T12, T13, T15. An Euler march of N
+// steps errs by up to (1 + e) v_n / N, so limits are tested within that.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -144,8 +144,8 @@ TEST(MarchPhysics, T13SlipCompliance) {
 }
 
 TEST(MarchPhysics, T13ClothSlipChangesBySevenHalves) {
-    // The cloth's impulse Q acts on the ball that is pressed
-    // down. Of ball 2: d(u_x) = -P1 + kappa Q, P1 = dv1x.
+    // The cloth's impulse Q acts on the ball that is pressed down. For ball 2: d(u_x) = -P1 + kappa Q, P1 =
+    // dv1x.
     int seen = 0;
     for (Impact impact : random_impacts(4, 400)) {
         impact.params.mu_s1 = 0.0;  // only ball 2 feels the cloth

@@ -1,4 +1,4 @@
-// The plain march against numbers that other software computed, and against itself on every instruction set.
+// The plain march against numbers computed by other software, and against itself on every instruction set.
 #include <gtest/gtest.h>
 
 #include "carom/kernel/march.h"
@@ -25,8 +25,8 @@ TEST(MarchReference, ReproducesThePapersFiveStates) {
     }
 }
 
-// The loop ends at the first step past its target. Where the work at that step equals the target to a few
-// ulp, two correct roundings may stop one step apart; no input of this file sits on such a tie.
+// The loop ends at the first step past its target. If the work at that step equals the target to a few ulp,
+// two correct roundings may stop one step apart; no input of this file is such a tie.
 struct Column {
     const char* name;
     int n, cases;

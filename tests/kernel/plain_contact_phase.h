@@ -1,5 +1,5 @@
-// The plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at
-// once), which every instruction set is compared with, bit for bit.
+// A plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at
+// once), with which every instruction set is compared, bit for bit.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ class Plain {
     struct Contact {
         double d, memory;
         Direction n;
-        double turn;   // angle a unit of time
+        double turn;   // angle per unit of time
         double share;  // of the turning while closed
         bool closed;
     };
@@ -84,8 +84,8 @@ class Plain {
     std::vector<Contact> contacts_;
     const HertzLaw law_;
     const double curvature_;
-    double next_ = 0.0;          // the longest step that the error of the last one allows
-    std::vector<double> ahead_;  // of each ball the vertical impulse that the cloth has answered already
+    double next_ = 0.0;          // the longest step that the last error allows
+    std::vector<double> ahead_;  // vertical impulse of each ball that the cloth has already answered
 
   public:
     std::vector<double> y;
@@ -253,7 +253,7 @@ class Plain {
         slope.limit[j] += k;
     }
 
-    /// e^-x by the series of the kernel, whose bits it has.
+    /// e^-x by the kernel's series, whose bits it has.
     static double falling_exponential(double x) {
         const double t = std::min(x / 64.0, 1.0);
         double power = 1.0 / 720.0;
@@ -313,7 +313,7 @@ class Plain {
 
     bool has_friction() const { return law_.mu_b > 0.0 || law_.mu_b_more > 0.0; }
 
-    // How much longer steps may be without friction, where all is slow.
+    // How much longer steps may be without friction, if everything is slow.
     double slowness() const {
         if (has_friction()) return 1.0;
         double fastest = 0.0;
@@ -340,8 +340,8 @@ class Plain {
                                             k[0].limit[static_cast<std::size_t>(start_[c].j)]);
         }
         if (has_friction()) longest = std::min(longest, next_);
-        // The classical method where nothing is stiff, else Simpson's
-        // weights at 0, a node below 1/2 that counts nothing, 1/2, 1.
+        // The classical method if nothing is stiff, else Simpson's weights at 0, a node below 1/2 with weight
+        // 0, 1/2, 1.
         const bool stiff = has_friction();
         const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};

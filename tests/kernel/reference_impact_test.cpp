@@ -1,5 +1,5 @@
-// The truth is itself checked: by other orders and step sizes,
-// by its energy book, by closed solutions and by the march.
+// The truth itself is checked: by other orders and step sizes, by its energy balance, by closed solutions and
+// by the march.
 #include "reference/solver.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(ReferenceImpact, OrderAndStepSizeDoNotMatter) {
     }
 }
 
-// T14: what both frictions and the restitution take is what the balls lose.
+// T14: what both frictions and the restitution take equals what the balls lose.
 TEST(ReferenceImpact, EnergyBookCloses) {
     Generator rng(12);
     for (int n = 0; n < 400; ++n) {

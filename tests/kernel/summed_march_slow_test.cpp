@@ -1,6 +1,6 @@
-// The bound of the summed march on random impacts of either sign of the cloth
-// slip, and on more hard ones. With CAROM_SLOW_TESTS=1 they are a million of
-// either sign and 400 000 hard ones (two minutes); else a tenth of them.
+// The bound of the summed march on random impacts of both signs of the cloth slip, and on more hard ones.
+// With CAROM_SLOW_TESTS=1 there are a million of each sign and 400 000 hard ones (two minutes); else a tenth
+// of that.
 #include <gtest/gtest.h>
 
 #include <cstdint>

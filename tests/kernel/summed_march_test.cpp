@@ -52,7 +52,7 @@ TEST(SummedMarch, FewSubstepsAreThePublishedMarch) {
         EXPECT_EQ(follow(random_impacts_of(44, 300, ClothSlip::kConsistent), n).summed, 0) << "N = " << n;
 }
 
-// Without losses v_n is 0 after N/2 steps and the work complete after N, but for rounding.
+// Without losses v_n is 0 after N/2 steps and the work complete after N, except for rounding.
 TEST(SummedMarch, TiesAreThePublishedMarch) {
     std::vector<Impact> impacts;
     for (const double speed : {0.3, 0.7, 1.0, 2.3, 5.1}) {
@@ -64,14 +64,14 @@ TEST(SummedMarch, TiesAreThePublishedMarch) {
     for (const int n : {100, 1000, 1001, 1234}) EXPECT_EQ(follow(impacts, n).summed, 0) << "N = " << n;
 }
 
-// e_b = 0 ends with compression and is no tie.
+// e_b = 0 ends with compression and is not a tie.
 TEST(SummedMarch, WithoutRestitutionItIsSummed) {
     std::vector<Impact> impacts = random_impacts_of(45, 300, ClothSlip::kConsistent);
     for (Impact& impact : impacts) impact.params.e_b = 0.0;
     EXPECT_GT(follow(impacts, 1000).summed, 270);
 }
 
-// The engine leaves out what is not felt, and its records keep their bits.
+// The engine skips what has no effect, and its records keep their bits.
 TEST(SummedMarch, WithoutFrictionBetweenTheBallsTheClothChangesNoBit) {
     for (Impact& rough : random_impacts_of(48, 1000, ClothSlip::kConsistent)) {
         rough.params.mu_b = 0.0;

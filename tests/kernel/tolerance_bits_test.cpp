@@ -1,5 +1,5 @@
-// One answer everywhere: the same bits from every instruction set and every place in a batch; and an answer
-// to any input at all.
+// One answer everywhere: the same bits from every instruction set and every position in a batch; and an
+// answer to any input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,8 +61,8 @@ TEST(ToleranceBits, EveryInstructionSetAgrees) {
     }
 }
 
-// The same bits from gcc and clang, with and without optimisation: every build must meet this hash. A change
-// of the method changes it; then it is renewed here, and every compiler must still agree.
+// The same bits from gcc and clang, with and without optimisation: every build must match this hash. If a
+// change of the method changes it, renew it here; every compiler must still agree.
 TEST(ToleranceBits, EveryCompilerAgrees) {
     Generator rng(65);
     std::uint64_t hash = 0xCBF29CE484222325ull;
@@ -75,7 +75,7 @@ TEST(ToleranceBits, EveryCompilerAgrees) {
     };
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         std::vector<Impact> impacts;
-        for (int n = 0; n < 3000; ++n) {  // of + - * / alone: sin and cos differ between libraries
+        for (int n = 0; n < 3000; ++n) {  // only + - * /: sin and cos differ between libraries
             Impact i{};
             i.params = {
                 0.03,          0.2, rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.2),
@@ -127,7 +127,7 @@ TEST(ToleranceBits, PlaceAndLengthOfABatchDoNotMatter) {
     }
 }
 
-// Where all impacts of a batch need 8 nodes, or stretches, the lists that gather them fill to the end.
+// If all impacts of a batch need 8 nodes, or stretches, the lists that gather them fill up.
 TEST(ToleranceBits, BatchesOfOneKind) {
     for (ToleranceMethod kind : {ToleranceMethod::kCollocation8, ToleranceMethod::kAdaptive}) {
         Generator rng(66);

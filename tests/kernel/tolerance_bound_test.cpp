@@ -1,5 +1,5 @@
-// The bound: no error exceeds the tolerance, over random
-// impacts, impacts built to be hard, and any approach speed.
+// The bound: no error exceeds the tolerance, over random impacts, impacts built to be hard, and any approach
+// speed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The bound on the 40 000 impacts that the project's claims
-// name, both signs of the cloth slip, and more hard ones.
+// The bound on the 40 000 impacts that the project's claims name, with both signs of the cloth slip, and more
+// hard ones.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What the tests of the kernel by tolerance share: calls, batches, energy, and impacts built to be hard.
+// Shared by the tests of the kernel by tolerance: calls, batches, energy, and impacts built to be hard.
 #pragma once
 
 #include <cmath>
@@ -54,7 +54,7 @@ inline double energy_after(const Impact& i, const kernel::ImpactResult& r) {
     return kinetic(r.v1, r.w1, r.v2, r.w2, i.params.R);
 }
 
-/// Largest speed that goes in: what rounding is relative to.
+/// Largest input speed, to which rounding is relative.
 inline double speed_scale(const Impact& i) {
     double most = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -70,9 +70,9 @@ inline double approach_speed(const Impact& i) {
     return ((i.ball1.v[0] - i.ball2.v[0]) * dx + (i.ball1.v[1] - i.ball2.v[1]) * dy) / d;
 }
 
-/// Impacts around everything that is singular: slip that ends, cloth slip that
-/// passes or starts next to zero, both, over many decades; e_b and the
-/// frictions up to `mu_b` and `mu_s`, their limits included. Approach speed 1.
+/// Impacts around everything singular: slip that ends, cloth slip that passes or starts next to zero, both,
+/// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, including their limits. Approach speed
+/// 1.
 inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip,
                                  double mass_ratio = 1.0) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
@@ -111,8 +111,7 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
     return i;
 }
 
-/// Random impacts and as many built to be hard, of balls whose
-/// masses have a ratio of 1/10 to 10, the ends included.
+/// Random impacts, and as many built to be hard, of balls with mass ratios of 1/10 to 10, ends included.
 inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count,
                                                          kernel::ClothSlip slip) {
     Generator rng(seed);
@@ -128,7 +127,7 @@ inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int
     return impacts;
 }
 
-/// Structure of arrays around impacts (all of one sign of the cloth slip), with room for the results.
+/// Structure of arrays around impacts (all with one sign of the cloth slip), with room for the results.
 class Lanes {
   public:
     explicit Lanes(const std::vector<Impact>& impacts) : count_(impacts.size()) {

@@ -1,5 +1,5 @@
-// What an impact must keep: energy, momentum, and bit for bit its mirror image, its turn by 90 degrees, the
-// exchange of the balls and any power of two of its speeds.
+// What an impact must conserve: energy, momentum and, bit for bit, its mirror image, its turn by 90 degrees,
+// the exchange of the balls and any power of two of its speeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Impact any_impact(Generator& rng) {
                                : hard_random_impact(rng, 0.3, 0.6, ClothSlip::kConsistent);
 }
 
-// U4. A part of rounding is left: the energies are sums of squares of numbers that were rounded once.
+// U4. Some rounding remains: the energies are sums of squares of numbers that were rounded once.
 TEST(ToleranceEnergy, NeverRises) {
     Generator rng(51);
     for (double tolerance : {1e-1, 1e-3, 1e-6, 1e-10}) {
@@ -40,8 +40,8 @@ TEST(ToleranceEnergy, NeverRises) {
     }
 }
 
-// The pair gains no momentum but the cloth's, which acts on
-// one ball and is at most mu_s mu_b times the normal impulse.
+// The pair gains only the cloth's momentum, which acts on one ball and is at most mu_s mu_b times the normal
+// impulse.
 TEST(ToleranceMomentum, OnlyTheClothChangesIt) {
     Generator rng(52);
     for (int n = 0; n < 20000; ++n) {
@@ -105,7 +105,7 @@ void expect_equivariant(Transform transform, std::uint64_t seed) {
                     after.ball2.w[k] = r.w2[k];
                 }
                 transform(after);
-                for (int k = 0; k < 3; ++k) {  // == and not bits: a mirrored 0 is -0
+                for (int k = 0; k < 3; ++k) {  // == instead of bits: a mirrored 0 is -0
                     differing += !(after.ball1.v[k] == image.v1[k] && after.ball1.w[k] == image.w1[k] &&
                                    after.ball2.v[k] == image.v2[k] && after.ball2.w[k] == image.w2[k]);
                 }

@@ -65,8 +65,8 @@ TEST(Tolerance, GearingThrowsNothing) {
     }
 }
 
-// H25 and the throw table's no-slip branch: dv = slip/7 where
-// it sticks, mu_b times the impulse where it slides on.
+// H25 and the throw table's no-slip branch: dv = slip/7 if it sticks, mu_b times the impulse if it keeps
+// sliding.
 TEST(Tolerance, HorizontalSlipIsClosed) {
     for (double x : {1e-4, 0.1, 0.33, -0.2, 0.4, 3.0}) {
         const ImpactResult r = solve(plain(x), 1e-3);
@@ -84,8 +84,8 @@ TEST(Tolerance, HorizontalSlipIsClosed) {
     }
 }
 
-// The straight draw shot, which no march converges on: with
-// the spin against it the cue ball's slip is vertical only.
+// The straight draw shot, on which no march converges: with the spin against it, the cue ball's slip is
+// vertical only.
 TEST(Tolerance, StraightDraw) {
     for (double spin : {30.0, 60.0, -40.0}) {
         Impact i = plain(0.0);
@@ -145,7 +145,7 @@ TEST(Tolerance, MathavanTable) {
     }
 }
 
-// T14 at the strictest tolerance: the energy that is lost is what restitution and both frictions take.
+// T14 at the strictest tolerance: the lost energy is what restitution and both frictions take.
 TEST(Tolerance, EnergyBook) {
     Generator rng(21);
     for (int n = 0; n < 300; ++n) {
@@ -203,7 +203,7 @@ TEST(Tolerance, MethodsAndInstructionSetsHaveNames) {
     EXPECT_STREQ(name(ToleranceMethod::kNone), "");
 }
 
-// Every method is in use on the impacts of the benchmark at the tolerance it is made for.
+// On the impacts of the benchmark, every method is used at the tolerance for which it is made.
 TEST(Tolerance, EasyImpactsTakeOneCollocation) {
     const auto impacts = random_impacts(5, 2000);
     const auto count = [&](double tolerance, ToleranceMethod method) {
@@ -218,8 +218,8 @@ TEST(Tolerance, EasyImpactsTakeOneCollocation) {
     EXPECT_GT(count(1e-6, ToleranceMethod::kAdaptive), 20);
 }
 
-// Sweeps of 4 nodes come before those of 8, and leave them half of the
-// work: without them 8 nodes take 6.2 sweeps here, all of the dear kind.
+// Sweeps of 4 nodes come before those of 8, and leave them half of the work: without them, 8 nodes take 6.2
+// sweeps here, all of the expensive kind.
 TEST(Tolerance, SweepsOfEightNodes) {
     const std::vector<Impact> impacts = reference::random_impacts(1, 2000);
     Lanes lanes(impacts);

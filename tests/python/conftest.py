@@ -74,9 +74,8 @@ def stuck_scene(speed):
     is no model."""
     import carom
 
-    balls = [
-        {"id": "a", "position": [0, 0], "velocity": [speed, 0]},
-        {"id": "b", "position": [0.2, 0], "mass": 0.34}]
+    balls = [{"id": "a", "position": [0, 0], "velocity": [speed, 0]},
+             {"id": "b", "position": [0.2, 0], "mass": 0.34}]
     return carom.Scene(
         table={"cushion": []}, balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls)
 

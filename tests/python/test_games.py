@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from conftest import program_sweep
@@ -30,13 +33,11 @@ def test_noise_has_names_and_is_the_same_for_a_seed():
 
 
 def test_noise_is_what_a_sweep_draws(tmp_path):
-    scene = carom.Scene(
-        ball=[{"id": "cue", "position": [0.5, 0.5]}],
-        cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
+    scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}],
+                        cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
     (tmp_path / "s.toml").write_text(scene.text())
-    rules = [
-        "cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)",
-        "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
+    rules = ["cue.speed=normal(0.2)", "cue.aim_deg=normal(0.3)", "cue.elevation_deg=normal(0.4)",
+             "cue.offset.side=normal(0.01)", "cue.offset.height=normal(0.02)"]
     header, rows = program_sweep(tmp_path, tmp_path / "s.toml", rules, 20, 5)
     strikes = games.noisy(
         np.tile([4.0, 30.0, 9.0, 0.1, 0.0], (20, 1)), games.Noise(0.2, 0.3, 0.4, 0.01, 0.02), 5)
@@ -60,33 +61,27 @@ def test_a_noisy_strike_is_legal_whatever_it_was():
 
 
 RACKS = {
-    "eight_ball": {
-        "table": "nine_foot", "balls": "pool", "rack": "eight_ball",
-        "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
-    "nine_ball": {
-        "table": "nine_foot", "balls": "pool", "rack": "nine_ball",
-        "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "eight_ball": {"table": "nine_foot", "balls": "pool", "rack": "eight_ball",
+                   "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "nine_ball": {"table": "nine_foot", "balls": "pool", "rack": "nine_ball",
+                  "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
     "three_cushion": {"table": "carom", "balls": "carom", "rack": "three_cushion"},
-    "snooker": {
-        "table": "snooker", "balls": "snooker", "rack": "snooker",
-        "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
-    "sum_to_three": {
-        "table": "carom", "balls": "carom",
-        "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
+    "snooker": {"table": "snooker", "balls": "snooker", "rack": "snooker",
+                "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
+    "sum_to_three": {"table": "carom", "balls": "carom",
+                     "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
 }
 
 
 def test_a_new_game_and_what_is_legal():
     state = games.new_game("eight_ball")
-    assert state == games.State(
-        "eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"), False, (0, 0), "red",
-        False)
+    assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"),
+                                False, (0, 0), "red", False)
     assert games.legal(state, ["cue", "8", "1"]) == games.Legal(["cue"], ["8", "1"], [], "head string", False)
     later = state._replace(opening=False, in_hand="no", group=("solids", "stripes"))
     assert games.legal(later, ["cue", "8", "1", "9"]).callable == ["1"]
-    assert games.legal(
-        games.new_game("three_cushion", first=1),
-        carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
+    assert games.legal(games.new_game("three_cushion", first=1),
+                       carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
     for bad in (
         lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3),
         lambda: games.legal(state._replace(over=True), ["8"])
@@ -102,9 +97,8 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
-        ball=[
-            {"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
-            {"id": "9", "position": [0.7, 1.0]}],
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
         cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
     )
     record = carom.simulate(scene)
@@ -125,13 +119,60 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
         games.judge(state, carom.simulate(scene, until=0.1))
 
 
+def test_a_verdict_is_of_one_record():
+    # The same balls, a little slower: what holds for one shot is not told of the other.
+    scene = carom.Scene(
+        table="nine_foot",
+        balls="pool",
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.2, 0.2]},
+              {"id": "9", "position": [0.7, 1.0]}],
+        cue={"speed": 4.0, "aim_deg": 225.0, "offset": [0.0, 0.4]},
+    )
+    record, other = carom.simulate(scene), carom.simulate(scene.replace(**{"cue.speed": 3.9}))
+    lone = [{"id": "x", "position": [0.5, 0.4]}]
+    one = carom.simulate(carom.Scene(table="snooker", balls="snooker", ball=lone,
+                                     cue={"ball": "x", "speed": 0.1}))
+    verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
+    option = verdict.options[0]
+    for of_another in (other, one):
+        for kept in (option, pickle.loads(pickle.dumps(option)), copy.deepcopy(verdict).options[0]):
+            with pytest.raises(ValueError, match="the verdict is of another record; give the record"):
+                games.may_place(of_another, kept, (0.7, 0.5))
+            with pytest.raises(ValueError, match="the verdict is of another record"):
+                games.next_scene(of_another, kept, place=(0.7, 0.5))
+        with pytest.raises(ValueError, match="the verdict is of another record"):
+            games.next_scene(of_another, verdict, place=(0.7, 0.5))
+    assert games.may_place(record, pickle.loads(pickle.dumps(option)), (0.7, 0.5))
+    # An option is a tuple of three, and one that is made by hand is of any record that has its balls.
+    decision, state, respots = option
+    mine = games.Option(decision, state, respots)
+    assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
+    assert games.may_place(other, mine, (0.7, 0.5))
+    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
+        games.may_place(one, mine, (0.7, 0.5))
+    with pytest.raises(ValueError, match='the record has no ball "black"'):
+        games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))
+
+
+def test_a_verdict_of_a_loaded_record_is_of_that_record(tmp_path):
+    scene = carom.Scene(
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.3, 0.6]},
+              {"id": "9", "position": [0.7, 1.0]}], cue={"speed": 1.0})
+    record = carom.simulate(scene)
+    record.save(tmp_path / "shot.json")
+    verdict = games.judge(games.new_game("nine_ball")._replace(opening=False, in_hand="no"), record)
+    place = (0.5, 0.5) if verdict.next.in_hand != "no" else None
+    loaded = carom.Record.load(tmp_path / "shot.json")
+    assert games.next_scene(loaded, verdict, place=place, scene=scene) == games.next_scene(
+        record, verdict, place=place)
+
+
 def test_respots_come_back_exactly():
     scene = carom.Scene(
         table="snooker",
         balls="snooker",
-        ball=[
-            {"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]},
-            {"id": "1", "position": [0.5, 2.0]}],
+        ball=[{"id": "cue", "position": [1.5, 3.3]}, {"id": "black", "position": [1.65, 3.45]},
+              {"id": "1", "position": [0.5, 2.0]}],
         cue={"speed": 1.5, "aim_deg": 45.0, "offset": [0.0, -0.2]},
     )
     record = carom.simulate(scene)

@@ -57,9 +57,8 @@ def test_the_example_plays_the_shot_that_it_says(tmp_path):
     example = runpy.run_path(str(SOURCE / "examples/python/shot.py"))
     (tmp_path / "cut.toml").write_text(example["cut_shot"]().text())
     carom_program("simulate", tmp_path / "cut.toml", "--events", tmp_path / "e.csv")
-    printed = subprocess.run(
-        [sys.executable, SOURCE / "examples/python/shot.py"], capture_output=True, text=True,
-        check=True).stdout.splitlines()
+    printed = subprocess.run([sys.executable, SOURCE / "examples/python/shot.py"], capture_output=True,
+                             text=True, check=True).stdout.splitlines()
     rows = rows_of(tmp_path / "e.csv")[1:]
     assert [line.split() for line in printed[: len(rows)]] == [
         f"{float(t):.6f} s {kind} {a} {b}".split() for t, kind, a, b in rows]
@@ -74,9 +73,8 @@ def test_blocks_and_examples_pass_a_strict_check_of_types(tmp_path):
         files.append(tmp_path / f"{page.stem}_page.py")
         files[-1].write_text("".join(code for code, _ in blocks(page)))
     done = subprocess.run(
-        [
-            sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--config-file", "/dev/null",
-            "--cache-dir", os.environ.get("CAROM_MYPY_CACHE", tmp_path / "cache"), *files],
+        [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--config-file", "/dev/null",
+         "--cache-dir", os.environ.get("CAROM_MYPY_CACHE", tmp_path / "cache"), *files],
         capture_output=True,
         text=True,
         env=os.environ | {"MYPYPATH": os.environ.get("PYTHONPATH", "")},

@@ -71,9 +71,8 @@ def test_the_vector_is_so_many_single_environments(name, options, mode):
                 many.step(actions)
             # Reset some tables, as Gymnasium's own vector does, and seed one of them.
             again = [None, 9, None, None, None]
-            assert same_bits(
-                many.reset(seed=again, options={"reset_mask": ended.copy()}),
-                single.reset(seed=again, options={"reset_mask": ended.copy()}))
+            assert same_bits(many.reset(seed=again, options={"reset_mask": ended.copy()}),
+                             single.reset(seed=again, options={"reset_mask": ended.copy()}))
     assert over > 0 and same_bits(many.reset(seed=8), single.reset(seed=8))
     assert same_bits(many.reset(), single.reset())
 
@@ -118,9 +117,8 @@ def corners(size):
     tiny = np.array([-1.0, 0.0, 1.0, 1e-45, -1e-30, 0.5])
     few = np.array(list(itertools.product([-1.0, 0.0, 1.0], repeat=size)))
     random = np.random.default_rng(5)
-    return np.concatenate((
-        few, random.choice(tiny, (300, size)), random.uniform(-1, 1, (700, size)),
-        random.uniform(-3, 3, (200, size))))
+    return np.concatenate((few, random.choice(tiny, (300, size)), random.uniform(-1, 1, (700, size)),
+                           random.uniform(-3, 3, (200, size))))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -145,9 +143,8 @@ def test_the_square_of_offsets_is_laid_on_the_whole_disc():
     env.reset(seed=1)
     side, height = env.rollout(env.states.take([0] * 5), ends).cue.T[3:]
     half = np.sqrt(0.125)
-    assert np.allclose(
-        np.column_stack((side, height)), [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]],
-        atol=1e-9)
+    assert np.allclose(np.column_stack((side, height)),
+                       [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]], atol=1e-9)
 
 
 def test_directions_are_those_of_numpy():
@@ -343,9 +340,8 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
             points = verdict.points if "Run" not in name else sum(ball != "cue" for ball, _ in fallen) * fair
             assert played.reward[row] == points
             if goes_on:
-                there = {
-                    ball: place for ball, place in zip(game.ids, played.states.xy[row])
-                    if place[0] == place[0]}
+                there = {ball: place for ball,
+                         place in zip(game.ids, played.states.xy[row]) if place[0] == place[0]}
                 # After a foul, the next scene needs a place for the cue ball; these games end instead.
                 after = carom.games.next_scene(record, verdict)
                 assert sorted(there) == sorted(after.ids)
@@ -435,9 +431,8 @@ def test_a_shot_without_an_end_is_truncated_and_says_why():
 
 def test_a_run_that_cannot_go_on_is_truncated_too():
     balls = [{"id": "cue", "position": [0.4, 0.4]}, {"id": "b", "position": [0.6, 0.4], "mass": 0.34}]
-    scene = carom.Scene(
-        balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls,
-        cue={"speed": 1.0, "aim_deg": 0.0})
+    scene = carom.Scene(balls={"mu_b": 0, "e_b": 0}, physics={"clusters": "sequential"}, ball=balls,
+                        cue={"speed": 1.0, "aim_deg": 0.0})
     env = carom.gym.make_env("Pot", scene=scene)
     env.reset(seed=1, options={"scene": scene})
     *_, reward, terminated, truncated, info = env.step(np.array([1, 0, -0.5, 0, 0], np.float32))

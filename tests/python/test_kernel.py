@@ -42,9 +42,8 @@ def test_ball_ball_is_that_of_the_program(model):
     lines = []
     for (one, two), mu, e in zip(rvw.tolist(), mu_b, e_b):
         params = {"R": R, "m": 0.17, "mu_s1": 0.2, "mu_s2": 0.2, "mu_b": mu, "e_b": e}
-        lines.append({
-            "kind": "ball_ball", "params": params, "r1": one[0], "v1": one[1], "w1": one[2], "r2": two[0],
-            "v2": two[1], "w2": two[2]})
+        lines.append({"kind": "ball_ball", "params": params, "r1": one[0], "v1": one[1], "w1": one[2],
+                      "r2": two[0], "v2": two[1], "w2": two[2]})
     options = ["--tolerance", "1e-9"] if model == "mathavan" else ["--method", model]
     speed = np.abs(rvw[:, :, 1]).max()
     for i, answer in enumerate(answers(lines, *options)):
@@ -109,7 +108,8 @@ def test_what_cannot_be_computed_is_refused():
         (lambda: kernel.ball_ball(rvw, e_b=1.5), "impact 0: "),
         (lambda: kernel.ball_ball(rvw, mu_b=[0.1, 0.2]), "mu_b: 2 numbers for 3 impacts"),
         (lambda: kernel.ball_ball(rvw, tolerance=1.0), "tolerance: expected"),
-        (lambda: kernel.ball_ball(rvw, model="march"), 'no ball-ball model "march"; expected one of mathavan'),
+        (lambda: kernel.ball_ball(rvw, model="march"),
+         'no ball-ball model "march"; expected one of mathavan'),
         (lambda: kernel.ball_ball(rvw, out=np.empty(3)), "out: expected"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 1]), "normal: expected vectors of length 1"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [[1, 0], [1, 0]]), "normal: 2 vectors for 3 impacts"),
@@ -117,9 +117,8 @@ def test_what_cannot_be_computed_is_refused():
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], height=1), "height: expected"),
         (lambda: kernel.ball_cushion(bad[:, 0], [1, 0]), "rvw: expected finite"),
         (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="rubber"), "no cushion model"),
-        (
-            lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="mathavan_2010", f_c=1.0, mu_s=1.0),
-            "could jam"),
+        (lambda: kernel.ball_cushion(rvw[:, 0], [1, 0], model="mathavan_2010", f_c=1.0, mu_s=1.0),
+         "could jam"),
     ]:
         with pytest.raises(ValueError, match=message):
             call()

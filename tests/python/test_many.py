@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 
 import carom
 import numpy as np
@@ -15,9 +16,8 @@ RANDOM = np.random.default_rng(7)
 
 def cues(n):
     return np.column_stack(
-        [
-            RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n),
-            RANDOM.uniform(-0.3, 0.3, n)]
+        [RANDOM.uniform(1, 6, n), RANDOM.uniform(0, 360, n), np.zeros(n), RANDOM.uniform(-0.3, 0.3, n),
+         RANDOM.uniform(-0.3, 0.3, n)]
     )
 
 
@@ -165,3 +165,23 @@ def test_names_of_the_engine_and_the_enumeration_agree():
     from carom import _carom
 
     assert _carom.status_names() == [status.name.lower() for status in ShotStatus]
+
+
+def test_a_run_without_end_has_a_limit_of_events():
+    # A ball that all but never stops bouncing.
+    scene = carom.Scene(balls={"e_t": 0.9999999}, ball=[{"height": 0.1}])
+    message = re.compile(
+        r"simulation stopped at t = [0-9.]+ s after 1000000 events: .*allow more with \[stop\] events, or "
+        r"end the run earlier with \[stop\] time\n"
+        r"last events:\n(  [0-9.]+ ball_cloth cue *\n){8}balls that move .*\n  cue airborne ",
+        re.DOTALL,
+    )
+    with pytest.raises(carom.SimulationError, match=message) as caught:
+        carom.simulate(scene)
+    assert len(caught.value.record.events) == 1_000_000
+    shots = carom.simulate_many(scene, params={"balls.e_t": [0.9999999, 0.5]}, threads=2)
+    assert shots.status.tolist() == [ShotStatus.FAILED, ShotStatus.AT_REST]
+    assert list(shots.messages) == [0] and message.match(shots.messages[0])
+    # A run that asks for more gets more, and one that asks for fewer fewer.
+    shots = carom.simulate_many(scene, params={"stop.events": [1_000_001.0, 7.0]})
+    assert shots.status.tolist() == [ShotStatus.EVENTS] * 2 and shots.events.tolist() == [1_000_001, 7]

@@ -45,9 +45,8 @@ def test_games_between_random_players_end(name):
     ends, phases, fouls = [], 0, set()
     for seed in range(4):
         random = np.random.default_rng(seed)
-        turns = play(
-            env, seed, lambda agent,
-            _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
+        turns = play(env, seed, lambda agent,
+                     _: random.uniform(-1, 1, env.action_space(agent).shape).astype(np.float32))
         assert not env.agents and env.state_of_the_game.over
         last = {agent: reward for agent, reward, *_ in turns[-2:]}
         assert sorted(last.values()) == [-1.0, 1.0] and last[f"player_{env.state_of_the_game.winner}"] == 1.0

@@ -63,13 +63,11 @@ def test_modules_import_each_other_in_no_circle_and_at_the_top():
     ("planted", "wrong"),
     [
         ({"carom._scene": "from carom import _record"}, ({"carom._record", "carom._scene"}, [])),
-        (
-            {"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"},
-            ({"carom._record", "carom._scene"}, [])),
+        ({"carom._scene": "if TYPE_CHECKING:\n    from carom._record import Record"},
+         ({"carom._record", "carom._scene"}, [])),
         ({"carom._toml": "def f():\n    import carom._isa"}, (set(), ["carom._toml:2"])),
-        (
-            {"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"},
-            ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
+        ({"carom._toml": "class A:\n    def f(self):\n        from carom import plot\n"},
+         ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
     ],
 )
 def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
@@ -93,9 +91,8 @@ WRONG = [
 
 def public_functions():
     """The functions and methods of carom's public names, without those that other packages define."""
-    modules = [
-        carom, carom.games, carom.kernel, carom.plot, carom.sweep,
-        importlib.import_module("carom.io.pooltool")]
+    modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep,
+               importlib.import_module("carom.io.pooltool")]
     if importlib.util.find_spec("pettingzoo"):
         modules += map(importlib.import_module, ("carom.gym", "carom.gym.match", "carom.gym._env"))
     for module in modules:

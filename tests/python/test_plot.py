@@ -47,9 +47,8 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     from carom.plot import _CLOTH, _HOLE
     from matplotlib.colors import to_rgb
 
-    record = carom.simulate(carom.Scene(
-        ball=[{"id": "red", "position": [0.4, 0.5]}],
-        cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
+    record = carom.simulate(carom.Scene(ball=[{"id": "red", "position": [0.4, 0.5]}],
+                                        cue={"ball": "red", "speed": 1.5, "aim_deg": 90, "offset": [0, 0]}))
     red = record.colors[0]
     assert red.tolist() == pytest.approx([0.80, 0.06, 0.08])
     end = record.states(record.duration)[0, 0]

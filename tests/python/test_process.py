@@ -65,9 +65,8 @@ def test_nothing_heavy_is_imported():
     code = f"import sys, numpy; before = set(sys.modules); import carom; {news}"
     out, err = run(code).communicate(timeout=HANGS)
     new = {name.split(".")[0] for name in out.split()}
-    heavy = {
-        "asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow",
-        "subprocess", "tempfile", "tomllib"}
+    heavy = {"asyncio", "csv", "email", "inspect", "matplotlib", "multiprocessing", "pandas", "pyarrow",
+             "subprocess", "tempfile", "tomllib"}
     assert "carom" in new and not new & heavy, (new, err)
 
 

@@ -35,7 +35,6 @@ def test_accuracy_has_a_row_for_every_setting(draw_scene):
 
 
 def test_the_command_is_the_program():
-    done = subprocess.run(
-        [sys.executable, "-c", "from carom._program import main; main()", "--version"], capture_output=True,
-        text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", "from carom._program import main; main()", "--version"],
+                          capture_output=True, text=True, check=True)
     assert carom.__version__ in done.stdout

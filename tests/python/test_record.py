@@ -27,9 +27,8 @@ def test_a_record_has_the_bits_of_the_program(path):
 
 
 def test_states_are_those_of_the_samples(break_scene, tmp_path):
-    carom_program(
-        "simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv", "--sample-dt",
-        0.25)
+    carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv",
+                  "--sample-dt", 0.25)
     record = carom.simulate(break_scene)
     header, *lines = rows_of(tmp_path / "s.csv")
     rows = [dict(zip(header, line)) for line in lines]
@@ -156,7 +155,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
         assert all((place == end[ball]).all() for ball, place in zip(after.ids, after.positions))
         assert after == record.final_scene().replace(cue={"speed": 0.5, "aim_deg": 50 * shot})
     other = carom.Scene(ball=[{"id": "x"}])
-    with pytest.raises(ValueError, match="other balls"):
+    with pytest.raises(ValueError, match="different balls"):
         record.final_scene(scene=other)
     with pytest.raises(carom.SceneError, match=r'no ball "nobody"'):
         record.final_scene(cue={"ball": "nobody"})

@@ -24,18 +24,16 @@ def raises(error):
 
 CHECKS = [
     Check("command", 1, "a command that passes", (sys.executable, "-c", "print('first'); print('12 of 12')")),
-    Check(
-        "function", 1, "a function that passes",
-        lambda log: "found 7, status " + log.run(sys.executable, "-c", "print(0)").strip()),
+    Check("function", 1, "a function that passes",
+          lambda log: "found 7, status " + log.run(sys.executable, "-c", "print(0)").strip()),
     Check("absent", 1, "a command that is skipped", (sys.executable, "-c", "print('no qemu'); exit(77)")),
     Check("broken", 1, "a command that fails", (sys.executable, "-c", "print('3 differ'); exit(1)")),
     Check("unmet", 1, "a function that finds something", raises(slow["Failed"]("0.1 is not above 0.2"))),
     Check("mistaken", 1, "a function with a mistake", raises(ZeroDivisionError("division"))),
     Check("endless", 0.0005, "a command that hangs", (sys.executable, "-c", "import time; time.sleep(60)")),
     Check("nothing", 1, "a program that is not there", ("/no/such/program",)),
-    Check(
-        "lacking", 1, "something is missing",
-        lambda log: log.run(sys.executable, "-c", "exit('no network')", lacks="pip cannot get it")),
+    Check("lacking", 1, "something is missing",
+          lambda log: log.run(sys.executable, "-c", "exit('no network')", lacks="pip cannot get it")),
 ]
 
 

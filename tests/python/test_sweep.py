@@ -28,9 +28,8 @@ def all_the_same(header, rows, columns):
     """Whether columns hold the same values as the rows of a CSV file."""
     assert list(columns) == header
     for k, column in enumerate(header):
-        wrong = [
-            (row[k], value) for row, value in zip(rows, columns[column], strict=True)
-            if not same(row[k], value)]
+        wrong = [(row[k], value) for row,
+                 value in zip(rows, columns[column], strict=True) if not same(row[k], value)]
         assert not wrong, (column, wrong[:3])
 
 
@@ -43,9 +42,8 @@ def test_columns_are_those_of_the_program(tmp_path, name, threads):
     scene = carom.Scene.load(path)
     columns = sweep.columns(scene, rules, count, seed=4, threads=threads)
     assert len(rows) == count
-    all_the_same(header, rows, {
-        name: values.tolist() if isinstance(values, np.ndarray) else values
-        for name, values in columns.items()})
+    all_the_same(header, rows, {name: values.tolist() if isinstance(values, np.ndarray) else values for name,
+                                values in columns.items()})
     assert set(columns["outcome"]) >= {"at_rest"}
     part = sweep.columns(scene, rules, count, seed=4, first=20, last=45)
     for column, values in part.items():
@@ -69,9 +67,8 @@ def test_what_is_wrong_is_said(draw_scene):
     refused(
         ValueError,
         None,
-        (
-            lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5),
-            "vary: expected a mapping or a list"),
+        (lambda: sweep.columns(draw_scene, "cue.speed=uniform(2,4)", 5),
+         "vary: expected a mapping or a list"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=gauss(2)"], 5), "unknown distribution"),
         (lambda: sweep.columns(draw_scene, ["cue.speed=list(-1)"], 5), "none of the first"),
         (lambda: sweep.columns(draw_scene, {"cue.speed": [2.0]}, 5, last=6), "first=0, last=6"),

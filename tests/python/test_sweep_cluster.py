@@ -25,9 +25,8 @@ from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, w
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 
 # A worker that is silent for this long is given up; a short time keeps the test of a returning worker quick.
-DASK = {
-    "DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
-    "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
+DASK = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
+        "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
 slow = pytest.mark.skipif(not SLOW, reason="takes long; CAROM_SLOW_TESTS=1 runs it")
 
 
@@ -74,21 +73,18 @@ class Cluster:
 
     def start(self, *arguments, **options):
         with (self.folder / f"dask-{len(self.processes)}.log").open("w") as log:
-            process = subprocess.Popen(
-                [sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log,
-                env=os.environ | DASK | options, cwd=self.folder)
+            process = subprocess.Popen([sys.executable, "-m", "dask", *arguments], stdout=log, stderr=log,
+                                       env=os.environ | DASK | options, cwd=self.folder)
         self.processes.append(process)
         return process
 
     def begin_scheduler(self):
-        return self.start(
-            "scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address",
-            "127.0.0.1:0", **self.options)
+        return self.start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--dashboard-address",
+                          "127.0.0.1:0", **self.options)
 
     def worker(self, *arguments, **options):
-        return self.start(
-            "worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1",
-            "--death-timeout", "60", *arguments, **options)
+        return self.start("worker", self.address, "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1",
+                          "--death-timeout", "60", *arguments, **options)
 
     def __enter__(self):
         return self
@@ -349,20 +345,17 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
 
 def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
     file = tmp_path / "p.json"
-    arguments = [
-        "--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary",
-        "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
+    arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary",
+                 "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]
     assert sweep_command(file, *arguments, "--shots", 60) == (0, f"{file}: 60 shots in 3 shards\n", "")
     assert sweep.Plan.load(file) == draw_plan(60, 20)
     assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     for words, code, message in [
-        (
-            [file, *arguments, "--shots", 61], 1,
-            f"{file}: there is another plan already; remove it, or write to another place"),
+        ([file, *arguments, "--shots", 61], 1,
+         f"{file}: there is another plan already; remove it, or write to another place"),
         ([file, *arguments], 2, "--scene needs --vary and --shots"),
-        (
-            [file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
-            "no.toml: cannot be read: there is no such file; check the path"),
+        ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
+         "no.toml: cannot be read: there is no such file; check the path"),
         ([tmp_path / "q.json", *arguments, "--shots", 0], 2, "shots=0: expected 1 to 2**53"),
         ([tmp_path / "q.json"], 2, f"{tmp_path}/q.json: cannot read it: No such file or directory"),
         ([file, "--part", "3/2"], 2, "--part 3/2: expected I/N with 0 <= I < N, as in 3/100"),

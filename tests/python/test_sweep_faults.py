@@ -150,9 +150,8 @@ def _mounted(folder):
     """Whether a small disk could be mounted there."""
     if os.geteuid() != 0 or shutil.which("mount") is None:
         return False
-    return subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True,
-        check=False).returncode == 0
+    return subprocess.run(["mount", "-t", "tmpfs", "-o", "size=300k", "none", folder], capture_output=True,
+                          check=False).returncode == 0
 
 
 def test_a_small_disk_that_fills_up(tmp_path):

@@ -41,9 +41,8 @@ def run(code, folder, bin_folder):
     out, err = folder / "out", folder / "err"
     with out.open("w") as stdout, err.open("w") as stderr:
         environment = os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}:/usr/bin:/bin"}
-        shell = subprocess.Popen(
-            ["/bin/bash", "-euo", "pipefail", "-c", code], cwd=folder, env=environment, stdout=stdout,
-            stderr=stderr, start_new_session=True)
+        shell = subprocess.Popen(["/bin/bash", "-euo", "pipefail", "-c", code], cwd=folder, env=environment,
+                                 stdout=stdout, stderr=stderr, start_new_session=True)
     try:
         status = shell.wait(timeout=HANGS)
     finally:
@@ -70,7 +69,6 @@ def test_commands_print_what_the_page_says(tmp_path):
         code_status, out, err = run(code, tmp_path, bin_folder)
         assert code_status == 0, (code, out, err)
         assert not not_printed(wanted, out), (out, err)
-    check = subprocess.run(
-        [sys.executable, "-m", "carom.sweep", "breaks.json", "--check"], cwd=tmp_path, capture_output=True,
-        text=True, check=False)
+    check = subprocess.run([sys.executable, "-m", "carom.sweep", "breaks.json", "--check"], cwd=tmp_path,
+                           capture_output=True, text=True, check=False)
     assert check.returncode == 0, check.stdout + check.stderr

@@ -60,9 +60,8 @@ def _moments(table):
     import pyarrow.compute
 
     duration = table["duration"].to_numpy()
-    return {
-        "shots": len(table), "sums": (duration.sum(), (duration**2).sum()),
-        "histogram": np.histogram(duration, 10, (0, 10))[0].tolist()}
+    return {"shots": len(table), "sums": (duration.sum(), (duration**2).sum()),
+            "histogram": np.histogram(duration, 10, (0, 10))[0].tolist()}
 
 
 def test_a_reduction_is_that_of_the_rows_and_merges_in_order(tmp_path):
@@ -102,9 +101,8 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     assert all(said[key.decode()] == value.decode() for key, value in table.schema.metadata.items())
     assert carom.Scene.loads(table.schema.metadata[b"carom.scene"].decode()) == scene
     assert said["carom.scene_sha256"] == _plan.sha256(scene.source.encode())
-    wanted = {
-        "plan": plan.id, "version": carom.__version__, "vary": "\n".join(DRAW), "seed": "4", "first": "8",
-        "last": "16"}
+    wanted = {"plan": plan.id, "version": carom.__version__, "vary": "\n".join(DRAW), "seed": "4",
+              "first": "8", "last": "16"}
     assert {key: said[f"carom.{key}"] for key in wanted} == wanted
     assert said["carom.writer"] == f"pyarrow {pyarrow.__version__}"
     assert json.loads(said["carom.outcomes"]) == {"at_rest": 8}
@@ -187,12 +185,10 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
     with pytest.raises(sweep.SweepError, match="nowhere/p.json: cannot write it: No such file"):
         plan.save(tmp_path / "nowhere/p.json")
     for text, message in [
-        (
-            path.read_text().replace('"shots": 60', '"shots": 61'),
-            "p.json: the plan was changed by hand or is damaged"),
-        (
-            path.read_text().replace('"seed": 4', '"sed": 4'),
-            "p.json: the plan was changed by hand or is damaged"),
+        (path.read_text().replace('"shots": 60', '"shots": 61'),
+         "p.json: the plan was changed by hand or is damaged"),
+        (path.read_text().replace('"seed": 4', '"sed": 4'),
+         "p.json: the plan was changed by hand or is damaged"),
         (path.read_text()[:-10], r"p.json:\d+:\d+: .*; a plan is what"),
         ("[]", 'p.json: no plan of a sweep: "format" has to be'),
         ("\udcff", "p.json: cannot read it: .*utf-8"),

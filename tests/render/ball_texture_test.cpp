@@ -1,5 +1,5 @@
-// The pictures of balls for other programs show the patterns
-// of the renderer's balls, and the look of all is typed once.
+// The pictures of balls for other programs show the patterns of the renderer's balls, and the look of all is
+// defined once.
 #include "carom/render/ball_texture.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ std::array<int, 3> own(const BallStyle& style) {
     return bytes(style.color[0], style.color[1], style.color[2]);
 }
 
-/// Pixels of the ink of digits, on the half of the picture around one end of the z axis.
+/// Pixels of ink on the half of the picture around one end of the z axis.
 long ink(const Image& image, bool upper) {
     long count = 0;
     for (int j = 0; j < image.size.height; ++j)
@@ -100,7 +100,7 @@ TEST(BallTexture, OneDotOfSixIsLarger) {
     EXPECT_EQ(colour_at(ball_texture(red, kWidth), 0.0, 0.0, 1.0), bytes(0.93F, 0.90F, 0.82F));
 }
 
-/// The colours in a text: three numbers with points behind each other.
+/// The colours in a text: three numbers with decimal points in a row.
 std::set<std::array<double, 3>> colours_in(const std::filesystem::path& path) {
     static const std::regex kThree(R"((\d?\.\d+)F?, *(\d?\.\d+)F?, *(\d?\.\d+))");
     std::ifstream file(path);

@@ -27,8 +27,8 @@ const Record& the_break() {
     return record;
 }
 
-// Where a ball is in the picture, from what its removal changes. It is painted white for this: red then only
-// grows, while its shadow only takes away.
+// Where a ball is in the picture, found by removing it. It is painted white for this: red then only grows,
+// while its shadow only takes away.
 std::optional<Vec2> measured_centre(Renderer& renderer, const DrawList& list, std::size_t ball) {
     DrawList with = list, without = list;
     with.balls[ball].style = BallStyle{};
@@ -62,7 +62,7 @@ TEST(Break, EveryBallIsWithinHalfAPixelOfTheRecord) {
     for (long k : {0L, 20L, frames / 2, frames - 1}) {
         const double t = frame_time(0.0, k, 60.0);
         DrawList list = stage.at(t);
-        // Nothing that hides part of a white ball, and no other white on the table.
+        // Nothing hides part of a white ball, and there is no other white on the table.
         for (DrawBall& ball : list.balls) {
             ball.style = BallStyle{};
             ball.style.color = {0.0F, 0.0F, 0.3F};
@@ -112,8 +112,8 @@ long peak_memory_kb() {
     return -1;
 }
 
-// What Mesa itself takes differs by its release by tens of
-// megabytes, so what a sequence needs is counted from there.
+// What Mesa itself takes differs between releases by tens of megabytes, so the memory of a sequence is
+// counted from there.
 TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
 #ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";

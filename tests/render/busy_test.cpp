@@ -1,4 +1,4 @@
-// The table is drawn many times only where that can be seen.
+// The table is drawn many times only where that shows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace carom::render {
 namespace {
 
-constexpr FrameSize kSmallFrame{67, 41};  // no multiple of a tile
+constexpr FrameSize kSmallFrame{67, 41};  // not a multiple of a tile
 
 std::vector<std::uint8_t> grey_picture() {
     return std::vector<std::uint8_t>(std::size_t{4} * 67 * 41, 90);
@@ -58,7 +58,7 @@ TEST(BusyTiles, ContrastIsBusyOnBothSides) {
     }
 }
 
-// A strip so thin that no sample meets it.
+// A strip so thin that no sample hits it.
 TEST(BusyTiles, EdgesAreBusyThoughNoSampleTellsThem) {
     TableMesh mesh;
     const auto corner = [](float x, float y) {
@@ -98,9 +98,9 @@ TEST(MeanPicture, ScreenValuesComeBack) {
     for (int i = 0; i < 255; ++i) EXPECT_EQ(screen_of_radiance(linear[static_cast<std::size_t>(i)]), i);
 }
 
-// A picture with many samples is one that was drawn four times as large, with one sample,
-// and made small, but for grain and where samples lie. With every pixel drawn many times
-// 192 and 22 channels are far off, as with those that are busy; with none 2342 and 979.
+// A picture with many samples equals one that was drawn four times as large with one sample and then reduced,
+// except for grain and the positions of samples. With every pixel drawn many times, or only the busy ones,
+// 192 and 22 channels are far off; with none, 2342 and 979.
 TEST(BusyTiles, ManySamplesLookLikeALargePictureMadeSmall) {
     const Record record = render_test::rectangle_record();
     for (const char* camera : {"top", "player"}) {

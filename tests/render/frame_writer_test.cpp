@@ -1,4 +1,4 @@
-// Threads that cannot be had: an error, not the end of the program.
+// If threads cannot be started: an error, not the end of the program.
 #include "frames/writer.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace carom::render {
 namespace {
 
-/// While it lives, every new thread takes 256 MiB of addresses, and there are some for two of them.
+/// While it lives, every new thread takes 256 MiB of addresses, and there are enough for two.
 class RoomForTwoThreads {
   public:
     RoomForTwoThreads() {

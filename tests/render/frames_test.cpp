@@ -51,7 +51,7 @@ TEST(FrameCount, RefusesWhatHasNoAnswer) {
     EXPECT_THROW(frame_count(0.0, 1.0, std::nan("")), RenderError);
     EXPECT_THROW(frame_count(0.0, infinity, 60.0), RenderError);
     EXPECT_THROW(frame_count(-infinity, 1.0, 60.0), RenderError);
-    // Where the next frame is at the same instant, counting them would not end.
+    // If the next frame is at the same instant, counting them would not end.
     for (const double late : {1e16, 1e17, 1e300}) EXPECT_THROW(frame_count(late, late, 60.0), RenderError);
 }
 
@@ -103,7 +103,7 @@ TEST(Png, ReadsBackTheSamePixels) {
     EXPECT_EQ(folder.entries(), 1U);
 }
 
-// A disk that fills up in the middle of a file, played by a limit on the file size.
+// A disk that fills up in the middle of a file, imitated by a limit on the file size.
 TEST(Files, AFullDiskLeavesNothing) {
     const ScratchFolder folder("full");
     std::signal(SIGXFSZ, SIG_IGN);
@@ -209,7 +209,7 @@ TEST(Sequence, AFileInTheWayOfTheFolderIsNamed) {
 
 TEST(Sequence, AFrameThatCannotBeWrittenIsNamedAndLeavesNothing) {
     const ScratchFolder folder("unwritable");
-    // A folder with the name of the second frame: works for root too, whom permissions do not stop.
+    // A folder with the name of the second frame, which also stops root, whom permissions do not stop.
     std::filesystem::create_directory(folder.file("1.png"));
     try {
         render_sequence(one_ball(), small_options(folder.file("%d.png")));

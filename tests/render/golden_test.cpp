@@ -1,9 +1,8 @@
-// Six pictures kept in the repository. Another version of Mesa may round
-// a pixel differently, so small differences pass; on failure the picture
-// and the difference (times eight) are kept in the working directory.
+// Six pictures kept in the repository. Another version of Mesa may round a pixel differently, so small
+// differences pass; on failure the picture and the difference (times eight) are kept in the working
+// directory.
 //
-// CAROM_UPDATE_GOLDEN=1 writes the pictures anew and skips
-// the comparison: look at them before committing them.
+// CAROM_UPDATE_GOLDEN=1 rewrites the pictures and skips the comparison: look at them before committing them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +41,7 @@ Segment moving(const Vec3& place, const Vec2& velocity, const Vec3& spin, Motion
     return segment;
 }
 
-// Fifteen balls where a rack stands, in the order of their numbers.
+// Fifteen balls in the places of a rack, in the order of their numbers.
 void add_rack(Record& record) {
     const Vec2 foot = foot_spot(record.table);
     int number = 0;
@@ -218,7 +217,7 @@ TEST_P(Golden, OsmesaAndEglGiveTheSamePixels) {
     EXPECT_TRUE(render_test::same_pixels(osmesa, egl));
 }
 
-// A picture that a test could not tell from another would prove nothing.
+// A picture that a test could not distinguish from another would prove nothing.
 TEST(GoldenCompare, SeesABallThatMovedByTwoPixels) {
     Picture picture = nine_foot_rack();
     const Image before = draw(picture, Backend::kOsmesa);

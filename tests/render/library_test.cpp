@@ -1,4 +1,4 @@
-// What a machine without the libraries is told.
+// What a machine without the libraries reports.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -112,7 +112,7 @@ TEST(EdgeSmoother, LeavesHiddenEdgesAndPanelsAlone) {
         Image panel = raw;
         smooth_edges(panel, {edge_between(line.a, line.b)}, flat_view(size), {{0, 0, 40, 24}});
         EXPECT_TRUE(render_test::same_pixels(panel, raw));
-        // An edge inside a curved face that goes on beyond it.
+        // An edge inside a curved face that continues beyond it.
         Image curved = raw;
         TableEdge edge = edge_between(line.a, line.b);
         edge.smooth = true;
@@ -140,8 +140,8 @@ TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
     }
 }
 
-// Where two edges lie on one line, a pixel would be smoothed twice.
-// Every pair is looked at here; find_edges looks at those in one place.
+// If two edges are on one line, a pixel would be smoothed twice. Every pair is checked here; find_edges
+// checks those in one place.
 TEST(TableEdges, NoneLiesWithinALongOne) {
     for (const char* table : {"nine_foot", "snooker"}) {
         const TableEdges found =
@@ -210,7 +210,7 @@ Image picture(Renderer& renderer, DrawList list, int samples) {
     return image;
 }
 
-// Mean difference of the colours of two pictures, and of what changed in both from the picture before.
+// Mean difference of the colours of two pictures, and of what changed in both since the previous picture.
 double apart(const Image& a, const Image& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.rgbx.size(); ++i) {

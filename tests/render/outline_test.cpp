@@ -44,7 +44,7 @@ TEST(Outline, TrianglesCoverALaneThatWinds) {
     }
 }
 
-// Ear clipping as in the books: from the first point on, every time anew.
+// Textbook ear clipping: from the first point on, every time anew.
 std::vector<int> ears_in_order(const std::vector<Vec2>& points) {
     std::vector<int> left(points.size()), triangles;
     std::iota(left.begin(), left.end(), 0);
@@ -71,7 +71,7 @@ std::vector<int> ears_in_order(const std::vector<Vec2>& points) {
 TEST(Outline, TrianglesAreThoseOfPlainEarClipping) {
     reference::Generator rng(7);
     for (int k = 0; k < 400; ++k) {
-        // A lane that goes up and down: its corners lie in the triangles of other ones.
+        // A lane that goes up and down: its corners are in the triangles of others.
         const int bends = 3 + static_cast<int>(rng.uniform(0.0, 40.0));
         std::vector<double> height;
         for (int i = 0; i < bends; ++i) height.push_back(rng.uniform(-3.0, 3.0));

@@ -76,7 +76,7 @@ TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
     small.pattern = folder.file("0%d.png");
     small.size = {80, 45};
     small.frame = 9;
-    render_sequence(record, small);  // frame 9 is there, but of another size
+    render_sequence(record, small);  // frame 9 exists, but in another size
     const auto before = std::filesystem::last_write_time(folder.file("06.png"));
     options.resume = true;
     std::vector<long> progress;
@@ -133,7 +133,7 @@ TEST(Pipeline, BothWritersGiveTheSamePixels) {
     EXPECT_LT(changes.back().encoded_share, 0.5);
 }
 
-// Threads, their number and what an encoder had before change no byte.
+// Threads, their number and earlier contents of an encoder change no byte.
 TEST(Pipeline, BytesDependOnThePixelsAlone) {
     const ScratchFolder folder("bytes");
     SequenceOptions options = options_for(folder.file("a%02d.png"));
@@ -253,7 +253,7 @@ TEST(Pipeline, ProgressMayStopTheRun) {
         if (done == 8) throw std::runtime_error("interrupted");
     };
     EXPECT_THROW(render_sequence(rolling_ball(), options), std::runtime_error);
-    // What is there is whole.
+    // What exists is whole.
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
         EXPECT_EQ(render_test::read_png(entry.path().string()).size, options.size);
     }

@@ -1,5 +1,5 @@
-// PNG files of which only what changed is encoded: any decoder
-// reads them, and their bytes depend on the pixels alone.
+// PNG files of which only changes are encoded: any decoder reads them, and their bytes depend on the pixels
+// alone.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -35,8 +35,8 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// Fills a box in one of the ways that pictures have: one colour, a gradient,
-// noise, few colours, long and short runs. The fourth channel is anything.
+// Fills a box in one of the ways typical of pictures: one colour, a gradient, noise, few colours, long and
+// short runs. The fourth channel is arbitrary.
 void paint(Image& image, const PixelBox& box, Random& random) {
     const int way = below(random, 5);
     const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
@@ -65,7 +65,7 @@ PixelBox random_box(FrameSize size, Random& random) {
             y0 + 1 + below(random, std::min(20, size.height - y0))};
 }
 
-// The bytes of a file made at once.
+// The bytes of a file made in one go.
 Bytes file_of(const Image& image) {
     Bytes bytes;
     KeptPng().encode(image, bytes);
@@ -84,8 +84,8 @@ std::uint32_t big(const Bytes& bytes, std::size_t at) {
            std::uint32_t{bytes.at(at + 2)} << 8U | bytes.at(at + 3);
 }
 
-// What libpng may pass over in silence: the check sum of every chunk,
-// and that of the zlib stream, which has to end where the rows do.
+// What libpng may ignore silently: the checksum of every chunk, and that of the zlib stream, which must end
+// where the rows do.
 void expect_sound(const Bytes& bytes, FrameSize size) {
     std::string types;
     for (std::size_t at = 8; at < bytes.size();) {
@@ -108,8 +108,8 @@ void expect_sound(const Bytes& bytes, FrameSize size) {
     ASSERT_EQ(types, "IHDRIDATIEND");
 }
 
-// In series, so that they run at once. Every picture is changed some
-// times in boxes, and its file must be the one that is made at once.
+// In series, so that they run in parallel. Every picture is changed several times in boxes, and its file must
+// be the one made in one go.
 class RandomPictures : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomPictures, AreReadBackAndEqualThoseMadeAtOnce) {
@@ -200,7 +200,8 @@ Stage stage_of(const View& view) {
 
 class Frames : public ::testing::TestWithParam<View> {};
 
-// Frames in turn, read into two images by turns, with leaps in time: as encoders of several threads get them.
+// Successive frames, read into two images alternately, with jumps in time, as encoders of several threads get
+// them.
 TEST_P(Frames, AnEncoderThatKeepsPiecesMakesTheSameFiles) {
     const Stage stage = stage_of(GetParam());
     Renderer renderer;
@@ -243,7 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
                       View{"odd", "top", "", {481, 271}}),
     [](const auto& view) { return std::string(view.param.name); });
 
-// A size that changes, an image of which nothing is known, and back again.
+// A size that changes, an image about which nothing is known, and back again.
 TEST(KeptPngTest, StartsAnewWhereNothingIsKnown) {
     const Stage large = stage_of({"", "top", "", {480, 270}}), small = stage_of({"", "top", "", {320, 180}});
     Renderer renderer;

@@ -1,4 +1,4 @@
-// Frames of which only a part is drawn and read back have the pixels of whole ones.
+// Frames that are drawn and read back only in part have the pixels of whole ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     return Stage(rack_to_redraw(), options);
 }
 
-// Draws from nothing: a picture from elsewhere makes both targets worthless.
+// Draws from scratch: a picture from elsewhere makes both targets worthless.
 Image whole_picture(Renderer& renderer, const DrawList& list) {
     DrawList elsewhere = list;
     elsewhere.table_samples = 1;
@@ -69,7 +69,7 @@ TEST_P(Redraw, PartsHaveThePixelsOfTheWhole) {
     }
 }
 
-// Frame after frame, as a film shows them, with lines that grow, fade, and lie over and under the balls.
+// Frame after frame, as in a film, with lines that grow, fade, and lie over and under the balls.
 TEST_P(Redraw, OverlaysHaveThePixelsOfTheWhole) {
     for (const char* overlay : {"events,spin,ghost,clock", "trails,margin"}) {
         const Stage stage = stage_of(GetParam(), overlay);
@@ -96,7 +96,7 @@ TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
     KeptImage image;
     int shown = 0;
     for (const double t : {0.2, 0.4, 0.5, 0.6, 0.7, 0.8}) {
-        // The stages have a table each: one of them is taken, or the whole would be drawn anyway.
+        // Each stage has its own table; sharing one keeps the whole from being redrawn anyway.
         DrawList list = (++shown % 3 == 0 ? lines : bare).at(t);
         list.table = bare.table();
         renderer.draw(list);
@@ -105,7 +105,7 @@ TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
     }
 }
 
-// A renderer that draws at another size makes its targets anew, and nothing of the old ones shows.
+// A renderer that draws at another size remakes its targets, and nothing of the old ones shows.
 TEST(RedrawLines, TheSizeMayChange) {
     StageOptions options;
     options.camera = "top";
@@ -132,7 +132,7 @@ TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
     for (const double t : instants()) {
         const DrawList list = stage.at(t);
         renderer.draw(list);
-        // Into an image that shows one of several frames ago.
+        // Into an image that shows an earlier frame.
         KeptImage& image = images[static_cast<std::size_t>(k * k) % 3];
         renderer.read(image);
         EXPECT_TRUE(render_test::same_pixels(image.image(), whole_picture(reference, list))) << t;
@@ -155,7 +155,7 @@ TEST(RedrawKept, AnImageMayGoFromOneRendererToAnother) {
     }
 }
 
-// What makes a frame cheap: nothing to do when nothing moves, and no more than the moving balls when they do.
+// What makes a frame cheap: nothing to do if nothing moves, and only the moving balls if they do.
 TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const Stage stage = stage_of("top");
     const ClothMap none;
@@ -189,7 +189,7 @@ DrawnPicture picture_of(const DrawList& list, const std::shared_ptr<const TableD
     return {table, visible_balls(list, ClothMap()), drawn_shapes(list)};
 }
 
-// An overlay costs what changes in it: the digits of a clock, and all that they touch, which is its panel.
+// An overlay costs what changes in it: the digits of a clock, and everything they touch, which is its panel.
 TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
     const Stage stage = stage_of("top", "clock");
     const FrameSize size{480, 270};
@@ -207,7 +207,7 @@ TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
     EXPECT_TRUE(differing_boxes(after, after, size).empty());
 }
 
-// What is drawn over the same places in another order may look different.
+// Things drawn over the same places in another order may look different.
 TEST(RedrawWork, TheOrderOfShapesCounts) {
     DrawList list = stage_of("top").at(0.0);
     list.boxes = {{{10.0, 10.0}, {30.0, 30.0}, {1.0F, 0.0F, 0.0F, 1.0F}, -1},
@@ -221,7 +221,7 @@ TEST(RedrawWork, TheOrderOfShapesCounts) {
 TEST(RedrawWork, BallsOnBareClothAreTold) {
     const Stage stage = stage_of("top");
     const DrawList list = stage.at(0.0);
-    // Alpha of the picture is cloth: all of it here, then all but one pixel in the corner of a ball's box.
+    // Alpha of the picture is cloth: all of it here, then all except one pixel in the corner of a ball's box.
     std::vector<std::uint8_t> alpha(std::size_t{4} * 480 * 270, 255);
     std::vector<DrawnBall> balls = visible_balls(list, ClothMap(alpha, {480, 270}));
     EXPECT_EQ(std::count_if(balls.begin(), balls.end(), [](const DrawnBall& b) { return b.plain; }), 16);

@@ -93,7 +93,7 @@ TEST(Cameras, FollowIsSmoothAndKeepsTheBallInSight) {
         EXPECT_GT(ball.minCoeff(), 0.0);
         EXPECT_LT(ball.x(), 640.0);
         EXPECT_LT(ball.y(), 360.0);
-        // The ball itself starts with 1 m/s at once; the camera's step changes by little in a frame.
+        // The ball itself starts at 1 m/s at once; the camera's step changes little from frame to frame.
         const Vec3 step = camera.eye - before;
         EXPECT_LT((step - step_before).norm(), 0.1 / 60.0) << t;
         before = camera.eye;
@@ -192,7 +192,7 @@ TEST(Overlays, CurvedTrailsHaveNoCorners) {
     EXPECT_NEAR(end, position_at(segment, 0.8).y(), 1e-9);
 }
 
-// A ball that was pocketed goes down from where it was, and lies still after 0.15 s.
+// A pocketed ball goes down from where it was, and lies still after 0.15 s.
 TEST(Stages, APocketedBallSinks) {
     Record record = shot();
     const Pocket& pocket = record.table.pockets[0];
@@ -294,7 +294,7 @@ TEST(TableMesh, ThePresetsHaveEverything) {
     }
 }
 
-// Two boards meet in each corner of the frame: the grain of one does not go on in the other.
+// Two boards meet in each corner of the frame: the grain of one does not continue in the other.
 TEST(TableMesh, WoodHasAMitreAtEveryCorner) {
     const Table table = make_table("nine_foot");
     const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
@@ -340,8 +340,8 @@ TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
         EXPECT_TRUE(is_drawn(cushion.from)) << cushion.id;
         EXPECT_TRUE(is_drawn(cushion.to)) << cushion.id;
     }
-    // The middle of each jaw's arc: the point of its circle that
-    // is nearest to the table's middle or a pocket's mouth.
+    // The middle of each jaw's arc: the point of its circle nearest to the table's middle or a pocket's
+    // mouth.
     for (const Jaw& jaw : table.jaws) {
         int on_circle = 0;
         for (const Vec2& nose : noses) on_circle += std::abs((nose - jaw.center).norm() - jaw.radius) < 1e-6;

@@ -23,8 +23,8 @@ namespace carom::test {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// A scene under construction. Every number is drawn in a statement of its
-/// own: in which order a call's arguments are drawn is the compiler's choice.
+/// A scene under construction. Every number is drawn in a separate statement: the compiler chooses the order
+/// in which a call's arguments are drawn.
 class Crowd {
   public:
     Crowd(std::uint64_t seed, Level level) : rng_(seed), level_(level) {
@@ -85,7 +85,7 @@ class Crowd {
         start.velocity = {v.x(), v.y(), 0.0};
         start.spin = w;
     }
-    /// With a spin of its own, rolling, or with none.
+    /// Spinning freely, rolling, or without spin.
     void shoot(int ball, const Vec2& v) {
         const int kind = whole(0, 2);
         Vec3 w = Vec3::Zero();
@@ -93,7 +93,7 @@ class Crowd {
         if (kind == 1) w = spin(2.0 * v.norm());
         move(ball, v, w);
     }
-    /// Whether a ball has room there, without a wall nearer than it may be.
+    /// Whether a ball has room there, with every wall at a sufficient distance.
     bool fits(const Vec2& r, double slack = 1e-14) const {
         for (const BallStart& b : scene_.ball)
             if ((planar(b.position) - r).norm() < 2.0 * R() - slack) return false;
@@ -130,7 +130,7 @@ class Crowd {
         ball(r);
         shoot(balls() - 1, -v * from);
     }
-    /// The spins of some balls; at least of the first.
+    /// The spins of some balls, the first one included.
     void spin_some(double share) {
         for (int i = 0; i < balls(); ++i) {
             const bool turns = i == 0 || chance(share);

@@ -180,7 +180,7 @@ void rings(Crowd& c) {
     for (int i = 0; i < count; ++i) {
         const SinCos a = sin_cos(2.0 * kPi * i / count);
         const double size = (alike ? 1.0 : c.uniform(0.2, 1.0)) * surface / c.R();
-        // Topspin towards the centre: the axis is at right angles to the way there.
+        // Topspin towards the centre: the axis is at right angles to the direction there.
         c.move(i, {0.0, 0.0}, Vec3(a.sin, -a.cos, 0.0) * size);
     }
 }
@@ -288,7 +288,7 @@ std::optional<Scene> family_scene(std::string_view family, std::uint64_t seed) {
     const auto known = std::find(std::begin(kLevels), std::end(kLevels), level);
     const Family* row = row_of(kFamilies, name);
     if (known == std::end(kLevels) || row == nullptr) return std::nullopt;
-    // A stream of its own for every family and level.
+    // A separate stream for every family and level.
     reference::Generator streams(static_cast<std::uint64_t>(row - std::begin(kFamilies)) * 3 +
                                  static_cast<std::uint64_t>(known - std::begin(kLevels)));
     Crowd crowd(streams.next() + seed * 0x9E3779B97F4A7C15ull * 0x5DEECE66Dull,

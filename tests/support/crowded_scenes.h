@@ -1,5 +1,4 @@
-// Seeded scenes that are crowded on purpose, and seeded
-// shots as people play them: families for long campaigns.
+// Deliberately crowded seeded scenes, and seeded shots as people play them: families for long campaigns.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,9 @@ enum class Level { kNatural, kWide, kExtreme };
 /// Narrow channels, rows between walls, and so on; a crowded family has three levels.
 std::span<const char* const> crowded_families();
 
-/// The scene of a seed, or nothing where no such family or level is known: "rings", "rings/wide",
-/// "pool_frozen". Seeds of one family and level have nothing in common with those of another. The scene may
-/// be one that `validate` refuses, where the numbers leave no room.
+/// The scene of a seed, or nothing for an unknown family or level: "rings", "rings/wide", "pool_frozen".
+/// Seeds of different families and levels are independent. `validate` may refuse the scene if the numbers
+/// leave no room.
 std::optional<Scene> family_scene(std::string_view family, std::uint64_t seed);
 
 }  // namespace carom::test

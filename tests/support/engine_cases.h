@@ -25,12 +25,12 @@ inline Vec3 vec3(const nlohmann::json& j) {
     return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
-/// With a friction between balls that is one number, as formulas and reference solutions have it.
+/// With a single number as the friction between balls, as in formulas and reference solutions.
 inline BallParams pool_balls() {
     return make_ball_params("pool_classic");
 }
 
-/// Reads R, m, u_s, ... where given; the rest stays at the pool defaults.
+/// Reads R, m, u_s, ... if given; the rest stays at the pool defaults.
 inline BallParams balls_from(const nlohmann::json& p) {
     BallParams b = pool_balls();
     const auto take = [&p](const char* key, double& x) {
@@ -89,7 +89,7 @@ inline Table box(double w, double l, double height) {
     return table;
 }
 
-/// An endless cloth whose racks stand at `spot`.
+/// An endless cloth with its rack spot at `spot`.
 inline Table cloth_with_foot_spot(const Vec2& spot) {
     Table table;
     table.corner = spot;

@@ -1,4 +1,4 @@
-// A gas without friction in a box of reflecting cushions: many events, and every ball meets every other.
+// A frictionless gas in a box of reflecting cushions: many events, and every ball meets every other.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 namespace carom::test {
 using reference::Generator;
 
-/// n balls on a jittered square grid (n a square), 1 m/s in random directions; a fifth of the area is balls.
+/// n balls on a jittered square grid (n a square), 1 m/s in random directions; balls cover a fifth of the
+/// area.
 inline Scene gas(int n, long events, std::uint64_t seed) {
     Scene scene = frictionless();
     scene.physics.clusters = ClusterModel::kSequential;

@@ -1,4 +1,4 @@
-// Seeded pairs of balls that pass each other at a given depth: what detection is judged on. Needs engine/src.
+// Seeded pairs of balls that pass each other at a given depth, to judge detection. Needs engine/src.
 #pragma once
 
 #include "carom/engine/math.h"

@@ -1,4 +1,4 @@
-// What the hard cases share. Set CAROM_RESIDUALS=1 in the environment to print what each case measured.
+// Shared by the hard cases. Set CAROM_RESIDUALS=1 in the environment to print what each case measured.
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@ inline void report(const char* what, double residual) {
     if (std::getenv("CAROM_RESIDUALS") != nullptr) std::printf("residual %s: %.3g\n", what, residual);
 }
 
-/// A table of no size whose foot spot is `apex`: for racks that stand where a case wants them.
+/// A table without a size whose foot spot is `apex`, for racks at a given place.
 inline Table spot_at(const Vec2& apex) {
     Table table;
     table.corner = apex;

@@ -1,4 +1,4 @@
-// Reference impacts from tests/data/kernel and how far two results lie apart.
+// Reference impacts from tests/data/kernel, and how far apart two results are.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace carom::test {
 struct ReferenceImpact {
     int id;
     kernel::Ball ball1, ball2;
-    kernel::ImpactParams params;                          // with the published cloth slip, as the vectors are
+    kernel::ImpactParams params;                          // with the published cloth slip, like the vectors
     std::map<std::string, kernel::ImpactResult> outputs;  // by the name of the model in the file
 };
 

@@ -1,5 +1,5 @@
-// JSON against a JSON Schema (draft 7), as far as the schemas of this project go: a word that is not
-// understood here is an error, so that a schema cannot promise what nothing checks.
+// JSON against a JSON Schema (draft 7), as far as this project's schemas need it: an unknown keyword is an
+// error, so that a schema cannot promise what nothing checks.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ class SchemaCheck {
   public:
     explicit SchemaCheck(const Json& schema) : root_(schema) {}
 
-    /// "" or the first fault: where it stands ("/tracks/0/id") and what it is.
+    /// "" or the first fault: its location ("/tracks/0/id") and what it is.
     std::string fault(const Json& value) const { return fault(root_, value, ""); }
 
   private:

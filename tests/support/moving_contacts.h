@@ -39,7 +39,7 @@ class MovingContacts {
         share_ = (1.0 - e2) * 0.4 / (0.4 - 1.0 / (2.5 + power_));
         for (std::size_t i = 0; i < balls_.size(); ++i) {
             for (std::size_t j = i + 1; j < balls_.size(); ++j) {
-                // The rounding of places that should touch is no gap.
+                // The rounding of positions that should touch is not a gap.
                 const double gap = distance(balls_[i], balls_[j]) - 2.0 * law.R;
                 if (gap < 40.0 * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
             }
@@ -61,7 +61,7 @@ class MovingContacts {
     }
 
     const std::vector<MovingBall>& balls() const { return balls_; }
-    /// The balls at every instant from which on no two of them touch, for a while.
+    /// The balls at every instant from which no two of them touch for a while.
     const std::vector<std::vector<MovingBall>>& ends() const { return ends_; }
 
   private:

@@ -66,7 +66,7 @@ class Shot {
         for (int tries = 0; tries < 200; ++tries)
             if (place(id, anywhere())) return;
     }
-    /// Touching a rail, a ball, or both as it comes.
+    /// Touching a rail, a ball, or both, by chance.
     void freeze(const std::string& id) {
         for (int tries = 0; tries < 200; ++tries) {
             Vec2 r = anywhere();
@@ -112,7 +112,7 @@ class Shot {
     Cue& cue() { return *scene_.cue; }
     Physics& physics() { return scene_.physics; }
     int balls() const { return static_cast<int>(scene_.ball.size()); }
-    /// The cue ball in touch with this one.
+    /// The cue ball touching this one.
     bool touch_with_cue(int ball) {
         const SinCos a = sin_cos(uniform(0.0, 2.0 * std::numbers::pi));
         return place("cue", planar(scene_.ball[static_cast<std::size_t>(ball)].position) +
@@ -147,7 +147,7 @@ Scene snooker(std::uint64_t seed, bool frozen) {
     return shot.take();
 }
 
-// The cue ball touches a ball of the pack, stands in a hole of it, or comes from outside.
+// The cue ball touches a ball of the pack, is in a hole of it, or comes from outside.
 Scene touching_pack(std::uint64_t seed) {
     Shot shot(seed, "snooker", "snooker");
     shot.rack(RackGame::kSnooker, 0.0, 0.85);

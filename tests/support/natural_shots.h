@@ -14,7 +14,7 @@ namespace carom::test {
 /// at, in and into a touching pack; the eight-ball break; breaks of four games with a raised cue.
 std::span<const char* const> natural_families();
 
-/// The shot of a seed, or nothing where the family is not known.
+/// The shot of a seed, or nothing for an unknown family.
 std::optional<Scene> natural_shot(std::string_view family, std::uint64_t seed);
 
 }  // namespace carom::test

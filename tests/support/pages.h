@@ -1,4 +1,4 @@
-// The pages in docs/ and the sources, for tests that hold them against the program.
+// The pages in docs/ and the sources, for tests that compare them with the program.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,7 @@ inline std::vector<std::string> cells(const std::string& line) {
     return out;
 }
 
-/// The texts between backticks.
+/// The texts in backticks.
 inline std::vector<std::string> code(const std::string& text) {
     std::vector<std::string> out;
     for (std::size_t at = text.find('`'); at != std::string::npos;) {
@@ -42,7 +42,7 @@ inline std::vector<std::string> code(const std::string& text) {
     return out;
 }
 
-/// The rows of all tables of a page, by the heading ("## ...") that they stand under.
+/// The rows of all tables of a page, by the heading ("## ...") above them.
 inline std::map<std::string, std::vector<std::vector<std::string>>> table_rows(const std::string& page) {
     std::map<std::string, std::vector<std::vector<std::string>>> rows;
     std::istringstream in(page);

@@ -1,4 +1,4 @@
-// Runs a program the way a shell would, and keeps all it said. For tests of the command line.
+// Runs a program as a shell would, and keeps all its output. For tests of the command line.
 #pragma once
 
 #include <fcntl.h>
@@ -22,7 +22,7 @@
 
 namespace carom::test {
 
-/// A folder of one test's own, removed with all that is in it.
+/// A temporary folder for one test, removed with everything in it.
 class TemporaryFolder : public carom::TemporaryFolder {
   public:
     /// Writes a file and returns its path.
@@ -31,7 +31,7 @@ class TemporaryFolder : public carom::TemporaryFolder {
         return file(name);
     }
 
-    /// Names of all files in it, in folders too, but for the mark that says of which shot frames are.
+    /// Names of all files in it, including folders, except the mark that says which shot frames belong to.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path())) {
@@ -50,11 +50,11 @@ inline std::string read_file(const std::string& path) {
 
 struct ProcessOptions {
     std::string input;                                             ///< for its standard input
-    std::vector<std::pair<std::string, std::string>> environment;  ///< set in addition
-    std::string folder;                                            ///< to run in; empty: as the test
+    std::vector<std::pair<std::string, std::string>> environment;  ///< set additionally
+    std::string folder;                                            ///< to run in; empty: the test's
     std::string output_to;                                         ///< file or device for its standard output
-    long file_limit = -1;       ///< bytes that a file of it may have; -1: any number
-    long stack_limit = -1;      ///< bytes of stack of its threads (RLIMIT_STACK); -1: as the test
+    long file_limit = -1;       ///< bytes that a file may have; -1: any number
+    long stack_limit = -1;      ///< bytes of stack of its threads (RLIMIT_STACK); -1: the test's
     bool close_output = false;  ///< read nothing: its standard output is a broken pipe
 };
 
@@ -63,7 +63,7 @@ struct ProcessResult {
     std::string out, err;
 };
 
-/// A child with its three standard streams held by us.
+/// A child whose three standard streams we hold.
 class Process {
   public:
     Process(const std::vector<std::string>& arguments, const ProcessOptions& options) {
@@ -73,7 +73,7 @@ class Process {
         if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
             throw std::runtime_error("pipe2 failed");
         }
-        // Before the child is there: it could be done before its pipe is broken.
+        // Before the child runs: it could be done before its pipe is broken.
         if (options.close_output) close_one(out[0]);
         pid_ = ::fork();
         if (pid_ < 0) throw std::runtime_error("fork failed");
@@ -123,7 +123,7 @@ class Process {
                 if (ready[i].revents != 0) read_some(from_[i], *texts[i]);
             }
             if (to_ >= 0 && ready[2].revents != 0) {
-                // Small enough that a pipe that is ready takes it at once.
+                // Small enough for a ready pipe to take it at once.
                 const std::size_t count = std::min<std::size_t>(input.size() - sent, 4096);
                 const ssize_t done = ::write(to_, input.data() + sent, count);
                 if (done > 0) sent += static_cast<std::size_t>(done);

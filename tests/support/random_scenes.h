@@ -1,4 +1,4 @@
-// Seeded scenes that ask for trouble: touching balls and racks, balls on cushions and in jaws, extreme spin.
+// Seeded scenes that provoke trouble: touching balls and racks, balls on cushions and in jaws, extreme spin.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 namespace carom::test {
 using reference::Generator;
 
-/// The order in which the numbers of a vector are drawn, and those of a speed: the same seed gives two
-/// scenes, of two families that have nothing else in common.
+/// The order in which the numbers of a vector, and those of a speed, are drawn: the same seed gives two
+/// scenes, of two otherwise independent families.
 enum class DrawOrder { kLastFirst, kFirstFirst };
 
 class RandomScene {
@@ -78,8 +78,8 @@ class RandomScene {
         Physics& p = scene_.physics;
         p.ball_ball = one_of<const BallBallModelInfo*>(
             {&kMathavan, &kMathavan, ball_ball_model("inelastic"), ball_ball_model("elastic")});
-        // The published march gains energy by construction where nothing is lost: 1e-4 of it at N = 1000 and
-        // e = 1.
+        // The published march gains energy by construction if nothing is lost: 1e-4 of it at N = 1000 and e =
+        // 1.
         if (p.ball_ball == &kMathavan && b.e_b == 1.0) b.e_b = 0.95;
         p.cushion = chance(0.7) ? &kHan2005 : &kSmooth;
         p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant,
@@ -113,8 +113,8 @@ class RandomScene {
         return {a.cos, a.sin};
     }
 
-    // A draw a statement, here and below: in which order a
-    // call's arguments are drawn is the compiler's choice.
+    // One draw per statement, here and below: the compiler chooses the order in which a call's arguments are
+    // drawn.
     Vec3 spin() {
         const auto size = [this] { return one_of<double>({1e-3, 10.0, 100.0, 400.0}); };
         const double first = last_first() ? size() : uniform(-1, 1);
@@ -231,14 +231,15 @@ inline std::size_t segments_of(const Record& record) {
     return count;
 }
 
-/// Runs, checks, comes to rest, and asserts that it took no more segments: without end before, or nearly.
+/// Runs, checks, comes to rest, and asserts that it took no more segments than this: earlier versions took
+/// endless, or nearly endless, numbers.
 inline void settles_within(const Scene& scene, std::size_t segments) {
     const Record record = run_verified(scene);
     EXPECT_EQ(record.stopped, StopReason::kAtRest);
     EXPECT_LE(segments_of(record), segments);
 }
 
-/// The scene as text for a person who has to look into it.
+/// The scene as text, for a person who must look into it.
 inline std::string dump(const Scene& scene) {
     std::string text;
     char line[400];
@@ -261,7 +262,7 @@ inline std::string dump(const Scene& scene) {
 }
 
 /// What went wrong in a run of the scene: a broken law or an error; empty if nothing. `options` lets a caller
-/// watch the run and give it up (by throwing from its progress).
+/// watch the run and abandon it (by throwing from its progress function).
 inline std::string what_breaks(const Scene& scene, const SimulateOptions& options = {}) {
     const Plan plan = plan_of(scene);
     try {

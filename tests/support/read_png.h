@@ -1,4 +1,4 @@
-// Pictures back from their files.
+// Reads pictures from their files.
 #pragma once
 
 #include <png.h>
@@ -13,8 +13,8 @@
 
 namespace carom::render_test {
 
-/// The pixels of what `begin` begins to read, the fourth channel
-/// 0xFF. Throws where it cannot be read; `name` is for the message.
+/// The pixels of the picture that `begin` opens, with 0xFF as fourth channel. Throws if it cannot be read;
+/// `name` is for the message.
 template <class Begin>
 render::Image read_png_by(const Begin& begin, const std::string& name) {
     png_image png{};

@@ -7,7 +7,7 @@
 
 namespace carom::test {
 
-/// The message of a scene that has to fail, or "" if it does not; the file is called s.toml.
+/// The message of a scene that must fail, or "" if it does not; the file is called s.toml.
 inline std::string error_of(const std::string& text) {
     try {
         parse_scene(text, "s.toml");

@@ -1,4 +1,4 @@
-// Scene files of the tests, and the messages that they have to give.
+// Scene files of the tests, and the messages that they must give.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -89,7 +89,7 @@ Outcome judge(const Scene& scene) {
     return out;
 }
 
-/// Leaves out balls, one after the other, and then spins, as long as the same kind of fault is there.
+/// Removes balls one by one, and then spins, as long as the same kind of fault remains.
 Scene least(Scene scene) {
     const Fault fault = judge(scene).fault;
     for (bool smaller = true; smaller && fault != Fault::kNone;) {
@@ -115,7 +115,7 @@ Scene least(Scene scene) {
     return scene;
 }
 
-/// CPU times in bins whose limits are 2^(1/4) apart, from 1 us on: ranges can be added.
+/// CPU times in bins whose limits are 2^(1/4) apart, from 1 us on, so that ranges can be added.
 class Times {
   public:
     void add(double ms) {
@@ -124,7 +124,7 @@ class Times {
         ++all_;
         most_ = std::max(most_, ms);
     }
-    /// [ms] Upper limit of the bin in which this share of the runs is.
+    /// [ms] Upper limit of the bin that contains this share of the runs.
     double at(double share) const {
         long seen = 0;
         for (const auto& [bin, count] : count_)

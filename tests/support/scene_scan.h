@@ -1,4 +1,4 @@
-// Runs ranges of seeded scenes and says which do not end well; for whoever changes contacts.
+// Runs ranges of seeded scenes and reports those that do not end well; for work on contacts.
 #pragma once
 
 namespace carom::test {

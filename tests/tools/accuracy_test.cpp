@@ -30,7 +30,7 @@ TEST(DeservedTolerance, IsTheLoosestPowerOfTenThatKeepsTheTarget) {
     EXPECT_EQ(deserved_tolerance(NAN, 1e-3), std::nullopt);
 }
 
-// What could not be finished is a row that says why, and no figure.
+// A setting that could not be finished is a row that says why, without figures.
 TEST(SceneAccuracy, ASettingThatFailsIsARow) {
     SceneAccuracy result;
     result.rows.resize(2);
@@ -46,7 +46,7 @@ TEST(SceneAccuracy, ASettingThatFailsIsARow) {
     EXPECT_FALSE(rows.at(1).contains("ns_min"));
 }
 
-// A ball that rolls straight: put aside by d it ends aside by d.
+// A ball that rolls straight: displaced by d it ends displaced by d.
 TEST(Gain, IsOneWithoutAnyContact) {
     Scene scene = empty_scene();
     add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0, rolling_spin(1.0, 0.0, scene.balls.R));
@@ -136,7 +136,7 @@ TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
                 unresolved, looser);
     EXPECT_GE(allowed, 50);
     EXPECT_GE(20 * met, 19 * allowed);
-    // A tolerance chosen without looking at the shot does not: the recommendation says something.
+    // A tolerance chosen without looking at the shot does not: the recommendation is informative.
     EXPECT_LT(looser, met);
 }
 

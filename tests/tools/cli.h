@@ -1,4 +1,4 @@
-// What the tests of the command line share.
+// Shared by the tests of the command line.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-/// Runs a built program. The tests decide about the instruction set, not the shell they are started from.
+/// Runs a built program. The tests choose the instruction set, not the shell that starts them.
 inline ProcessResult run_built(const char* program, std::vector<std::string> arguments,
                                ProcessOptions options) {
     arguments.insert(arguments.begin(), program);
@@ -57,8 +57,8 @@ fps = 60
 size = [320, 180]
 )";
 
-/// A valid scene whose one impact does not end: friction and
-/// spin hold the balls together, and the march stops it.
+/// A valid scene whose one impact does not end: friction and spin hold the balls together, and the march
+/// gives up.
 inline constexpr char kStuckScene[] = R"([balls]
 mu_s = 0.6
 mu_b = 4.0

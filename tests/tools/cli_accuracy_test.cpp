@@ -1,5 +1,4 @@
-// carom accuracy: what it prints and writes. Times are
-// measured, and no test asserts one; errors are repeatable.
+// carom accuracy: what it prints and writes. No test asserts a measured time; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -91,7 +90,7 @@ TEST_F(CliAccuracyScene, RefusesBadUsage) {
         std::vector<std::string> arguments;
         const char* message;
     } kCases[] = {
-        {{"accuracy"}, "a scene file is required"},
+        {{"accuracy"}, "no scene file given"},
         {{"accuracy", folder_.file("none.toml")}, "none.toml: "},
         {{"accuracy", scene_, "--target", "0"}, "--target 0: expected"},
         {{"accuracy", scene_, "--target", "nan"}, "--target nan: expected"},
@@ -99,7 +98,7 @@ TEST_F(CliAccuracyScene, RefusesBadUsage) {
         {{"accuracy", scene_, "--march", "0"}, "--march"},
         {{"accuracy", scene_, "--repeat", "0"}, "--repeat"},
         {{"accuracy", scene_, "--plot", "a.svg"}, "--plot"},
-        {{"accuracy", elastic}, "is one formula"},
+        {{"accuracy", elastic}, "is a closed formula"},
         {{"accuracy", "kernel"}, "carom-lab accuracy kernel"},
         {{"bench", "kernel"}, "run carom-lab bench"},
         {{"validate"}, "run carom-lab validate"},

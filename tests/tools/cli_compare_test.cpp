@@ -1,4 +1,4 @@
-// carom compare: what it prints, what it returns.
+// carom compare: what it prints and returns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST_F(Compare, AnotherShotIsATableAndAStatus) {
     EXPECT_EQ(json["tolerance"], 1e-4);
     EXPECT_EQ(json["only_in_a"], Json::array());
     ASSERT_EQ(json["balls"].size(), 3u);
-    // A row for every ball, with the numbers of the JSON.
+    // One row per ball, with the numbers of the JSON.
     for (const Json& ball : json["balls"]) {
         const std::string id = ball["id"];
         std::string row;
@@ -122,8 +122,7 @@ TEST_F(Compare, OtherBallsAreSaidAndTheRestIsCompared) {
         << result.out;
     EXPECT_EQ(json_of({scene_, other}, 1)["only_in_b"], Json::array({"3"}));
     const std::string none = folder_.write("none.toml", "[[ball]]\nid = \"x\"\n");
-    EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(),
-              "different: no ball in common");
+    EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(), "different: no ball in common");
 }
 
 TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
@@ -140,7 +139,7 @@ TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
     EXPECT_TRUE(json["events"]["first_other"]["b"].is_null()) << json["events"];
 }
 
-// 1 is the answer that they differ, so what gives no answer is 2.
+// 1 means that they differ, so the status without an answer is 2.
 TEST_F(Compare, NoAnswerIs2) {
     const std::string bad = folder_.write("bad.toml", "[cue]\nsped = 1\n");
     const std::string stuck = folder_.write("stuck.toml", kStuckScene);

@@ -1,4 +1,4 @@
-// The man page and the completions that the program prints of itself.
+// The man page and the completions that the program prints about itself.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -24,7 +24,7 @@ std::string described(const std::string& format) {
     return result.out;
 }
 
-/// What bash offers for a line; its last word is the one that is typed.
+/// What bash offers for a line whose last word is being typed.
 std::set<std::string> offered(const TemporaryFolder& folder, const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) line += " '" + word + "'";
@@ -47,7 +47,7 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     const TemporaryFolder folder;
     folder.write("completion", described("bash"));
     folder.write("a shot.toml", "");
-    EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"simulate", "sweep"}));
+    EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"simulate", "solve", "sweep"}));
     EXPECT_EQ(offered(folder, {"carom", "co"}), Words{"compare"});
     EXPECT_EQ(offered(folder, {"carom", "compare", "--to"}), Words{"--tolerance"});
     EXPECT_EQ(offered(folder, {"carom", "compare", "a"}), Words{"a shot.toml"});
@@ -73,7 +73,7 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     if (run_process({"zsh", "--version"}).status != 0) GTEST_SKIP() << "zsh is not installed";
     const ProcessResult result = shell("zsh", "zsh -n _carom", folder.path().string());
     EXPECT_EQ(result.status, 0) << result.err;
-    // What the functions hand to _arguments and _describe, seen by stand-ins for them.
+    // What the functions pass to _arguments and _describe, seen by substitutes for them.
     const ProcessResult seen =
         shell("zsh",
               "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"

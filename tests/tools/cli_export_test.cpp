@@ -1,5 +1,4 @@
-// carom export: the file of every scene is valid glTF, and what
-// it says about places and orientations is what the engine says.
+// carom export: the file of every scene is valid glTF, and its positions and orientations are the engine's.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +52,7 @@ struct Glb {
         return list;
     }
 
-    /// The sampler of a node's path; null where it is not animated.
+    /// The sampler of a node's path; null if it is not animated.
     Json sampler(std::size_t node, const std::string& path) const {
         if (!json.contains("animations")) return nullptr;
         const Json& animation = json.at("animations").at(0);
@@ -74,7 +73,7 @@ std::vector<std::array<std::uint16_t, 3>> triangles_of(const Glb& glb, const Jso
     return list;
 }
 
-/// A value of an animation as the specification evaluates it, with `width` numbers a key.
+/// A value of an animation as the specification evaluates it, with `width` numbers per key.
 std::vector<double> sampled(const Glb& glb, const Json& sampler, double t, std::size_t width) {
     const std::vector<float> times = glb.floats(sampler.at("input")),
                              values = glb.floats(sampler.at("output"));
@@ -102,7 +101,8 @@ struct Differences {
     double place = 0.0, turn = 0.0;  ///< largest [m], [rad]
 };
 
-/// Compares a file with the record, away from the instants at which a place jumps by the width of a float.
+/// Compares a file with the record, away from the instants at which a position jumps, by the width of a
+/// float.
 Differences differences(const Glb& glb, const Record& record) {
     Differences largest;
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
@@ -120,7 +120,7 @@ Differences differences(const Glb& glb, const Record& record) {
             const Vec3& r = state.position;
             std::vector<double> p = object.at("translation").get<std::vector<double>>();
             if (!move.is_null()) p = sampled(glb, move, t, 3);
-            // What floats resolve of a place and of a time: a ball beside the table falls for seconds.
+            // The resolution of floats for positions and times: a ball beside the table falls for seconds.
             const double resolved = 0x1p-24 * (r.norm() + state.velocity.norm() * t);
             largest.place = std::max(largest.place, (Vec3(p[0], -p[2], p[1]) - r).norm() - resolved);
             std::vector<double> q = {0.0, 0.0, 0.0, 1.0};
@@ -238,7 +238,7 @@ TEST(Export, TheFacesOfABallLookOutwards) {
 TEST(Export, TheKhronosValidatorSaysNothing) {
     if (run_process({"npm", "--version"}).status != 0) GTEST_SKIP() << "npm is not installed";
     const TemporaryFolder folder;
-    // Not a dependency of the project: fetched for this test, where it can be.
+    // Not a dependency of the project: fetched for this test if possible.
     const ProcessResult fetched =
         run_process({"npm", "install", "--prefix", folder.file("modules"), "--no-audit", "--no-fund",
                      "--fetch-retries=0", "--fetch-timeout=20000", "gltf-validator@2.0.0-dev.3.10"});
@@ -267,8 +267,7 @@ TEST(Export, RefusesWhatItCannotDo) {
         EXPECT_EQ(result.status, 2) << message;
         EXPECT_TRUE(contains(result.err, message)) << result.err;
     };
-    refused({"-o", folder.file("shot.obj")},
-            "the export is binary glTF; give a name that ends in .glb");
+    refused({"-o", folder.file("shot.obj")}, "the export is binary glTF; give a name that ends in .glb");
     refused({"--interpolation", "step"}, "--interpolation");
     refused({"--fps", "0", "-o", folder.file("a.glb")}, "--fps 0: expected a number greater than 0");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});

@@ -1,8 +1,9 @@
-// Faults from outside: a full disk, a folder that takes nothing, a reader that leaves, signals, a run that
-// was killed. What stands afterwards is whole or absent, and the exit status says what happened.
+// Faults from outside: a full disk, a read-only folder, a reader that leaves, signals, a run that was killed.
+// Files are afterwards whole or absent, and the exit status says what happened.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "base/file_lock.h"
+#include "base/output_file.h"
 #include "carom/engine/printable.h"
 #include "cli.h"
 
@@ -46,7 +48,7 @@ class Faults : public ::testing::Test {
     }
     std::string pattern() const { return folder_.file("frames/%05d.png"); }
 
-    /// Starts a render that is far from its end when its third frame stands.
+    /// Starts a render that is far from its end when its third frame appears.
     std::unique_ptr<Process> long_render() const {
         auto process = std::make_unique<Process>(
             std::vector<std::string>{CAROM_PROGRAM, "render", scene_, "-o", pattern(), "--fps", "2000",
@@ -69,7 +71,7 @@ class Faults : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-/// Every file that the program writes, by the option that asks for it.
+/// Every file that the program writes, by its option.
 TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
     const std::vector<std::vector<std::string>> commands = {
         {"simulate", scene_, "-o"},
@@ -156,8 +158,7 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
         process.send(SIGKILL);
         process.finish("");
     }
-    // Whatever stands under a frame's name is whole: killed
-    // between two system calls, only a temporary name is not.
+    // Whatever has a frame's name is whole: only a temporary file can be killed between two system calls.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
             EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
@@ -168,8 +169,8 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
     for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
 }
 
-// Over the frames of a longer film of another camera, killed
-// after each frame. What there is never mixes two pictures.
+// Over the frames of a longer film from another camera, killed after each frame: the files never mix two
+// pictures.
 TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
     const auto command = [this](const char* camera, const char* to) {
         return std::vector<std::string>{"render", scene_,  "-o",   pattern(), "--fps",    "100",
@@ -219,7 +220,7 @@ TEST_F(Faults, ASignalEndsAnExport) {
     EXPECT_FALSE(fs::exists(folder_.file("spins.glb")));
 }
 
-// A file may have any name but for "/" and 0. What is written is text all the same.
+// A file name may contain anything except "/" and 0. The output is still text.
 TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
     const std::string odd = folder_.file("b\xff\x01<.toml"), page = folder_.file("o.html");
     fs::copy_file(scene_, odd);
@@ -247,7 +248,17 @@ TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
     const int writes = ::open(other.c_str(), O_RDWR);
     ASSERT_EQ(::flock(writes, LOCK_EX), 0);
     folder_.write(".carom.tmp.not", "mine");
+    const std::string pipe = folder_.file(".carom.3.0.tmp"), link = folder_.file(".carom.4.0.tmp");
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    fs::create_symlink(scene_, link);
+    // What another program has begun stays until it is whole.
+    OutputFile begun(folder_.file("other.txt"));
+    begun.write("whole");
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
+    begun.commit();
+    EXPECT_EQ(read_file(folder_.file("other.txt")), "whole");
+    EXPECT_TRUE(fs::exists(pipe));
+    EXPECT_TRUE(fs::is_symlink(link));
     EXPECT_FALSE(fs::exists(left));
     EXPECT_TRUE(fs::exists(other)) << "another program writes it";
     EXPECT_TRUE(fs::exists(folder_.file(".carom.tmp.not")));
@@ -266,7 +277,18 @@ TEST_F(Faults, TwoRendersDoNotShareFrames) {
             << result.err;
         EXPECT_FALSE(fs::exists(frame(0)));
     }
+    {
+        // Of another run over one frame: others of that kind may draw meanwhile, a film may not.
+        const FileLock lock(pattern() + ".lock", false);
+        EXPECT_EQ(carom(command).status, 1);
+        EXPECT_FALSE(fs::exists(frame(0)));
+        std::vector<std::string> one = command;
+        one.insert(one.end(), {"--frame", "0"});
+        EXPECT_EQ(carom(one).status, 0);
+        EXPECT_TRUE(fs::exists(frame(0)));
+    }
     EXPECT_EQ(carom(command).status, 0);
+    EXPECT_FALSE(fs::exists(pattern() + ".lock"));
 }
 
 TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
@@ -281,7 +303,7 @@ TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
 
 // The sanitizers need more addresses than these limits leave.
 #ifndef CAROM_SANITIZED
-/// 12 MB of next to nothing, which once became 400 MB that could not be taken apart without more memory.
+/// 12 MB of next to nothing, which once became 400 MB that could not be freed without more memory.
 TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
     std::string text = "{\"format\":\"carom-record\",\"version\":2,\"x\":[";
     for (int i = 0; i < 4000000; ++i) text += "{},";
@@ -309,7 +331,8 @@ TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
 }
 #endif
 
-/// What asks for more than the program takes on: each with the limit in its message, none with work begun.
+/// Requests for more than the program takes on: each is refused with the limit in its message, before any
+/// work.
 TEST_F(Faults, EveryLimitHasItsMessage) {
     const auto message = [](const std::vector<std::string>& command) {
         const ProcessResult result = carom(command);
@@ -345,7 +368,7 @@ TEST_F(Faults, EveryLimitHasItsMessage) {
     has(message({"render", scene_, "-o", pattern(), "--sheet", "100000x100000"}), "as in 4x3");
 }
 
-// Stacks larger than all addresses: the system gives no thread at all.
+// Stacks larger than all addresses: the system starts no thread at all.
 TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
 #if CAROM_TEST_TSAN
     GTEST_SKIP() << "the thread sanitizer lays out memory itself, and does not start with such stacks";
@@ -365,7 +388,7 @@ TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
     }
     EXPECT_FALSE(fs::exists(folder_.file("t.csv")));
     EXPECT_FALSE(fs::exists(frame(0)));
-    // Fewer is what helps.
+    // Fewer helps.
     const ProcessResult alone =
         carom({"render", scene_, "--size", "64x36", "--to", "0.1", "--jobs", "1", "-o", pattern()}, options);
     EXPECT_EQ(alone.status, 0) << alone.err;

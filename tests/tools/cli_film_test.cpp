@@ -1,5 +1,5 @@
-// carom render -o shot.mp4: films that ffmpeg makes; and what others
-// read of frames and streams. Programs that are not there are skipped.
+// carom render -o shot.mp4: films that ffmpeg makes, and what other programs read from frames and streams.
+// Missing programs are skipped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 class CliFilm : public ::testing::Test {
   protected:
-    /// A program in place of ffmpeg, in front of all others.
+    /// A program in place of ffmpeg, first in the path.
     ProcessOptions with_ffmpeg(const std::string& script) const {
         std::filesystem::create_directory(folder_.path() / "bin");
         const std::string program = folder_.write("bin/ffmpeg", "#!/bin/sh\n" + script);
@@ -29,7 +29,7 @@ class CliFilm : public ::testing::Test {
         return options;
     }
 
-    /// Everything in the folder but the scene and the program in place of ffmpeg.
+    /// Everything in the folder except the scene and the substitute for ffmpeg.
     std::vector<std::string> made() const {
         std::vector<std::string> names = folder_.names();
         std::erase_if(names, [](const std::string& name) { return name == "s.toml" || name == "ffmpeg"; });
@@ -80,10 +80,10 @@ TEST_F(CliFilm, EveryKindHasItsFramesAndColors) {
     ASSERT_EQ(frames.size(), 10 * kFrame);
     for (const std::string ending : {".mp4", ".webm", ".gif", ".webp"}) {
         const ProcessResult result = render("shot" + ending);
-        if (contains(result.err, "Unknown encoder")) continue;  // an ffmpeg that was built without it
+        if (contains(result.err, "Unknown encoder")) continue;  // an ffmpeg built without it
         ASSERT_EQ(result.status, 0) << result.err;
         EXPECT_EQ(result.out, "10 frames, 320x180 at 30 fps: " + folder_.file("shot" + ending) + "\n");
-        if (ending == ".webp") continue;  // ffmpeg writes moving ones and does not read them
+        if (ending == ".webp") continue;  // ffmpeg writes animated ones and does not read them
         const std::string film = decoded({"-i", folder_.file("shot" + ending)});
         ASSERT_EQ(film.size(), frames.size()) << ending;
         for (const std::size_t k : {std::size_t{0}, std::size_t{9}}) {
@@ -166,7 +166,7 @@ TEST_F(CliFilm, AFailureOfFfmpegIsToldAndKeepsTheOldFile) {
 }
 
 TEST_F(CliFilm, AnInterruptLeavesNothing) {
-    // One that reads, and one that has stopped to.
+    // One that reads, and one that has stopped reading.
     for (const std::string script : {"cat > \"${f#file:}\"", "touch \"${f#file:}\"; sleep 100"}) {
         const ProcessOptions options =
             with_ffmpeg("for f; do :; done; echo > " + folder_.file("started") + "; exec sh -c '" +

@@ -39,7 +39,7 @@ TEST_F(CliGames, AMatchIsPlayedByTwoCommands) {
         const std::string text = read_file(next);
         EXPECT_TRUE(contains(text, "player " + std::to_string(read.at("turn").get<int>() + 1) + " shoots"))
             << text;
-        // What is written is a scene that plays.
+        // The output is a scene that plays.
         ASSERT_EQ(carom({"check", next}).status, 0);
         scene = next;
         state = {"--state", after};
@@ -48,7 +48,7 @@ TEST_F(CliGames, AMatchIsPlayedByTwoCommands) {
 }
 
 TEST_F(CliGames, AFoulGivesTheCueBallInHand) {
-    // The cue ball meets nothing.
+    // The cue ball hits nothing.
     const std::string miss = folder_.write("miss.toml",
                                            "[table]\npreset = \"nine_foot\"\n"
                                            "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.4]\n"

@@ -77,7 +77,7 @@ TEST(CliImpact, ReproducesPooltool) {
     EXPECT_LE(largest_difference("ball_ball.json", "frictional_mathavan_N100",
                                  {"--substeps", "100", "--cloth-slip", "as_published"}, ""),
               1e-9);
-    // The signs of the cloth slip are two models: the default is not the published one.
+    // The two signs of the cloth slip are two models: the default is not the published one.
     EXPECT_GT(largest_difference("ball_ball.json", "frictional_mathavan_N1000", {"--substeps", "1000"}, ""),
               1e-6);
 }
@@ -85,7 +85,8 @@ TEST(CliImpact, ReproducesPooltool) {
 TEST(CliImpact, AnErrorDoesNotStopTheRunAndExits1) {
     const std::string good = line_of(reference_impacts("paper_states.json").at(0)).dump();
     ProcessOptions options;
-    options.input = good + "\nnonsense\n\n" + good;  // a blank line is no question; the last line has no end
+    // a blank line is not a question; the last line has no line end
+    options.input = good + "\nnonsense\n\n" + good;
     const ProcessResult result = carom({"impact"}, options);
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.err, "");
@@ -125,7 +126,7 @@ TEST(CliImpact, EveryAnswerComesAtOnce) {
 
 TEST(CliImpact, AnInterruptWhileWaitingExits130) {
     Process process({CAROM_PROGRAM, "impact"}, {});
-    // An answer shows that the program is up and its handler is in place.
+    // An answer shows that the program is running with its handler in place.
     ASSERT_FALSE(process.ask("{}\n", 20000).empty());
     process.interrupt();
     EXPECT_EQ(process.finish("").status, 130);

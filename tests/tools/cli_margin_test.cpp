@@ -1,4 +1,4 @@
-// carom margin: what it prints and writes. Times are measured, and no test asserts one.
+// carom margin: what it prints and writes. No test asserts a measured time.
 #include <gtest/gtest.h>
 
 #include <string>

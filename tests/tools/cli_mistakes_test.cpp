@@ -60,7 +60,8 @@ TEST_F(Mistakes, MistypedKeysAndValuesNameTheNearest) {
             {"sweep", scene_, "--vary", "cue.sped=normal(1)", "--count", "2", "-o", folder_.file("t.csv")});
     const std::string picture = folder_.file("f.png");
     refused(
-        "--camera: palyer not in {top,rail,player,follow}; did you mean player? See carom render --help\n",
+        "--camera: palyer: expected one of {top,rail,player,follow}; did you mean player? See carom render "
+        "--help\n",
         {"render", scene_, "--at", "0", "--camera", "palyer", "-o", picture});
     refused("; did you mean trails?\n",
             {"render", scene_, "--at", "0", "--overlay", "spin,trial", "-o", picture});
@@ -81,12 +82,12 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would overwrite the input", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
     refused("would overwrite the input", sweep(scene_));
     refused("would overwrite the input", {"margin", scene_, "--no-render", "--csv", scene_});
-    refused("-o -: give a name", sweep("-"));
-    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
+    refused("-o -: expected a file name", sweep("-"));
+    refused("--csv -: expected a file name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", same, "--samples", same, "--sample-dt", "0.1"});
     refused("-o: empty file name", sweep(""));
-    // Files that are not there yet, under two names.
+    // Files that do not exist yet, under two names.
     fs::create_symlink(same, folder_.file("to_same"));
     fs::create_symlink("to_same", folder_.file("to_link"));
     fs::create_directory_symlink(".", folder_.file("here"));
@@ -104,7 +105,50 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would overwrite the input", {"render", "./s.toml", "-o", "s.toml"});
     fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
+    // One file that has two names on the disk.
+    fs::create_hard_link(scene_, folder_.file("twin.toml"));
+    refused("would overwrite the input", {"simulate", scene_, "-o", folder_.file("twin.toml")});
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
+    EXPECT_EQ(carom({"simulate", scene_, "--events", "/dev/stdout", "--samples", "/dev/stdout", "--sample-dt",
+                     "0.1"})
+                  .status,
+              0);
+    // Not all that is below /dev is a device.
+    if (!fs::is_directory("/dev/shm")) return;
+    const std::string shared = "/dev/shm/carom." + std::to_string(::getpid()) + ".json";
+    refused("name the same file", {"simulate", scene_, "-o", shared, "--events", shared});
+    EXPECT_FALSE(fs::exists(shared));
+    fs::copy_file(scene_, shared);
+    refused("would overwrite the input", {"simulate", shared, "-o", shared});
+    EXPECT_EQ(read_file(shared), before);
+    fs::remove(shared);
+}
+
+// A pattern becomes names: the scene was drawn over, or removed as a frame of another picture.
+TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
+    const std::string before = read_file(scene_);
+    const std::string as_frame = folder_.file("s00002.png"), in_percent = folder_.file("p%d.png");
+    fs::copy_file(scene_, as_frame);
+    fs::copy_file(scene_, in_percent);
+    fs::create_symlink(scene_, folder_.file("l7.png"));
+    const auto both = [&](const std::string& input, const std::string& pattern) {
+        refused("would overwrite the input", {"render", input, "-o", pattern, "--size", "32x18"});
+        refused("would overwrite the input",
+                {"render", input, "-o", pattern, "--size", "32x18", "--at", "0.1"});
+    };
+    both(as_frame, folder_.file("s%05d.png"));
+    both(folder_.path().string() + "/./s00002.png", folder_.file("s%05d.png"));
+    both(scene_, folder_.file("l%d.png"));
+    refused("would overwrite the input",
+            {"render", in_percent, "-o", folder_.file("p%%d.png"), "--size", "32x18", "--at", "0.1"});
+    const std::string cwd = fs::current_path().string();
+    fs::current_path(folder_.path());
+    fs::copy_file(scene_, "sheet.png");
+    refused("would overwrite the input", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
+    refused("would overwrite the input", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
+    fs::current_path(cwd);
+    for (const std::string& name : {scene_, as_frame, in_percent, folder_.file("sheet.png")})
+        EXPECT_EQ(read_file(name), before) << name;
 }
 
 TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
@@ -114,8 +158,7 @@ TEST_F(Mistakes, PicturesHaveNamesOfPictures) {
     refused("--at 99: the shot ends at", {"render", scene_, "--at", "99", "-o", folder_.file("f.png")});
     for (const char* option : {"--at", "--from"})
         for (const char* late : {"99", "1e16", "1e17", "1e300"})
-            refused(": the shot ends at",
-                    {"render", scene_, option, late, "-o", folder_.file("%d.png")});
+            refused(": the shot ends at", {"render", scene_, option, late, "-o", folder_.file("%d.png")});
     EXPECT_EQ(folder_.names(), std::vector<std::string>{"s.toml"});
     const std::string one = folder_.file("f.png");
     const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
@@ -143,7 +186,8 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
         other.push_back("--resume");
         const ProcessResult result = render(other);
         EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
+        EXPECT_TRUE(
+            contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
             << result.err;
     }
     std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
@@ -194,13 +238,13 @@ TEST_F(Mistakes, StandardOutputIsAFileToo) {
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
     EXPECT_FALSE(contains(samples.out, "final positions"));
     EXPECT_FALSE(fs::exists("-"));
-    refused("-o -: give a name", sweep("-"));
-    refused("--csv -: give a name", {"margin", scene_, "--no-render", "--csv", "-"});
+    refused("-o -: expected a file name", sweep("-"));
+    refused("--csv -: expected a file name", {"margin", scene_, "--no-render", "--csv", "-"});
     refused("--events and --samples name the same file",
             {"simulate", scene_, "--events", "-", "--samples", "-", "--sample-dt", "0.5"});
 }
 
-// A shell's >>: what was there before stays, and what is printed comes after.
+// A shell's >>: earlier contents stay, and the output comes after them.
 TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     const std::string log = folder_.file("log.txt");
     const std::string hash = carom({"simulate", scene_, "--hash"}).out;
@@ -240,16 +284,16 @@ TEST_F(Mistakes, AShardReplacesNoOther) {
     const std::string output = folder_.file("a.csv");
     ASSERT_EQ(carom(sweep(output, {"--shard", "1/2"})).status, 0);
     const std::string first = read_file(output);
-    refused("perhaps of another shard", sweep(output, {"--shard", "2/2"}));
+    refused("perhaps from another shard", sweep(output, {"--shard", "2/2"}));
     EXPECT_EQ(read_file(output), first);
 }
 
-// Others may write in the folder, too.
+// Others may also write in the folder.
 TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
     const std::string record = folder_.file(std::string(240, 'r') + ".json");
     EXPECT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     EXPECT_TRUE(fs::exists(record));
-    // Rights stay, and links to nothing are followed.
+    // Permissions stay, and dangling links are followed.
     const std::string secret = folder_.write("secret.csv", "");
     fs::permissions(secret, fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(carom({"simulate", scene_, "--events", secret}).status, 0);

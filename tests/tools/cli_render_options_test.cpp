@@ -68,12 +68,13 @@ TEST_F(CliRenderOptions, BadViewsAreRefused) {
     expect_refused(2, "--target: expected three numbers", {"--eye", "0.6,-0.5,1", "--target", "0,1,nan"});
     expect_refused(2, "--eye needs --target", {"--eye", "0.6,-0.5,1"});
     expect_refused(2, "--target and --eye are the same point", {"--eye", "0,1,1", "--target", "0,1,1"});
-    expect_refused(2, "--camera and --eye cannot be combined", {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
+    expect_refused(2, "--camera and --eye cannot be combined",
+                   {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
     expect_refused(1, "'9'", {"--camera", "follow", "--ball", "9"});
 }
 
 TEST_F(CliRenderOptions, EveryOverlayShows) {
-    // On its way to the first hit, of which the ghost shows the place.
+    // On its way to the first hit, whose place the ghost shows.
     const std::string at = "0.1";
     std::vector<std::string> seen = {picture({}, at)};
     for (const char* layer : {"trails", "events", "spin", "ghost", "clock", "margin", "all"}) {
@@ -147,7 +148,7 @@ TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
         "render", record_, "-o", folder_.file("f%d.png"), "--fps", "4", "--to", "0.75", "--size", "64x36"};
     ASSERT_EQ(carom(arguments).status, 0);
     const std::string second = read_file(folder_.file("f1.png"));
-    // A frame is missing, one is torn, one is another frame, and one is there.
+    // One frame is missing, one is truncated, one is another frame, and one is complete.
     std::filesystem::remove(folder_.file("f0.png"));
     folder_.write("f1.png", second.substr(0, 20));
     const std::string third = read_file(folder_.file("f2.png")), last = read_file(folder_.file("f3.png"));
@@ -163,7 +164,7 @@ TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
     EXPECT_EQ(std::filesystem::last_write_time(folder_.file("f3.png")), written);
     EXPECT_TRUE(std::filesystem::exists(folder_.file("f0.png")));
     EXPECT_EQ(folder_.names().size(), 6u);
-    // All there: nothing to do is no failure. Of another size: they are not looked at.
+    // All exist: having nothing to do is not a failure. Files of another size are not examined.
     ASSERT_EQ(carom(again).status, 0);
     again.insert(again.end(), {"--size", "32x18"});
     again.erase(again.begin() + 8, again.begin() + 10);
@@ -177,8 +178,7 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
     if (egl.status == 1 && egl.err.find("libegl1") != std::string::npos) GTEST_SKIP() << egl.err;
     ASSERT_EQ(egl.status, 0) << egl.err;
     EXPECT_TRUE(read_file(folder_.file("e0.png")) == picture({"--gl", "osmesa"}));
-    // Without OSMesa the default is EGL: files of its names
-    // that are no libraries stand in front of the real ones.
+    // Without OSMesa the default is EGL: files with its names that are not libraries come first in the path.
     TemporaryFolder fake;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
         fake.write(name, "no library");
@@ -194,7 +194,7 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
 }
 
 TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
-    // Files of these names that are no libraries, in front of the real ones.
+    // Files with these names that are not libraries, first in the path.
     TemporaryFolder fake;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so", "libEGL.so.1", "libEGL.so"})
         fake.write(name, "no library");
@@ -211,7 +211,7 @@ TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {
         EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
         EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
     };
-    // No one may make a folder in /proc, root neither.
+    // Nobody, not even root, may make a folder in /proc.
     refused(carom({"render", record_, "--at", "0", "-o", "/proc/frames/%d.png"}), "/proc/frames");
     refused(carom({"render", record_, "--sheet", "2x2", "-o", "/proc/sheet.png"}), "/proc/sheet.png");
     refused(carom({"render", record_, "--at", "0", "-o", record_ + "/%d.png"}), record_);
@@ -222,7 +222,7 @@ TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {
 }
 
 TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
-    // The limit stands for a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
+    // The limit imitates a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
     ProcessOptions options;
     options.file_limit = 8L * 512;
     const ProcessResult result = carom(

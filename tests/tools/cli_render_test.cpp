@@ -1,4 +1,4 @@
-// carom render: numbered whole frames, an interrupt that leaves no half.
+// carom render: numbered whole frames, and an interrupt that leaves no partial one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class CliRender : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-/// Width and height that a PNG file states; {0, 0} if it is none, or not whole.
+/// Width and height that a PNG file states; {0, 0} if it is not a complete PNG file.
 std::pair<unsigned, unsigned> png_size(const std::string& path) {
     const std::string bytes = read_file(path);
     const std::string end("IEND\xAE\x42\x60\x82", 8);

@@ -16,7 +16,9 @@ struct Malformed {
 const Malformed kScenes[] = {
     {"[[ball]]\nid = \"cue\"\ncolor = \"white\"\n",
      ":3:1: unknown key \"color\" in [ball]; the keys there are *"},
-    {"[[ball]]\nposition = [0.5, \"x\"]\n", ":2:18: ball.position[1] must be a number, not a string"},
+    {"[[ball]]\nposition = [0.5, \"x\"]\n",
+     ":2:18: ball.position[1] must be a number, or a number with a unit in quotes (m, cm, mm, in, ft), not "
+     "\"x\""},
     {"[balls]\nmass = -0.17\n[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n",
      ":2:8: balls.mass = -0.17 is out of range; it must be at least 1e-09 and at most 1000000 kg"},
     {"[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.5, 0.55]\n",

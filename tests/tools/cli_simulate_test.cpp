@@ -42,7 +42,7 @@ TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) 
         EXPECT_EQ(carom_isa(kernel::name(isa), {"simulate", scene_, "--hash"}).out, first.out)
             << kernel::name(isa);
     }
-    // Measuring changes nothing, and a file does not either.
+    // Measuring changes nothing, nor does writing a file.
     EXPECT_EQ(lines_of(run({"--hash", "--profile"}).out).at(0) + "\n", first.out);
     EXPECT_EQ(run({"--hash", "-o", folder_.file("r.json")}).out, first.out);
     EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
@@ -53,7 +53,7 @@ TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     EXPECT_EQ(good.status, 0) << good.err;
     EXPECT_EQ(good.out, run({"--hash"}).out);
     EXPECT_EQ(good.err, "");
-    // The published march with few steps gains energy where an impact loses none.
+    // The published march with few steps gains energy if an impact loses none.
     const std::string scene =
         folder_.write("gain.toml",
                       "[balls]\ne_b = 1.0\nmu_b = 0.05\n[physics]\nsubsteps = 100\n"
@@ -202,7 +202,7 @@ TEST_F(CliSimulate, MotionWithoutEndGoesOnToTheStopTime) {
               0);
     EXPECT_NE(read_file(folder_.file("t.csv")).find(",time,0.1,0,"), std::string::npos);
 
-    // Without a time there is nothing to go on to.
+    // Without a time there is no end to reach.
     const std::string events = folder_.write(
         "events.toml",
         "[balls]\nmu_sp = 0\n[[ball]]\nposition = [0.6, 0.5]\nspin = [0, 0, 5]\n[stop]\nevents = 4\n");

@@ -40,14 +40,14 @@ void expect_ok(const ProcessResult& result) {
     EXPECT_EQ(result.status, 0) << result.err;
 }
 
-/// The folder that a sweep leaves when it is stopped, or "".
+/// The folder that a stopped sweep leaves, or "".
 std::string parts_in(const TemporaryFolder& folder) {
     for (const auto& entry : fs::directory_iterator(folder.path()))
         if (entry.path().extension() == ".parts") return entry.path().string();
     return "";
 }
 
-/// The parts in it, in the order of their shots.
+/// Its parts, in the order of their shots.
 std::vector<std::string> files_in(const std::string& parts) {
     std::vector<std::string> files;
     for (const auto& entry : fs::directory_iterator(parts))
@@ -58,7 +58,7 @@ std::vector<std::string> files_in(const std::string& parts) {
     return files;
 }
 
-/// The rows of all parts: the last two lines of each are about it.
+/// The rows of all parts, without the last two lines of each, which describe it.
 std::vector<std::string> rows_in(const std::string& parts) {
     std::vector<std::string> rows;
     for (const std::string& file : files_in(parts)) {
@@ -68,7 +68,7 @@ std::vector<std::string> rows_in(const std::string& parts) {
     return rows;
 }
 
-/// Waits until a sweep has kept so many parts.
+/// Waits until a sweep has kept this many parts.
 std::string wait_for_parts(const TemporaryFolder& folder, std::size_t count = 1) {
     for (int i = 0; i < 2000; ++i) {
         const std::string parts = parts_in(folder);
@@ -78,7 +78,7 @@ std::string wait_for_parts(const TemporaryFolder& folder, std::size_t count = 1)
     return "";
 }
 
-/// Lets a sweep run until it has kept some rows, and interrupts it. Its folder.
+/// Lets a sweep run until it has kept some rows, and interrupts it. Returns its folder.
 std::string interrupted_parts(const TemporaryFolder& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
     Process process(arguments, {});
@@ -131,7 +131,7 @@ TEST(CliSweep, GoesOnAfterAKill) {
         // The destructor kills it with SIGKILL.
     }
     EXPECT_FALSE(fs::exists(killed));
-    // Half a part, as a crash may leave it, before it has its name.
+    // Half a part, as a crash may leave it, before it gets its name.
     std::ofstream(parts + "/.carom.1.0.tmp") << "123,90.0";
     const ProcessResult result = carom(command);
     expect_ok(result);
@@ -185,7 +185,7 @@ TEST(CliSweep, APartIsLookedAt) {
         refused("are not those that were written");
     }
 
-    // Of another build, which has other bits.
+    // From another build, which has other bits.
     const auto signed_again = [&](std::string other) {
         Fnv hash;
         hash.add(other);
@@ -208,7 +208,7 @@ TEST(CliSweep, APartIsLookedAt) {
     EXPECT_EQ(rows_in(parts)[0] + "\n", rows.substr(0, rows.find('\n') + 1));
 }
 
-// Others may write in the folder, too.
+// Others may also write in the folder.
 TEST(CliSweep, ALinkIsNotFollowed) {
     const TemporaryFolder folder, elsewhere;
     const std::vector<std::string> command = breaks(100000, folder.file("a.csv"));
@@ -253,8 +253,8 @@ TEST(CliSweep, AStatusFileSaysHowFarItIs) {
 TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     const TemporaryFolder folder;
     const std::string status = folder.file("status.json");
-    // 2^53 shots in 999 999 parts: no shard has a whole
-    // share, and the product of the two numbers has 73 bits.
+    // 2^53 shots in 999 999 parts: no shard is an exact fraction, and the product of the two numbers has 73
+    // bits.
     std::vector<std::string> arguments =
         breaks(1, folder.file("a.csv"), {"--shard", "999999/999999", "--status", status, "--jobs", "1"});
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
@@ -271,7 +271,7 @@ TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     EXPECT_EQ(stopped["rows"], rows.size());
     EXPECT_EQ(rows.back().find(std::to_string(9007190247532730 + rows.size() - 1) + ","), 0u) << rows.back();
 
-    // The same command goes on, and says which rows are there without having played them.
+    // The same command continues, and reports existing rows without playing them again.
     const std::size_t count = files_in(parts).size();
     Process again(arguments, {});
     EXPECT_EQ(wait_for_parts(folder, count + 1), parts);

@@ -1,5 +1,5 @@
-// Long work as somebody sees it who sits at a terminal: a line that moves, nothing left of it under what is
-// printed at the end, and Ctrl-C that ends it.
+// Long work as seen by somebody at a terminal: a line that moves, no trace of it under the final output, and
+// Ctrl-C that ends it.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -20,7 +20,7 @@ TEST_F(OnATerminal, RenderMoves) {
     moves_and_stops({"render", scene_, "--fps", "90000", "--size", "320x180", "-o", frames}, "rendering: [");
 }
 
-// Nothing can be seen of one large picture but its table.
+// The only visible part of one large picture is its table.
 TEST_F(OnATerminal, OneLargePictureMoves) {
     moves_and_stops({"render", scene_, "--at", "0", "--size", "3200x1800", "-o", folder_.file("%d.png")},
                     "rendering: the table, ");
@@ -62,7 +62,7 @@ TEST_F(OnATerminal, SimulateMoves) {
     moves_and_stops({"compare", scene_, scene}, "simulating: ");
 }
 
-// The summary has a line of its own, and so has every line after it.
+// The summary has its own line, and so has every line after it.
 TEST_F(OnATerminal, NothingIsLeftUnderTheSummary) {
     Terminal terminal(
         {CAROM_PROGRAM, "render", scene_, "--size", "1280x720", "--to", "1", "-o", folder_.file("%d.png")});

@@ -19,8 +19,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
     } kCases[] = {
         {{},
          "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
-         "accuracy, sweep, check, "
-         "impact or describe; see carom --help"},
+         "accuracy, sweep, break, solve, check, impact or describe; see carom --help"},
         {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
@@ -43,10 +42,10 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--size", "99999999999x1"}, "expected WIDTHxHEIGHT"},
         {{"render", scene, "--fps", "0"}, "--fps 0: expected a number greater than 0"},
         {{"render", scene, "--from", "2", "--to", "1"}, "--to is before --from"},
-        {{"render", scene, "--from", "1e6"}, "--from 1000000: the shot is over"},
+        {{"render", scene, "--from", "1e6"}, "--from 1000000: the shot ends at"},
         {{"render", scene, "--to", "1e9"}, "frames"},
         {{"render", scene, "--frame", "1000000"}, "--frame 1000000: the last frame is"},
-        {{"render", scene, "--at", "1", "--to", "2"}, "--at is one instant"},
+        {{"render", scene, "--at", "1", "--to", "2"}, "--at shows one instant"},
         {{"render", scene, "--png-level", "1"}, "--png-level"},
         {{"render", scene, "--png-writer", "paint"}, "paint"},
         {{"render", scene, "--raw", "--y4m"}, "--raw"},
@@ -90,7 +89,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 TEST(CliUsage, HelpNamesEveryDefault) {
     for (const char* command :
          {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
-        // Options begin with two blanks and a dash; their text may go on in the lines below.
+        // Options begin with two spaces and a dash; their text may continue on the lines below.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
@@ -179,7 +178,7 @@ TEST(CliCheck, PrintsThePlan) {
           "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
-    // Where none is named, every kernel has its own.
+    // By default, every kernel has its own.
     const std::string free = carom_isa("", {"check", scene}).out;
     const std::string impacts = kernel::name(kernel::fastest_isa(kernel::KernelKind::kTolerance)),
                       clusters = kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase));

@@ -1,5 +1,5 @@
 // carom view: pages. The states that their script computes are the engine's, to the bit; a browser shows
-// them, moves in them by keys and pointer, says nothing on its console, and loads nothing.
+// them, moves in them by keys and pointer, prints nothing on its console, and loads nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ std::string stem(const std::string& path) {
     return std::filesystem::path(path).stem().string();
 }
 
-/// A record whose balls have names that would end the script, begin a tag, or
-/// end a line of it. Scenes refuse such names; a record comes from anywhere.
+/// A record whose balls have names that would end the script, begin a tag, or end a line. Scenes refuse such
+/// names, but a record may come from anywhere.
 std::string hostile_record(const TemporaryFolder& folder) {
     const std::string file = folder.file("hostile.json");
     EXPECT_EQ(carom({"simulate", folder.write("small.toml", kSmallScene), "-o", file, "--hash"}).status, 0);
@@ -69,7 +69,7 @@ std::string states_csv(const Record& record) {
     return csv;
 }
 
-/// The page of a scene, or of a record, and the record that it holds.
+/// The page of a scene or of a record, and the record that it contains.
 struct MadePage {
     std::string file;
     Record record;
@@ -108,7 +108,7 @@ TEST(View, ThePagesStatesAreTheEnginesToTheBit) {
             << node.out;
         EXPECT_EQ(differ, 0) << scene << "\n" << node.out;
         EXPECT_EQ(compared, 11 * std::count(csv.begin(), csv.end(), '\n'));
-        // Orientations come from another sin and cos, and add up over all segments.
+        // Orientations use another sin and cos, and accumulate over all segments.
         EXPECT_LT(turned, 1e-9) << scene;
         most_turned = std::max(most_turned, turned);
     }
@@ -158,7 +158,7 @@ TEST(View, ABrowserShowsEveryScene) {
         EXPECT_LT(bytes, 200000u) << "the page of a break";
         RecordProperty("bytes_of_the_page_of_a_break", std::to_string(bytes));
     }
-    // Two shots in one page, and how far their cue balls are apart at some instant.
+    // Two shots in one page, and how far apart their cue balls are at some instant.
     const std::string other = CAROM_SOURCE_DIR "/scenes/follow.toml";
     const TemporaryFolder more;
     const MadePage two = make_page(more, CAROM_SOURCE_DIR "/scenes/draw.toml", {other, "--no-margin"});
@@ -201,8 +201,7 @@ TEST(View, ARecordIsShownAsItIs) {
     ASSERT_EQ(carom({"simulate", scene, "-o", json}).status, 0);
     const ProcessResult plain = carom({"view", json, scene, "-o", page});
     EXPECT_EQ(plain.status, 0) << plain.err;
-    EXPECT_TRUE(
-        contains(plain.err, "shot.json: the record is not profiled, so the page has no frame chart"));
+    EXPECT_TRUE(contains(plain.err, "shot.json: the record is not profiled, so the page has no frame chart"));
     EXPECT_TRUE(contains(read_file(page), "id=\"second\""));
     EXPECT_TRUE(contains(read_file(page), "\"margin\":null"));
     ASSERT_EQ(carom({"simulate", scene, "-o", json, "--profile"}).status, 0);

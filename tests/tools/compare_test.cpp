@@ -1,4 +1,4 @@
-// What differs between two shots, where the answer is known on paper.
+// Differences between two shots with answers known on paper.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,7 @@ TEST(Difference, OfAShiftIsTheShift) {
     EXPECT_FALSE(d.events.first_apart);
 }
 
-// A ball that is thrown up is v^2 / 2g above one that rests,
-// after v / g: between two events, and back at the end.
+// A ball thrown up is v^2 / 2g above one at rest after v / g: between two events, and back at the end.
 TEST(Difference, FindsTheLargestBetweenEvents) {
     for (const double v : {1.0, 2.0}) {
         const std::string up = "[0, 0, " + std::to_string(v) + "]";
@@ -65,7 +64,8 @@ TEST(Difference, FindsTheLargestBetweenEvents) {
     }
 }
 
-// The same from samples: no instant of a real shot is farther apart than the largest, and one is as far.
+// The same from samples: no instant of a real shot is farther apart than the largest distance, and one is as
+// far.
 TEST(Difference, IsTheLargestOfManySamples) {
     const auto scene = [](const char* name) {
         return std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
@@ -85,8 +85,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
                 largest = std::max(largest, (x.position - y.position).norm());
         }
         EXPECT_LE(largest, ball.largest + 1e-12) << ball.id;
-        // At 12 m/s, the fastest of both, half a sample is 2.4 mm of
-        // the way for each; one that is gone in one shot may go on.
+        // At 12 m/s, the faster of both, half a sample is 2.4 mm of path for each; a ball that is gone in one
+        // shot may continue.
         if (!ball.a.gone() && !ball.b.gone()) {
             EXPECT_GE(largest, ball.largest - 0.005) << ball.id;
         }
@@ -94,8 +94,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
     }
 }
 
-// What lies in one pocket is equal, however it fell; nor does it count
-// that it is put on the bottom at once, a little later here than there.
+// Balls in the same pocket are equal, however they fell; it does not count either that they are put on the
+// bottom at once, a little later in one shot than in the other.
 TEST(Difference, OfBallsInOnePocketIsNone) {
     const auto shot = [](const char* speed) {
         return std::string("[[ball]]\nid = \"a\"\nposition = [0.2, 0.2]\nvelocity = [") + speed + ", " +
@@ -128,7 +128,7 @@ TEST(Difference, GoesAsFarAsBothAreKnown) {
     EXPECT_GT(d.balls[0].end, 0.1);
     EXPECT_FALSE(d.within(0.1));
     EXPECT_FALSE(d.events.ends_alike());
-    // At rest is known for ever: the longer shot counts.
+    // At rest is known forever: the longer shot counts.
     const Record slow = played(lone("[0, 0]", "[0.1, 0]")), fast = played(whole);
     EXPECT_EQ(difference(slow, fast).until, fast.duration);
     EXPECT_NEAR(difference(slow, fast).balls[0].largest, difference(slow, fast).balls[0].end, 1e-15);

@@ -1,12 +1,12 @@
 // Every command that README.md, CONTRIBUTING.md and docs/ print works as printed, and prints what they say.
 //
-// A ```sh block is run as it stands, in a folder that looks like a clone after its build; the blocks of one
-// page run in their order in one folder. Lines of a ```text block right behind it have to appear in the
-// output, in this order; "..." stands for any lines. Two comments in front of a block change that:
+// A ```sh block is run as it is, in a folder that looks like a clone after its build; the blocks of one page
+// run in order in one folder. Lines of a ```text block right after it must appear in the output, in this
+// order; "..." stands for any lines. Two comments before a block change that:
 //   <!-- not run by the tests: WHY -->
-//   <!-- run by the tests where this succeeds: COMMAND -->
-// Such a command asks for a package of kConditions; where that is installed, the block has to run. A page
-// with a block that did not run is skipped, with the reason, after all others have run.
+//   <!-- run by the tests where this succeeds: COMMAND --> Such a command asks for a package of kConditions;
+//   if that is installed, the block must run. A page with a block that did not run is skipped, with the
+//   reason, after all others have run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ std::vector<Block> blocks_of(const std::string& page) {
     return blocks;
 }
 
-/// What stands in a comment behind `start`, or "".
+/// The text of a comment after `start`, or "".
 std::string comment_value(const std::string& comment, const std::string& start) {
     const std::string whole = "<!-- " + start + ": ";
     const std::size_t end = comment.rfind(" -->");
@@ -65,7 +65,7 @@ std::string comment_value(const std::string& comment, const std::string& start) 
     return comment.substr(whole.size(), end - whole.size());
 }
 
-/// The first line of `expected` that does not appear in its place in `output`, or "".
+/// The first line of `expected` that does not appear in order in `output`, or "".
 std::string missing_line(const std::string& expected, const std::string& output) {
     const std::vector<std::string> got = lines_of(output);
     std::size_t at = 0;
@@ -96,7 +96,7 @@ class Clone {
         ProcessOptions options;
         options.folder = folder_.path().string();
         options.environment = {{"CAROM_ISA", ""}, {"HOME", folder_.file("home")}};
-        // The system's own tools first: another Python may stand in front that has no packages.
+        // The system's own tools first: another Python without packages may come first.
         options.environment.emplace_back("PATH", std::string("/usr/bin:/bin:") + std::getenv("PATH"));
         return run_process({"/bin/bash", "-euo", "pipefail", "-c", script}, options);
     }
@@ -119,14 +119,14 @@ std::string read_page(const std::string& name) {
     return read_file(std::string(CAROM_SOURCE_DIR "/") + name);
 }
 
-// What a machine may lack, and the Debian package that has it: without the one the other fails.
+// What a machine may lack, and the Debian package that has it: without the package, the command fails.
 const std::map<std::string, std::string> kConditions = {
     {"python3 -c 'import numpy'", "python3-numpy"},
     {"python3 -c 'import matplotlib'", "python3-matplotlib"},
     {"ffmpeg -version && ffmpeg -encoders | grep libwebp_anim", "ffmpeg"},
 };
 
-/// Why a block is not run here; "" if it is. What only looks like a reason is a failure.
+/// Why a block is not run here; "" if it is run. A comment that only resembles a reason is a failure.
 std::string reason_not_to_run(const Clone& clone, const std::string& condition) {
     if (condition.empty()) return "";
     const auto known = kConditions.find(condition);
@@ -216,8 +216,7 @@ TEST_P(Docs, CommandsWorkAsPrinted) {
     if (!not_run.empty()) GTEST_SKIP() << not_run;
 }
 
-// A command with a file belongs into a block, where it is
-// run; a mention may only name options that there are.
+// A command with a file belongs in a block, where it is run; a mention may only name existing options.
 TEST_P(Docs, MentionsOfTheProgramAreRight) {
     static std::map<std::string, std::string> helps;
     const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");

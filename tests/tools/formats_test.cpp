@@ -1,5 +1,5 @@
-// What docs/ says about file formats is what the program says of itself.
-// Where a test here fails, renew the pages with tools/renew_formats.py.
+// docs/ says about file formats what the program says about itself. If a test fails here, renew the pages
+// with tools/renew_formats.py.
 #include "commands/describe/formats.h"
 
 #include <gtest/gtest.h>

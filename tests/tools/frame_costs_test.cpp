@@ -83,7 +83,7 @@ TEST(CostsByFrame, PartsAddUpAndClustersAreNotKernel) {
     EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 1200e-6);
 }
 
-// The moments are given: what lies between frame_done and next_starts belongs to no frame.
+// The times are given: what happens between frame_done and next_starts belongs to no frame.
 TEST(FrameWalls, CountsFramesAndNotWhatIsBetweenThem) {
     std::vector<double> moments = {10.0, 11.0, 14.5, 20.0, 22.0, 22.5};
     std::size_t at = 0;

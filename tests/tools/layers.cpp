@@ -12,47 +12,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// From the bottom up: a layer may use itself and those in front of it.
+/// From the bottom up: a layer may use itself and those before it.
 constexpr std::array<std::string_view, 6> kLayers = {"kernel", "engine", "games", "render", "tools", "lab"};
 constexpr int kNoLayer = -1;
-/// The C interface stands beside the games: it uses what they may use, and nobody uses it.
+/// The C interface is beside the games: it uses what they may use, and nothing uses it.
 constexpr std::string_view kCInterface = "capi";
 constexpr int kCInterfaceLayer = 2;
-/// The Python package stands beside the program: it uses what the program may use, and nobody uses it.
+/// The Python package is beside the program: it uses what the program may use, and nothing uses it.
 constexpr std::string_view kPython = "python";
 constexpr int kPythonLayer = 4;
-/// carom.wasm stands there too: the outlines of its tables and the words of its verdicts are the program's.
+/// So is carom.wasm: the outlines of its tables and the words of its verdicts are the program's.
 constexpr std::string_view kWeb = "web";
 constexpr int kWebLayer = 4;
-/// The laboratory may include anything, and nothing includes it, tests of the product and examples neither.
+/// The laboratory may include anything, and nothing includes it, not even tests of the product or examples.
 constexpr std::string_view kLab = "lab";
 constexpr std::array<std::string_view, 2> kBesideTheProduct = {"tests", "examples"};
 
-/// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one
-/// step of the data's way, includes toolboxes. Stations never include each other:
-/// they meet in public types only. What lies in the folder itself is left of all.
+/// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step on the data's path,
+/// includes toolboxes. Stations never include each other: they meet only in public types. Files in the folder
+/// itself are left of all.
 struct Rooms {
     std::string_view folder;
     std::vector<std::string_view> toolboxes, stations;
-    /// Whether a file in the folder itself stands right of all rooms, as a main() does.
+    /// Whether a file in the folder itself is right of all rooms, as a main() is.
     bool top_uses_rooms = false;
 };
 const std::array<Rooms, 5> kRooms = {{
-    {"kernel/src", {}, {"march", "tolerance", "contact_phase"}},
+    {"kernel/src", {"unlike"}, {"march", "tolerance", "contact_phase"}},
     {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
-    // Inner rooms stand before the rooms that hold them.
+    // Inner rooms come before the rooms that contain them.
     {"tools/carom/commands",
      {},
      {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
       "diagram", "judge", "play", "solve", "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
-/// Public headers that say what a station of the engine made
-/// or does. A toolbox of the engine knows none of them.
+/// Public headers about what a station of the engine made or does. No toolbox of the engine knows them.
 constexpr std::array<std::string_view, 4> kHeadersOfStations = {
     "carom/engine/plan.h", "carom/engine/simulate.h", "carom/engine/variation.h", "carom/engine/verify.h"};
-/// Folders that others may use although they are no public headers: who, and what.
+/// Folders that others may use although they are not public headers: who, and what.
 struct Door {
     std::string_view from, to;
 };
@@ -159,8 +158,8 @@ std::string house_of(const std::string& path) {
     return path.substr(0, second == path.npos ? first : second);
 }
 
-/// Place of a room from the left: -1 for the folder itself,
-/// toolboxes, then stations; -2 if there is no such room.
+/// Position of a room from the left: -1 for the folder itself, toolboxes, then stations; -2 if there is no
+/// such room.
 int place_of(const Rooms& rooms, std::string_view path) {
     const std::string_view rest = path.substr(rooms.folder.size() + 1);
     const std::size_t slash = rest.find('/');
@@ -199,7 +198,7 @@ std::string target_violation(const fs::path& root, const std::string& from, int 
                 return room_violation(rooms, from, to);
         return "";
     }
-    // A door stands in front of the order of layers: Python uses the pages, which stand among the tools.
+    // A door overrides the order of layers: Python uses the pages, which are among the tools.
     for (const Door& door : kDoors)
         if (is_within(from, door.from) && is_within(to, door.to)) return "";
     if (target > layer) return "points upwards to " + first;
@@ -208,7 +207,7 @@ std::string target_violation(const fs::path& root, const std::string& from, int 
     return "points into " + house_of(to) + ", which is not public";
 }
 
-/// Of an include that names a public header.
+/// For an include that names a public header.
 std::string public_violation(const fs::path& root, const std::string& from, int layer,
                              std::string_view name) {
     const std::string first(name.substr(6, name.find('/', 6) - 6));

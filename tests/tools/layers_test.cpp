@@ -1,4 +1,4 @@
-// No include points upwards; and the check that says so sees one that does.
+// No include points upwards; and the check itself detects one that does.
 #include "layers.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The bookkeeping of carom margin, on costs that are given.
+// The bookkeeping of carom margin, with given costs.
 #include "base/margin.h"
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The documents hold together: links lead somewhere, pages of the guide are short and say what they are for,
-// notes of the lab say where they come from, and all of it stays readable in an afternoon.
+// The documents hold together: links lead somewhere, pages of the guide are short and state their purpose,
+// notes of the lab state their sources, and everything can be read in an afternoon.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Pages all_pages() {
     return pages;
 }
 
-/// The page without what stands between fences: there "](" is code.
+/// The page without what is between fences, where "](" is code.
 std::string prose(const std::string& page) {
     std::istringstream in(page);
     std::string text;
@@ -63,8 +63,8 @@ std::vector<std::string> links_of(const std::string& page) {
     return found;
 }
 
-/// The anchors of the headings, as GitHub and the site make
-/// them: lower case, blanks are dashes, marks are gone.
+/// The anchors of the headings, as GitHub and the site make them: lower case, spaces become dashes,
+/// punctuation goes.
 std::set<std::string> anchors_of(const std::string& page) {
     std::set<std::string> anchors;
     std::istringstream in(prose(page));
@@ -82,8 +82,8 @@ std::set<std::string> anchors_of(const std::string& page) {
     return anchors;
 }
 
-/// What is wrong with the links of a page. `exists` knows the
-/// files and folders, by their paths from the top folder.
+/// What is wrong with the links of a page. `exists` knows the files and folders by their paths from the top
+/// folder.
 std::vector<std::string> dead_links(const Pages& pages, const std::string& name,
                                     const std::function<bool(const std::string&)>& exists) {
     std::vector<std::string> dead;
@@ -172,8 +172,8 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
     }
 }
 
-// A word holds a letter or a digit; the rules of a table
-// are none. The generated page of the command line counts.
+// A word contains a letter or a digit; the rules of a table do not count. The generated page of the command
+// line counts.
 TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
     std::size_t words = 0;

@@ -43,7 +43,7 @@ std::vector<Scene> scenes() {
     for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
         if (entry.path().extension() == ".toml") all.push_back(read_scene(entry.path().string()));
     EXPECT_GE(all.size(), 10u);
-    // What no scene of the folder has: friction that falls with the slip, a ball of its own size, an eye.
+    // What no scene of the folder has: friction that falls with the slip, a ball with its own size, an eye.
     all.push_back(parse_scene(
         "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[render]\neye = [1, 1, 1]\ntarget = [0, 1, 0]\n"
         "[stop]\nevents = 3\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nmass = 0.2\n"
@@ -67,7 +67,7 @@ TEST(RecordSchema, RecordsOfAllScenesAreDescribedByItAndReadBackWhole) {
     }
 }
 
-// Of every object and value of a record, one way each: "/tracks/3/segments/7/r" stands for all of its kind.
+// One path for every object and value of a record: "/tracks/3/segments/7/r" stands for all of its kind.
 void each_kind(const Json& value, const std::string& kind, const std::string& at,
                std::map<std::string, std::string>& found) {
     found.emplace(kind, at);
@@ -79,7 +79,7 @@ void each_kind(const Json& value, const std::string& kind, const std::string& at
             each_kind(value[i], kind + "/#", at + "/" + std::to_string(i), found);
 }
 
-// With every key that there is.
+// With every existing key.
 Json profiled_break() {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     use_cue(*scene.cue, "lossless");
@@ -89,7 +89,7 @@ Json profiled_break() {
     record.tracks.front().own = BallSize{0.03, 0.2};
     record.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);
     record.events.front().slow = true;
-    // Whether a ball meets the end of a cushion is the break's luck.
+    // Whether a ball hits the end of a cushion depends on the break.
     const auto met = std::find_if(record.events.begin(), record.events.end(),
                                   [](const Event& e) { return e.type == EventType::kBallCushion; });
     met->detail = 0;
@@ -103,7 +103,7 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     std::map<std::string, std::string> kinds;
     each_kind(good, "", "", kinds);
     EXPECT_GE(kinds.size(), 90u);
-    // A key without which the record is still one.
+    // A key without which the record is still valid.
     const std::set<std::string> free = {"/events/#/balls", "/events/#/nose", "/events/#/slow", "/table/bed"};
     for (const auto& [kind, at] : kinds) {
         const Json::json_pointer place(at);
@@ -122,7 +122,7 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     }
 }
 
-// The heading of the page under which the keys of an object stand, and where the schema has that object.
+// The heading of the page above the keys of an object, and where the schema has that object.
 const std::pair<const char*, const char*> kObjects[] = {{"The record", ""},
                                                         {"render", "/properties/render"},
                                                         {"table", "/properties/table"},

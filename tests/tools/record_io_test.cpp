@@ -1,4 +1,4 @@
-// Records as files: all of it comes back, and nothing half-written stays.
+// Records as files: everything comes back, and nothing half-written stays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,10 +22,10 @@ using test::TemporaryFolder;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a record file has to keep. Whoever adds a field to one of these structs is led here by the compiler:
-// the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
+// What a record file must keep. If you add a field to one of these structs, the compiler leads you here: the
+// names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
 // beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and give it
-// a value of its own in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
+// a distinct value in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
 struct FieldsOfARecord {
     Table table;
     BallParams balls;
@@ -42,8 +42,8 @@ struct FieldsOfARecord {
 static_assert(sizeof(Record) == sizeof(FieldsOfARecord),
               "Record has another field: see the comment above, record files have to keep it");
 
-// Every value differs from its neighbours and from what a struct
-// begins with, so that one which is lost or swapped shows.
+// Every value differs from its neighbours and from the initial value of its struct, so that a lost or swapped
+// one shows.
 void expect_unusual(std::vector<double> values) {
     for (const double value : values) EXPECT_NE(value, 0.0);
     std::sort(values.begin(), values.end());
@@ -107,7 +107,8 @@ TEST(RecordFile, ReadsBackWhole) {
     EXPECT_TRUE(b == a);
     EXPECT_EQ(b.hash(), a.hash());
     EXPECT_EQ(b.partner_id(b.events[5]), "p,1");
-    // A second trip gives the same file, byte for byte: signed zeros, which compare equal, are kept too.
+    // A second round trip gives the same file, byte for byte: signed zeros, which compare equal, are kept
+    // too.
     EXPECT_TRUE(std::signbit(b.table.cushions.at(0).from.y()));
     write_record(b, folder.file("b.json"));
     EXPECT_EQ(test::read_file(folder.file("a.json")), test::read_file(folder.file("b.json")));

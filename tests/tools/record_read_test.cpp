@@ -1,4 +1,4 @@
-// The reader of records: what it says about a file that is wrong, old or hostile. No file crashes it.
+// The reader of records: what it says about a wrong, old or hostile file. No file crashes it.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -106,12 +106,12 @@ TEST(RecordFile, HostileFilesAreErrors) {
     EXPECT_EQ(error_of("{\n  \"format\" 1}"), "2:12: this is not JSON, or the file was cut short");
     EXPECT_NE(error_of(cut.substr(0, cut.size() / 2)).find("cut short"), std::string::npos);
     EXPECT_NE(error_of(std::string(1000000, '[')).find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("no record"),
+    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("not a carom record"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\",\"version\":1e999}").find("cannot be read"),
               std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"\xff\"}").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of("null").find("no record"), std::string::npos);
+    EXPECT_NE(error_of("null").find("not a carom record"), std::string::npos);
     EXPECT_NE(error_of("{\"format\":\"carom-record\"}").find("the key \"version\" is missing"),
               std::string::npos);
     EXPECT_NE(error_of(std::string(64, '\0')).find("not JSON"), std::string::npos);
@@ -143,7 +143,7 @@ TEST(RecordFile, NestingNeedsNoStack) {
     pthread_attr_destroy(&small);
     ASSERT_EQ(messages.size(), 3u);
     EXPECT_EQ(messages[0], "1:1000001: this is not JSON, or the file was cut short");
-    EXPECT_NE(messages[1].find("no record"), std::string::npos);
+    EXPECT_NE(messages[1].find("not a carom record"), std::string::npos);
     EXPECT_EQ(messages[2], "no error");
 }
 
@@ -164,7 +164,7 @@ TEST(RecordFile, Version1IsReadWithANote) {
     const Record old = parse_record(version_1().dump(), "old.json", &notes);
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_NE(notes[0].find("version 1 of the format lacks mu_b_fit"), std::string::npos) << notes[0];
-    // All else is there.
+    // Everything else is present.
     Record expected = sample_record();
     BallParams& balls = expected.balls;
     balls.mu_b_more = balls.mu_b_fall = 0.0;

@@ -1,4 +1,4 @@
-// A record with a value of its own in every field, and what the reader says about a changed one.
+// A record with a distinct value in every field, and what the reader says about a changed one.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ using reference::Generator;
 
 using Json = nlohmann::json;
 
-/// Any double that a record may have, all exponents alike; signed zeros and subnormals are among them.
+/// Any double that a record may have, all exponents equally likely, including signed zeros and subnormals.
 inline double any_double(Generator& rng) {
     for (;;) {
         const double value = std::bit_cast<double>(rng.next());
@@ -87,7 +87,7 @@ inline Record sample_record() {
     return record;
 }
 
-/// Reads `text` as a record; the message of its error, which names the file, without that name.
+/// Reads `text` as a record; returns the message of its error without the file name in it.
 inline std::string error_of(const std::string& text) {
     const TemporaryFolder folder;
     const std::string path = folder.write("r.json", text);

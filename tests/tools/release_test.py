@@ -80,9 +80,8 @@ class Release(unittest.TestCase):
         self.one_fault("expected **(changes bits)**")
 
     def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
-        self.change(
-            "capi/include/carom/carom.h", r"CAROM_API double carom_record_duration",
-            "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
+        self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration",
+                    "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
         self.assertEqual(release.faults_of(self.root), [])
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         self.one_fault("no longer declares")
@@ -104,9 +103,8 @@ class Release(unittest.TestCase):
         major, minor, patch = map(int, release.version_here(self.root).split("."))
         for version in (f"{major}.{minor}.{patch + 1}", f"{major}.{minor + 1}.0", f"{major + 1}.0.0"):
             with self.subTest(version=version):
-                self.change(
-                    "CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
-                    "## [Unreleased]\n\n### Added\n\n* New in " + version + ".\n")
+                self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
+                            "## [Unreleased]\n\n### Added\n\n* New in " + version + ".\n")
                 release.set_version(self.root, version, date)
                 self.assertEqual(release.faults_of(self.root), [])
                 self.assertEqual(release.version_here(self.root), version)
@@ -118,17 +116,15 @@ class Release(unittest.TestCase):
     def test_a_patch_may_not_renew_a_promise(self):
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         major, minor, patch = map(int, release.version_here(self.root).split("."))
-        release.set_version(
-            self.root, f"{major}.{minor}.{patch + 1}",
-            datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
+        release.set_version(self.root, f"{major}.{minor}.{patch + 1}",
+                            datetime.datetime(2030, 1, 2, tzinfo=datetime.timezone.utc))
         self.one_fault("no longer declares")
 
     @unittest.skipUnless(shutil.which("git"), "git is not installed")
     def test_cutting_brings_commit_and_tag_only_when_all_went_well(self):
         def git(*words):
-            return subprocess.run(
-                ["git", "-C", self.root, *words], check=True, text=True,
-                stdout=subprocess.PIPE).stdout.strip()
+            return subprocess.run(["git", "-C", self.root, *words], check=True, text=True,
+                                  stdout=subprocess.PIPE).stdout.strip()
 
         def files(root, out, skip, jobs):
             out.mkdir(parents=True)
@@ -142,9 +138,8 @@ class Release(unittest.TestCase):
         git("config", "user.email", "somebody@example.org")
         (self.root / ".gitignore").write_text("/build/\n")
         # Right after a release the section is empty.
-        self.change(
-            "CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
-            "## [Unreleased]\n\n### Added\n\n* Something.\n")
+        self.change("CHANGELOG.md", r"(?s)## \[Unreleased\]\n.*?(?=\n## |\Z)",
+                    "## [Unreleased]\n\n### Added\n\n* Something.\n")
         git("add", "--all")
         git("commit", "--quiet", "-m", "start")
         start = git("rev-parse", "HEAD")

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "base/units.h"
+
 namespace carom::detail {
 namespace {
 
@@ -50,6 +52,11 @@ double number_in(const toml::node& node, const Interval& allowed) {
     if (const auto* written = node.as_floating_point()) {
         refuse(objection(written->get(), allowed));
         return written->get();
+    }
+    if (const auto* text = node.as_string()) {
+        const double x = number_with_unit(text->get(), allowed.unit);
+        refuse(objection(x, allowed));
+        return x;
     }
     const auto* written = node.as_integer();
     if (written == nullptr) refuse(fmt::format("must be a number, not {}", type_name(node)));

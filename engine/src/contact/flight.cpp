@@ -151,6 +151,11 @@ double flight_over_line(const Flight& f, const Vec2& from, const Vec2& direction
     return t <= f.horizon && foot >= 0.0 && foot <= line_length ? t : kNever;
 }
 
+double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon) {
+    const double t = time_over_disc(r, v, radius);
+    return t <= horizon ? std::max(0.0, t) : kNever;
+}
+
 double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v) {
     double first = kNever;
     for (const int axis : {0, 1}) {

@@ -35,6 +35,9 @@ double flight_to_circle(const Flight& ball, const Vec3& center, double radius, d
 /// not.
 double flight_over_line(const Flight& ball, const Vec2& from, const Vec2& direction, double line_length);
 
+/// Time until a centre on a straight path is over a disc about the origin: 0 if it is already.
+double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon);
+
 /// Time until a centre on a straight path leaves the rectangle; kNever if it rests.
 double flight_beyond(const Rectangle& bed, const Vec2& r, const Vec2& v);
 

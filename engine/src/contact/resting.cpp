@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
 #include "contact/resting_group.h"
@@ -33,11 +34,13 @@ namespace {
 void read(Group& g, std::size_t k) {
     RestingBall& ball = g.group.balls[k];
     Body& b = g.bodies[k];
-    const Segment s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
+    const Segment s = start_segment(g.now, ball.r, ball.v, ball.w, *ball.motion);
+    b.R = ball.motion->R;
+    b.ease = 1.0 / ball.mass;
     ball.v = s.v;
     ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
     b.v = planar(s.v);
-    b.s = g.motion.R * Vec2(s.w.y(), -s.w.x());
+    b.s = b.R * Vec2(s.w.y(), -s.w.x());
     b.u = s.state == MotionState::kSliding ? Vec2(b.v - b.s) : Vec2(Vec2::Zero());
     if (length(b.v) > g.noise || length(b.u) > g.noise) return;
     b.v = b.s = b.u = Vec2::Zero();
@@ -47,7 +50,7 @@ void read(Group& g, std::size_t k) {
 
 void make_bodies(Group& g) {
     for (const RestingBall& ball : g.group.balls)
-        g.noise = std::max(g.noise, resting_noise(ball.v, ball.w, g.motion));
+        g.noise = std::max(g.noise, resting_noise(ball.v, ball.w, *ball.motion));
     g.bodies.resize(g.group.balls.size());
     for (std::size_t k = 0; k < g.bodies.size(); ++k) read(g, k);
 }
@@ -58,9 +61,9 @@ Link link_of(const Group& g, const RestingContact& c) {
         return static_cast<int>(std::find_if(g.group.balls.begin(), g.group.balls.end(), is_it) -
                                 g.group.balls.begin());
     };
-    const double R = g.motion.R;
     Link link{.i = body_of(c.contact.ball), .j = -1, .n = c.n, .distance = 0.0};
     const Vec2 here = planar(g.group.balls[link.i].r);
+    const double R = g.bodies[link.i].R;
     double depth;
     if (c.contact.with == With::kCushion) {
         link.line = &g.around.geometry.cushions[c.contact.other];
@@ -69,7 +72,9 @@ Link link_of(const Group& g, const RestingContact& c) {
         Vec2 center;
         if (c.contact.with == With::kBall) {
             link.j = body_of(c.contact.other);
-            link.distance = 2.0 * R;
+            const double other = g.bodies[link.j].R;
+            link.distance = contact_distance(R, other);
+            link.tilt = (other - R) / link.distance;
             center = planar(g.group.balls[link.j].r);
         } else {
             const Nose& nose = g.around.geometry.noses[c.contact.other];
@@ -90,8 +95,8 @@ Link link_of(const Group& g, const RestingContact& c) {
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
-        before += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
-        after += dot(b.v_end, b.v_end) + kInertia * dot(b.s_end, b.s_end);
+        before += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
+        after += (dot(b.v_end, b.v_end) + kInertia * dot(b.s_end, b.s_end)) / b.ease;
     }
     if (!(after > before)) return false;
     const double share = std::sqrt(before / after);
@@ -113,8 +118,8 @@ void accept(Group& g) {
         RestingBall& ball = g.group.balls[k];
         if (!all && !(b.impulses > 0.0)) continue;
         ball.v = Vec3(b.v_end.x(), b.v_end.y(), 0.0);
-        ball.w.x() = -b.s_end.y() / g.motion.R;
-        ball.w.y() = b.s_end.x() / g.motion.R;
+        ball.w.x() = -b.s_end.y() / b.R;
+        ball.w.y() = b.s_end.x() / b.R;
         read(g, k);
     }
 }
@@ -192,7 +197,8 @@ double end_rate(const Group& g, const Link& link) {
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end) {
     const Body &bi = g.bodies[link.i], &bj = g.bodies[link.j];
     const Vec2 t(link.n.y(), -link.n.x());
-    const double spin = g.motion.R * (g.group.balls[link.i].w.z() + g.group.balls[link.j].w.z());
+    const double wi = g.group.balls[link.i].w.z(), wj = g.group.balls[link.j].w.z();
+    const double spin = bi.R == bj.R ? bi.R * (wi + wj) : bi.R * wi + bj.R * wj;
     if (at_end) return {-dot(bi.s_end + bj.s_end, link.n), dot(bi.v_end - bj.v_end, t) - spin};
     return {-dot(bi.s + bj.s, link.n), dot(bi.v - bj.v, t) - spin};
 }
@@ -224,9 +230,9 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
                     8.0 * kClosingUlp * kEpsilon * (speed + motion.R * spin));
 }
 
-void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,
-                   double now) {
-    resting::Group g{group, around, motion, now, {}, {}, 0.0, false, 0.0, 0.0, {}, {}, {}};
+void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now) {
+    resting::Group g{group, around, *group.balls.front().motion, now, {}, {}, 0.0, false, 0.0, 0.0, {},
+                     {},    {}};
     resting::solve(g);
 }
 

@@ -36,6 +36,8 @@ struct RestingBall {
     int ball = -1;
     Vec3 r, v, w;
     Segment segment;  ///< result
+    const MotionParams* motion = nullptr;
+    double mass = 1.0;  ///< over that of the lightest ball of the group
 };
 
 /// All balls that are connected by resting contacts. Both lists are ordered by position, never by id.
@@ -52,12 +54,10 @@ struct RestingSurroundings {
     double gravity;
 };
 
-/// Solves the group from `now` [s] and writes the segments of all members (resting_group.h). They end
-/// together: at the first state transition, at the end of a cushion, or when constant accelerations become
-/// too inaccurate. Contacts that open are marked as released; a contact without force that does not open
-/// stays.
-void solve_resting(RestingGroup& group, const RestingSurroundings& around, const MotionParams& motion,
-                   double now);
+/// Solves the group from `now` [s] on and writes the segments of all members (resting_group.h). They end
+/// together: at the first state transition, at the end of a cushion, or when constant accelerations err by
+/// too much. Contacts that open are marked released; a contact without force that does not open stays.
+void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now);
 
 /// Time until the foot point of a ball that moves along a cushion passes the end of the cushion; 0 if it
 /// passes it now.

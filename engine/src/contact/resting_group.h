@@ -54,13 +54,15 @@ struct Body {
     bool guided = false;
     Vec2 guide = Vec2::Zero();
     double load = 1.0;  ///< share of the weight that the cloth supports
+    double R = 0.0;     ///< [m]
+    double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
 
     // At the end.
     Mode mode = Mode::kResting;
     Vec2 v_end = Vec2::Zero(), s_end = Vec2::Zero();
     Vec2 push = Vec2::Zero(), couple = Vec2::Zero();  ///< P and C
     double lift = 0.0;                                ///< vertical impulse of the contacts
-    double impulses = 0.0;                            ///< sum of |J|, for rounding
+    double impulses = 0.0;                            ///< sum of |J| per mass, for rounding
     Matrix by_push, by_couple;                        ///< derivatives of v_end
     Vec2 by_lift = Vec2::Zero();                      ///< the same: less load means less friction
 
@@ -78,16 +80,16 @@ struct Link {
     bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding
     bool walled = false;                ///< cannot be stabilised (between opposing fixed normals)
-    /// [m/s^2] contribution of the turning normal to the gap's acceleration
-    double turning = 0.0;
-    double friction_z = 0.0;  ///< f_z, on ball i
-    double J = 0.0;           ///< [m/s] impulse per mass
+    double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
+    double friction_z = 0.0;            ///< f_z, on ball i
+    double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
+    double J = 0.0;                     ///< [m/s] level impulse per mass of the lightest ball
 };
 
 struct Group {
     RestingGroup& group;
     const RestingSurroundings& around;
-    const MotionParams& motion;
+    const MotionParams& motion;  ///< of the first ball: the frictions, which all balls share
     double now;
     std::vector<Body> bodies;  ///< as group.balls
     std::vector<Link> links;   ///< as group.contacts

@@ -244,7 +244,7 @@ void write_segments(Group& g, double h) {
         const Body& b = g.bodies[k];
         RestingBall& ball = g.group.balls[k];
         Segment& s = ball.segment;
-        s = start_segment(g.now, ball.r, ball.v, ball.w, g.motion);
+        s = start_segment(g.now, ball.r, ball.v, ball.w, *ball.motion);
         s.held = true;
         const bool slides = moves(b.u) || b.mode == Mode::kSliding;
         if (!slides && !moves(b.v) && b.mode == Mode::kResting) {
@@ -255,7 +255,7 @@ void write_segments(Group& g, double h) {
         s.state = slides ? MotionState::kSliding : MotionState::kRolling;
         s.a = (b.v_end - b.v) / h;
         const Vec2 ds = (b.s_end - b.s) / h;
-        s.dw = Vec2(-ds.y(), ds.x()) / g.motion.R;
+        s.dw = Vec2(-ds.y(), ds.x()) / b.R;
     }
     interval = std::max(interval, kClockTicks * kEpsilon * g.now);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {

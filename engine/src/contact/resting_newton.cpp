@@ -48,7 +48,7 @@ constexpr int kLooser = 20, kLooserPlace = 10;
 // Change of the upward slip of two balls per unit of impulse between them.
 double ease_of(const Group& g, const Link& link) {
     const auto ease = [](const Body& b) {
-        return b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0);
+        return b.ease * (b.mode == Mode::kSliding ? 2.5 : (b.mode == Mode::kRolling ? 5.0 / 7.0 : 0.0));
     };
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
@@ -138,8 +138,8 @@ bool update(Group& g, double h, const StepOptions& options, int times) {
         const Vec2 change = (f - link.friction_z) * link.J * link.n;
         for (const int k : {link.i, link.j}) {
             Body& b = g.bodies[k];
-            if (b.mode == Mode::kSliding) b.s_end -= 2.5 * change;
-            if (b.mode == Mode::kRolling) b.s_end -= (5.0 / 7.0) * change;
+            if (b.mode == Mode::kSliding) b.s_end -= (2.5 * b.ease) * change;
+            if (b.mode == Mode::kRolling) b.s_end -= (5.0 / 7.0 * b.ease) * change;
         }
         link.friction_z = f;
     }
@@ -274,7 +274,7 @@ class Newton {
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
-        for (const Body& b : g_.bodies) energy += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
+        for (const Body& b : g_.bodies) energy += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
         bool solved = true;
         worst_ = 0.0;
         for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -309,14 +309,16 @@ class Newton {
             problem_.z[k] = column.J;
             problem_.begin_column();
             const Body& bi = g_.bodies[column.i];
-            const Vec2 dvi =
+            Vec2 dvi =
                 -(bi.by_push * column.n) - column.friction_z * (bi.by_couple * column.n - lifts * bi.by_lift);
+            if (column.tilt != 0.0) dvi -= (lifts * column.tilt) * bi.by_lift;
             double own = -dot(column.n, dvi);
             add(k, column.i, dvi);
             if (column.j >= 0) {
                 const Body& bj = g_.bodies[column.j];
-                const Vec2 dvj = bj.by_push * column.n -
-                                 column.friction_z * (bj.by_couple * column.n + lifts * bj.by_lift);
+                Vec2 dvj = bj.by_push * column.n -
+                           column.friction_z * (bj.by_couple * column.n + lifts * bj.by_lift);
+                if (column.tilt != 0.0) dvj += (lifts * column.tilt) * bj.by_lift;
                 own += dot(column.n, dvj);
                 add(k, column.j, dvj);
             }

@@ -105,21 +105,27 @@ void respond(Group& g, double h, bool friction, bool stops) {
     }
     for (const Link& link : g.links) {
         Body& bi = g.bodies[link.i];
-        bi.push -= link.J * link.n;
-        bi.couple -= link.friction_z * link.J * link.n;
-        bi.lift += link.friction_z * link.J;
-        bi.impulses += std::abs(link.J);
+        const double Ji = bi.ease * link.J, up = link.friction_z - link.tilt;
+        bi.push -= Ji * link.n;
+        bi.couple -= link.friction_z * Ji * link.n;
+        bi.lift += up * Ji;
+        bi.impulses += std::abs(Ji);
         if (link.j < 0) continue;
         Body& bj = g.bodies[link.j];
-        bj.push += link.J * link.n;
-        bj.couple -= link.friction_z * link.J * link.n;
-        bj.lift -= link.friction_z * link.J;
-        bj.impulses += std::abs(link.J);
+        const double Jj = bj.ease * link.J;
+        bj.push += Jj * link.n;
+        bj.couple -= link.friction_z * Jj * link.n;
+        bj.lift -= up * Jj;
+        bj.impulses += std::abs(Jj);
     }
     const double weight = g.around.gravity * h;
     for (Body& b : g.bodies) {
         b.load = friction && weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
         respond(g, b, h, stops);
+        if (b.ease == 1.0) continue;
+        b.by_push = times(b.ease, b.by_push);
+        b.by_couple = times(b.ease, b.by_couple);
+        b.by_lift *= b.ease;
     }
 }
 

@@ -44,8 +44,8 @@ bool is_driven(const Group& g, double h) {
     if (!pushes(g, h, 1.0)) return false;
     double energy = 0.0, power = 0.0;
     for (const Body& b : g.bodies) {
-        energy += dot(b.v, b.v) + kInertia * dot(b.s, b.s);
-        power += dot(b.v_end, b.v_end - b.v) + kInertia * dot(b.s_end, b.s_end - b.s);
+        energy += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
+        power += (dot(b.v_end, b.v_end - b.v) + kInertia * dot(b.s_end, b.s_end - b.s)) / b.ease;
     }
     return power > kWorkRounding * energy;
 }

@@ -18,8 +18,14 @@ constexpr int kMostImpacts = 200;
 // [-] Two parts count as one if the cosine of the angle between their normals is above this: a cushion and
 // the jaw that continues it.
 constexpr double kOneNormal = 1.0 - 1e-6;
-// [-] Smallest determinant for which two impulses are scaled: below it the normals are opposite.
+// [of the energy] What rounding may add to it where two normals are nearly opposite; it is taken off again.
+constexpr double kEnergyRounding = 1e-10;
+// [-] Least determinant for which two impulses are scaled: below, the normals are opposite.
 constexpr double kLeastDeterminant = 1e-6;
+
+// [-] Below this determinant two normals are nearly opposite: they enclose less than 18 degrees, or more than
+// 162.
+constexpr double kOpposite = 0.1;
 
 struct Motion {
     Vec3 v, w;
@@ -77,16 +83,33 @@ class Bounce {
         const double a21 = -closing(second, d1), a22 = -closing(second, d2);
         const double determinant = a11 * a22 - a12 * a21;
         if (!(determinant > kLeastDeterminant * a11 * a22)) return false;
-        const double share1 = a22 * (a11 - a12) / determinant, share2 = a11 * (a22 - a21) / determinant;
-        // A negative share: after the other impulse alone, the ball leaves this part faster than its own
-        // would send it.
+        double share1 = a22 * (a11 - a12) / determinant, share2 = a11 * (a22 - a21) / determinant;
+        // A negative one: the impulse of the other makes the ball leave this part faster than its own would.
         if (!(share1 > 0.0) || !(share2 > 0.0)) {
             m = share1 > 0.0 ? one : two;
             return true;
         }
-        const Motion after{m.v + (share1 * d1.v + share2 * d2.v), m.w + (share1 * d1.w + share2 * d2.w)};
-        // Friction may reverse the slip that its own impulse would only have ended.
-        if (energy(size_.R, after) > energy(size_.R, m) * (1.0 + 1e-14)) return false;
+        const auto moved = [&] {
+            return Motion{m.v + (share1 * d1.v + share2 * d2.v), m.w + (share1 * d1.w + share2 * d2.w)};
+        };
+        Motion after = moved();
+        // The determinant of normals that are nearly opposite has lost its digits, and the speeds at which
+        // the ball leaves give them back.
+        if (determinant < kOpposite * a11 * a22) {
+            const double left1 = closing(first, one) - closing(first, after),
+                         left2 = closing(second, two) - closing(second, after);
+            share1 += (a12 * left2 - a22 * left1) / determinant;
+            share2 += (a21 * left1 - a11 * left2) / determinant;
+            after = moved();
+        }
+        // Friction that its own impulse would have ended may turn the slip round.
+        const double before = energy(size_.R, m), now = energy(size_.R, after);
+        const double slack = determinant < kOpposite * a11 * a22 ? kEnergyRounding : 1e-14;
+        if (now > before * (1.0 + slack)) return false;
+        if (now > before && slack > 1e-14) {
+            const double share = std::sqrt(before / now);
+            after = {share * after.v, share * after.w};
+        }
         m = after;
         return true;
     }

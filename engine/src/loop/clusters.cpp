@@ -23,18 +23,25 @@ struct Gap {
     Vec3 n;
 };
 
-Gap gap_in_space(const ClusterBall& p, const ClusterBall& q, double R) {
+Gap gap_in_space(const ClusterBall& p, const ClusterBall& q) {
     const Vec3 apart = q.r - p.r;
     const double distance = apart.z() == 0.0 ? length(planar(apart)) : length3(apart);
     const Vec3 n = apart / distance;
-    return {distance - 2.0 * R, dot3(n, p.v - q.v), n};
+    return {distance - (p.R + q.R), dot3(n, p.v - q.v), n};
 }
 
-Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q, double R) {
-    const Vec2 apart = planar(q.r) - planar(p.r);
-    const double distance = length(apart);
-    const Vec2 n = apart / distance;
-    return {distance - 2.0 * R, dot(n, planar(p.v) - planar(q.v)), {n.x(), n.y(), 0.0}};
+// Whatever height the fall of one of them began at.
+Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q) {
+    const Vec2 apart = planar(q.r) - planar(p.r), closing = planar(p.v) - planar(q.v);
+    if (p.R == q.R) {
+        const double distance = length(apart);
+        const Vec2 n = apart / distance;
+        return {distance - 2.0 * p.R, dot(n, closing), {n.x(), n.y(), 0.0}};
+    }
+    const Vec3 tilted(apart.x(), apart.y(), q.R - p.R);
+    const double distance = length3(tilted);
+    const Vec3 n = tilted / distance;
+    return {distance - (p.R + q.R), n.x() * closing.x() + n.y() * closing.y(), n};
 }
 
 // Falls smoothly from 1 for near balls to 0 at the edge of reach.
@@ -61,11 +68,13 @@ bool Clusters::passes(int a, int b) const {
 }
 
 ClusterBall Clusters::member(int ball) const {
+    const BallSize& size = plan_.sizes[ball];
+    const double mass = size.m / plan_.balls.m;
     if (flights_ && flies(balls_.segment(ball).state)) {
         const Placed at = balls_.placed(ball);
-        return {ball, at.position, at.velocity, balls_.spin(ball)};
+        return {ball, at.position, at.velocity, balls_.spin(ball), size.R, mass};
     }
-    return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball)};
+    return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball), size.R, mass};
 }
 
 // Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5),
@@ -96,15 +105,24 @@ Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     return {x - half, y - half, x + half, y + half};
 }
 
+// [s] The duration of the contact of two balls: it goes with the 0.4th power of mass over stiffness.
+double Clusters::pair_time(int a, int b, double v_n) const {
+    const BallSize &p = plan_.sizes[a], &q = plan_.sizes[b];
+    const double time = contact_time(v_n);
+    if (p == q) return time;
+    const double mass = 2.0 * p.m * q.m / ((p.m + q.m) * plan_.balls.m);
+    const double softness2 = (p.R + q.R) * plan_.balls.R / (2.0 * p.R * q.R);
+    return time * fifth_root(mass * mass * softness2);
+}
+
 void Clusters::collect_at(int a, int b, double v_n) {
-    const double R = balls_.radius(a);  // equal for all members, but perhaps not that in [balls]
-    const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) : 0.0;
+    const double time = plan_.clusters == ClusterModel::kCompliant ? pair_time(a, b, v_n) : 0.0;
     const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
-    const auto gap_of = [this, R](const ClusterBall& p, const ClusterBall& q) {
-        Gap near = flights_ ? gap_in_space(p, q, R) : gap_on_cloth(p, q, R);
-        // Only here is it decided whether balls touch: a gap within the rounding of the positions counts as
-        // touching.
-        if (near.gap <= kTouchUlp * R) near.gap = 0.0;
+    const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
+        Gap near = flights_ ? gap_in_space(p, q) : gap_on_cloth(p, q);
+        // Whether balls touch is decided only here: a gap within
+        // the rounding of the positions counts as touching.
+        if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;
         return near;
     };
     members_.clear();
@@ -119,13 +137,15 @@ void Clusters::collect_at(int a, int b, double v_n) {
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || !(plan_.sizes[q] == plan_.sizes[a]) || passes(here.ball, q)) return;
+            if (known || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
+    unlike_ = std::any_of(members_.begin(), members_.end(),
+                          [&](const ClusterBall& m) { return !(plan_.sizes[m.ball] == plan_.sizes[a]); });
     in_space_ = flights_ && (plan_.ball_ball->free ||
                              std::any_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
                                  return flies(balls_.segment(m.ball).state);
@@ -189,10 +209,8 @@ bool Clusters::closes_still(double v_n) const {
 
 std::int64_t Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
-    const double R = balls_.radius(members_.front().ball);  // equal for all members
-    if (plan_.clusters == ClusterModel::kRigid) return map_.rigid(members_, contacts_, p.e_b, R);
     ClusterSettings settings{
-        .R = R,
+        .R = unlike_ ? p.R : balls_.radius(members_.front().ball),
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = plan_.e_b(),
@@ -201,16 +219,35 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
-        .mu_b_fall = p.mu_b_fall};
-    std::int64_t steps = in_space_ ? map_.compliant_in_space(members_, contacts_, settings, v_n)
-                                   : map_.compliant(members_, contacts_, settings, v_n);
-    if (in_space_ && steps >= 0 && closes_still(v_n)) {
+        .mu_b_fall = p.mu_b_fall,
+        .unlike = unlike_};
+    if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
+    const auto run = [&] {
+        if (in_space_) return map_.compliant_in_space(members_, contacts_, settings, v_n);
+        return unlike_ ? map_.compliant_unlike(members_, contacts_, settings, v_n)
+                       : map_.compliant(members_, contacts_, settings, v_n);
+    };
+    std::int64_t steps = run();
+    if ((in_space_ || unlike_) && steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
-        const std::int64_t more = map_.compliant_in_space(members_, contacts_, settings, v_n);
+        const std::int64_t more = run();
         steps = more < 0 ? more : steps + more;
     }
-    // Friction and a wedge can press balls together forever: the cluster is then solved as rigid.
-    return steps < 0 ? map_.rigid(members_, contacts_, p.e_b, R) : steps;
+    // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
+    return steps < 0 ? rigid(settings) : steps;
+}
+
+// Balls that all lie push each other in the plane, whatever the tilt of their normals.
+std::int64_t Clusters::rigid(const ClusterSettings& settings) {
+    ClusterSettings without = settings;
+    without.e_b = plan_.balls.e_b;
+    if (unlike_ && !in_space_) {
+        for (ClusterContact& c : contacts_) {
+            const Vec2 n = planar(c.n);
+            c.n = Vec3(n.x(), n.y(), 0.0) / length(n);
+        }
+    }
+    return map_.rigid(members_, contacts_, without);
 }
 
 }  // namespace carom

@@ -44,6 +44,8 @@ class Clusters : private Borrowed<ClustersMemory> {
 
   private:
     void collect_at(int a, int b, double v_n);
+    double pair_time(int a, int b, double v_n) const;
+    std::int64_t rigid(const ClusterSettings& settings);
     void share_turning();
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
@@ -56,6 +58,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     const Detector& detector_;
     std::int64_t looks_ = 0;
     bool in_space_ = false;
+    bool unlike_ = false;  // the last collect() found balls of different size
 };
 
 }  // namespace carom

@@ -40,24 +40,35 @@ double Detector::time_over_pocket(int index, const Path& path, double R) const {
     return back || leaves > path.horizon ? kNever : leaves;
 }
 
+namespace {
+
+// [s] Time until the centre is over the disc of a jaw. The search for its nose ends by flight_over_disc(),
+// which also sees a graze that time_to_circle() passes by, and a centre that is over it already.
+double time_over_jaw(const Path& path, const Vec2& center, double radius) {
+    const double over = time_to_circle(path, center, radius);
+    return over < kNever ? over : flight_over_disc(path.r - center, path.v, radius, path.horizon);
+}
+
+}  // namespace
+
 bool Detector::over_pocket(const Vec2& here) const {
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     return std::any_of(pockets.begin(), pockets.end(),
                        [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
 }
 
-// A flying ball meets noses at their height. Once over them it is out (if the table has an end), and it meets
-// a pocket only at its far side. Landing is its own transition.
+// A flying ball meets noses at their height. Once over them it is out, and it meets a pocket only at its far
+// side. Landing is its own transition. Cloth may lie behind a cushion's line, if the table has a bed; there
+// is none inside a jaw.
 void Detector::search_table_in_air(int ball) {
     Candidate& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);
     const Flight f = flight(ball, start);
     const Path p = path(ball, start);
     const Table& table = plan_.scene.table;
-    const bool ends = !table.bed && table.width > 0.0 && table.length > 0.0;
     const Contact out{ball, With::kOut, -1};
     const auto leaves = [&](double t) {
-        if (ends && t < kNever) take_first({start + t, out}, first);
+        if (t < kNever) take_first({start + t, out}, first);
     };
     if (table.bed) {
         const double t = flight_beyond(*table.bed, p.r, p.v);
@@ -70,13 +81,12 @@ void Detector::search_table_in_air(int ball) {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
             t = flight_to_line(f, {c.from.x(), c.from.y(), c.height}, c.direction, c.length,
                                nose_reach(R, c.height, c.inset));
-            leaves(flight_over_line(f, c.from, c.direction, c.length));
+            if (!table.bed) leaves(flight_over_line(f, c.from, c.direction, c.length));
         } else if (contact.with == With::kNose) {
             const Nose& n = plan_.geometry.noses[contact.other];
             t = flight_to_circle(f, {n.center.x(), n.center.y(), n.height}, n.radius,
                                  nose_reach(R, n.height, n.inset));
-            const double over = n.radius > 0.0 ? time_to_circle(p, n.center, n.radius) : kNever;
-            if (over < kNever && (ends || table.bed)) take_first({start + over, out}, first);
+            if (n.radius > 0.0) leaves(time_over_jaw(p, n.center, n.radius));
         } else {
             t = time_over_pocket(contact.other, p, R);
         }

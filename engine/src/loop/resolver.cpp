@@ -103,7 +103,8 @@ void Resolver::ball_ball(int a, int b) {
 
     // In the plane, at whatever height one of them began to fall.
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
-    const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() : r2.z());
+    const double up = plan_.sizes[two].R - plan_.sizes[one].R;
+    const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
     const kernel::ImpactResult result =
         collide(one, two, kernel_ball(r1, balls_.velocity(one), balls_.spin(one)),
                 kernel_ball(level2, balls_.velocity(two), balls_.spin(two)));
@@ -130,8 +131,13 @@ kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1,
                           : kernel::ClothSlip::kConsistent};
     kernel::ImpactResult result;
     const bool equal = size1 == size2;
-    const bool integrated = model.reads_tolerance && (equal || params.mu_b != 0.0);
-    if (!equal && integrated) params.mass_ratio = size2.m / size1.m;
+    // The cloth answers the tilt of two radii without friction between the balls, too.
+    const bool cloth = params.mu_s1 != 0.0 && size1.R != size2.R;
+    const bool integrated = model.reads_tolerance && (equal || params.mu_b != 0.0 || cloth);
+    if (!equal && integrated) {
+        params.mass_ratio = size2.m / size1.m;
+        params.radius_ratio = size2.R / size1.R;
+    }
     {
         const Stopwatch watch(kernel_ns_);
         if (equal || integrated)

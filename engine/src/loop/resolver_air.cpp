@@ -65,8 +65,7 @@ void Resolver::free_balls(int a, int b) {
 
     if (lies(one) && lies(two)) {
         const Approach approach = approach_of(balls_, one, two);
-        const bool alike = plan_.sizes[one] == plan_.sizes[two];
-        if (alike && resting_.try_hold(approach, plan_.balls.e_b)) return;
+        if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
     pair.balls.e_b = plan_.e_b();
@@ -75,9 +74,7 @@ void Resolver::free_balls(int a, int b) {
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
     const double v_n = dot3(ball1.v - ball2.v, n);
-    if (plan_.clusters != ClusterModel::kSequential && !sinks && plan_.sizes[one] == plan_.sizes[two] &&
-        cluster(a, b, v_n))
-        return;
+    if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     const bool slow = pair.balls.e_b * v_n < parting;
     {

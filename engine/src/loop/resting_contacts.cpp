@@ -1,7 +1,5 @@
 #include "loop/resting_contacts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -22,9 +20,14 @@ constexpr double kChatterSpan = 1e-5;
 // within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
 constexpr double kSpeedLeft = 1e-3;
 constexpr int kFewestBounces = 20, kMostBounces = 200;
-// [bounces] Weight of a resting contact that began and ended within that time, and of a cluster that begins
-// with this contact: it resolves all bounces of its balls at once. No row of impacts has one, and even a
-// second cluster is rare.
+// [of the closing speed at the first of them] More is left of bounces that lose nothing, however fast they
+// come: a grain between walls, or pushed against one by a ball of a hundred million times its mass.
+constexpr double kNotFallen = 0.5;
+// [bounces] Room for the closing speeds of the latest ones, of all contacts.
+constexpr std::size_t kBouncesKept = 1024;
+// [bounces] What a resting contact counts for that began and ended within that
+// time, and a cluster that begins with this contact: it resolves all bounces of its
+// balls at once. No row of impacts has one, and even a second cluster is rare.
 constexpr int kManyAtOnce = 20;
 // [balls] Initial capacity for the balls of one impact; a larger cluster allocates more.
 constexpr std::size_t kMostStruck = 32;
@@ -74,10 +77,32 @@ bool touches(const RestingContact& c, int ball) {
 }  // namespace
 
 RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
-    : Borrowed(memory), plan_(plan), balls_(balls), log_(log) {
+    : Borrowed(memory), plan_(plan), balls_(balls), log_(log), lossless_(loses_nothing(plan)) {
     contacts_.clear();
     struck_.clear();
     struck_.reserve(std::min<std::size_t>(plan.sizes.size(), kMostStruck));
+    bounces_.clear();
+    bounces_.reserve(kBouncesKept);
+    next_bounce_ = 0;
+}
+
+void RestingContacts::note(const Bounce& bounce) {
+    if (bounces_.size() < kBouncesKept) {
+        bounces_.push_back(bounce);
+        return;
+    }
+    bounces_[next_bounce_] = bounce;
+    next_bounce_ = (next_bounce_ + 1) % kBouncesKept;
+}
+
+// Whether the closing speed of a contact has fallen since this bounce. Of one that is not known any more,
+// among a thousand others since, it is taken to have.
+bool RestingContacts::has_fallen(const Event& from, const Contact& contact, double v_n) const {
+    for (std::size_t k = 0; k < bounces_.size(); ++k) {
+        const Bounce& b = bounces_[(next_bounce_ + k) % bounces_.size()];
+        if (b.time == from.time && b.contact.same(contact)) return v_n <= kNotFallen * b.v_n;
+    }
+    return true;
 }
 
 bool RestingContacts::find(const Contact& contact) const {
@@ -92,13 +117,15 @@ bool RestingContacts::find(const Contact& contact) const {
 //     ten down to rounding; their limit is the resting contact, which the group's solution keeps or opens.
 //   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or if an impact goes back and
 //     forth through balls that rest on each other between two rails. The limit is again the resting contact.
+//     Elastic bounces count only if the closing speed has in fact fallen.
 bool RestingContacts::try_begin(const Approach& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
     if (is_gone(balls_.segment(c.ball).state)) return false;
+    note({balls_.now(), c, a.v_n});
     const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
     const double pressing = rests ? std::max(a.a_c, 2.0 * balls_.motion(c.ball).slide) : a.a_c;
-    if (!holds(a.v_n, pressing, restitution) && !chatters(c)) return false;
+    if (!holds(a.v_n, pressing, restitution) && !chatters(c, a.v_n)) return false;
     // A ball that is pushed while it falls does not come back.
     bool falls = false;
     for (const int ball : {c.ball, partner}) {
@@ -107,11 +134,6 @@ bool RestingContacts::try_begin(const Approach& a, double restitution) {
         falls = true;
     }
     if (falls) return true;
-    if (partner >= 0 && plan_.sizes[c.ball] != plan_.sizes[partner])
-        log_.fail(fmt::format(
-            "balls {} and {} differ in size and stay in contact, which is not modelled; give them "
-            "the same size",
-            log_.id(c.ball), log_.id(partner)));
     contacts_.push_back({.contact = c, .n = a.n, .began = balls_.now()});
     log_.event(with_phase(EventPhase::kHold, c, plan_.geometry), c);
     return true;
@@ -127,19 +149,23 @@ void RestingContacts::start(int ball) {
     if (in_contact(ball)) solve(ball, Transitions::kNotYet);
 }
 
-// Decided from the log, so that a resumed run decides in the same way.
-bool RestingContacts::chatters(const Contact& contact) const {
-    const int most = most_bounces(contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c);
+// Determined from the log, so that a resumed run decides in the same way.
+bool RestingContacts::chatters(const Contact& contact, double v_n) const {
+    // Bounces that lose nothing go on. Only those that take no time have to come to an end.
+    const double since = lossless_ ? balls_.now() : balls_.now() - kChatterSpan;
+    const double restitution = contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c;
+    const int most = most_bounces(restitution);
     int bounces = 0;
     const std::vector<Event>& events = log_.events();
     for (std::size_t k = events.size(); k-- > 0;) {
         const Event& e = events[k];
-        if (e.time < balls_.now() - kChatterSpan) break;
+        if (e.time < since) break;
         const EventPhase phase = kind(e.type).phase;
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
         bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? kManyAtOnce : 1;
-        if (bounces >= most) return true;
+        if (bounces >= most)
+            return restitution < 1.0 || e.time == balls_.now() || has_fallen(e, contact, v_n);
     }
     return false;
 }
@@ -186,7 +212,8 @@ bool RestingContacts::goes_on(RestingContact& c) const {
     const Vec2 vi = planar(si != nullptr ? si->segment.v : balls_.velocity(i));
     const Vec2 vj = j < 0 ? Vec2(Vec2::Zero()) : planar(sj != nullptr ? sj->segment.v : balls_.velocity(j));
     const double rate = dot(c.n, vj - vi), e = j >= 0 ? plan_.balls.e_b : plan_.balls.e_c;
-    return holds(std::abs(rate), 2.0 * balls_.motion(i).slide, e) || (rate < 0.0 && chatters(c.contact));
+    return holds(std::abs(rate), 2.0 * balls_.motion(i).slide, e) ||
+           (rate < 0.0 && chatters(c.contact, -rate));
 }
 
 void RestingContacts::go_on() {
@@ -245,8 +272,11 @@ RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
         }
     }
     RestingGroup group;
+    double lightest = plan_.sizes[ball].m;
+    for (const int b : members) lightest = std::min(lightest, plan_.sizes[b].m);
     for (const int b : members) {
-        RestingBall member{b, balls_.position(b), balls_.velocity(b), balls_.spin(b), {}};
+        RestingBall member{b,  balls_.position(b), balls_.velocity(b),         balls_.spin(b),
+                           {}, &balls_.motion(b),  plan_.sizes[b].m / lightest};
         const Segment& s = balls_.segment(b);
         if (transitions == Transitions::kDue && has_come_to_transition(s))
             end_transition(member, s.state, balls_.radius(b));
@@ -271,7 +301,7 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     log_.note_long_round();
     RestingGroup group = group_of(ball, transitions);
     bool any_released = release_past_ends(group);
-    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity}, balls_.motion(ball), balls_.now());
+    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity}, balls_.now());
     if (transitions == Transitions::kDue) log_transitions(group);
     for (const RestingContact& c : group.contacts) {
         if (c.released) {
@@ -342,16 +372,43 @@ void RestingContacts::refresh_normal(RestingContact& c) const {
     c.n = toward / length(toward);
 }
 
-void RestingContacts::restore(std::span<const Event> events) {
-    for (const Event& e : events) {
+void RestingContacts::restore(const Record& so_far) {
+    for (const Event& e : so_far.events) {
         const EventPhase phase = kind(e.type).phase;
         const Contact contact = contact_of(e);
         if (phase == EventPhase::kHold)
             contacts_.push_back({.contact = contact, .began = e.time});
         else if (phase == EventPhase::kRelease)
             std::erase_if(contacts_, [&](const RestingContact& c) { return c.contact == contact; });
+        const bool meets = phase == EventPhase::kImpact || phase == EventPhase::kHold;
+        if (meets && e.time >= so_far.duration - kChatterSpan) note_again(so_far, e, contact);
     }
     for (RestingContact& c : contacts_) refresh_normal(c);
+}
+
+// The closing speed of a bounce, from the motions before it. Of several at one instant it is that of the
+// first.
+void RestingContacts::note_again(const Record& so_far, const Event& e, const Contact& contact) {
+    if (contact.with == With::kPocket || contact.with == With::kNothing || contact.with == With::kOut) return;
+    const auto before = [&](int ball, Vec2& r, Vec2& v) {
+        const std::vector<Segment>& segments = so_far.tracks[ball].segments;
+        auto s = std::lower_bound(segments.begin(), segments.end(), e.time,
+                                  [](const Segment& segment, double t) { return segment.start < t; });
+        if (s != segments.begin()) --s;
+        r = planar(position_at(*s, e.time - s->start));
+        v = planar(velocity_at(*s, e.time - s->start));
+    };
+    Vec2 r, v, other = Vec2::Zero(), other_v = Vec2::Zero();
+    before(contact.ball, r, v);
+    if (contact.with == With::kBall) before(contact.other, other, other_v);
+    if (contact.with == With::kNose) other = plan_.geometry.noses[contact.other].center;
+    Vec2 n = other - r;
+    if (contact.with == With::kCushion) {
+        const CushionLine& line = plan_.geometry.cushions[contact.other];
+        n = Vec2(-line.direction.y(), line.direction.x());
+        if (dot(n, r - line.from) > 0.0) n = -n;
+    }
+    note({e.time, contact, dot(n, v - other_v) / length(n)});
 }
 
 }  // namespace carom

@@ -19,16 +19,24 @@ struct RestingMemory {
         int ball;
         Segment segment;
     };
+    /// A bounce, or a contact that began to rest.
+    struct Bounce {
+        double time;
+        Contact contact;
+        double v_n;  ///< [m/s] closing speed
+    };
     std::vector<RestingContact> contacts_;
     std::vector<Struck> struck_;
+    std::vector<Bounce> bounces_;  ///< the latest ones, the oldest of them at next_bounce_
+    std::size_t next_bounce_ = 0;
 };
 
 class RestingContacts : private Borrowed<RestingMemory> {
   public:
     RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory);
 
-    /// Restores the contacts that these events began and did not end.
-    void restore(std::span<const Event> events);
+    /// Restores the contacts that the events of this record have begun and not ended.
+    void restore(const Record& so_far);
 
     bool has(const Contact& contact) const {
         return !contacts_.empty() && balls_.segment(contact.ball).held && find(contact);
@@ -36,7 +44,6 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// Begins a resting contact instead of a bounce if the conditions hold (tests/README.md, H5 and H7).
     /// @param restitution  of the bounce
     /// @return whether it is a resting contact now
-    /// @throws SimulationError if two balls of different size would form a resting contact
     bool try_hold(const Approach& approach, double restitution) {
         if (!try_begin(approach, restitution)) return false;
         start(approach.contact.ball);
@@ -65,7 +72,10 @@ class RestingContacts : private Borrowed<RestingMemory> {
     bool in_contact(int ball) const;
     const Struck* find_struck(int ball) const;
     bool goes_on(RestingContact& contact) const;
-    bool chatters(const Contact& contact) const;
+    bool chatters(const Contact& contact, double v_n) const;
+    void note(const Bounce& bounce);
+    void note_again(const Record& so_far, const Event& event, const Contact& contact);
+    bool has_fallen(const Event& from, const Contact& contact, double v_n) const;
     void end(const RestingContact& contact);
     void solve(int ball, Transitions transitions);
     RestingGroup group_of(int ball, Transitions transitions);
@@ -79,6 +89,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     const Plan& plan_;
     const Balls& balls_;
     Log& log_;
+    const bool lossless_;  // nothing takes energy, so that no bounces come to an end
 };
 
 }  // namespace carom

@@ -56,7 +56,7 @@ StopReason Run::run(const Record* so_far) {
         const Stopwatch watch(log_.costs() != nullptr ? &set_up_ns : nullptr);
         if (so_far != nullptr) {
             log_.resume(*so_far);
-            resting_.restore(log_.events());
+            resting_.restore(*so_far);
         } else {
             start_balls();
         }

@@ -82,17 +82,31 @@ double* on_cache_line(std::vector<double>& numbers) {
 
 }  // namespace
 
-void ClusterMap::load(const std::vector<ClusterBall>& balls, double R, double V, int axes) {
+namespace {
+
+double radius(const ClusterBall& ball, const ClusterSettings& settings) {
+    return settings.unlike ? ball.R : settings.R;
+}
+
+}  // namespace
+
+void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V,
+                      int axes) {
     motion_.clear();
+    mass_.clear();
     for (const ClusterBall& ball : balls) {
+        const double R = radius(ball, settings);
         for (int k = 0; k < axes; ++k) motion_.push_back(ball.v[k] / V);
         for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
+        mass_.push_back(settings.unlike ? ball.mass : 1.0);
     }
 }
 
-void ClusterMap::unload(double R, double V, int axes, std::vector<ClusterBall>& balls) const {
+void ClusterMap::unload(const ClusterSettings& settings, double V, int axes,
+                        std::vector<ClusterBall>& balls) const {
     const double* y = motion_.data();
     for (ClusterBall& ball : balls) {
+        const double R = radius(ball, settings);
         for (int k = 0; k < 3; ++k) ball.v[k] = k < axes ? *y++ * V : 0.0;
         for (int k = 0; k < 3; ++k) ball.w[k] = *y++ * V / R;
     }
@@ -100,11 +114,12 @@ void ClusterMap::unload(double R, double V, int axes, std::vector<ClusterBall>& 
 
 double ClusterMap::energy(int axes) const {
     double e = 0.0;
-    for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += axes + 3) {
+    const double* m = mass_.data();
+    for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += axes + 3, ++m) {
         double v2 = y[0] * y[0] + y[1] * y[1];
         if (axes == 3) v2 += y[2] * y[2];
         const double* w = y + axes;
-        e += 0.5 * v2 + 0.2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        e += *m * (0.5 * v2 + 0.2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
     }
     return e;
 }
@@ -114,16 +129,19 @@ double ClusterMap::energy(int axes) const {
 void ClusterMap::keep_energy(double before, int axes) {
     const double after = energy(axes);
     if (!(after > before)) return;
-    const std::size_t stride = static_cast<std::size_t>(axes) + 3, count = motion_.size() / stride;
-    double mean[3] = {}, relative = 0.0;
-    for (std::size_t n = 0; n < motion_.size(); n += stride)
-        for (int k = 0; k < axes; ++k) mean[k] += motion_[n + k];
-    for (double& m : mean) m /= static_cast<double>(count);
-    for (std::size_t n = 0; n < motion_.size(); n += stride) {
+    const std::size_t stride = static_cast<std::size_t>(axes) + 3;
+    double mean[3] = {}, relative = 0.0, all = 0.0;
+    for (std::size_t b = 0; b < mass_.size(); ++b) {
+        all += mass_[b];
+        for (int k = 0; k < axes; ++k) mean[k] += mass_[b] * motion_[b * stride + k];
+    }
+    for (double& m : mean) m /= all;
+    for (std::size_t b = 0; b < mass_.size(); ++b) {
+        const std::size_t n = b * stride;
         const double x = motion_[n] - mean[0], y = motion_[n + 1] - mean[1];
         double square = x * x + y * y;
         if (axes == 3) square += (motion_[n + 2] - mean[2]) * (motion_[n + 2] - mean[2]);
-        relative += 0.5 * square;
+        relative += mass_[b] * (0.5 * square);
     }
     const double wanted = relative - (after - before);
     if (!(relative > 0.0) || !(wanted > 0.0)) return;
@@ -134,12 +152,12 @@ void ClusterMap::keep_energy(double before, int axes) {
 
 namespace {
 
-// L/(2 R), the rate at which normals turn. The stiffness is that of pool balls, so that small balls at
-// hundreds of m/s would overlap by more than their radius, and leave no normal. They are treated as larger
-// balls that touch at the same points.
-double curvature(double L, const ClusterSettings& settings) {
+// L/(2 R), by which normals turn. The stiffness is that of pool balls, so that
+// small balls at hundreds of m/s would overlap by more than their radius, and then
+// no normal is left; they are taken for larger ones that touch in the same places.
+double curvature(double L, double R, bool turns) {
     constexpr double kLargest = 0.125;
-    return settings.turns ? std::min(kLargest, L / (2.0 * settings.R)) : 0.0;
+    return turns ? std::min(kLargest, L / (2.0 * R)) : 0.0;
 }
 
 // A slow pair can be the first to touch when faster ones are about to. The faster ones set the scale, or
@@ -156,7 +174,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                    const ClusterSettings& settings, double V) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
-    load(balls, settings.R, V, 2);
+    load(balls, settings, V, 2);
     contacts_.clear();
     for (const ClusterContact& c : contacts)
         contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L, c.turn});
@@ -171,38 +189,93 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     curvature(L, settings)};
+                                     curvature(L, settings.R, settings.turns)};
     const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                                   kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 2);
-    unload(settings.R, V, 2, balls);
+    unload(settings, V, 2, balls);
     return steps;
 }
 
 std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
                                             const std::vector<ClusterContact>& contacts,
                                             const ClusterSettings& settings, double V) {
+    return in_space(balls, contacts, settings, V, false);
+}
+
+std::int64_t ClusterMap::compliant_unlike(std::vector<ClusterBall>& balls,
+                                          const std::vector<ClusterContact>& contacts,
+                                          const ClusterSettings& settings, double V) {
+    return in_space(balls, contacts, settings, V, true);
+}
+
+namespace {
+
+// A share of the turning below this is none: the distance of the centres would be so long that rounding
+// shows.
+constexpr double kLeastTurn = 1e-4;
+
+}  // namespace
+
+// Hertz: the stiffness goes with the root of the effective radius.
+// @return the longest step, over that of alike balls: light balls part sooner
+double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
+                                   const std::vector<ClusterContact>& contacts, double L,
+                                   const ClusterSettings& settings, bool held) {
+    inverse_mass_.clear();
+    stiffness_.clear();
+    curvature_.clear();
+    for (const ClusterBall& ball : balls) inverse_mass_.push_back(1.0 / ball.mass);
+    double shortest = 1.0;
+    for (const ClusterContact& c : contacts) {
+        const double Ri = balls[c.i].R, Rj = balls[c.j].R, turn = held ? c.turn : 1.0;
+        const double stiffness = std::sqrt(2.0 * Ri * Rj / ((Ri + Rj) * settings.R));
+        stiffness_.push_back(stiffness);
+        curvature_.push_back(turn < kLeastTurn ? 0.0 : turn * curvature(L, 0.5 * (Ri + Rj), settings.turns));
+        shortest =
+            std::min(shortest, std::sqrt(2.0 / ((inverse_mass_[c.i] + inverse_mass_[c.j]) * stiffness)));
+    }
+    return shortest;
+}
+
+std::int64_t ClusterMap::in_space(std::vector<ClusterBall>& balls,
+                                  const std::vector<ClusterContact>& contacts,
+                                  const ClusterSettings& settings, double V, bool held) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
-    load(balls, settings.R, V, 3);
+    load(balls, settings, V, 3);
     contacts_in_space_.clear();
     for (const ClusterContact& c : contacts)
         contacts_in_space_.push_back({c.i, c.j, {c.n.x(), c.n.y(), c.n.z()}, -c.gap / L});
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
+    kernel::ContactPhaseInSpace phase{m,
+                                      n,
+                                      motion_.data(),
+                                      contacts_in_space_.data(),
+                                      numbers_.data(),
+                                      curvature(L, settings.R, settings.turns)};
+    double longest_step = settings.longest_step;
+    kernel::UnlikeBalls unlike{};
+    if (settings.unlike) {
+        longest_step *= describe_unlike(balls, contacts, L, settings, held);
+        unlike = {inverse_mass_.data(), stiffness_.data(), curvature_.data(), held};
+        phase.unlike = &unlike;
+    }
     const double before = energy(3);
-    const std::int64_t steps = kernel::contact_phase_in_space(
-        {m, n, motion_.data(), contacts_in_space_.data(), numbers_.data(), curvature(L, settings)},
-        law_of(settings, V), settings.longest_step, kClusterLookAhead, kClusterTimeLimit);
+    const std::int64_t steps = kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step,
+                                                              kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 3);
-    unload(settings.R, V, 3, balls);
+    unload(settings, V, 3, balls);
     return steps;
 }
 
 std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                               double e_b, double R) {
+                               const ClusterSettings& settings) {
+    const double e_b = settings.e_b;
+    const auto mobility = [&](int b) { return settings.unlike ? 1.0 / balls[b].mass : 1.0; };
     std::vector<Vec3>& v = velocity_;
     v.clear();
     for (const ClusterBall& b : balls) v.push_back(b.v);
@@ -217,15 +290,16 @@ std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vecto
             const int i = contacts[c].i, j = contacts[c].j;
             const Vec3& n = contacts[c].n;
             const double closing = dot3(v[i] - v[j], n);
-            const double next = std::max(0.0, impulse[c] + 0.5 * closing);
+            const double light_i = mobility(i), light_j = mobility(j);
+            const double next = std::max(0.0, impulse[c] + closing / (light_i + light_j));
             const double J = next - impulse[c];
             impulse[c] = next;
-            v[i] -= J * n;
-            v[j] += J * n;
+            v[i] -= (light_i * J) * n;
+            v[j] += (light_j * J) * n;
             change = std::max(change, std::abs(J));
         }
         for (std::size_t b = 0; b < balls.size(); ++b) {
-            if (balls[b].r.z() > R) continue;
+            if (balls[b].r.z() > radius(balls[b], settings)) continue;
             double& up = impulse[contacts.size() + b];
             const double next = std::max(0.0, up - v[b].z()), J = next - up;
             up = next;

@@ -31,8 +31,10 @@ inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
 inline constexpr double kClusterTimeLimit = 200.0;
 
 struct ClusterBall {
-    int ball = -1;  ///< engine index
-    Vec3 r, v, w;   ///< the model replaces v and w
+    int ball = -1;      ///< engine index
+    Vec3 r, v, w;       ///< v and w are replaced by the map
+    double R = 0.0;     ///< [m] read where the balls of the cluster differ (ClusterSettings::unlike)
+    double mass = 1.0;  ///< over that of the balls that ClusterSettings describes
 };
 
 struct ClusterContact {
@@ -45,14 +47,15 @@ struct ClusterContact {
 
 struct ClusterSettings {
     double R;  ///< [m]
-    double mu_s, mu_b, e_b;
+    double mu_s = 0.0, mu_b = 0.0, e_b = 1.0;
     bool published_cloth_slip = false;
-    double epsilon;       ///< regularisation of the friction directions, in units of V
-    double longest_step;  ///< in units of L / V
-    kernel::ContactPhaseFunction integrate;
+    double epsilon = kClusterEpsilon;    ///< regularisation of the friction directions, in units of V
+    double longest_step = kClusterStep;  ///< in units of L / V
+    kernel::ContactPhaseFunction integrate = nullptr;  ///< not read where the balls are unlike or in space
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
-    bool turns = true;  ///< false: all normals stay as the contacts give them
+    bool turns = true;    ///< false: all normals stay as the contacts give them
+    bool unlike = false;  ///< the balls differ in size; R is that of balls with the mass 1
 };
 
 /// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
@@ -80,22 +83,34 @@ class ClusterMap {
                                     const std::vector<ClusterContact>& contacts,
                                     const ClusterSettings& settings, double V);
 
-    /// Rigid: v := (1 + e) P(v) - e v, where P gives the nearest velocities that close no contact (equations
-    /// 7, 8) and press no ball on the cloth (r_z not above R) into it; frictionless. Returns the number of
-    /// sweeps.
+    /// As compliant() for balls that differ in size, and so touch along tilted normals.
+    std::int64_t compliant_unlike(std::vector<ClusterBall>& balls,
+                                  const std::vector<ClusterContact>& contacts,
+                                  const ClusterSettings& settings, double V);
+
+    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that
+    /// close no contact (equations 7, 8), nor press a ball that lies (r_z not above its R) into the cloth;
+    /// frictionless. Of the settings only R, e_b and `unlike` are read. Returns the number of sweeps.
     std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                       double e_b, double R);
+                       const ClusterSettings& settings);
 
   private:
-    void load(const std::vector<ClusterBall>& balls, double R, double V, int axes);
-    void unload(double R, double V, int axes, std::vector<ClusterBall>& balls) const;
+    void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V, int axes);
+    void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls) const;
+    std::int64_t in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                          const ClusterSettings& settings, double V, bool held);
+    double describe_unlike(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                           double L, const ClusterSettings& settings, bool held);
     void keep_energy(double before, int axes);
     double energy(int axes) const;
 
     // Per ball, v along two or three axes and R w along three, in units of V.
     std::vector<double> motion_;
+    std::vector<double> mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
     std::vector<kernel::HertzContactInSpace> contacts_in_space_;
+    // Of balls that differ: per ball, and per contact.
+    std::vector<double> inverse_mass_, stiffness_, curvature_;
     std::vector<double> numbers_;
     std::vector<int> places_;
     // For rigid(): per ball [m/s], and per contact.

@@ -85,9 +85,11 @@ Need cloth_in_impact(const Facts& f) {
     if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     if (!f.plan.ball_ball->reads_cloth)
         return {false, f.say("model {} does not read the cloth", f.plan.ball_ball->name)};
-    if (p.mu_s == 0.0 || !p.ball_friction().any())
+    const bool tilted = !f.scene.of_one_radius();
+    if (p.mu_s == 0.0 || (!p.ball_friction().any() && !tilted))
         return {false, f.say("{} = 0", p.mu_s == 0.0 ? "mu_s" : "mu_b")};
     if (!f.plan.pairs) return no_two_balls_meet(f);
+    if (tilted) return {true, f.say("mu_s > 0, and balls of different radius press each other on the cloth")};
     return {true, f.say("mu_s and mu_b > 0; without vertical slip it is 0 at that impact")};
 }
 
@@ -135,9 +137,9 @@ Need clusters(const Facts& f) {
     if (f.scene.ball.size() < 3) return {false, f.say("fewer than three balls")};
     if (model == ClusterModel::kSequential) return {false, f.say("clusters = \"sequential\": pair by pair")};
     if (!f.plan.pairs) return no_two_balls_meet(f);
-    return {true, f.say("clusters = \"{}\"; decided per impact: no third ball{} within reach means the "
+    return {true, f.say("clusters = \"{}\"; decided per impact: no third ball within reach means the "
                         "pair alone",
-                        name(model), f.scene.alike() ? "" : " of the same size")};
+                        name(model))};
 }
 
 Need airborne(const Facts& f) {

@@ -23,11 +23,13 @@ namespace {
 constexpr double kShares[] = {0.25, 0.5, 0.75};
 // [m] A centre that crosses a cushion this close to its end may move around it.
 constexpr double kCrossingEnd = 1e-9;
+// [-] A flight that ends so near to a cushion's line has ended there: the ball is out.
+constexpr double kBeforeEnd = 1.0 - 1e-9;
 
 /// A ball in the present piece of motion.
 struct Piece {
     std::size_t segment = 0;
-    bool moves = false, pocketed = false;
+    bool begins = false, moves = false, pocketed = false;
     Vec2 r;               ///< [m] at the start
     double reach = 0.0;   ///< [m] longest possible path in this piece
     double energy = 0.0;  ///< [J/kg] at the start
@@ -112,7 +114,7 @@ class Between {
         for (std::size_t i = 0; i < pieces_.size() && !found_; ++i) {
             if (pieces_[i].pocketed) continue;
             for (std::size_t j = 0; j < i; ++j) check_pair(j, i, from, to);
-            if (pieces_[i].moves) check_table(i, from, to);
+            if (pieces_[i].moves || pieces_[i].begins) check_table(i, from, to);
         }
     }
 
@@ -127,7 +129,8 @@ class Between {
         piece.pocketed = is_gone(s.state);
         const bool still = s.state == MotionState::kStationary || piece.pocketed;
         piece.moves = translates(s.state);
-        if (first || before != piece.segment || !still) piece.energy = energy(ball, from);
+        piece.begins = first || before != piece.segment;
+        if (piece.begins || !still) piece.energy = energy(ball, from);
         const double tau = std::min(from - s.start, s.duration);
         piece.r = planar(position_at(s, tau));
         piece.reach = piece.moves
@@ -174,9 +177,11 @@ class Between {
     void check_table(std::size_t ball, double from, double to) {
         const double near = kNoseReach * R(ball) + pieces_[ball].reach;
         const bool in_air = flies(segment(ball).state);
+        // With a bed there is cloth on both sides of a cushion.
+        const bool may_cross = in_air && plan_.scene.table.bed;
         for (const CushionLine& line : plan_.geometry.cushions) {
             if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
-            if (!in_air) check_crossing(ball, line, from, to);
+            if (!may_cross) check_crossing(ball, line, from, to);
             for (const double share : kShares) {
                 const double t = from + share * (to - from);
                 const SeenBall there = seen(ball, t);
@@ -194,23 +199,30 @@ class Between {
                 const double gap = gap_to(nose, there);
                 if (gap < -allowed_depth(there))
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
+                // It would come down inside of it.
+                const double over = nose.radius - length(planar(there.r) - nose.center);
+                if (in_air && over > allowed_depth(there))
+                    report("U3", t, "ball {} flies on {:.3g} m behind the nose of a jaw", id(ball), over);
             }
         }
     }
 
-    // A fast ball may pass through a cushion between two checks.
+    // A fast ball may pass through a cushion between two checks; a ball that flies over it is out.
     void check_crossing(std::size_t ball, const CushionLine& line, double from, double to) {
         const Segment& s = segment(ball);
         const double tau = std::min(from - s.start, s.duration),
                      duration = std::min(to - s.start, s.duration) - tau;
         const Vec2 r = pieces_[ball].r, v = planar(velocity_at(s, tau));
         const double height = cross(line.direction, r - line.from), side = height < 0.0 ? -1.0 : 1.0;
+        const bool flew = flies(s.state);
+        if (flew && !(std::abs(height) > kCrossingEnd)) return;
         const double t = first_descent_quadratic(side * height, side * cross(line.direction, v),
                                                  side * cross(line.direction, s.a), duration);
-        if (!(t <= duration)) return;
+        if (!(flew ? t < kBeforeEnd * duration : t <= duration)) return;
         const double foot = dot(line.direction, r + t * (v + 0.5 * t * s.a) - line.from);
         if (foot > kCrossingEnd && foot < line.length - kCrossingEnd)
-            report("U3", from + t, "ball {} passes through a cushion", id(ball));
+            report("U3", from + t, "ball {} {} a cushion", id(ball),
+                   flew ? "flies on behind" : "passes through");
     }
 
     const Record& record_;

@@ -117,20 +117,29 @@ void check_cloth(const Section& top, const Scene& scene) {
              p.mu_r, p.mu_s);
 }
 
-/// Why the integrated impact cannot handle the masses of the scene; "" if it can.
-std::string masses_refused(const Scene& scene) {
-    if (scene.physics.substeps) return "with substeps needs balls of equal mass";
-    double light = std::numeric_limits<double>::infinity(), heavy = 0.0;
-    for (const BallStart& ball : scene.ball) {
-        light = std::min(light, scene.size_of(ball).m);
-        heavy = std::max(heavy, scene.size_of(ball).m);
-    }
-    if (heavy / light > kernel::kLargestMassRatio)
+/// Why the integrated impact cannot handle two sizes of the scene; "" if it can.
+std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSize& two) {
+    const double masses = std::max(one.m, two.m) / std::min(one.m, two.m);
+    const double radii = std::max(one.R, two.R) / std::min(one.R, two.R);
+    if (!(masses <= kernel::kLargestMassRatio))
         return fmt::format("accepts mass ratios up to {}", kernel::kLargestMassRatio);
-    const double mu_s = kernel::kLargestFriction / kernel::impulse_share(light, heavy);
-    if (scene.balls.mu_s > mu_s)
-        return fmt::format("accepts balls.mu_s up to {:.3g} with these masses", mu_s);
-    return "";
+    if (!(radii <= kernel::kLargestRadiusRatio))
+        return fmt::format("accepts radius ratios up to {}", kernel::kLargestRadiusRatio);
+    const kernel::ImpactParams params{.R = one.R,
+                                      .m = one.m,
+                                      .mu_s1 = scene.balls.mu_s,
+                                      .mu_s2 = scene.balls.mu_s,
+                                      .mu_b = scene.balls.ball_friction().most(),
+                                      .e_b = scene.balls.e_b,
+                                      .cloth_slip = scene.physics.cloth_slip == ClothSlipSign::kAsPublished
+                                                        ? kernel::ClothSlip::kAsPublished
+                                                        : kernel::ClothSlip::kConsistent,
+                                      .mass_ratio = two.m / one.m,
+                                      .radius_ratio = two.R / one.R};
+    if (kernel::sizes_have_solution(params)) return "";
+    return fmt::format(
+        "has no solution with balls.mu_s = {} and a friction of {} between balls of these sizes",
+        params.mu_s1, params.mu_b);
 }
 
 /// Refuses balls of different size if the models of the scene have no formula for them.
@@ -150,22 +159,18 @@ void check_sizes(const Section& top, const Scene& scene) {
             top.fail(where, "balls {} and {} differ in size: {}", in_quotes(scene.ball.front().id),
                      in_quotes(ball.id), why);
         };
-        if (rough && size.R != first.R && !model.free)
+        if (rough && size.R != first.R && !model.free && !model.reads_tolerance)
             refuse(
-                "friction between balls of different radius acts on a tilted line of centres, for which this "
-                "model "
-                "has no formula; use physics.ball_ball = \"two_step\" or set balls.mu_b = 0");
-        if (rough && model.reads_tolerance) {
-            if (const std::string why = masses_refused(scene); !why.empty())
-                refuse(fmt::format(
-                    "the model {} {}; use physics.ball_ball = \"inelastic\" or set balls.mu_b = 0",
-                    model.name, why));
+                fmt::format("friction between balls of different radius acts on a tilted line of centres, "
+                            "for which the model {} has no formula; use physics.ball_ball = \"mathavan\" or "
+                            "set balls.mu_b = 0",
+                            model.name));
+        if (!model.reads_tolerance) continue;
+        for (const BallStart& other : scene.ball) {
+            const std::string why = sizes_refused(scene, scene.size_of(other), size);
+            if (!why.empty())
+                refuse(fmt::format("the model {} {}; use physics.ball_ball = \"two_step\"", model.name, why));
         }
-        if (scene.ball.size() > 2 && scene.physics.clusters != ClusterModel::kSequential && !model.free)
-            refuse(
-                fmt::format("clusters = \"{}\" needs balls of equal size; set physics.clusters = "
-                            "\"sequential\"",
-                            name(scene.physics.clusters)));
     }
 }
 
@@ -224,6 +229,29 @@ void check_bed(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         if (!ball.flies() || is_inside(bed, planar(ball.position))) continue;
         top.fail(ball.where, "ball {} starts in the air outside table.bed; move it", in_quotes(ball.id));
+    }
+}
+
+/// Refuses balls in the air behind the cushions of a table by name: they would come down on its rail.
+void check_rails(const Section& top, const Scene& scene) {
+    const Table& table = scene.table;
+    if (table.preset.empty() || table.bed) return;
+    const Vec2 low = table.corner, high = low + Vec2(table.width, table.length);
+    // Exactly above a nose it is behind it if it moves there.
+    const auto next = [](double x, double v) {
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        return v == 0.0 ? x : std::nextafter(x, v > 0.0 ? kFar : -kFar);
+    };
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 p(next(ball.position.x(), ball.velocity.x()), next(ball.position.y(), ball.velocity.y()));
+        if (!ball.flies() || is_inside(Rectangle(low.x(), low.y(), high.x(), high.y()), p)) continue;
+        // Between two jaws there is cloth, at most R beyond the line of the noses, and then the pocket.
+        const double R = scene.size_of(ball).R;
+        const bool in_mouth = std::any_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& k) {
+            return length(p - k.center) < k.radius + 2.0 * R;
+        });
+        if (in_mouth) continue;
+        top.fail(ball.where, "ball {} starts in the air behind the cushions; move it", in_quotes(ball.id));
     }
 }
 
@@ -296,6 +324,7 @@ void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_cloth(top, scene);
     check_vertical(top, scene);
     check_bed(top, scene);
+    check_rails(top, scene);
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);

@@ -20,6 +20,7 @@ struct BallPreset {
     const char* name;
     BallParams balls;
     const CushionModelInfo* cushion;
+    BallSize cue = {0.0, 0.0};  ///< of the cue ball; R = 0: as the others
 };
 
 /// The values that most simulators share: one set of coefficients for every game, and friction between balls
@@ -62,13 +63,31 @@ constexpr BallParams carom_balls() {
     return p;
 }
 
-/// In the order of kBallPresets.
-constexpr BallPreset kBalls[] = {{"pool", pool(), &kHan2005},
-                                 {"snooker", snooker(), &kMathavan2010},
-                                 {"carom", carom_balls(), &kHan2005},
-                                 {"pool_classic", kPoolClassic, &kHan2005},
-                                 {"snooker_classic", kSnookerClassic, &kHan2005},
-                                 {"carom_classic", kCaromClassic, &kHan2005}};
+/// English pool balls of 2 in, with a cue ball of 1 7/8 in; masses by volume from a pool ball's, whose resin
+/// they share. Coefficients as for pool.
+constexpr double by_volume(double R) {
+    const double ratio = R / kPoolClassic.R;
+    return kPoolClassic.m * (ratio * ratio * ratio);
+}
+constexpr BallParams english_pool() {
+    BallParams p = pool();
+    p.R = 1.0 * 0.0254, p.m = by_volume(p.R);
+    return p;
+}
+constexpr double kOversized = 2.375 / 2.0 * 0.0254, kEnglishCue = 1.875 / 2.0 * 0.0254, kOunce = 0.028349523;
+
+/// In the order of kBallPresets. The oversized cue ball of a coin-operated table has 2 3/8 in and the resin
+/// of the others; a magnetic one has their size, and is half an ounce to an ounce heavier.
+constexpr BallPreset kBalls[] = {
+    {"pool", pool(), &kHan2005},
+    {"snooker", snooker(), &kMathavan2010},
+    {"carom", carom_balls(), &kHan2005},
+    {"bar_box_oversized", pool(), &kHan2005, {kOversized, by_volume(kOversized)}},
+    {"bar_box_heavy", pool(), &kHan2005, {pool().R, pool().m + 0.75 * kOunce}},
+    {"english_pool", english_pool(), &kHan2005, {kEnglishCue, by_volume(kEnglishCue)}},
+    {"pool_classic", kPoolClassic, &kHan2005},
+    {"snooker_classic", kSnookerClassic, &kHan2005},
+    {"carom_classic", kCaromClassic, &kHan2005}};
 
 struct CuePreset {
     const char* name;
@@ -113,6 +132,8 @@ void use_balls(Scene& scene, std::string_view preset) {
     const BallPreset& row = named(kBalls, preset, "ball preset");
     scene.ball_preset = row.name;
     scene.balls = row.balls;
+    scene.cue_ball.reset();
+    if (row.cue.R > 0.0) scene.cue_ball = row.cue;
     scene.physics.cushion = row.cushion;
 }
 

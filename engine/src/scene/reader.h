@@ -63,6 +63,16 @@ class Section {
         }
     }
     std::optional<bool> boolean(std::string_view key) const;
+    /// The value of a key that has() is true for.
+    const toml::node* node(std::string_view key) const { return table_->get(key); }
+    /// A number inside a value; `what` names it in messages.
+    double number_of(const toml::node& node, const std::string& what, const Interval& allowed) const {
+        return number(node, what, allowed);
+    }
+    /// A text in a section inside this one that is read later, and checked then; nothing if there is none.
+    std::optional<std::string> peek(std::string_view section, std::string_view key) const {
+        return table_ != nullptr ? (*table_)[section][key].value<std::string>() : std::nullopt;
+    }
 
     /// Refuses values that a file could not have, in the order of the rows.
     template <class T, std::size_t kRows>

@@ -13,18 +13,20 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
+#include "scene/aim.h"
 #include "scene/rack.h"
 
 namespace carom::detail {
 namespace {
 
-BallStart read_ball(const Section& s, const BallSize& common) {
+BallStart read_ball(const Section& s, const BallSize& common, const std::optional<BallSize>& cue_ball,
+                    const std::string& cue_id) {
     BallStart ball;
-    BallSize size = common;
-    s.read(kSizeFields, size);
-    if (!(size == common)) ball.own = size;
     ball.where = s.where();
     s.read(kBallStartFields, ball);
+    BallSize size = cue_ball && ball.id == cue_id ? *cue_ball : common;
+    s.read(kSizeFields, size);
+    if (!(size == common)) ball.own = size;
     check_id(s, ball.id);
     ball.position.z() = size.R + ball.height;
     return ball;
@@ -40,8 +42,9 @@ std::vector<std::string_view> joined(std::vector<std::string_view> keys,
 }  // namespace
 
 void read_balls(const Section& top, Scene& scene) {
-    const auto s = top.section(
-        "balls", joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene)));
+    auto keys = joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene));
+    keys.emplace_back("cue");
+    const auto s = top.section("balls", keys);
     if (s) s->read(kBallPresetFields, scene);
     use_balls(scene, scene.ball_preset);
     if (!s) return;
@@ -51,17 +54,20 @@ void read_balls(const Section& top, Scene& scene) {
         if (s->has(number) && s->has(fit))
             s->fail(fit, "balls.{} and balls.{} are two values for one coefficient; remove one", number, fit);
     check_fits(*s, scene.balls);
+    BallSize cue = scene.cue_ball.value_or(scene.balls.size());
+    if (s->read("cue", kSizeFields, cue)) scene.cue_ball = cue;
 }
 
 void read_ball_list(const Section& top, Scene& scene) {
     const auto tables = top.tables("ball");
     if (!tables) return;
     const auto keys = joined(keys_of(kBallStartFields, Files::kScene), keys_of(kSizeFields, Files::kScene));
+    const std::string struck = top.peek("cue", "ball").value_or(Cue().ball);
     for (const toml::table* table : *tables) {
         const Section s(*table, top.file(), "ball", keys);
         if (scene.ball.size() == kMaxBalls)
             s.fail(s.where(), "more than {} balls; leave some out", kMaxBalls);
-        scene.ball.push_back(read_ball(s, scene.balls.size()));
+        scene.ball.push_back(read_ball(s, scene.balls.size(), scene.cue_ball, struck));
     }
 }
 
@@ -98,8 +104,10 @@ void read_rack(const Section& top, Scene& scene) {
 
 void read_cue(const Section& top, Scene& scene) {
     Cue cue;
-    const auto s = top.read("cue", kCueFields, cue);
+    const auto s = top.section("cue", joined(keys_of(kCueFields, Files::kScene), kAimKeys));
     if (!s) return;
+    s->read(kCueFields, cue);
+    read_aim(*s, scene, cue);
     cue.where = s->where();
     check_cue(*s, scene, cue);
     scene.cue = cue;

@@ -138,8 +138,22 @@ PocketTable snooker_table() {
             .side_run = tan_deg(kSideAngle)};
 }
 
-/// A jaw and the straight facing next to it, in the frame of the corner: x and y from the corner into the
-/// table.
+/// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, and all of
+/// them smaller as the balls are.
+PocketTable english_pool_table() {
+    constexpr double kBalls = 0.0254 / 0.02625;
+    PocketTable t = snooker_table();
+    t.length = 1.8288;  // 6 ft
+    t.width = 0.9144;
+    for (double* length :
+         {&t.nose_height, &t.corner_mouth, &t.corner_depth, &t.corner_radius, &t.corner_jaw_radius,
+          &t.side_mouth, &t.side_depth, &t.side_radius, &t.side_jaw_radius})
+        *length *= kBalls;
+    return t;
+}
+
+/// A jaw and the straight facing beside it, in the frame
+/// of the corner: x and y from the corner into the table.
 struct JawAndFacing {
     Vec2 jaw;        ///< centre of the circle
     Vec2 tip, back;  ///< ends of the facing, at the nose and behind it
@@ -242,6 +256,7 @@ Table make_table(std::string_view preset) {
     if (preset == "nine_foot") return build("nine_foot", nine_foot());
     if (preset == "eight_foot") return build("eight_foot", eight_foot());
     if (preset == "snooker") return build("snooker", snooker_table());
+    if (preset == "english_pool") return build("english_pool", english_pool_table());
     if (preset == "carom" || preset == "carom_ten_foot") return carom_table();
     throw std::invalid_argument(
         fmt::format("unknown table preset {}{}", in_quotes(preset),

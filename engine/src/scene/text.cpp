@@ -1,8 +1,8 @@
 // From a scene back to a scene file.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <stdexcept>
@@ -33,12 +33,20 @@ std::string quote(const std::string& text) {
     return out + '"';
 }
 
+// "-0" would be an integer, which has no sign: a scene and its text would differ in bits.
+std::string text_of(double number) {
+    return number == 0.0 && std::signbit(number) ? "-0.0" : fmt::format("{}", number);
+}
+
 std::string text_of(const FieldValue& value) {
-    if (const auto* list = std::get_if<std::vector<double>>(&value))
-        return fmt::format("[{}]", fmt::join(*list, ", "));
+    if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+        std::string out;
+        for (const double number : *list) out += (out.empty() ? "" : ", ") + text_of(number);
+        return "[" + out + "]";
+    }
     if (const auto* text = std::get_if<std::string>(&value)) return quote(*text);
     if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
-    return fmt::format("{}", std::get<double>(value));
+    return text_of(std::get<double>(value));
 }
 
 /// A line for each value, under a heading that is written only if there is a line.
@@ -91,9 +99,11 @@ std::string scene_text(const Scene& scene) {
     write_table(out, scene.table);
     write_fields(out, "[balls]\n", kBallPresetFields, scene);
     write_fields(out, "", kBallFields, scene.balls);
+    if (scene.cue_ball) write_fields(out, "[balls.cue]\n", kSizeFields, *scene.cue_ball);
     for (const BallStart& ball : scene.ball) {
         write_fields(out, "[[ball]]\n", kBallStartFields, ball);
-        if (ball.own) write_fields(out, "", kSizeFields, *ball.own);
+        const bool is_cue_ball = scene.cue_ball && ball.id == scene.cue_ball_id();
+        if (ball.own || is_cue_ball) write_fields(out, "", kSizeFields, scene.size_of(ball));
     }
     if (scene.cue) write_fields(out, "[cue]\n", kCueFields, *scene.cue);
     write_fields(out, "[physics]\n", kPhysicsFields, scene.physics);

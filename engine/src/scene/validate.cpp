@@ -96,6 +96,7 @@ void check_all(const Scene& scene) {
     const Section balls(scene.file, "balls");
     balls.check(kBallPresetFields, scene);
     balls.check(kBallFields, scene.balls);
+    if (scene.cue_ball) Section(scene.file, "balls.cue").check(kSizeFields, *scene.cue_ball);
     check_fits(balls, scene.balls);
     check_models(top, scene.physics);
     Section(scene.file, "physics").check(kPhysicsFields, scene.physics);

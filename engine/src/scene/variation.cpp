@@ -14,6 +14,7 @@
 #include "base/fnv.h"
 #include "base/toml_number.h"
 #include "carom/engine/tolerances.h"
+#include "scene/aim.h"
 #include "scene/distribution.h"
 #include "scene/keys.h"
 #include "scene/rack.h"
@@ -283,6 +284,18 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
             .read(kRackFields, parts->rack);
     std::ostringstream content;
     content << parts->file;
+    // A rule that sets the aim or the speed replaces the words for it; otherwise they follow the balls.
+    const auto sets = [&rules](std::string_view key) {
+        return std::any_of(rules.begin(), rules.end(),
+                           [key](const std::string& rule) { return rule.starts_with(key); });
+    };
+    const toml::table* cue = parts->file["cue"].as_table();
+    const bool words = cue != nullptr && std::any_of(detail::kAimKeys.begin(), detail::kAimKeys.end(),
+                                                     [cue](auto key) { return cue->contains(key); });
+    if (words && (sets("cue.aim_deg=") || sets("cue.speed=")))
+        detail::write_aim(parts->file, *parts->base.cue);
+    else if (words)
+        parts->quick = false;
     Fnv print;
     print.add(content.str());
     print.add(seed);

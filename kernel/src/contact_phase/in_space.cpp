@@ -51,8 +51,9 @@ class InSpace {
     InSpace(const ContactPhaseInSpace& phase, const HertzLaw& law)
         : phase_(phase),
           law_(law),
-          turns_(phase.curvature > 0.0),
-          diameter_(turns_ ? 1.0 / phase.curvature : 0.0),
+          unlike_(phase.unlike),
+          held_(unlike_ != nullptr && unlike_->held),
+          cloth_sign_(law.published_slip_sign ? -1.0 : 1.0),
           size_(kPerState * phase.balls) {
         double* next = phase.numbers;
         const auto take = [&next](int count) {
@@ -65,6 +66,7 @@ class InSpace {
         stage_ = take(size_);
         for (double*& slope : slope_) slope = take(size_);
         stiffness_ = take(phase.balls);
+        down_ = take(phase.balls);
         apart_ = take(3 * phase.contacts);
         memory_ = take(phase.contacts);
         before_ = take(phase.contacts);
@@ -74,7 +76,7 @@ class InSpace {
         }
         for (int c = 0; c < phase.contacts; ++c) {
             const HertzContactInSpace& contact = phase.contact[c];
-            for (int k = 0; k < 3; ++k) apart_[3 * c + k] = (diameter_ - contact.overlap) * contact.n[k];
+            for (int k = 0; k < 3; ++k) apart_[3 * c + k] = (diameter(c) - contact.overlap) * contact.n[k];
         }
     }
 
@@ -100,6 +102,12 @@ class InSpace {
     }
 
   private:
+    // [1/L] by which the normal of a contact turns, and its inverse, the distance of centres that touch.
+    double curvature(int c) const { return unlike_ == nullptr ? phase_.curvature : unlike_->curvature[c]; }
+    bool turns(int c) const { return curvature(c) > 0.0; }
+    double diameter(int c) const { return turns(c) ? 1.0 / curvature(c) : 0.0; }
+    double mobility(int ball) const { return unlike_ == nullptr ? 1.0 : unlike_->inverse_mass[ball]; }
+
     static const double* velocity(const double* y, int ball) { return y + kPerState * ball + 3; }
     static const double* spin(const double* y, int ball) { return y + kPerState * ball + 6; }
 
@@ -112,7 +120,7 @@ class InSpace {
         return at(velocity(y, contact.i)) - at(velocity(y, contact.j));
     }
     Now contact_at(const double* y, int c) const {
-        if (!turns_) {
+        if (!turns(c)) {
             const HertzContactInSpace& contact = phase_.contact[c];
             const Vector n = at(contact.n);
             const Vector moved = at(y + kPerState * contact.i) - at(y + kPerState * contact.j);
@@ -121,12 +129,13 @@ class InSpace {
         const Vector z = apart(y, c);
         const double distance = square_root(dot(z, z));
         const Vector n = (1.0 / distance) * z;
-        return {n, diameter_ - distance, dot(closing(y, c), n)};
+        return {n, diameter(c) - distance, dot(closing(y, c), n)};
     }
 
     double force(int c, const Now& now) const {
         const double inverse = memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
-        return normal_force(law_.a, law_.b, law_.p, now.overlap, inverse);
+        const double F = normal_force(law_.a, law_.b, law_.p, now.overlap, inverse);
+        return unlike_ == nullptr ? F : unlike_->stiffness[c] * F;
     }
 
     // Adds the forces of a contact to the slopes of its balls: (3.1) to (3.3) with springs.
@@ -141,17 +150,38 @@ class InSpace {
         const double k = mu_b * F / size;
         const Vector friction = -k * slip;  // on ball i
         const Vector force = friction - F * now.n, torque = 2.5 * cross(now.n, friction);
-        add(slope + kPerState * i + 3, force);
-        add(slope + kPerState * j + 3, -1.0 * force);
-        add(slope + kPerState * i + 6, torque);
-        add(slope + kPerState * j + 6, torque);
-        stiffness_[i] += k;
-        stiffness_[j] += k;
+        const double light_i = mobility(i), light_j = mobility(j);
+        add(slope + kPerState * i + 3, light_i * force);
+        add(slope + kPerState * j + 3, -light_j * force);
+        add(slope + kPerState * i + 6, light_i * torque);
+        add(slope + kPerState * j + 6, light_j * torque);
+        stiffness_[i] += light_i * k;
+        stiffness_[j] += light_j * k;
+        if (!held_) return;
+        down_[i] -= force.z;
+        down_[j] += force.z;
+    }
+
+    // A ball that stays on the cloth does not move up or down. Where it is pressed, the cloth brakes its
+    // slip.
+    void hold(const double* y, int b, double* slope) {
+        double* to = slope + kPerState * b;
+        to[5] = 0.0;
+        if (!(down_[b] > 0.0) || law_.mu_s == 0.0) return;
+        const double *v = velocity(y, b), *w = spin(y, b), sign = cloth_sign_;
+        const double x = v[0] - sign * w[1], z = v[1] + sign * w[0];
+        const double k =
+            mobility(b) * law_.mu_s * down_[b] / square_root((x * x + z * z) + law_.epsilon * law_.epsilon);
+        to[3] -= k * x;
+        to[4] -= k * z;
+        to[6] -= 2.5 * (k * z);
+        to[7] += 2.5 * (k * x);
+        stiffness_[b] += k;
     }
 
     void slopes(const double* y, double* slope) {
         for (int b = 0; b < phase_.balls; ++b) {
-            stiffness_[b] = 0.0;
+            stiffness_[b] = down_[b] = 0.0;
             double* to = slope + kPerState * b;
             for (int k = 0; k < 3; ++k) to[k] = velocity(y, b)[k];
             for (int k = 3; k < kPerState; ++k) to[k] = 0.0;
@@ -160,6 +190,8 @@ class InSpace {
             const Now now = contact_at(y, c);
             if (now.overlap > 0.0) push(y, c, now, slope);
         }
+        if (!held_) return;
+        for (int b = 0; b < phase_.balls; ++b) hold(y, b, slope);
     }
 
     // The slopes of the stages of a step of length h, after that of the state.
@@ -184,7 +216,7 @@ class InSpace {
             if (before_[c] > 0.0)
                 most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
-        const bool friction = has_friction(law_);
+        const bool friction = has_friction(law_) || (held_ && law_.mu_s > 0.0);
         Plan plan = friction ? plan_step(most, smallest(longest, next_))
                              : Plan{&kClassical, longest * slowness(fastest_squared())};
         for (;;) {
@@ -209,7 +241,8 @@ class InSpace {
         for (int c = 0; c < phase_.contacts; ++c) {
             const double d = largest(0.0, before_[c]), rate = d > 0.0 ? rate_[c] : largest(0.0, rate_[c]);
             const double inverse = rate <= 0.0 && memory_[c] > 0.0 ? 1.0 / memory_[c] : kNoMemory;
-            most = largest(most, rate * rate + d * normal_force(law_.a, law_.b, law_.p, d, inverse));
+            const double F = normal_force(law_.a, law_.b, law_.p, d, inverse);
+            most = largest(most, rate * rate + d * (unlike_ == nullptr ? F : unlike_->stiffness[c] * F));
         }
         return most;
     }
@@ -253,14 +286,14 @@ class InSpace {
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
-            if (!turns_) {
+            if (!turns(c)) {
                 const Now now = contact_at(y_, c);
                 if (now.rate > kNothing) first = smallest(first, -now.overlap / now.rate);
                 continue;
             }
             const Vector z = apart(y_, c), v = closing(y_, c);
             const double towards = dot(v, z), distance = square_root(dot(z, z));
-            const double q = (distance - diameter_) * (distance + diameter_),
+            const double q = (distance - diameter(c)) * (distance + diameter(c)),
                          root2 = towards * towards - dot(v, v) * q;
             if (towards > kNothing * distance && root2 >= 0.0)
                 first = smallest(first, q / (towards + square_root(root2)));
@@ -270,14 +303,16 @@ class InSpace {
 
     const ContactPhaseInSpace phase_;
     const HertzLaw law_;
-    const bool turns_;       // whether the normals follow the balls
-    const double diameter_;  // [L]
+    const UnlikeBalls* const unlike_;
+    const bool held_;
+    const double cloth_sign_;
     const int size_;
     double *y_, *stage_, *slope_[kStages];
-    double next_;        // limit of the next step, from the error of the last one
-    double* stiffness_;  // per ball: the sum of friction divided by slip
-    // Per contact: the vector between the centres at the start (3 numbers); the largest overlap since it
-    // opened; overlap and rate before the step.
+    double next_;        // limit of the next step by the error of the last one
+    double* stiffness_;  // per ball: the sum of friction over slip
+    double* down_;       // per ball: what presses it on the cloth, where all are held
+    // Per contact: from one centre to the other at the start (3 numbers); the
+    // largest overlap since it opened; overlap and its slope before the step.
     double *apart_, *memory_, *before_, *rate_;
 };
 

@@ -2,11 +2,16 @@
 #include "kernel_set.h"
 #include "march/drive.h"
 #include "march/loop.h"
+#include "unlike/unlike.h"
 
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 
 void march(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
            ImpactResult& result) noexcept {
+    if (!alike(params)) {
+        march_unlike(ball1, ball2, params, n, result);
+        return;
+    }
     drive<PublishedMarch>(ball1, ball2, params, n, result);
 }
 

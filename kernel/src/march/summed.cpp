@@ -4,6 +4,7 @@
 #include "march/summed.h"
 
 #include "kernel_set.h"
+#include "unlike/unlike.h"
 
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 bool summed(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n, ImpactResult& result) {
     Frame frame;
     FrameState state;
-    if (n < Summed::kFewestSubsteps) return false;
+    if (n < Summed::kFewestSubsteps || !alike(params)) return false;
     if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return true;
     const std::int64_t steps =
         params.cloth_slip == ClothSlip::kAsPublished

@@ -38,6 +38,12 @@ struct BatchView {
     std::int64_t* steps;
     ToleranceMethod* method;
     ClothSlip cloth_slip;
+    const double *mass_ratio, *radius_ratio;  // null: 1
+
+    bool alike(std::int64_t i) const {
+        return (mass_ratio == nullptr || mass_ratio[i] == 1.0) &&
+               (radius_ratio == nullptr || radius_ratio[i] == 1.0);
+    }
 };
 
 inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result) {
@@ -64,6 +70,8 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
     v.steps = result.steps;
     v.method = result.method;
     v.cloth_slip = batch.params.cloth_slip;
+    v.mass_ratio = batch.params.mass_ratio;
+    v.radius_ratio = batch.params.radius_ratio;
     return v;
 }
 

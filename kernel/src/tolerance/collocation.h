@@ -16,9 +16,9 @@
 #pragma once
 
 #include "frame.h"
+#include "gauss.h"
 #include "loop_marks.h"
 #include "simd.h"
-#include "tolerance/gauss.h"
 
 namespace carom::kernel {
 namespace {

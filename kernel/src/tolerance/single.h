@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tolerance/solve.h"
+#include "unlike/unlike.h"
 
 namespace carom::kernel {
 namespace {
@@ -25,8 +26,8 @@ CAROM_INLINE Shares shares(const ImpactParams& p) {
 }
 
 CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, const Shares& share, double tolerance) {
-    return tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance &&
-           p.mass_ratio >= 1.0 / kLargestMassRatio && p.mass_ratio <= kLargestMassRatio &&
+    return tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance && p.radius_ratio == 1.0 &&
+           p.mass_ratio >= 1.0 / kFastMassRatio && p.mass_ratio <= kFastMassRatio &&
            p.mu_b <= kLargestFriction && share.one * p.mu_s1 <= kLargestFriction &&
            share.two * p.mu_s2 <= kLargestFriction;
 }
@@ -86,7 +87,10 @@ CAROM_INLINE void solve_impact(const Ball& ball1, const Ball& ball2, const Impac
                                double tolerance, ImpactResult& result) {
     const Shares share = shares(params);
     if (!tolerance_in_range(params, share, tolerance)) {
-        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
+        if (alike(params))
+            copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
+        else
+            solve_unlike(ball1, ball2, params, tolerance, result);
         return;
     }
     Frame frame;

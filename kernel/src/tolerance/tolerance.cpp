@@ -28,8 +28,15 @@ inline void solve_single(const BatchView& v, std::int64_t i, double tolerance) {
         ball2.v[k] = v.in[kV2 + k][i];
         ball2.w[k] = v.in[kW2 + k][i];
     }
-    const ImpactParams params = {v.in[kRadius][i], v.in[kMass][i], v.in[kMuS1][i], v.in[kMuS2][i],
-                                 v.in[kMuB][i],    v.in[kEB][i],   v.cloth_slip};
+    const ImpactParams params = {v.in[kRadius][i],
+                                 v.in[kMass][i],
+                                 v.in[kMuS1][i],
+                                 v.in[kMuS2][i],
+                                 v.in[kMuB][i],
+                                 v.in[kEB][i],
+                                 v.cloth_slip,
+                                 v.mass_ratio == nullptr ? 1.0 : v.mass_ratio[i],
+                                 v.radius_ratio == nullptr ? 1.0 : v.radius_ratio[i]};
     ImpactResult result;
     solve_impact(ball1, ball2, params, tolerance, result);
     for (int k = 0; k < 3; ++k) {
@@ -79,6 +86,7 @@ inline void sweep_easy(const BatchView& v, std::int64_t begin, std::int64_t end,
                        Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
+    const bool unlike = v.mass_ratio != nullptr || v.radius_ratio != nullptr;
     for (std::int64_t i = begin; i < end; i += kWidth) {
         const int lanes = static_cast<int>(end - i < kWidth ? end - i : kWidth);
         if (lanes == kWidth) {
@@ -99,10 +107,12 @@ inline void sweep_easy(const BatchView& v, std::int64_t begin, std::int64_t end,
             if (v.method != nullptr) {
                 for (int j = 0; j < kWidth; ++j) v.method[i + j] = ToleranceMethod::kCollocation4;
             }
-            if (!any(~block.done)) continue;
+            if (!unlike && !any(~block.done)) continue;
         }
         for (int j = 0; j < lanes; ++j) {
-            if (lane(block.done, j) != 0) {
+            if (unlike && !v.alike(i + j)) {
+                solve_single(v, i + j, tolerance);
+            } else if (lane(block.done, j) != 0) {
                 if (lanes < kWidth) write_lane(v, block, j, i + j, ToleranceMethod::kCollocation4);
             } else if (lane(block.good, j) == 0) {
                 solve_single(v, i + j, tolerance);

@@ -5,8 +5,8 @@
 // therefore depend neither on the width of the registers nor on the impacts in the other lanes.
 #pragma once
 
+#include "gauss.h"
 #include "tolerance/collocation.h"
-#include "tolerance/gauss.h"
 
 namespace carom::kernel {
 namespace {

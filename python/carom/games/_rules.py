@@ -79,14 +79,19 @@ class Respot(NamedTuple):
     place: tuple[float, float]
 
 
-class Option(NamedTuple):
-    """One way for the game to continue."""
-
+class _OptionFields(NamedTuple):
     # "play on", "take in hand", "pass back", "rerack", "rerack for other", "spot the eight", "spot touching
     # balls"
     decision: str
     state: State  # for the next shot
     respots: list[Respot]  # the balls that return before it
+
+
+class Option(_OptionFields):
+    """One way for the game to continue."""
+
+    # The hash of the judged record; "" for an option made by hand.
+    _record: str = ""
 
     @property
     def rerack(self) -> bool:
@@ -154,12 +159,19 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     game's balls.
     """
     fouls, points, penalty, options, chooser = _carom.judge(state, record._native, call)
-    listed = [_option(*option) for option in options]
+    listed = [_option(record.hash(), *option) for option in options]
     return Verdict([Foul(*foul) for foul in fouls], points, penalty, listed, chooser)
 
 
-def _option(decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
-    return Option(decision, State(*state), [Respot(*respot) for respot in respots])
+def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
+    option = Option(decision, State(*state), [Respot(*respot) for respot in respots])
+    option._record = record
+    return option
+
+
+def _check_record(option: Option, record: Record) -> None:
+    if option._record not in ("", record.hash()):
+        raise ValueError("the verdict is of another record; give the record that was judged")
 
 
 @checked
@@ -167,7 +179,10 @@ def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
     """Whether the cue ball may be placed there [m] before the next shot.
 
     It must be in hand there, lie between the cushions, and overlap no ball.
+
+    Raises ValueError for an option of another record.
     """
+    _check_record(option, record)
     return _carom.may_place(record._native, option, _two(place))
 
 
@@ -184,10 +199,11 @@ def next_scene(
     place: of the cue ball [m]; needed if the cue ball is gone, allowed if it is in hand
     scene: the scene that was played; needed if the record was loaded from a file
 
-    Raises ValueError for a missing or forbidden place, a new rack, or a finished game, and SceneError if the
-    result is not a valid scene.
+    Raises ValueError for a missing or forbidden place, an option of another record, a new rack, or a finished
+    game, and SceneError if the result is not a valid scene.
     """
     taken = option.options[0] if isinstance(option, Verdict) else option
+    _check_record(taken, record)
     played, at = None if scene is None else as_scene(scene)._native, None if place is None else _two(place)
 
     def make(section: str) -> _carom.Scene:

@@ -130,9 +130,8 @@ class _Writer:
 
     def _cue(self) -> dict[str, Any]:
         # A record without a cue gets one at rest, at the first ball.
-        own = self.scene.get("cue", {
-            "speed": 0.0, "aim_deg": 0.0, "elevation_deg": 0.0, "offset": [0.0, 0.0],
-            "mass": 0.567, "end_mass": 0.0, "restitution": 1.0})
+        own = self.scene.get("cue", {"speed": 0.0, "aim_deg": 0.0, "elevation_deg": 0.0, "offset": [0.0, 0.0],
+                                     "mass": 0.567, "end_mass": 0.0, "restitution": 1.0})
         specs = {
             "brand": "carom",
             "M": own["mass"],

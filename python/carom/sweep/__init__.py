@@ -1,11 +1,13 @@
-"""Sweeps: many shots of one scene whose values are drawn, as a table, on one machine or on many.
+"""Sweeps: many shots of one scene with drawn values, as a table, on one machine or on many.
 
-The draws are those of `carom sweep`: a shot depends on the seed, its number and the key, whatever else varies.
+The draws are those of `carom sweep`: a shot depends on the seed, its number and the key, whatever else
+varies.
 
-`columns` and `table` play shots at once. A sweep that is too large for that has a `plan`: its shards are Parquet files in a folder,
-each whole or absent, and what is in the folder is all the state there is. `run` makes what is missing, on threads, on an executor of
-concurrent.futures or on a Dask cluster; it may be killed at any time, and run again. `status` says what is there, `check` reads it
-all, `open` gives it as a dataset. `reduce` keeps no rows but what a function makes of them.
+`columns` and `table` play shots at once. For a sweep that is too large for that, make a `plan`: its shards
+are Parquet files in a folder, each complete or absent, and the folder is the only state. `run` makes the
+missing shards, on threads, on an executor of concurrent.futures or on a Dask cluster; it may be killed at any
+time and run again. `status` lists the shards, `check` reads all of them, and `open` returns them as a
+dataset. `reduce` keeps no rows except what a function makes of them.
 
     python -m carom.sweep --help
 """
@@ -16,4 +18,5 @@ from carom.sweep._plan import Plan, SweepError, plan
 from carom.sweep._run import Progress, reduce, run
 from carom.sweep._shard import run_shard
 
-__all__ = ["Check", "Plan", "Progress", "Status", "SweepError", "check", "columns", "open", "plan", "reduce", "run", "run_shard", "status", "table"]
+__all__ = ["Check", "Plan", "Progress", "Status", "SweepError", "check", "columns", "open", "plan", "reduce",
+           "run", "run_shard", "status", "table"]

@@ -17,10 +17,12 @@ from carom.sweep._shard import need
 if TYPE_CHECKING:
     from types import FrameType
 
-_ABOUT = """Makes the shards of a sweep that are missing in its folder, on the threads of this machine, on a Dask cluster or as an array of Slurm. It may
-be killed at any time; the same command goes on. With --scene it writes the plan PLAN instead."""
-_END = "Exit status: 0, 1 where something went wrong, is missing or a shot failed, 2 for bad input, 130 or 143 after a signal."
-#: [s] Between two lines about the progress where there is no terminal.
+_ABOUT = """Makes the shards of a sweep that are missing in its folder, on the threads of this machine, on a
+Dask cluster or as an array of Slurm. It may be killed at any time; the same command goes on. With --scene it
+writes the plan PLAN instead."""
+_END = """Exit status: 0, 1 where something went wrong, is missing or a shot failed, 2 for bad input, 130 or
+143 after a signal."""
+#: [s] Between two lines of progress if there is no terminal.
 _EVERY = 10.0
 
 
@@ -33,23 +35,33 @@ def _arguments() -> argparse.ArgumentParser:
     parser = _Parser(prog="python -m carom.sweep", description=_ABOUT, epilog=_END, allow_abbrev=False)
     add = parser.add_argument
     add("plan", metavar="PLAN", help="file of the plan (JSON)")
-    add("-o", "--output", metavar="FOLDER", help="folder of the shards; default: PLAN without .json, or where PLAN lies if it is called plan.json")
+    add("-o", "--output", metavar="FOLDER",
+        help="folder of the shards; default: PLAN without .json, or the folder of a plan called plan.json")
     add("--threads", type=int, default=0, metavar="N", help="threads on this machine; 0: one for each core")
-    add("--dask", metavar="ADDRESS", help="play on a Dask cluster: tcp://HOST:PORT of its scheduler, or its scheduler file")
+    add("--dask", metavar="ADDRESS",
+        help="play on a Dask cluster: tcp://HOST:PORT of its scheduler, or its scheduler file")
     add("--slurm", action="store_true", help="submit an array of Slurm for what is missing, by sbatch")
-    add("--sbatch", default="", metavar="OPTIONS", help="what sbatch gets besides: --sbatch='--time=60 --cpus-per-task=16'")
-    add("--elements", type=int, default=1000, metavar="N", help="elements of an array at most; Slurm's MaxArraySize is its limit (default: 1000)")
-    add("--part", metavar="I/N", help="only the shards whose number leaves I when divided by N: what an element of an array does")
+    add("--sbatch", default="", metavar="OPTIONS",
+        help="what sbatch gets besides: --sbatch='--time=60 --cpus-per-task=16'")
+    add("--elements", type=int, default=1000, metavar="N",
+        help="elements of an array at most; Slurm's MaxArraySize is its limit (default: 1000)")
+    add("--part", metavar="I/N",
+        help="only the shards whose number leaves I when divided by N: what an element of an array does")
     add("--status", action="store_true", help="say what is there")
-    add("--missing", action="store_true", help="print the numbers of the missing shards, as sbatch --array takes them")
+    add("--missing", action="store_true",
+        help="print the numbers of the missing shards, as sbatch --array takes them")
     add("--check", action="store_true", help="read all that is there and compare it with its hashes")
     new = parser.add_argument_group("a new plan")
     new.add_argument("--scene", metavar="SCENE", help="scene file (TOML)")
-    new.add_argument("--vary", action="append", default=[], metavar="KEY=DISTRIBUTION", help="as for carom sweep; once for every key")
+    new.add_argument("--vary", action="append", default=[], metavar="KEY=DISTRIBUTION",
+                     help="as for carom sweep; once for every key")
     new.add_argument("--shots", type=int, metavar="N", help="at most 2^53")
     new.add_argument("--seed", type=int, default=1, metavar="S", help="of all draws (default: 1)")
-    new.add_argument("--shard", type=int, default=250_000, metavar="N", help="shots of a file (default: 250000)")
-    new.add_argument("--hashes", choices=("none", "digest", "column"), default="digest", help="of the records: none, one for each shard (of every 64th shot), or a column besides")
+    new.add_argument("--shard", type=int, default=250_000, metavar="N",
+                     help="shots of a file (default: 250000)")
+    new.add_argument(
+        "--hashes", choices=("none", "digest", "column"), default="digest",
+        help="of the records: none, one for each shard (of every 64th shot), or a column besides")
     return parser
 
 
@@ -75,7 +87,7 @@ def _new_plan(args: argparse.Namespace) -> int:
 
 
 def numbers(shards: Sequence[int]) -> str:
-    """Ascending numbers as sbatch --array takes them: 0-3,7."""
+    """Ascending numbers in the form of sbatch --array: 0-3,7."""
     runs: list[list[int]] = []
     for shard in shards:
         if runs and shard == runs[-1][1] + 1:
@@ -93,7 +105,7 @@ def _part(text: str, of: Plan) -> range:
 
 
 class _Line:
-    """The progress on standard error: one line that is renewed on a terminal, elsewhere a line now and then."""
+    """Progress on standard error: one line that is updated on a terminal, otherwise a line now and then."""
 
     def __init__(self) -> None:
         self.terminal = sys.stderr.isatty()
@@ -108,11 +120,13 @@ class _Line:
     def show(self, progress: _run.Progress) -> None:
         self.waiting = None
         self.next = time.monotonic() + (0.2 if self.terminal else _EVERY)
+        left = progress.shards - progress.done
         text = (
-            f"{progress.done} of {progress.shards} shards, {progress.shards - progress.done} left, {progress.rows} rows, "
+            f"{progress.done} of {progress.shards} shards, {left} left, {progress.rows} rows, "
             f"{progress.rate:.0f} shots/s, {progress.failed} failed"
         )
-        print(f"\r\x1b[K{text}" if self.terminal else text, end="" if self.terminal else "\n", file=sys.stderr, flush=True)
+        before, end = ("\r\x1b[K", "") if self.terminal else ("", "\n")
+        print(f"{before}{text}", end=end, file=sys.stderr, flush=True)
 
     def end(self) -> None:
         if self.waiting is not None:
@@ -134,7 +148,8 @@ def _play(args: argparse.Namespace, of: Plan, folder: str) -> int:
         if args.dask:
             executor.close(timeout=5)
     kinds = ", ".join(f"{name} {count}" for name, count in done.outcomes.items())
-    print(f"{folder}: {done.rows} rows ({kinds}), {done.played} of them played in {done.seconds:.1f} s, {done.rate:.0f} a second")
+    played = f"{done.played} of them played in {done.seconds:.1f} s, {done.rate:.0f} a second"
+    print(f"{folder}: {done.rows} rows ({kinds}), {played}")
     return _complain(f"{done.failed} shots failed while running; their rows say why", 1) if done.failed else 0
 
 
@@ -143,7 +158,8 @@ def _dask_client(address: str) -> Any:
     import distributed
 
     connect: Any = distributed.Client
-    client = connect(scheduler_file=address, timeout=30) if address.endswith(".json") else connect(address, timeout=30)
+    where: dict[str, Any] = {"scheduler_file" if address.endswith(".json") else "address": address}
+    client = connect(**where, timeout=30)
     print(f"dashboard: {client.dashboard_link}", flush=True)
     return client
 
@@ -205,7 +221,7 @@ def _terminated(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def main() -> int:
-    """Reads the command line and does what it says; the exit status."""
+    """Runs the command line and returns the exit status."""
     args = _arguments().parse_args()
     signal.signal(signal.SIGTERM, _terminated)
     try:

@@ -1,4 +1,4 @@
-"""The folder of a sweep: what is there, whether it is right, and how to read it."""
+"""The folder of a sweep: its contents, their check, and reading them."""
 
 from __future__ import annotations
 
@@ -23,35 +23,37 @@ _Result = TypeVar("_Result")
 
 
 class Status(NamedTuple):
-    """What is in the folder of a sweep, by the names of the files."""
+    """The contents of a sweep's folder, by file names."""
 
     plan: Plan
-    done: int  # shards that are there
-    missing: tuple[int, ...]  # shards that are not
-    rows: int  # of those that are there
-    unfinished: tuple[str, ...]  # files that grow, or that a killed worker left
-    strangers: tuple[str, ...]  # Parquet files that are none of the sweep's
+    done: int  # shards that exist
+    missing: tuple[int, ...]  # shards that do not
+    rows: int  # in the existing shards
+    unfinished: tuple[str, ...]  # files in progress, or left by a killed worker
+    strangers: tuple[str, ...]  # Parquet files that do not belong to the sweep
 
 
 class Check(NamedTuple):
-    """What `check` found."""
+    """The result of `check`."""
 
     plan: Plan
-    rows: int  # that are right
+    rows: int  # that are correct
     outcomes: dict[str, int]
-    faults: dict[str, str]  # name of a file: what is wrong with it
-    missing: tuple[int, ...]  # shards that are not there
+    faults: dict[str, str]  # file name: what is wrong with it
+    missing: tuple[int, ...]  # shards that do not exist
 
     @property
     def whole(self) -> bool:
-        """Whether every shot is there, once, and as it was written."""
+        """Whether every shot is there once, as it was written."""
         return not self.faults and not self.missing
 
 
 @checked
 def status(folder: str | os.PathLike[str]) -> Status:
-    """Which shards of a sweep are there. No file but the plan is read: one that has its name is whole. Raises SweepError where there is
-    no plan."""
+    """Which shards of a sweep exist. Raises SweepError if there is no plan.
+
+    Only the plan is read, since a file with the name of a shard is complete.
+    """
     name = os.fspath(folder)
     plan = Plan.load(os.path.join(name, PLAN))
     there = {entry for entry in os.listdir(name) if entry.endswith(".parquet")}
@@ -65,17 +67,18 @@ def status(folder: str | os.PathLike[str]) -> Status:
             missing.append(shard)
     growing = os.path.join(name, UNFINISHED)
     unfinished = sorted(os.listdir(growing)) if os.path.isdir(growing) else []
-    return Status(plan, plan.shards - len(missing), tuple(missing), rows, tuple(unfinished), tuple(sorted(there)))
+    done, strangers = plan.shards - len(missing), tuple(sorted(there))
+    return Status(plan, done, tuple(missing), rows, tuple(unfinished), strangers)
 
 
 def those_there(found: Status, wanted: Iterable[int]) -> list[int]:
-    """Of some shards those that are there."""
+    """Selects the shards that exist."""
     missing = set(found.missing)
     return [shard for shard in wanted if shard not in missing]
 
 
 def in_parallel(work: Callable[[int], _Result], shards: Iterable[int], threads: int = 0) -> Iterator[_Result]:
-    """The results of `work` on shards, in their order, on threads; few of them at a time are in memory."""
+    """The results of `work` on shards, in order, computed on threads; only a few are in memory at a time."""
     todo = iter(shards)
     with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as pool:
         while some := list(itertools.islice(todo, 256)):
@@ -83,13 +86,16 @@ def in_parallel(work: Callable[[int], _Result], shards: Iterable[int], threads: 
 
 
 def _described(schema: pyarrow.Schema) -> tuple[object, ...]:
-    """Columns, units and provenance; not what Parquet adds to the description of a column."""
-    columns = [(field.name, field.type, field.nullable, (field.metadata or {}).get(b"unit")) for field in schema]
-    return columns, {key: value for key, value in (schema.metadata or {}).items() if key.startswith(b"carom.")}
+    """Columns, units and provenance, without what Parquet adds to the description of a column."""
+    columns = [
+        (field.name, field.type, field.nullable, (field.metadata or {}).get(b"unit")) for field in schema]
+    about = (schema.metadata or {}).items()
+    return columns, {key: value for key, value in about if key.startswith(b"carom.")}
 
 
 def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
-    """Reads a whole shard; its outcomes. Raises SweepError for anything that is not as it was written."""
+    """Reads a whole shard and returns its outcomes. Raises SweepError if anything differs from what was
+    written."""
     import pyarrow.parquet
 
     about = footer(plan, shard, path)
@@ -102,7 +108,8 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
                 content.add(pyarrow.Table.from_batches([batch]))
             right = content.hexdigest() == about["carom.content"]
     except Exception as error:  # as in footer()
-        raise SweepError(f"{path}: its rows cannot be read ({_first_line(error)}); remove it, and it is made again") from None
+        what = f"its rows cannot be read ({_first_line(error)})"
+        raise SweepError(f"{path}: {what}; remove it, and it is made again") from None
     if not right or not described:
         raise SweepError(f"{path}: its rows are not those that were written; remove it, and it is made again")
     outcomes: dict[str, int] = json.loads(about["carom.outcomes"])
@@ -111,17 +118,18 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
 
 @checked
 def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
-    """Reads every file of a sweep and compares its content with its hash and its description with the plan.
+    """Reads every file of a sweep, and compares its content with its hash and its description with the plan.
 
-    threads: 0 takes one for each core
+    threads: 0 uses one thread per core
 
-    Raises SweepError where there is no plan; what is wrong with files is in `Check.faults`.
+    Raises SweepError if there is no plan; faults in files are in `Check.faults`.
     """
     need("pyarrow.parquet")
     name = os.fspath(folder)
     found = status(name)
     shards = those_there(found, range(found.plan.shards))
-    faults = {stranger: f"{os.path.join(name, stranger)}: a file that is none of this plan's" for stranger in found.strangers}
+    foreign = "a file that is none of this plan's"
+    faults = {stranger: f"{os.path.join(name, stranger)}: {foreign}" for stranger in found.strangers}
     outcomes: collections.Counter[str] = collections.Counter()
 
     def look(shard: int) -> dict[str, int] | SweepError:
@@ -139,14 +147,17 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
 
 
 @checked
-def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool = False) -> pyarrow.dataset.Dataset:
-    """The rows of a sweep as a pyarrow Dataset, in the order of the shots. Its columns are those of `carom sweep`, with their units.
+def open(
+    folder: str | os.PathLike[str], *, verify: bool = True, partial: bool = False
+) -> pyarrow.dataset.Dataset:
+    """The rows of a sweep as a pyarrow Dataset, in the order of the shots, with the columns and units of
+    `carom sweep`.
 
-    verify: read every file once before, as `check` does. Without it the descriptions are compared with the plan, and every page that is
-        read later with its check sum.
-    partial: give what is there, although shards are missing
+    verify: first read every file as `check` does; otherwise only the descriptions are compared with the plan,
+        and each page with its checksum when it is read
+    partial: return the existing rows even if shards are missing
 
-    Raises SweepError, naming the files, where anything is wrong or missing.
+    Raises SweepError, naming the files, if anything is wrong or missing.
     """
     need("pyarrow.dataset")
     import pyarrow.dataset
@@ -155,17 +166,19 @@ def open(folder: str | os.PathLike[str], *, verify: bool = True, partial: bool =
     found = status(name)
     plan = found.plan
     if found.missing and not (partial and found.done):
-        raise SweepError(f"{name}: {len(found.missing)} of {plan.shards} shards are missing; run the sweep again, or open with partial=True what is there")
+        what = f"{len(found.missing)} of {plan.shards} shards are missing"
+        raise SweepError(f"{name}: {what}; run the sweep again, or open with partial=True what is there")
     if found.strangers:
-        raise SweepError(f"{os.path.join(name, found.strangers[0])}: a file that is none of this plan's; remove it")
+        stranger = os.path.join(name, found.strangers[0])
+        raise SweepError(f"{stranger}: a file that is none of this plan's; remove it")
     shards = those_there(found, range(plan.shards))
     paths = [os.path.join(name, plan.file(shard)) for shard in shards]
     if verify:
         for fault in check(name).faults.values():
             raise SweepError(fault)
     else:
-        collections.deque(in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), shards), 0)
-    pages = pyarrow.dataset.ParquetFileFormat(
-        default_fragment_scan_options=pyarrow.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
-    )
+        footers = in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), shards)
+        collections.deque(footers, 0)
+    scan = pyarrow.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+    pages = pyarrow.dataset.ParquetFileFormat(default_fragment_scan_options=scan)
     return pyarrow.dataset.dataset(paths, schema=schema_of(plan, 0, plan.shots), format=pages)

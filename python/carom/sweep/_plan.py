@@ -1,4 +1,4 @@
-"""The plan of a sweep: what its shots are, and how they are cut into shards."""
+"""The plan of a sweep: its shots, and how they are divided into shards."""
 
 from __future__ import annotations
 
@@ -16,52 +16,53 @@ from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
 FORMAT = "carom sweep plan 1"
-#: The first shots, whose records every worker compares with the plan's before it plays others.
+#: The number of first shots that every worker compares with the plan before it plays others.
 _PROBE = 8
 _MOST_SHARDS = 10_000_000
-#: Whether records are hashed: none, some for the digest of a shard, or all for a column.
+#: Which records are hashed: none, some for each shard's digest, or all for a column.
 _HASHES = ("none", "digest", "column")
-#: The digest of a shard is of the records of shots whose number is a multiple of this: with a hash,
-#: a short shot takes half as long again.
+#: A shard's digest is over the shots whose number is a multiple of this. Not all, since hashing makes a short
+#: shot take half as long again.
 HASH_EVERY = 64
 
 
 class SweepError(RuntimeError):
-    """A plan, a folder or a worker that does not fit, or a file that is not what it has to be. `str()` names them and says what to do."""
+    """A plan, a folder or a worker does not match, or a file is not what it should be. `str()` names them and
+    says what to do."""
 
 
 @checked
 class Plan(NamedTuple):
-    """What the shots of a sweep are. Make one by `plan`, or read one by `Plan.load`."""
+    """What the shots of a sweep are. Made by `plan`, or read by `Plan.load`."""
 
     scene: str  # TOML
-    name: str  # of the scene, in messages
+    name: str  # the scene's, for messages
     vary: tuple[str, ...]  # rules of `carom sweep --vary`
     seed: int
     shots: int
-    shard: int  # shots of a shard; the last one may have fewer
+    shard: int  # shots per shard; the last one may have fewer
     hashes: str  # "none", "digest" or "column"
-    version: str  # of carom
-    probe: str  # digest of the records of the first shots: the same bits, the same carom
+    version: str  # carom's
+    probe: str  # digest of the first shots' records, which shows whether a worker's carom gives the same bits
 
     @property
     def id(self) -> str:
-        """SHA-256 of all of it."""
+        """SHA-256 of the whole plan."""
         return sha256(canonical(self._content()))
 
     @property
     def shards(self) -> int:
-        """How many shards there are."""
+        """The number of shards."""
         return -(-self.shots // self.shard)
 
     def range(self, shard: int) -> tuple[int, int]:
-        """The first shot of a shard, and the one behind its last."""
+        """The first shot of a shard, and the one after its last."""
         if not 0 <= shard < self.shards:
             raise ValueError(f"shard={shard}: expected 0 to {self.shards - 1}")
         return shard * self.shard, min((shard + 1) * self.shard, self.shots)
 
     def file(self, shard: int) -> str:
-        """The name of the file of a shard in its folder."""
+        """The name of a shard's file in the folder."""
         return f"shard-{shard:0{len(str(self.shards - 1))}}.parquet"
 
     def files(self) -> Iterator[str]:
@@ -69,7 +70,7 @@ class Plan(NamedTuple):
         return map(self.file, range(self.shards))
 
     def types(self) -> dict[str, tuple[str, str]]:
-        """For every column its type, "int64", "uint64", "float64" or "text", and its unit, or ""."""
+        """For every column its type, "int64", "uint64", "float64" or "text", and its unit or ""."""
         types = player_of(self).types()
         return types | {"record_hash": ("uint64", "")} if self.hashes == "column" else types
 
@@ -78,15 +79,17 @@ class Plan(NamedTuple):
         return content
 
     def text(self) -> str:
-        """The file: JSON."""
+        """The content of the plan's file: JSON."""
         return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the plan. A file that holds the same plan stays; raises SweepError where there is anything else."""
+        """Writes the plan, or keeps a file with the same plan. Raises SweepError if there is anything
+        else."""
         name = os.fspath(path)
         if os.path.exists(name):
             if Plan.load(name) != self:
-                raise SweepError(f"{name}: there is another plan already; remove it, or write to another place")
+                what = "there is another plan already; remove it, or write to another place"
+                raise SweepError(f"{name}: {what}")
             return
         try:
             with whole_file(name) as file:
@@ -96,13 +99,14 @@ class Plan(NamedTuple):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Plan:
-        """Reads a plan. Raises SweepError for a file that is none, or that was changed."""
+        """Reads a plan. Raises SweepError for a file that is not a plan or was changed."""
         name = os.fspath(path)
         try:
             with open(name, encoding="utf-8") as file:
                 tree = json.load(file)
         except json.JSONDecodeError as error:
-            raise SweepError(f"{name}:{error.lineno}:{error.colno}: {error.msg}; a plan is what carom.sweep.plan(...).save() writes") from None
+            what = f"{error.msg}; a plan is what carom.sweep.plan(...).save() writes"
+            raise SweepError(f"{name}:{error.lineno}:{error.colno}: {what}") from None
         except (OSError, ValueError) as error:
             raise SweepError(f"{name}: cannot read it: {getattr(error, 'strerror', None) or error}") from None
         return cls._of(tree, name)
@@ -112,8 +116,10 @@ class Plan(NamedTuple):
         if not isinstance(tree, dict) or tree.get("format") != FORMAT:
             raise SweepError(f'{name}: no plan of a sweep: "format" has to be "{FORMAT}"')
         content = {key: value for key, value in tree.items() if key not in ("format", "sha256")}
-        if tuple(content) != cls._fields or tree.get("sha256") != sha256(canonical({"format": FORMAT, **content})):
-            raise SweepError(f"{name}: the plan was changed by hand or is damaged; make a new one with carom.sweep.plan")
+        digest = sha256(canonical({"format": FORMAT, **content}))
+        if tuple(content) != cls._fields or tree.get("sha256") != digest:
+            what = "the plan was changed by hand or is damaged; make a new one with carom.sweep.plan"
+            raise SweepError(f"{name}: {what}")
         return cls(**content | {"vary": tuple(content["vary"])})
 
 
@@ -122,7 +128,7 @@ def sha256(data: bytes) -> str:
 
 
 def canonical(tree: Any) -> bytes:
-    """A tree as bytes that are equal if and only if the trees are."""
+    """A tree as bytes, which are equal if and only if the trees are."""
     return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
 
 
@@ -139,13 +145,14 @@ def _probe(player: Player, shots: int) -> str:
 
 @lru_cache(maxsize=8)
 def wrong_worker(plan: Plan) -> str:
-    """Why this process must not play shots of the plan: it has another carom, or its carom does not give the plan's bits. Or ""."""
+    """Why this process must not play shots of the plan, or "": another version of carom, or other bits."""
     if plan.version != _carom.VERSION:
-        return f"this is carom {_carom.VERSION}, and the plan is of carom {plan.version}: install that one here, or make a new plan"
+        versions = f"this is carom {_carom.VERSION}, and the plan is of carom {plan.version}"
+        return f"{versions}: install that one here, or make a new plan"
     if _probe(player_of(plan), plan.shots) != plan.probe:
         return (
-            f"this carom {_carom.VERSION} plays the first shots with other bits than the one that made the plan: "
-            "install the same build everywhere, or make a new plan"
+            f"this carom {_carom.VERSION} plays the first shots with other bits than the one that made the "
+            "plan: install the same build everywhere, or make a new plan"
         )
     return ""
 
@@ -160,18 +167,21 @@ def plan(
     shard: int = 250_000,
     hashes: str = "digest",
 ) -> Plan:
-    """The plan of a sweep; it plays no more than the first few shots.
+    """Makes the plan of a sweep; plays only the first few shots.
 
-    scene: or the path of its file, or its tree
-    vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists of values
+    scene: a scene, the path of its file, or its tree
+    vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists
+        of values
     shots: at most 2**53
     seed: of all draws
-    shard: shots of a file, which is also what is lost at most when a worker is killed; 10 to 60 s of work are a good size
-    hashes: "digest" keeps for every shard one hash of the records of every 64th shot, with which it can be played again and compared;
-        "column" also keeps `int(record.hash(), 16)` of every shot in a column "record_hash", which takes time where shots are short; or "none"
+    shard: shots per file, which is also the most that a killed worker loses; 10 to 60 s of work are a good
+        size
+    hashes: "digest" keeps one hash per shard, over the records of every 64th shot, with which the shard can
+        be replayed and compared; "column" also keeps `int(record.hash(), 16)` of every shot in a column
+        "record_hash", which takes time if shots are short; or "none"
 
-    Raises ValueError for a number out of its range and for a rule that cannot be read or that gives no valid scene, SceneError
-    for the scene.
+    Raises ValueError for a number out of range, or a rule that cannot be read or that makes no valid scene,
+    and SceneError for the scene.
     """
     scene = as_scene(scene)
     if not 1 <= shots <= MOST_SHOTS:
@@ -179,12 +189,16 @@ def plan(
     if shard < 1:
         raise ValueError(f"shard={shard}: expected at least 1")
     if -(-shots // shard) > _MOST_SHARDS:
-        raise ValueError(f"shard={shard}: these are more than {_MOST_SHARDS} shards; take at least {-(-shots // _MOST_SHARDS)} shots for each")
+        least = -(-shots // _MOST_SHARDS)
+        what = f"these are more than {_MOST_SHARDS} shards; take at least {least} shots for each"
+        raise ValueError(f"shard={shard}: {what}")
     if hashes not in _HASHES:
         raise ValueError(f"hashes={hashes!r}: expected one of {', '.join(_HASHES)}")
     player = Player(scene, vary, seed)
     name = os.path.basename(scene.file)
-    made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes, _carom.VERSION, _probe(player, shots))
+    probe = _probe(player, shots)
+    made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes,
+                _carom.VERSION, probe)
     if "record_hash" in player.types():
         raise ValueError("vary: record_hash is the name of a column of its own")
     return made

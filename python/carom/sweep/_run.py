@@ -22,17 +22,18 @@ from carom.sweep._shard import Tally, footer, make_shard, need, run_shard, table
 if TYPE_CHECKING:
     import pyarrow
 
-#: Shards that are with an executor at a time, at least: the memory of the client does not grow with the sweep.
+#: The least number of shards in an executor's queue; limited so that the client's memory does not grow with
+#: the sweep.
 _WINDOW = 1024
-#: The same where results wait for earlier ones.
+#: The same if results wait for earlier ones.
 _WINDOW_OF_RESULTS = 64
 
 
 class Progress(NamedTuple):
-    """How far a run is."""
+    """The progress of a run."""
 
-    shards: int  # that are wanted
-    done: int  # of these are there
+    shards: int  # requested
+    done: int  # of these, that exist
     rows: int  # in them
     played: int  # rows that this run has played
     seconds: float  # since this run began
@@ -40,17 +41,17 @@ class Progress(NamedTuple):
 
     @property
     def rate(self) -> float:
-        """Shots a second of this run."""
+        """Shots per second in this run."""
         return self.played / max(self.seconds, 1e-9)
 
     @property
     def failed(self) -> int:
-        """Shots at which the simulation could not go on."""
+        """The number of shots whose simulation could not continue."""
         return self.outcomes.get("failed", 0)
 
 
 class _Count:
-    """Makes Progress of the results of shards, and tells it."""
+    """Adds up the results of shards as Progress, and reports it."""
 
     def __init__(self, shards: int, tell: Callable[[Progress], None] | None) -> None:
         self.tell, self.start = tell, time.perf_counter()
@@ -58,8 +59,10 @@ class _Count:
 
     def add(self, outcomes: dict[str, int], played: bool) -> None:
         rows, now = sum(outcomes.values()), self.now
-        whole = {name: now.outcomes.get(name, 0) + outcomes.get(name, 0) for name in now.outcomes | outcomes}
-        self.now = now._replace(done=now.done + 1, rows=now.rows + rows, played=now.played + rows * played, outcomes=whole)
+        names = now.outcomes | outcomes
+        whole = {name: now.outcomes.get(name, 0) + outcomes.get(name, 0) for name in names}
+        played_rows = now.played + rows * played
+        self.now = now._replace(done=now.done + 1, rows=now.rows + rows, played=played_rows, outcomes=whole)
 
     def progress(self) -> Progress:
         return self.now._replace(seconds=time.perf_counter() - self.start)
@@ -70,7 +73,7 @@ class _Count:
 
 
 class _Threads:
-    """The executor of one process. It can end in the middle of a shard."""
+    """The executor within one process. It can stop in the middle of a shard."""
 
     def __init__(self, threads: int) -> None:
         self.ended = threading.Event()
@@ -96,9 +99,12 @@ def _window(executor: Any, least: int) -> int:
 
 
 class _Tasks:
-    """Hands the work on shards to an executor, a window at a time, and takes the results as they come."""
+    """Submits the work on shards to an executor, a window at a time, and takes results as they come."""
 
-    def __init__(self, executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], retries: int) -> None:
+    def __init__(
+        self, executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]],
+        retries: int,
+    ) -> None:
         self.executor, self.work, self.arguments = executor, work, arguments
         self.left = retries
         self.ended: queue.SimpleQueue[tuple[int, Any]] = queue.SimpleQueue()
@@ -111,12 +117,13 @@ class _Tasks:
         try:
             future = self.executor.submit(self.work, *self.arguments(shard), **options)
         except (BrokenExecutor, RuntimeError) as error:
-            raise SweepError(f"shard {shard}: the executor takes no more work ({error}); what is made is whole: run again") from None
+            what = f"the executor takes no more work ({error})"
+            raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
         self.running[shard] = future
         future.add_done_callback(lambda done: self.ended.put((shard, done)))
 
     def next(self) -> tuple[int, Any]:
-        """The shard whose work has ended, and its result."""
+        """The next shard whose work has ended, and its result."""
         while True:
             shard, future = self.ended.get()
             if self.running.pop(shard, None) is None:
@@ -124,11 +131,14 @@ class _Tasks:
             try:
                 return shard, future.result()
             except (BrokenExecutor, CancelledError) as error:
-                raise SweepError(f"shard {shard}: its worker or the scheduler is gone ({type(error).__name__}); what is made is whole: run again") from None
+                what = f"its worker or the scheduler is gone ({type(error).__name__})"
+                raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
             except Exception as error:
                 if type(error).__name__ in ("CancelledError", "FutureCancelledError"):
-                    raise SweepError(f"shard {shard}: the scheduler is gone; what is made is whole: run again") from None
-                # Dask gives a task up when several workers have died with it, which may be the machines' fault.
+                    what = "the scheduler is gone"
+                    raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
+                # Dask gives up a task whose workers have died several times, which may be the machines'
+                # fault.
                 if type(error).__name__ != "KilledWorker" or self.left == 0:
                     raise
                 self.left -= 1
@@ -140,21 +150,24 @@ class _Tasks:
 
 
 def _call(work: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-    """For what has `map` alone, whose functions have one argument."""
+    """For executors with only `map`, whose functions take one argument."""
     return work(*arguments)
 
 
 def _results(
-    executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]], shards: Iterable[int], retries: int, *, in_order: bool = False
+    executor: Any, work: Callable[..., Any], arguments: Callable[[int], tuple[Any, ...]],
+    shards: Iterable[int], retries: int, *, in_order: bool = False,
 ) -> Generator[Any, None, None]:
-    """The results of `work` on shards as they come, or in the order of the shards: then few of them wait for earlier ones."""
+    """The results of `work` on shards as they come, or in the order of the shards, with only a few
+    waiting."""
     if not hasattr(executor, "submit"):
         each = getattr(executor, "imap" if in_order else "imap_unordered", executor.map)
         yield from each(functools.partial(_call, work), map(arguments, shards))
         return
-    tasks, window = _Tasks(executor, work, arguments, retries), _window(executor, _WINDOW_OF_RESULTS if in_order else _WINDOW)
+    tasks = _Tasks(executor, work, arguments, retries)
+    window = _window(executor, _WINDOW_OF_RESULTS if in_order else _WINDOW)
     todo, waiting = iter(shards), dict[int, Any]()
-    begun = dict[int, None]()  # in their order, until their results are given
+    begun = dict[int, None]()  # in order, until their results are yielded
     try:
         while True:
             for shard in itertools.islice(todo, window - len(begun)):
@@ -177,7 +190,8 @@ def _workers(executor: Any, threads: int) -> contextlib.AbstractContextManager[A
     if executor == "threads":
         return _Threads(threads)
     if not hasattr(executor, "submit") and not hasattr(executor, "map"):
-        raise ValueError(f'executor={executor!r}: expected "threads", an executor of concurrent.futures, a Dask client, or what has submit or map')
+        wanted = '"threads", an executor of concurrent.futures, a Dask client, or what has submit or map'
+        raise ValueError(f"executor={executor!r}: expected {wanted}")
     return contextlib.nullcontext(executor)
 
 
@@ -192,17 +206,18 @@ def run(
     retries: int = 3,
     progress: Callable[[Progress], None] | None = None,
 ) -> Progress:
-    """Makes the shards of a sweep that are not in the folder yet, and the folder with its plan if there is none.
+    """Makes the missing shards of a sweep in the folder, and the folder with its plan if there is none.
 
-    executor: "threads" of this process, an executor of concurrent.futures, a client of Dask, or anything else that has `submit` or
-        `map`. Its workers have to see the folder.
-    threads: for "threads", how many; 0 takes one for each core
-    shards: only these
-    retries: how often shards are tried again that Dask gives up because their workers died
-    progress: is called after every shard
+    executor: "threads" of this process, an executor of concurrent.futures, a Dask client, or anything else
+        with `submit` or `map`; its workers must see the folder
+    threads: the number of "threads"; 0 uses one per core
+    shards: make only these
+    retries: how often to retry shards that Dask gives up because their workers died
+    progress: called after every shard
 
-    May be killed at any time, together with any of its workers: what is in the folder is whole, and the next run makes the rest. Raises
-    SweepError where the folder holds something else or a worker has another carom; OSError where a file cannot be written.
+    A run may be killed at any time, as may any of its workers: the files in the folder are complete, and the
+    next run makes the rest. Raises SweepError if the folder holds something else or a worker has another
+    carom, and OSError if a file cannot be written.
     """
     need("pyarrow.parquet")
     workers = _workers(executor, threads)
@@ -216,20 +231,24 @@ def run(
     found = status(name)
     missing, there = set(found.missing), those_there(found, wanted)
     count = _Count(len(wanted), progress)
-    for about in in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), there):
+    footers = in_parallel(lambda shard: footer(plan, shard, os.path.join(name, plan.file(shard))), there)
+    for about in footers:
         count.add(json.loads(about["carom.outcomes"]), played=False)
     count.show()
     work: tuple[Any, Any] = (make_shard, lambda shard: (plan, shard, name, 1))
-    if executor != "threads":  # its workers read the plan from the folder: a task stays small
+    if executor != "threads":  # its workers read the plan from the folder, so that a task is small
         work = (run_shard, lambda shard: (path, shard, name))
-    with workers as those, contextlib.closing(_results(those, *work, (shard for shard in wanted if shard in missing), retries)) as results:
+    todo = (shard for shard in wanted if shard in missing)
+    with workers as those, contextlib.closing(_results(those, *work, todo, retries)) as results:
         for result in results:
             count.add(result["outcomes"], result["played"])
             count.show()
     return count.progress()
 
 
-def _reduced(plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False) -> tuple[Any, dict[str, int]]:
+def _reduced(
+    plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False
+) -> tuple[Any, dict[str, int]]:
     import pyarrow
 
     need("pyarrow")
@@ -243,7 +262,9 @@ def _reduced(plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: C
 
 def _merge(a: Any, b: Any) -> Any:
     if isinstance(a, Mapping):
-        return {key: _merge(a[key], b[key]) if key in a and key in b else a.get(key, b.get(key)) for key in [*a, *(key for key in b if key not in a)]}
+        keys = [*a, *(key for key in b if key not in a)]
+        both = a.keys() & b.keys()
+        return {key: _merge(a[key], b[key]) if key in both else a.get(key, b.get(key)) for key in keys}
     if isinstance(a, (tuple, list)):
         if len(a) != len(b):
             raise ValueError(f"cannot add a {type(a).__name__} of {len(b)} to one of {len(a)}")
@@ -262,13 +283,14 @@ def reduce(
     retries: int = 3,
     progress: Callable[[Progress], None] | None = None,
 ) -> Any:
-    """Plays a sweep and keeps no rows: `fn` makes of the table of every shard what is wanted of it, and `merge` makes one of two.
+    """Plays a sweep without keeping rows: `fn` turns the table of every shard into a result, and `merge`
+    combines two results.
 
-    fn: for processes it has to pickle: a function of a module
-    merge: adds numbers and arrays, and what stands in the same place of mappings, tuples and lists
+    fn: for processes it must be picklable, such as a function of a module
+    merge: the default adds numbers, arrays, and the matching parts of mappings, tuples and lists
 
-    Results are merged in the order of the shards, whoever finishes first, so that the bits do not depend on the workers. Everything else
-    as for `run`; but a reduction that is killed begins anew.
+    Results are merged in the order of the shards, whoever finishes first, so that the bits do not depend on
+    the workers. Everything else is as for `run`, except that a killed reduction starts again.
     """
     need("pyarrow")
     workers = _workers(executor, threads)

@@ -1,4 +1,4 @@
-"""One shard: a Parquet file, whole or absent, that says where it comes from."""
+"""One shard: a Parquet file, complete or absent, that states its origin."""
 
 from __future__ import annotations
 
@@ -23,31 +23,33 @@ from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of
 if TYPE_CHECKING:
     import pyarrow
 
-#: Where files grow, inside the folder of the sweep. Readers of a folder pass over names with a point in front.
+#: The subfolder for unfinished files. Readers of a folder ignore names that begin with a dot.
 UNFINISHED = ".unfinished"
 _ROW_GROUP = 1 << 16
 _MOST_AT_ONCE = 1 << 14
-#: [s] Shots are played in blocks of about so long: between two of them a run can be stopped.
+#: [s] Shots are played in blocks of about this long, between which a run can be stopped.
 _BLOCK_TIME = 0.2
-#: For the first array of pyarrow that becomes one of numpy: pyarrow looks for pandas then, and without the global lock two threads that do so at
-#: once wait for each other forever (pyarrow 26).
+#: Held for the first conversion from pyarrow to numpy: pyarrow then looks for pandas, and without the GIL two
+#: threads that do so at once wait for each other forever (pyarrow 26).
 _FIRST_ARRAY = threading.Lock()
 
 
 class Stopped(Exception):
-    """The run that wanted this shard has ended."""
+    """The run that requested this shard has ended."""
 
 
 def need(name: str) -> None:
-    """Raises ImportError that says where the package comes from."""
+    """Raises ImportError, with the way to install the package, if it is missing."""
     try:
         importlib.import_module(name)
     except ImportError as error:
-        raise ImportError(f"{name} is missing ({error}): pip install 'carom-billiards[sweep]'", name=name) from None
+        what = f"{name} is missing ({error}): pip install 'carom-billiards[sweep]'"
+        raise ImportError(what, name=name) from None
 
 
 class ContentHash:
-    """SHA-256 of a table's content: names, types, values. It does not depend on how the table is cut, nor on what wrote a file."""
+    """SHA-256 of a table's names, types and values, however the table is divided and whatever wrote the
+    file."""
 
     def __init__(self, schema: pyarrow.Schema) -> None:
         import pyarrow
@@ -55,7 +57,7 @@ class ContentHash:
         with _FIRST_ARRAY:
             pyarrow.array([0]).to_numpy()
         self._names = [[field.name, str(field.type)] for field in schema]
-        # Of each column the rows without a value; the lengths of texts; the values.
+        # Three hashes per column: the rows without a value, the lengths of strings, and the values.
         self._streams = [[hashlib.sha256() for _ in range(3)] for _ in schema]
         self.rows = 0
 
@@ -73,7 +75,8 @@ class ContentHash:
         import pyarrow.compute
 
         if chunk.null_count > 0:
-            nulls.update((np.flatnonzero(chunk.is_null().to_numpy(zero_copy_only=False)) + row).astype("<i8").tobytes())
+            rows = np.flatnonzero(chunk.is_null().to_numpy(zero_copy_only=False)) + row
+            nulls.update(rows.astype("<i8").tobytes())
             chunk = pyarrow.compute.fill_null(chunk, "" if pyarrow.types.is_string(chunk.type) else 0)
         if not pyarrow.types.is_string(chunk.type):
             values.update(np.ascontiguousarray(chunk.to_numpy(), chunk.type.to_pandas_dtype()).data)
@@ -85,13 +88,15 @@ class ContentHash:
                 values.update(memoryview(data)[ends[0] : ends[-1]])
 
     def hexdigest(self) -> str:
-        streams = [[name, *(stream.hexdigest() for stream in streams)] for name, streams in zip(self._names, self._streams)]
+        named = zip(self._names, self._streams)
+        streams = [[name, *(stream.hexdigest() for stream in streams)] for name, streams in named]
         return sha256(canonical([self.rows, streams]))
 
 
 def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
-    """What every file and dataset of a plan says about itself."""
-    own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene, "carom.scene_sha256": sha256(plan.scene.encode())}
+    """The metadata that every file and dataset of a plan holds about itself."""
+    own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene,
+           "carom.scene_sha256": sha256(plan.scene.encode())}
     return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
 
 
@@ -100,24 +105,31 @@ def schema_of(plan: Plan, first: int, last: int) -> pyarrow.Schema:
 
 
 def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
-    """What the file of a shard says about itself. Raises SweepError where it is none of this plan, or damaged; the rows are not read."""
+    """A file's metadata, without reading its rows. Raises SweepError if it is not this shard's or is
+    damaged."""
     import pyarrow.parquet
 
     try:
         metadata = pyarrow.parquet.read_metadata(path)
-        said = {key.decode(): value.decode() for key, value in (metadata.metadata or {}).items() if key.startswith(b"carom.")}
+        pairs = (metadata.metadata or {}).items()
+        said = {key.decode(): value.decode() for key, value in pairs if key.startswith(b"carom.")}
         rows = metadata.num_rows
-    except Exception as error:  # what a damaged file makes of pyarrow has no type of its own
-        raise SweepError(f"{path}: no whole Parquet file ({_first_line(error)}); remove it, and it is made again") from None
+    except Exception as error:  # pyarrow raises errors of any type for a damaged file
+        what = f"no whole Parquet file ({_first_line(error)})"
+        raise SweepError(f"{path}: {what}; remove it, and it is made again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
         for name, wanted in about_rows(plan, *plan.range(shard)).items():
             if said.get(name) != wanted:
-                words = f"shots {said.get('carom.first')} to {said.get('carom.last')}" if said["carom.plan"] == plan.id else f"plan {said['carom.plan']}"
-                raise SweepError(f"{path}: a file of {words}, not of shard {shard} of plan {plan.id}; take another folder, or remove the file")
+                words = f"plan {said['carom.plan']}"
+                if said["carom.plan"] == plan.id:
+                    words = f"shots {said.get('carom.first')} to {said.get('carom.last')}"
+                what = f"a file of {words}, not of shard {shard} of plan {plan.id}"
+                raise SweepError(f"{path}: {what}; take another folder, or remove the file")
         if rows == int(said["carom.last"]) - int(said["carom.first"]):
             return said
-    raise SweepError(f"{path}: its description is damaged, or carom did not write it; remove it, and it is made again")
+    what = "its description is damaged, or carom did not write it"
+    raise SweepError(f"{path}: {what}; remove it, and it is made again")
 
 
 def _first_line(error: BaseException) -> str:
@@ -128,7 +140,9 @@ def _hash_every(plan: Plan) -> int:
     return {"none": 0, "digest": HASH_EVERY, "column": 1}[plan.hashes]
 
 
-def _blocks(plan: Plan, shard: int, threads: int, stop: Callable[[], bool]) -> Iterator[tuple[int, dict[str, Column], Shots]]:
+def _blocks(
+    plan: Plan, shard: int, threads: int, stop: Callable[[], bool]
+) -> Iterator[tuple[int, dict[str, Column], Shots]]:
     player = player_of(plan)
     at, last = plan.range(shard)
     most = 256
@@ -147,7 +161,7 @@ def _blocks(plan: Plan, shard: int, threads: int, stop: Callable[[], bool]) -> I
 
 
 class Tally:
-    """Of the shots of a shard: how they ended, and the digest of their records."""
+    """How the shots of a shard ended, and the digest of their records."""
 
     def __init__(self) -> None:
         self.counts = np.zeros(len(OUTCOMES), np.int64)
@@ -156,14 +170,17 @@ class Tally:
     def add(self, first: int, shots: Shots) -> None:
         self.counts += np.bincount(shots.status, minlength=len(OUTCOMES))
         if shots.hash is not None:
-            self.records.update(np.ascontiguousarray(shots.hash[-first % HASH_EVERY :: HASH_EVERY], "<u8").data)
+            hashed = shots.hash[-first % HASH_EVERY :: HASH_EVERY]
+            self.records.update(np.ascontiguousarray(hashed, "<u8").data)
 
     def outcomes(self) -> dict[str, int]:
         return {name: count for name, count in zip(OUTCOMES, self.counts.tolist()) if count > 0}
 
 
-def tables(plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally: Tally) -> Iterator[pyarrow.Table]:
-    """Plays a shard: tables of as many rows as a row group has, whatever the blocks were."""
+def tables(
+    plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally: Tally
+) -> Iterator[pyarrow.Table]:
+    """Plays a shard and yields tables with the rows of one row group each, whatever the blocks."""
     import pyarrow
 
     schema = schema_of(plan, *plan.range(shard))
@@ -182,7 +199,7 @@ def tables(plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally
 
 
 def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], bool]) -> dict[str, str]:
-    """Writes a Parquet file; what its metadata say."""
+    """Writes a Parquet file and returns its metadata."""
     import inspect
 
     import pyarrow
@@ -194,16 +211,17 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
     kinds = {name: kind for name, (kind, _) in types.items()}
     encoding = {"float64": "BYTE_STREAM_SPLIT", "int64": "DELTA_BINARY_PACKED", "uint64": "PLAIN"}
     content, tally = ContentHash(schema), Tally()
-    # One page for the column of a row group: zstd packs the bytes of numbers by their place the better, the longer the runs of one place are.
-    # What has no such option has no such limit.
-    pages = {"max_rows_per_page": _ROW_GROUP} if "max_rows_per_page" in inspect.signature(pyarrow.parquet.ParquetWriter).parameters else {}
+    # One page per column of a row group: zstd packs bytes sorted by their place in the number, the better the
+    # longer the page. A pyarrow without this option has no limit on the rows of a page.
+    options = inspect.signature(pyarrow.parquet.ParquetWriter).parameters
+    pages = {"max_rows_per_page": _ROW_GROUP} if "max_rows_per_page" in options else {}
     writer = pyarrow.parquet.ParquetWriter(
         file,
         schema,
         compression="zstd",
         use_dictionary=[name for name, kind in kinds.items() if kind == "text"],
         column_encoding={name: encoding[kind] for name, kind in kinds.items() if kind != "text"},
-        # Pages have a check sum; least and greatest values would tell a reader what to skip without one.
+        # Pages have a checksum. Without statistics, because readers would use them to skip pages unchecked.
         write_page_checksum=True,
         write_statistics=False,
         **pages,
@@ -222,13 +240,13 @@ def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], b
         writer.add_key_value_metadata(about | {"carom.sha256": sha256(canonical(about))})
         writer.close()
     except BaseException:
-        writer.is_open = False  # or it would write on into the file that is given up
+        writer.is_open = False  # otherwise it would continue writing to the abandoned file
         raise
     return about
 
 
 def _forget_the_dead(folder: str, name: str) -> None:
-    """Removes what processes of this machine left unfinished when they were killed."""
+    """Removes the unfinished files of killed processes of this machine."""
     for left in os.listdir(folder):
         if not left.startswith(f"{name}.{_host()}.") or not left.endswith(".tmp"):
             continue
@@ -245,7 +263,7 @@ def _host() -> str:
 
 
 def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable[[], bool]) -> dict[str, Any]:
-    """`run_shard`, which raises Stopped between two blocks of shots once `stop` says so."""
+    """`run_shard`, except that it raises Stopped between two blocks of shots once `stop` returns true."""
     need("pyarrow")
     start = time.perf_counter()
     name = plan.file(shard)
@@ -256,7 +274,8 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable
     if wrong:
         raise SweepError(f"{path}: {_host()}, process {os.getpid()}: {wrong}")
     if not os.path.isdir(folder):
-        raise SweepError(f"{folder}: there is no such folder on {_host()}; all workers have to see the folder of the sweep")
+        where = f"there is no such folder on {_host()}"
+        raise SweepError(f"{folder}: {where}; all workers have to see the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
     about: dict[str, str] = {}
@@ -274,12 +293,15 @@ def _publish(plan: Plan, shard: int, temporary: str, path: str, about: dict[str,
     if not os.path.exists(path):
         os.replace(temporary, path)
         return
-    # A twin of this worker was faster. It has the same rows, or one of the two machines is broken.
+    # Another worker made this shard first. It has the same rows, unless one of the two machines is broken.
     if footer(plan, shard, path)["carom.content"] != about["carom.content"]:
-        raise SweepError(f"{path}: two workers played the same shots with different results, one of them on {_host()}; check both machines")
+        what = f"two workers played the same shots with different results, one of them on {_host()}"
+        raise SweepError(f"{path}: {what}; check both machines")
 
 
-def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played: bool, start: float) -> dict[str, Any]:
+def _result(
+    plan: Plan, shard: int, path: str, about: dict[str, str], *, played: bool, start: float
+) -> dict[str, Any]:
     first, last = plan.range(shard)
     return {
         "shard": shard,
@@ -298,15 +320,18 @@ def _result(plan: Plan, shard: int, path: str, about: dict[str, str], *, played:
 
 
 @checked
-def run_shard(plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1) -> dict[str, Any]:
-    """Makes one shard, unless it is there. The file appears whole or not at all, and is the same whoever makes it, and how often.
+def run_shard(
+    plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1
+) -> dict[str, Any]:
+    """Makes one shard if it is missing. Its file appears complete or not at all, and is the same whoever
+    makes it.
 
-    plan: or the path of its file
-    threads: 0 takes one for each core
+    plan: a plan, or the path of its file
+    threads: 0 uses one thread per core
 
-    Returns what was made: shard, first, last, played (False if it was there), file, bytes, content and records (hashes), outcomes, host,
-    process, seconds. Raises SweepError where carom is not the plan's, or the file in its place is not this shard; OSError where the file cannot be
-    written.
+    Returns a report: shard, first, last, played (False if it existed), file, bytes, content and records
+    (hashes), outcomes, host, process, seconds. Raises SweepError if this carom does not match the plan, or
+    the existing file is not this shard, and OSError if the file cannot be written.
     """
     if not isinstance(plan, Plan):
         plan = Plan.load(plan)

@@ -1,4 +1,4 @@
-"""Sweeps as arrays of Slurm."""
+"""Sweeps as Slurm arrays."""
 
 from __future__ import annotations
 
@@ -13,13 +13,18 @@ from carom.sweep._plan import Plan, SweepError
 
 
 def command(plan: Plan, folder: str, elements: int) -> str:
-    """What an element of the array runs. Which shards are its own depends on its number alone: a requeued one has the same."""
+    """The command of an array's element. Its shards depend only on its number, so a requeued element has the
+    same ones."""
     words = [sys.executable, "-m", "carom.sweep", os.path.join(folder, PLAN), "-o", folder]
-    return f'{shlex.join(words)} --part "$SLURM_ARRAY_TASK_ID/{min(elements, plan.shards)}" --threads "${{SLURM_CPUS_PER_TASK:-1}}"'
+    part, threads = f'"$SLURM_ARRAY_TASK_ID/{min(elements, plan.shards)}"', '"${SLURM_CPUS_PER_TASK:-1}"'
+    return f"{shlex.join(words)} --part {part} --threads {threads}"
 
 
-def submit(plan: Plan, folder: str, elements: int, options: str, numbers: Callable[[Sequence[int]], str]) -> str:
-    """Submits an array whose elements make what is missing; what was done, in words. Raises SweepError where sbatch fails."""
+def submit(
+    plan: Plan, folder: str, elements: int, options: str, numbers: Callable[[Sequence[int]], str]
+) -> str:
+    """Submits an array whose elements make the missing shards. Returns a report. Raises SweepError if sbatch
+    fails."""
     folder = os.path.abspath(folder)
     os.makedirs(folder, exist_ok=True)
     plan.save(os.path.join(folder, PLAN))
@@ -28,8 +33,9 @@ def submit(plan: Plan, folder: str, elements: int, options: str, numbers: Callab
         return f"{folder}: nothing is missing"
     count = min(elements, plan.shards)
     array = numbers(sorted({shard % count for shard in missing}))
-    words = ["sbatch", "--parsable", "--job-name=carom-sweep", f"--array={array}", f"--output={folder}/slurm-%A_%a.out"]
-    words += [*shlex.split(options), f"--wrap={command(plan, folder, elements)}"]
+    words = ["sbatch", "--parsable", "--job-name=carom-sweep", f"--array={array}"]
+    words += [f"--output={folder}/slurm-%A_%a.out", *shlex.split(options)]
+    words.append(f"--wrap={command(plan, folder, elements)}")
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
     except FileNotFoundError:
@@ -37,4 +43,5 @@ def submit(plan: Plan, folder: str, elements: int, options: str, numbers: Callab
     if done.returncode != 0:
         raise SweepError(f"sbatch failed with the status {done.returncode}: {done.stderr.strip()}")
     job = done.stdout.strip().partition(";")[0]
-    return f"job {job}: --array={array} for {len(missing)} of {plan.shards} shards; --status says how far they are"
+    shards = f"{len(missing)} of {plan.shards} shards"
+    return f"job {job}: --array={array} for {shards}; --status says how far they are"

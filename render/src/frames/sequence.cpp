@@ -233,6 +233,18 @@ class FrameLoop {
 
 }  // namespace
 
+bool writes_over(const std::string& pattern, const std::string& path) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path first = frame_path(pattern, 0), folder = first.parent_path();
+    if (!is_numbered(pattern)) return fs::equivalent(first, path, error);
+    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error))
+        if (frame_of(pattern, entry.path().filename().string()) >= 0 &&
+            fs::equivalent(entry.path(), path, error))
+            return true;
+    return false;
+}
+
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options) {
     check_options(options);
     const bool files = !options.pattern.empty() && !options.raw;

@@ -183,10 +183,19 @@ void check_files(const Options& command, const CLI::App& app) {
         std::error_code none;
         return file_of(a) == file_of(b) || std::filesystem::equivalent(a, b, none);
     };
+    // A terminal, a pipe or /dev/null may be named twice. So may a stream
+    // that the shell has opened, wherever it leads.
+    const auto is_stream = [](const std::string& path) {
+        const bool opened = path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/");
+        std::error_code none;
+        return opened ||
+               (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none));
+    };
     for (std::size_t i = 0; i < files.size(); ++i) {
         for (std::size_t k = i + 1; k < files.size(); ++k) {
             const Used &one = files[i], &two = files[k];
-            if (!(one.written || two.written) || one.path.starts_with("/dev/") || !same(one.path, two.path))
+            if (!(one.written || two.written) || (is_stream(one.path) && is_stream(two.path)) ||
+                !same(one.path, two.path))
                 continue;
             if (one.written && two.written)
                 throw UsageError(

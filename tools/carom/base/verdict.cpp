@@ -14,7 +14,6 @@ namespace carom::tools {
 
 using Json = nlohmann::ordered_json;
 using games::InHand;
-using games::Option;
 using games::State;
 using games::Verdict;
 
@@ -38,7 +37,7 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
     Json fouls = Json::array(), options = Json::array();
     for (const games::Foul foul : verdict.fouls)
         fouls.push_back({{"foul", name(foul)}, {"rule", games::rule_of(game, foul)}});
-    for (const Option& option : verdict.options) {
+    for (const games::Option& option : verdict.options) {
         Json respots = Json::array();
         for (const games::Respot& back : option.respots)
             respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
@@ -52,7 +51,7 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
             {"options", options}};
 }
 
-Vec2 free_place(const Record& record, const Option& option) {
+Vec2 free_place(const Record& record, const games::Option& option) {
     const Table& table = record.table;
     const Vec2 from = games::head_spot(table);
     // Rings about the head spot, one ball radius apart.

@@ -90,8 +90,12 @@ struct Plan {
 /// @throws SceneError if [effects] excludes what the scene needs
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
-/// Plans one scene whose numbers change: decides as make_plan does, in memory that is reused. These plans
-/// have no reasons, no warnings, and no names of pockets in their geometry.
+/// Whether nothing in a plan takes energy: impacts return all of it, and there is no friction, no pocket and
+/// no flight. A nose above or below the centre of a ball drives it into the cloth, and so takes some.
+bool loses_nothing(const Plan& plan);
+
+/// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The
+/// plans have no reasons, no warnings, and no names of pockets in their geometry.
 class Planner {
   public:
     Planner(const Scene& scene, kernel::Isa isa);

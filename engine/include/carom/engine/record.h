@@ -78,7 +78,7 @@ enum class EventType : std::uint8_t {
     kRollSpin,
     kRollStop,
     kSpinStop,
-    // Resting contacts: from a hold to its release, the two stay in touch and push each other.
+    // Resting contacts: from a hold to its release, the two stay in contact and push each other.
     kBallBallHold,
     kBallBallRelease,
     kBallCushionHold,

@@ -449,12 +449,16 @@ struct Scene {
     Table table;
     std::string ball_preset = "pool";
     BallParams balls{};
+    /// Size of the cue ball where a preset or [balls.cue] gives it one. In `ball` it is the ball's own size.
+    std::optional<BallSize> cue_ball;
     std::vector<BallStart> ball;  ///< as written, then the racked ones
     std::optional<Cue> cue;       ///< nothing: no ball is struck
     Physics physics;
     std::vector<EffectOverride> effects;
     Stop stop;
     RenderSettings render;
+    /// The ball that such a size is for: the one that the cue strikes.
+    std::string cue_ball_id() const { return cue ? cue->ball : Cue().ball; }
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
     /// Whether a ball may leave the cloth before it meets anything: one starts in the air, or the cue is
     /// raised.
@@ -469,10 +473,15 @@ struct Scene {
         return std::all_of(ball.begin(), ball.end(),
                            [&](const BallStart& b) { return size_of(b) == size_of(ball.front()); });
     }
+    bool of_one_radius() const {
+        return std::all_of(ball.begin(), ball.end(),
+                           [&](const BallStart& b) { return size_of(b).R == size_of(ball.front()).R; });
+    }
     bool operator==(const Scene&) const = default;
 };
-inline constexpr const char* kBallPresets[] = {"pool",         "snooker",         "carom",
-                                               "pool_classic", "snooker_classic", "carom_classic"};
+inline constexpr const char* kBallPresets[] = {
+    "pool",         "snooker",      "carom",           "bar_box_oversized", "bar_box_heavy",
+    "english_pool", "pool_classic", "snooker_classic", "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
     field<&Scene::ball_preset>("preset", "ball properties, and the cushion model, to start from",

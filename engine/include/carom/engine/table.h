@@ -93,10 +93,11 @@ struct Table {
 };
 inline constexpr const char* kCloths[] = {"club", "tournament", "match_heated"};
 inline constexpr const char* kStandardTable = "nine_foot";
-/// carom_ten_foot is another name for carom, which is ten feet long.
-inline constexpr const char* kTablePresets[] = {"seven_foot", "seven_foot_bar", "eight_foot",    "nine_foot",
-                                                "snooker",    "carom",          "carom_ten_foot"};
-/// The lists of cushions, jaws and pockets are separate.
+/// carom_ten_foot is another name of carom, which has ten feet.
+inline constexpr const char* kTablePresets[] = {"seven_foot", "seven_foot_bar", "eight_foot",
+                                                "nine_foot",  "snooker",        "english_pool",
+                                                "carom",      "carom_ten_foot"};
+/// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
     field<&Table::cloth>(

@@ -28,6 +28,9 @@ struct ParamLanes {
     const double* mu_b;
     const double* e_b;
     ClothSlip cloth_slip = ClothSlip::kConsistent;
+    /// As in ImpactParams; null: 1 for all.
+    const double* mass_ratio = nullptr;
+    const double* radius_ratio = nullptr;
 };
 
 /// Output: velocities of one ball after every impact.

@@ -72,17 +72,29 @@ struct HertzContactInSpace {
     double overlap;  ///< [L] at the start; negative: a gap
 };
 
-/// As ContactPhase, for balls of which at least one is in the air.
+/// What differs between balls that are not alike, in units of one of them: its mass and the stiffness of two
+/// such balls are 1.
+struct UnlikeBalls {
+    const double* inverse_mass;  ///< per ball
+    const double* stiffness;     ///< per contact
+    /// Per contact [1/L]: 1 over the distance of the centres at the touch, times the share of the turning of
+    /// the balls that the normal takes part in; 0: it stays as it is.
+    const double* curvature;
+    bool held;  ///< all balls stay on the cloth, and have its friction
+};
+
+/// As ContactPhase, for balls of which one or more are in the air, or that differ in size.
 struct ContactPhaseInSpace {
     int balls, contacts;
     double* motion;  ///< per ball v (3 numbers), R w (3) [V]; replaced
     const HertzContactInSpace* contact;
-    double* numbers;   ///< scratch memory of contact_phase_in_space_numbers() elements
-    double curvature;  ///< L/(2 R); 0: the normals stay as they are
+    double* numbers;                      ///< scratch memory of contact_phase_in_space_numbers() elements
+    double curvature;                     ///< L/(2 R); 0: the normals stay as they are
+    const UnlikeBalls* unlike = nullptr;  ///< null: all are alike, and not held
 };
 
 constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) noexcept {
-    return 55 * static_cast<std::size_t>(balls) + 6 * static_cast<std::size_t>(contacts);
+    return 56 * static_cast<std::size_t>(balls) + 6 * static_cast<std::size_t>(contacts);
 }
 
 /// The same forces in space, without a cloth: `law.mu_s` and the sign of its slip are ignored. The contacts

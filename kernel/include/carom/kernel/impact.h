@@ -21,9 +21,9 @@ enum class ClothSlip : unsigned char {
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; adds energy; for parity only
 };
 
-/// Parameters of one impact between balls of equal radius.
+/// Parameters of one impact.
 struct ImpactParams {
-    double R;      ///< radius of both balls [m], > 0
+    double R;      ///< radius of ball 1 [m], > 0
     double m;      ///< mass of ball 1 [kg], > 0
     double mu_s1;  ///< sliding friction of ball 1 on the cloth, >= 0
     double mu_s2;  ///< sliding friction of ball 2 on the cloth, >= 0
@@ -34,6 +34,7 @@ struct ImpactParams {
     /// Mass of ball 2 divided by that of ball 1. ToleranceFunction accepts 1/kLargestMassRatio to
     /// kLargestMassRatio (tolerance.h); for every other kernel a ratio other than 1 is kBadParameter.
     double mass_ratio = 1.0;
+    double radius_ratio = 1.0;
 };
 
 enum class ImpactStatus : unsigned char {

@@ -19,8 +19,11 @@ inline constexpr double kLoosestTolerance = 1e-1;
 /// during an impact, which the equations assume.
 inline constexpr double kLargestFriction = 1.0;
 
-/// Largest ratio of the masses of the two balls: up to this the error bound is tested.
-inline constexpr double kLargestMassRatio = 10.0;
+/// The mass of one ball may be this multiple of the other's, and the radius that one.
+inline constexpr double kLargestMassRatio = 1e6, kLargestRadiusRatio = 4.0;
+/// Balls of one radius are solved by the fast methods up to this ratio of their masses: so far their bound on
+/// the error is tested.
+inline constexpr double kFastMassRatio = 10.0;
 
 /// [-] Effect of an impulse on a ball of mass m, relative to its effect on one of two equal balls with the
 /// reduced mass of m and `other`: 2 other/(m + other), from 0 to 2. The friction of the pressed ball on the
@@ -29,8 +32,12 @@ constexpr double impulse_share(double m, double other) {
     return 2.0 / (1.0 + m / other);
 }
 
-/// Solves one impact between balls of equal radius; the masses may differ (docs/reference/physics.md,
-/// equation 12).
+/// Whether the masses, radii and frictions of an impact have a solution by tolerance and by the march; of
+/// `params` nothing else is read.
+bool sizes_have_solution(const ImpactParams& params) noexcept;
+
+/// Solves one impact of two balls of any masses and radii (docs/reference/physics.md, "Balls of different
+/// size"). Two radii cost some ten times as much.
 ///
 /// @param tolerance  largest error of any component of v and of R w after the impact, relative to the
 /// approach speed; a tolerance above 1e-3 is solved as 1e-3. Rounding adds a few units in the last place of

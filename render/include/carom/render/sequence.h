@@ -94,6 +94,10 @@ std::string frame_path(const std::string& pattern, long k);
 /// Whether the pattern has a place for the number of a frame.
 bool is_numbered(const std::string& pattern);
 
+/// Whether a frame of this pattern would replace this file, also by way of a link.
+/// @throws RenderError as frame_path()
+bool writes_over(const std::string& pattern, const std::string& path);
+
 /// Writes a contact sheet: columns x rows pictures of the shot, row by row, each with its clock. Their times
 /// are evenly spaced from `from` to `to`, both included. The sheet is as wide as options.size, and each
 /// picture has its shape; the height of the sheet follows. pattern, frame, jobs and raw are not used.

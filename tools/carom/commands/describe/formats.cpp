@@ -56,6 +56,10 @@ Json bound(const Key& key, double x) {
 /// Only the sign of a record's numbers is checked, except for integers.
 Json number_schema(const Key& key, Files files) {
     Json schema = {{"type", is_whole(key) ? "integer" : "number"}};
+    // "57.15 mm" is a number, too.
+    const std::string_view unit = key.range.unit;
+    const bool has_units = unit == "m" || unit == "m/s" || unit == "kg" || unit == "s" || unit == "degrees";
+    if (files == Files::kScene && !is_whole(key) && has_units) schema["type"] = {"number", "string"};
     const Interval& range = key.range;
     const bool signs_only = files == Files::kRecord && !is_whole(key);
     const bool open = signs_only ? range.low > 0.0 || range.low_open : range.low_open;
@@ -198,6 +202,7 @@ std::string balls_lines() {
         }
         text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }
+    text += "| `cue` | - | - | - | `radius`, `mass` as of a ball | `[balls.cue]`: size of the cue ball |\n";
     return text;
 }
 
@@ -239,19 +244,35 @@ std::string scene_schema() {
     table["properties"]["pocket"] = list_of(object_of(kPocketFields, {}, kScene), kMaxTableParts);
     Json balls = object_of(kBallPresetFields, Scene{}, kScene);
     add_properties(balls, kBallFields, make_ball_params(Scene{}.ball_preset), kScene);
+    balls["properties"]["cue"] = object_of(kSizeFields, {}, kScene);
     Json ball = object_of(kBallStartFields, BallStart{}, kScene);
     add_properties(ball, kSizeFields, {}, kScene);
     Json effects = object_schema();
     for (const EffectInfo& effect : effect_table())
         effects["properties"][effect.keyword] = {
             {"type", "boolean"}, {"description", "force it into the plan (true) or out of it (false)"}};
+    Json cue = object_of(kCueFields, Cue{}, kScene);
+    const Json pair = {{"type", "array"}, {"items", Json::object()}, {"minItems", 2}, {"maxItems", 2}};
+    const auto described = [](Json value, const char* what) {
+        value["description"] = what;
+        return value;
+    };
+    Json& aims = cue["properties"];
+    aims["aim_at"] =
+        described(Json{{"type", {"string", "array"}}}, "a ball's id, or [x, y] in m, in place of aim_deg");
+    aims["aim_hit"] = described(pair, "[\"1\", 0.75]: how full ball 1 is hit, negative for its right half");
+    aims["ghost"] = described(pair, "[\"1\", \"p3\"]: ball 1 towards the middle of the pocket");
+    aims["aim_diamond"] = described(pair, "[\"foot\", 2.5]: a place on the head, foot, left or right rail");
+    aims["ball_speed"] =
+        described(Json{{"type", {"number", "string"}}, {"minimum", 0}, {"maximum", kMaxSpeed}},
+                  "of the struck ball, in place of speed [m/s]");
     Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "carom scene"}};
     schema.update(object_schema());
     schema["properties"] = {{"table", table},
                             {"balls", balls},
                             {"rack", object_of(kRackFields, Rack{}, kScene)},
                             {"ball", list_of(ball, kMaxBalls)},
-                            {"cue", object_of(kCueFields, Cue{}, kScene)},
+                            {"cue", cue},
                             {"physics", object_of(kPhysicsFields, Physics{}, kScene)},
                             {"effects", effects},
                             {"stop", object_of(kStopFields, Stop{}, kScene)},

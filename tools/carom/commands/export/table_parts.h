@@ -1,4 +1,4 @@
-// The table as indexed triangles, one list per material, for programs that know nothing of this renderer.
+// The table as indexed triangles, one list per material, for programs that do not know this renderer.
 #pragma once
 
 #include <cstdint>

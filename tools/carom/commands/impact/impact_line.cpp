@@ -50,7 +50,8 @@ struct LineKind {
 };
 constexpr const char *kTwoStates = "r1 v1 w1 r2 v2 w2", *kTwoAnswers = "v1 w1 v2 w2 steps ns";
 constexpr LineKind kBallBall = {
-    "ball_ball", false, "two balls on the cloth", kTwoStates, "R m mu_s1 mu_s2 mu_b e_b", "m2", kTwoAnswers};
+    "ball_ball", false,      "two balls on the cloth", kTwoStates, "R m mu_s1 mu_s2 mu_b e_b",
+    "m2 R2",     kTwoAnswers};
 constexpr LineKind kBallBallInAir = {
     "ball_ball", true,       "two balls, at least one in the air", kTwoStates, "R1 R2 m1 m2 mu_b e_b",
     "",          kTwoAnswers};
@@ -67,7 +68,7 @@ constexpr struct {
     const char *keys, *meaning;
 } kMeanings[] = {
     {"r, v, w", "centre, velocity and angular velocity [x, y, z] before the impact; in the answer, after it"},
-    {"R, m", "radius and mass; m2: mass of ball 2 if it differs, not with --substeps"},
+    {"R, m", "radius and mass; m2 and R2 are those of ball 2 if they differ"},
     {"mu_s, mu_b, e_b, ...", "as in [balls] of a scene file; mu_s1 and mu_s2 are mu_s under each ball"},
     {"model", "a cushion model, as in [physics] of a scene file"},
     {"normal", "horizontal, from the cushion into the table, [x, y] of length 1"},
@@ -210,15 +211,19 @@ Json ball_ball(const Json& line, const ImpactSettings& settings) {
     kernel::ImpactParams p{};
     p.R = parameter(params, "R", 0.0, kUnbounded, true);
     p.m = parameter(params, "m", 0.0, kUnbounded, true);
-    if (params.contains("m2")) {
-        p.mass_ratio = parameter(params, "m2", 0.0, kUnbounded, true) / p.m;
-        if (settings.method != ImpactSettings::Method::kMathavan || settings.substeps)
+    const auto ratio = [&](const char* key, double one, double largest, const char* of_one) {
+        if (!params.contains(key)) return 1.0;
+        if (settings.method != ImpactSettings::Method::kMathavan)
             throw LineError(
-                "\"m2\": only --method mathavan without --substeps solves different masses; leave it out");
-        if (!(p.mass_ratio <= kernel::kLargestMassRatio && p.mass_ratio >= 1.0 / kernel::kLargestMassRatio))
+                fmt::format("\"{}\": only --method mathavan solves different balls; leave it out", key));
+        const double over = parameter(params, key, 0.0, kUnbounded, true) / one;
+        if (!(over <= largest && over >= 1.0 / largest))
             throw LineError(
-                fmt::format("\"m2\": expected at most a factor of {} from m", kernel::kLargestMassRatio));
-    }
+                fmt::format("\"{}\": expected at most a factor of {} from {}", key, largest, of_one));
+        return over;
+    };
+    p.mass_ratio = ratio("m2", p.m, kernel::kLargestMassRatio, "m");
+    p.radius_ratio = ratio("R2", p.R, kernel::kLargestRadiusRatio, "R");
     p.mu_s1 = parameter(params, "mu_s1", 0.0, kUnbounded);
     p.mu_s2 = parameter(params, "mu_s2", 0.0, kUnbounded);
     p.mu_b = parameter(params, "mu_b", 0.0, kUnbounded);

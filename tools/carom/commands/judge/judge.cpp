@@ -28,7 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using games::Decision;
 using games::InHand;
-using games::Option;
 using games::State;
 using games::Verdict;
 
@@ -53,7 +52,7 @@ struct NextArgs {
 /// The outcome of a shot: the verdict, and the option that is taken.
 struct Judged {
     Verdict verdict;
-    Option option;
+    games::Option option;
 };
 
 void write_text(const std::string& path, const std::string& text) {
@@ -88,7 +87,7 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
     if (args.option > options)
         throw UsageError(fmt::format("--option {}: there {} {}", args.option, options == 1 ? "is" : "are",
                                      counted(verdict.options.size(), "option")));
-    Option option = verdict.options[static_cast<std::size_t>(args.option) - 1];
+    games::Option option = verdict.options[static_cast<std::size_t>(args.option) - 1];
     return {std::move(verdict), std::move(option)};
 }
 
@@ -104,7 +103,7 @@ std::string verdict_text(const Judged& judged) {
         text += counted(static_cast<std::size_t>(verdict.penalty), "point") + " for the other player\n";
     if (verdict.options.size() > 1) text += fmt::format("player {} chooses one of\n", verdict.chooser + 1);
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
-        const Option& option = verdict.options[i];
+        const games::Option& option = verdict.options[i];
         if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, name(option.decision));
         text += next_text(option.state) + "\n";
         for (const games::Respot& back : option.respots)
@@ -128,7 +127,7 @@ int run_judge(const JudgeArgs& args) {
 }
 
 /// The requested place of the cue ball, else the free one nearest to the head spot, or none.
-std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const Option& option) {
+std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const games::Option& option) {
     if (!args.place.empty()) {
         const auto numbers = numbers_in<double, 2>(args.place, ',');
         if (!numbers) throw UsageError(fmt::format("--place {}: expected X,Y in m", args.place));
@@ -165,7 +164,7 @@ int run_next(const NextArgs& args) {
         next = scene_after(plan.scene, record);
     } else {
         const Judged verdict = judged(args.scene, record, args.game);
-        const Option& option = verdict.option;
+        const games::Option& option = verdict.option;
         if (option.state.over) {
             print(verdict_text(verdict));
             throw UsageError(

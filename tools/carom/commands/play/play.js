@@ -407,6 +407,7 @@
   function listEvents() {
     const all = shownEvents();
     marked = null;
+    list.scrollTop = 0;
     eventHead.textContent = `Events (${all.length})`;
     list.replaceChildren(...all.map((e) => make("li", {}, make("button", {type: "button",
       onclick: () => { run(false); show(e.time); }}, make("time", {}, e.time.toFixed(3)),

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "base/frame_costs.h"
 #include "base/options.h"
 #include "base/setup.h"
+#include "carom/engine/printable.h"
 #include "carom/render/sequence.h"
 #include "commands/render/film.h"
 
@@ -49,6 +52,17 @@ void check_png_name(const std::string& path) {
         throw UsageError(fmt::format("-o {}: pictures are PNG files; give a name that ends in .png", path));
 }
 
+std::string sheet_path(const RenderArgs& args) {
+    return args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
+}
+
+/// That two options are no one file is known; here a pattern becomes names of files.
+void check_input(const RenderArgs& args, bool replaces, const std::string& output) {
+    if (replaces)
+        throw UsageError(fmt::format("-o {} would replace what is read, {}; give it another name",
+                                     in_quotes(output), in_quotes(args.input)));
+}
+
 void check_args(const RenderArgs& args) {
     const auto second = [](const char* option, std::optional<double> value) {
         if (value && !(*value >= 0.0 && std::isfinite(*value))) {
@@ -66,7 +80,10 @@ void check_args(const RenderArgs& args) {
     if (args.frame && *args.frame < 0) throw UsageError("--frame: frames are numbered from 0");
     if (!args.sheet.empty()) {
         parse_sheet(args.sheet);
-        if (args.pattern.find('%') == std::string::npos) check_png_name(args.pattern);
+        const std::string path = sheet_path(args);
+        std::error_code none;
+        check_input(args, std::filesystem::equivalent(path, args.input, none), path);
+        check_png_name(path);
         return;
     }
     if (const FilmKind* const film = args.film()) {
@@ -82,6 +99,7 @@ void check_args(const RenderArgs& args) {
     if (args.raw || args.y4m) return;
     const bool one = args.at || args.frame;
     try {
+        check_input(args, render::writes_over(args.pattern, args.input), args.pattern);
         const bool numbered = render::is_numbered(args.pattern);
         if (!one && !numbered)
             throw UsageError(
@@ -180,11 +198,12 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
 /// record that was not profiled has no costs; its bar shows only drawing, reading back and encoding.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
-    // Events before the first and after the last shown frame belong to frames that are not shown.
-    const double before = std::ceil(options.from * options.fps);
-    const auto first = static_cast<long>(before);
+    // Events before the first and after the last shown frame belong to frames that are not shown. All of the
+    // earlier ones are in one such frame.
+    const long first = options.from > 0.0 ? 1 : 0;
+    const double before = options.from > 0.0 ? 1.0 / options.fps : 0.0;
     const long frames = render::frame_count(options.from, options.to.value_or(record.duration), options.fps);
-    auto costs = costs_by_frame(record, options.from - before / options.fps, options.fps, first + frames + 1);
+    auto costs = costs_by_frame(record, options.from - before, options.fps, first + frames + 1);
     options.simulate_ms = [costs = std::move(costs), first](long k) {
         return costs[first + k].simulate_ms();
     };
@@ -192,7 +211,7 @@ void set_simulation_costs(const Record& record, render::SequenceOptions& options
 
 int write_sheet(const RenderArgs& args, const Record& record, const render::SequenceOptions& options) {
     const FrameSize grid = parse_sheet(args.sheet);
-    const std::string path = args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
+    const std::string path = sheet_path(args);
     render::render_sheet(record, options, grid.width, grid.height, path);
     print(fmt::format(
         "{}: {}\n",

@@ -17,7 +17,7 @@ namespace carom::tools {
 
 using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
-/// What makes the rows: the shots, and the measures whose columns stand behind those of sweep_columns().
+/// What makes the rows: the shots, and the measures whose columns follow those of sweep_columns().
 struct Sweep {
     const Variation& variation;
     const std::vector<games::Measure>& measures;
@@ -32,14 +32,14 @@ std::string sweep_header(const Sweep& sweep);
 struct SweepRows {
     std::string text;
     Outcomes outcomes{};
-    /// For each shot with a result the values of all measures.
+    /// For each shot with a result, the values of all measures.
     std::vector<games::MeasureValue> values;
 };
 
-/// Plays shots first, first + 1, ... shared out among threads, and writes their rows. A row depends on the
-/// variation and the number of its shot only; a shot with invalid values and one that fails have a row, too.
-/// @throws Interrupted; std::system_error where the system gives no threads; UsageError for a measure that
-/// cannot be taken of such shots
+/// Plays shots first, first + 1, ... on several threads, and writes their rows. A row depends only on the
+/// variation and the number of its shot; invalid and failed shots have a row, too.
+/// @throws Interrupted; std::system_error if the system cannot start the threads; UsageError for a measure
+/// that does not apply to such shots
 SweepRows play_rows(const Sweep& sweep, std::uint64_t first, std::size_t shots);
 
 }  // namespace carom::tools

@@ -1,0 +1,147 @@
+// Aims as people say them, and numbers with units.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "carom/engine/event_details.h"
+#include "carom/engine/variation.h"
+#include "support/engine_cases.h"
+
+namespace carom::test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::string scene_with(const std::string& cue, const std::string& more = "") {
+    return "[table]\npreset = \"nine_foot\"\n" + more +
+           "[[ball]]\nid = \"cue\"\nposition = [0.4, 0.5]\n"
+           "[[ball]]\nid = \"1\"\nposition = [0.9, 1.3]\n[cue]\noffset = [0, 0]\n" +
+           cue;
+}
+
+Cue cue_of(const std::string& cue, const std::string& more = "") {
+    return parse_scene(scene_with(cue, more), "aim.toml").cue.value();
+}
+
+/// What happens at the first contact, without squirt.
+EventDetails first_contact(const std::string& aim) {
+    const Scene scene = parse_scene(scene_with("speed = 2\nend_mass = 0\n" + aim), "aim.toml");
+    const Record record = simulate(plan_of(scene));
+    for (std::size_t i = 0; i < record.events.size(); ++i)
+        if (record.events[i].type == EventType::kBallBall) return details_of(record, i);
+    ADD_FAILURE() << aim << " hits nothing";
+    return {};
+}
+
+TEST(SceneAim, PlacesAndBalls) {
+    const double towards = std::atan2(0.8, 0.5) / kDegree;
+    EXPECT_NEAR(cue_of("aim_at = \"1\"\n").aim_deg, towards, 1e-12);
+    EXPECT_NEAR(cue_of("aim_at = [0.9, 1.3]\n").aim_deg, towards, 1e-12);
+    EXPECT_NEAR(cue_of("aim_at = [\"90 cm\", 1.3]\n").aim_deg, towards, 1e-12);
+    EXPECT_NEAR(cue_of("aim_diamond = [\"head\", 4]\n").aim_deg, std::atan2(-0.5, 0.87) / kDegree, 1e-12);
+    EXPECT_NEAR(cue_of("aim_diamond = [\"left\", 4]\n").aim_deg, std::atan2(0.77, -0.4) / kDegree, 1e-12);
+    EXPECT_NEAR(cue_of("aim_diamond = [\"foot\", 2.5]\n").aim_deg,
+                std::atan2(2.04, 2.5 / 4.0 * 1.27 - 0.4) / kDegree, 1e-12);
+}
+
+TEST(SceneAim, AHitIsAsFullAsItSays) {
+    EXPECT_NEAR(first_contact("aim_hit = [\"1\", 1]\n").cut, 0.0, 1e-6);
+    for (const double full : {0.75, 0.5, 0.25, -0.25, -0.5, -0.75}) {
+        const EventDetails d = first_contact("aim_hit = [\"1\", " + std::to_string(full) + "]\n");
+        EXPECT_NEAR(std::sin(d.cut), 1.0 - std::abs(full), 1e-6) << full;
+        // The cue ball passes on the side that is hit: to its left the z of v x n is positive.
+        const Vec3 v = d.balls[0].before.velocity, to_object = -d.normal;
+        EXPECT_EQ(v.cross(to_object).z() < 0.0, full > 0.0) << full;
+    }
+}
+
+TEST(SceneAim, AGhostBallSendsTheBallToThePocket) {
+    const Scene scene =
+        parse_scene(scene_with("speed = 2\nend_mass = 0\nghost = [\"1\", \"p4\"]\n"), "aim.toml");
+    const EventDetails d = first_contact("ghost = [\"1\", \"p4\"]\n");
+    const Vec2 line = (scene.table.pockets[3].center - Vec2(0.9, 1.3)).normalized();
+    EXPECT_NEAR(planar(d.normal).dot(line), -1.0, 1e-9);
+}
+
+TEST(SceneAim, TheBallGetsItsSpeed) {
+    const Scene scene = parse_scene(scene_with("ball_speed = 3.5\naim_at = \"1\"\n"), "aim.toml");
+    const Record record = simulate(plan_of(scene));
+    EXPECT_NEAR(details_of(record, 0).balls[0].after.velocity.norm(), 3.5, 1e-12);
+    EXPECT_NEAR(cue_of("ball_speed = \"20 mph\"\n").speed / cue_of("ball_speed = 8.9408\n").speed, 1.0,
+                1e-15);
+}
+
+TEST(SceneAim, UnitsGiveTheNumberWrittenOut) {
+    const auto radius = [](const std::string& text) {
+        return parse_scene("[balls]\nradius = " + text + "\n[[ball]]\n", "r.toml").balls.R;
+    };
+    EXPECT_EQ(radius("\"28.575 mm\""), 0.028575);
+    EXPECT_EQ(radius("\"2.8575 cm\""), 0.028575);
+    EXPECT_EQ(radius("\"0.028575 m\""), 0.028575);
+    EXPECT_EQ(radius("\"28.575mm\""), 0.028575);
+    EXPECT_NEAR(radius("\"1.125 in\""), 0.028575, 1e-17);
+    EXPECT_EQ(parse_scene("[balls]\nmass = \"170 g\"\n[[ball]]\n", "m.toml").balls.m, 0.170);
+    EXPECT_NEAR(cue_of("aim_deg = \"1.5707963267948966 rad\"\n").aim_deg, 90.0, 1e-13);
+    EXPECT_EQ(cue_of("speed = \"9 km/h\"\n").speed, 2.5);
+}
+
+TEST(SceneAim, WordsFollowTheBallsThatVary) {
+    // Quick and slow shots alike: the aim is at the ball where it lies.
+    const Variation places = Variation::from_text(scene_with("aim_at = \"1\"\n"), "v.toml",
+                                                  {"ball.1.position.x=uniform(0.5,1.1)"}, 1);
+    for (std::uint64_t i = 0; i < 20; ++i) {
+        const Scene scene = places.shot(i).scene.value();
+        const Vec2 way = planar(scene.ball[1].position - scene.ball[0].position);
+        EXPECT_NEAR(scene.cue->aim_deg, std::atan2(way.y(), way.x()) / kDegree, 1e-12);
+        Scene quick = places.base();
+        std::vector<std::string> values;
+        EXPECT_FALSE(places.put(i, quick, values));
+    }
+    // A rule for the aim takes its place.
+    const Variation aims =
+        Variation::from_text(scene_with("aim_at = \"1\"\n"), "v.toml", {"cue.aim_deg=normal(0.5)"}, 1);
+    EXPECT_NEAR(aims.shot(0).scene.value().cue->aim_deg, aims.base().cue->aim_deg, 3.0);
+}
+
+TEST(SceneAim, MistakesAreToldAtTheirPlace) {
+    const auto refused = [](const std::string& cue, const std::string& why) {
+        try {
+            cue_of(cue);
+            FAIL() << cue << " is taken";
+        } catch (const SceneError& error) {
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+            EXPECT_GT(error.where().line, 0);
+        }
+    };
+    refused("aim_at = \"1\"\naim_deg = 90\n", "two aims");
+    refused("aim_at = \"1\"\nghost = [\"1\", \"p3\"]\n", "two aims");
+    refused("speed = 1\nball_speed = 2\n", "two speeds");
+    refused("aim_at = \"7\"\n", "there is no ball \"7\"");
+    refused("aim_at = \"cue\"\n", "cannot be aimed at itself");
+    refused("aim_at = 3\n", "write the id of a ball");
+    refused("aim_at = [1]\n", "write the id of a ball");
+    refused("aim_at = [nan, 1]\n", "must be a finite number");
+    refused("aim_at = [0.4, 0.5]\n", "the ball is there already");
+    refused("aim_hit = [\"1\"]\n", "a ball, and how full");
+    refused("aim_hit = [\"1\", 2]\n", "out of range");
+    refused("aim_hit = [\"1\", 0]\n", "hit by nothing");
+    refused("ghost = [\"1\", \"p9\"]\n", "no such pocket");
+    refused("ghost = [\"1\", \"p1\"]\n", "90 degrees or more");
+    refused("aim_diamond = [\"back\", 1]\n", "unknown rail");
+    refused("aim_diamond = [\"head\", 5]\n", "out of range");
+    refused("ball_speed = 1e300\n", "");
+    refused("speed = \"fast\"\n", "a number with a unit in quotes (m/s, km/h, mph, ft/s)");
+    refused("speed = \"3 kg\"\n", "m/s, km/h, mph, ft/s");
+    refused("speed = \"-1 mph\"\n", "out of range");
+    refused("speed = \"inf m/s\"\n", "a number with a unit");
+    refused("speed = \"0x10 m/s\"\n", "a number with a unit");
+    refused("speed = \"\"\n", "a number with a unit");
+    refused("restitution = \"0.5\"\n", "must be a number, not a string");
+}
+
+}  // namespace
+}  // namespace carom::test
