@@ -4,10 +4,13 @@ import {writeFileSync} from "node:fs";
 
 /** A browser with two pipes, file descriptors 3 and 4: messages are JSON, each followed by a 0. */
 export class Browser {
-  constructor({chromium = "chromium", profile, pictures = ""}) {
+  /** `pictures`: a folder for screenshots. `server`: the address of a test's own server; nothing else can be
+   * reached. */
+  constructor({chromium = "chromium", profile, pictures = "", server = ""}) {
     this.pictures = pictures;
+    const hosts = `MAP * ~NOTFOUND${server ? `, EXCLUDE ${server}` : ""}`;
     this.process = spawn(chromium, ["--headless=new", "--no-sandbox", "--disable-gpu",
-      "--hide-scrollbars", "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND",
+      "--hide-scrollbars", "--remote-debugging-pipe", `--host-resolver-rules=${hosts}`, "--no-proxy-server",
       "--no-first-run", "--disable-background-networking", `--user-data-dir=${profile}`,
       "about:blank"],
     {stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"]});
