@@ -16,40 +16,40 @@ namespace carom::test {
 namespace {
 
 using namespace kernel;
-using Vector = std::array<double, 3>;
+using Triple = std::array<double, 3>;
 
-Vector operator+(const Vector& a, const Vector& b) {
+Triple operator+(const Triple& a, const Triple& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
-Vector operator*(double s, const Vector& a) {
+Triple operator*(double s, const Triple& a) {
     return {s * a[0], s * a[1], s * a[2]};
 }
-Vector operator-(const Vector& a, const Vector& b) {
+Triple operator-(const Triple& a, const Triple& b) {
     return a + -1.0 * b;
 }
-double dot(const Vector& a, const Vector& b) {
+double dot(const Triple& a, const Triple& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-Vector cross(const Vector& a, const Vector& b) {
+Triple cross(const Triple& a, const Triple& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-double length(const Vector& a) {
+double length(const Triple& a) {
     return std::sqrt(dot(a, a));
 }
-Vector of(const double (&a)[3]) {
+Triple of(const double (&a)[3]) {
     return {a[0], a[1], a[2]};
 }
 
 struct Two {
     double m[2], R[2], mu_s[2];
-    Vector v[2], w[2], n;
+    Triple v[2], w[2], n;
 };
 
 Two two_of(const Impact& i) {
     const ImpactParams& p = i.params;
     Two t{{p.m, p.m * p.mass_ratio},      {p.R, p.R * p.radius_ratio},    {p.mu_s1, p.mu_s2},
           {of(i.ball1.v), of(i.ball2.v)}, {of(i.ball1.w), of(i.ball2.w)}, {}};
-    const Vector apart = of(i.ball2.r) - of(i.ball1.r);
+    const Triple apart = of(i.ball2.r) - of(i.ball1.r);
     t.n = 1.0 / length(apart) * apart;
     return t;
 }
@@ -65,24 +65,24 @@ ImpactResult marched(const Impact& i, int steps) {
     double work = 0.0, goal = std::numeric_limits<double>::infinity();
     while (work < goal) {
         const double closing = dot(t.v[0] - t.v[1], t.n);
-        Vector slip = t.v[0] + cross(t.w[0], t.R[0] * t.n) - (t.v[1] + cross(t.w[1], -t.R[1] * t.n));
+        Triple slip = t.v[0] + cross(t.w[0], t.R[0] * t.n) - (t.v[1] + cross(t.w[1], -t.R[1] * t.n));
         slip = slip - dot(slip, t.n) * t.n;
         // Near zero the friction falls with the slip. Otherwise the steps go to and fro, and press one ball
         // and the other in turn, which is not what a slip of zero does.
         const double c = std::hypot(length(slip), 1e-4);
-        const Vector friction = -p.mu_b * dP / c * slip;  // on ball 1
-        const Vector force[2] = {friction - dP * t.n, dP * t.n - friction};
+        const Triple friction = -p.mu_b * dP / c * slip;  // on ball 1
+        const Triple force[2] = {friction - dP * t.n, dP * t.n - friction};
         for (int k = 0; k < 2; ++k) {
-            Vector level = force[k];
+            Triple level = force[k];
             const double spin = 5.0 / (2.0 * t.m[k] * t.R[k] * t.R[k]);
-            Vector torque = cross((k == 0 ? t.R[0] : -t.R[1]) * t.n, force[k]);
+            Triple torque = cross((k == 0 ? t.R[0] : -t.R[1]) * t.n, force[k]);
             if (force[k][2] < 0.0) {  // pressed on the cloth
-                const Vector u{t.v[k][0] - sign * t.R[k] * t.w[k][1], t.v[k][1] + sign * t.R[k] * t.w[k][0],
+                const Triple u{t.v[k][0] - sign * t.R[k] * t.w[k][1], t.v[k][1] + sign * t.R[k] * t.w[k][0],
                                0.0};
                 const double size = length(u);
-                const Vector cloth = size > 1e-14 ? t.mu_s[k] * force[k][2] / size * u : Vector{};
+                const Triple cloth = size > 1e-14 ? t.mu_s[k] * force[k][2] / size * u : Triple{};
                 level = level + cloth;
-                torque = torque + cross(Vector{0.0, 0.0, -t.R[k]}, cloth);
+                torque = torque + cross(Triple{0.0, 0.0, -t.R[k]}, cloth);
             }
             level[2] = 0.0;
             t.v[k] = t.v[k] + 1.0 / t.m[k] * level;
@@ -146,7 +146,7 @@ double difference(const ImpactResult& a, const ImpactResult& b, double R) {
 double energy(const Impact& i, const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
               const double (&w2)[3]) {
     const Two t = two_of(i);
-    const Vector v[2] = {of(v1), of(v2)}, w[2] = {of(w1), of(w2)};
+    const Triple v[2] = {of(v1), of(v2)}, w[2] = {of(w1), of(w2)};
     double sum = 0.0;
     for (int k = 0; k < 2; ++k)
         sum += t.m[k] * (0.5 * dot(v[k], v[k]) + 0.2 * t.R[k] * t.R[k] * dot(w[k], w[k]));

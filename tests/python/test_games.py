@@ -148,7 +148,7 @@ def test_a_verdict_is_of_one_record():
     mine = games.Option(decision, state, respots)
     assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
     assert games.may_place(other, mine, (0.7, 0.5))
-    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
+    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record from'):
         games.may_place(one, mine, (0.7, 0.5))
     with pytest.raises(ValueError, match='the record has no ball "black"'):
         games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))

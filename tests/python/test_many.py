@@ -82,7 +82,7 @@ def test_a_bad_shot_has_a_status_and_the_others_are_played(draw_scene):
 
 
 def test_a_run_that_cannot_go_on_is_a_status():
-    shots = carom.simulate_many(stuck_scene(-0.5), params={"ball.a.velocity.x": [-0.5, 0.5, -0.4]})
+    shots = carom.simulate_many(stuck_scene(0.5), params={"balls.e_t": [0.5, 0.9999999, 0.6]})
     assert shots.status.tolist() == [0, ShotStatus.FAILED, 0]
     assert shots.messages[1].startswith("simulation stopped at t = ")
 

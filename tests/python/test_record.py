@@ -84,8 +84,8 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
 def test_events_are_those_of_the_program(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--events", tmp_path / "e.csv")
     rows = rows_of(tmp_path / "e.csv")[1:]
-    assert [
-        (float(time), kind, a, b) for time, kind, a, b in rows] == carom.simulate(break_scene).event_list()
+    listed = carom.simulate(break_scene).event_list()
+    assert [(float(time), kind, a, b) for time, kind, a, b, *_ in rows] == listed
 
 
 def test_segments_hold_the_closed_form(draw_scene):
@@ -187,9 +187,9 @@ def test_the_table_is_there_for_drawing(break_scene):
 
 def test_a_run_that_cannot_go_on_has_its_record():
     with pytest.raises(carom.SimulationError, match="simulation stopped at t = ") as caught:
-        carom.simulate(stuck_scene(0.5))
+        carom.simulate(stuck_scene(0.9999999))
     record = caught.value.record
-    assert record is not None and record.ids == ("a", "b") and 0.2 < record.duration < 0.5
+    assert record is not None and record.ids == ("a", "b") and len(record.events) == 1000000
     assert record.states(record.duration)[1, 0, 0] == pytest.approx(0.2, abs=1e-6)
     assert str(pickle.loads(pickle.dumps(carom.SimulationError("why")))) == "why"
 

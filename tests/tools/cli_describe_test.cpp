@@ -118,5 +118,12 @@ TEST(CliDescribe, RefusesOtherFormats) {
     EXPECT_NE(result.err.find("FORMAT"), std::string::npos) << result.err;
 }
 
+TEST(CliDescribe, MeasuresAndEventsAreListedWithTheirUnits) {
+    const std::string measures = carom({"describe", "measures"}).out,
+                      events = carom({"describe", "events"}).out;
+    EXPECT_NE(measures.find("  travel(BALL)            m      "), std::string::npos) << measures;
+    EXPECT_NE(events.find("  impulse       N s    "), std::string::npos) << events;
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -132,20 +132,20 @@ TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
     fs::copy_file(scene_, in_percent);
     fs::create_symlink(scene_, folder_.file("l7.png"));
     const auto both = [&](const std::string& input, const std::string& pattern) {
-        refused("would overwrite the input", {"render", input, "-o", pattern, "--size", "32x18"});
-        refused("would overwrite the input",
+        refused("would replace what is read", {"render", input, "-o", pattern, "--size", "32x18"});
+        refused("would replace what is read",
                 {"render", input, "-o", pattern, "--size", "32x18", "--at", "0.1"});
     };
     both(as_frame, folder_.file("s%05d.png"));
     both(folder_.path().string() + "/./s00002.png", folder_.file("s%05d.png"));
     both(scene_, folder_.file("l%d.png"));
-    refused("would overwrite the input",
+    refused("would replace what is read",
             {"render", in_percent, "-o", folder_.file("p%%d.png"), "--size", "32x18", "--at", "0.1"});
     const std::string cwd = fs::current_path().string();
     fs::current_path(folder_.path());
     fs::copy_file(scene_, "sheet.png");
-    refused("would overwrite the input", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
-    refused("would overwrite the input", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
+    refused("would replace what is read", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
+    refused("would replace what is read", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
     fs::current_path(cwd);
     for (const std::string& name : {scene_, as_frame, in_percent, folder_.file("sheet.png")})
         EXPECT_EQ(read_file(name), before) << name;

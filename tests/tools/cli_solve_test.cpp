@@ -72,5 +72,32 @@ TEST_F(CliSolve, MistakesSayWhatIsExpected) {
     EXPECT_EQ(carom({"break", "--table", "snook"}).status, 2);
 }
 
+TEST_F(CliSolve, ASweepMeasuresAndSumsUp) {
+    const std::string table = folder_.file("m.csv");
+    const std::vector<std::string> sweep = {
+        "sweep",     draw_,      "--vary",    "cue.aim_deg=normal(0.5)", "--count",   "200",
+        "-o",        table,      "--measure", "\"1\" in pocketed",       "--measure", "travel(cue)",
+        "--measure", "first_hit"};
+    const ProcessResult told = carom(sweep);
+    ASSERT_EQ(told.status, 0) << told.err;
+    EXPECT_TRUE(contains(told.out, "\"1\" in pocketed\n  true ")) << told.out;
+    EXPECT_TRUE(contains(told.out, "travel(cue)\n  mean ")) << told.out;
+    EXPECT_TRUE(contains(told.out, "first_hit\n  1  ")) << told.out;
+    const std::string header = read_file(table).substr(0, read_file(table).find('\n'));
+    EXPECT_TRUE(header.ends_with(",message,\"\"\"1\"\" in pocketed\",travel(cue),first_hit")) << header;
+    std::vector<std::string> as_json = sweep;
+    as_json[7] = folder_.file("j.csv");
+    as_json.push_back("--json");
+    const Json json = Json::parse(carom(as_json).out);
+    EXPECT_EQ(json.at("measures").size(), 3u);
+    EXPECT_EQ(json.at("measures").at(0).at("shots"), 200);
+    // Rules cannot judge these shots, and a mistake is told.
+    as_json[7] = folder_.file("f.csv");
+    as_json.insert(as_json.end(), {"--measure", "foul(nine_ball)"});
+    const ProcessResult refused = carom(as_json);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(contains(refused.err, "--measure foul(nine_ball): ")) << refused.err;
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -43,7 +43,7 @@ constexpr FilmKind kKinds[] = {
 };
 #undef CAROM_BT709
 
-std::vector<std::string> words_of(const std::string& text) {
+std::vector<std::string> command_words(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> words;
     for (std::string word; stream >> word;) words.push_back(word);
@@ -108,7 +108,7 @@ void Film::start(const FilmKind& kind, FrameSize size, double fps) {
                    : fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} -i pipe:0 ", size.width,
                                  size.height, fps);
     command += fmt::format("{} -f {}", kind.options, kind.muxer);
-    std::vector<std::string> words = words_of(command);
+    std::vector<std::string> words = command_words(command);
     words.push_back("file:" + file_.written());
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
