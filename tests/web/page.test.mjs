@@ -1,4 +1,4 @@
-// The page of `carom play` in headless Chromium. CAROM_PLAY_PAGE names a page that is there already;
+// The page of `carom play` in headless Chromium. CAROM_PLAY_PAGE names an existing page;
 // CAROM_VIEW_PICTURES names a folder for screenshots.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";

@@ -164,8 +164,8 @@ export class Shot {
   free(): void;
 }
 
-/** Simulates a shot. `until`: stop there [s]. `seconds` of computing (60) and number of `events` (1e6): beyond
- * them it throws.
+/** Simulates a shot. `until`: stop there [s]. It throws after `seconds` of computing (60), or after more than
+ * `events` events (1e6).
  * @throws CaromError */
 export function simulate(scene: Scene, options?: {until?: number; seconds?: number; events?: number}): Shot;
 

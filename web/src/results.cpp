@@ -1,8 +1,10 @@
 // Memory, results and errors.
 #include <cstdlib>
+#include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "carom/version.h"
 #include "web.h"
