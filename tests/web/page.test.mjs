@@ -131,7 +131,7 @@ test("a shot is played, stepped and followed by the next", skip, async () => {
 });
 
 test("games are played by their rules", skip, async () => {
-  for (const game of ["eight_ball", "nine_ball", "three_cushion"]) {
+  for (const game of ["eight_ball", "nine_ball", "three_cushion", "english_pool"]) {
     await open();
     await value(`caromPlay.newGame("${game}")`);
     await settled();
@@ -165,6 +165,36 @@ test("an address is the shot: it has the same bits in another tab and in the pro
   const file = path.join(folder, "shared.toml");
   writeFileSync(file, await value("caromPlay.scene().toml"));
   assert.equal(native(["simulate", file, "--hash"]).trim(), here);
+});
+
+test("a bad address is refused with a sentence", skip, async () => {
+  const begin = "#h=0123456789abcdef&s=";
+  for (const fragment of [`${begin}AAAA`, "#s=<script>", begin + "A".repeat(70000)]) {
+    await open(fragment);
+    assert.match(await value(`document.querySelector(".says").textContent`), /^The address .*\.$/);
+  }
+});
+
+test("a locked page lets only the rest be moved", {skip: missing || withoutProgram}, async () => {
+  const page = path.join(folder, "locked.html"), scene = path.join(folder, "draw.toml");
+  writeFileSync(scene, sceneText("draw.toml"));
+  native(["play", scene, "--lock", "cue.speed,ball,balls,table,physics", "-o", page]);
+  if (!existsSync(page)) return;  // CAROM_PLAY_PAGE: the program has no WebAssembly
+  const kept = url;
+  url = pathToFileURL(page).href;
+  try {
+    await open();
+    const ball = await value(cueBall), at = await placeOf(ball.x, ball.y);
+    await drag(at, [at[0] + 60, at[1] + 20]);
+    assert.deepEqual(await value(cueBall), ball);
+    const disabled = (name) => value(`document.querySelector("[aria-label='${name}']").disabled`);
+    for (const name of ["Speed", "Table", "Game"]) assert.ok(await disabled(name), name);
+    assert.equal(await disabled("Aim"), false);
+    await press("All values …");
+    assert.ok(await value(`[...document.querySelectorAll(".key input, .key select")].every((i) => i.disabled)`));
+  } finally {
+    url = kept;
+  }
 });
 
 test("every scene that comes with carom opens with its hash", {skip: missing || withoutProgram}, async () => {
