@@ -57,9 +57,9 @@ function(carom_without_stack_protector)
 endfunction()
 
 # Precompiles the headers that most sources of TARGET include. Sources of hardened builds have their own
-# options, which a precompiled header would not match.
+# options, which a precompiled header would not match; emscripten cannot precompile one.
 function(carom_precompile target)
-  if(NOT CAROM_HARDENED)
+  if(NOT CAROM_HARDENED AND NOT EMSCRIPTEN)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
 endfunction()

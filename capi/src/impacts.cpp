@@ -1,6 +1,7 @@
 // The C interface: impacts.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -129,7 +130,8 @@ carom_status carom_collide_balls_batch(size_t count, const double* in1, const do
             ball1.load(from1, n);
             ball2.load(from2, n);
             block_params.load(params + start * stride, n, stride);
-            const ImpactBatch batch{static_cast<long>(n), ball1.read(), ball2.read(), block_params.read()};
+            const ImpactBatch batch{static_cast<std::int64_t>(n), ball1.read(), ball2.read(),
+                                    block_params.read()};
             solve(batch, tolerance, {after1.write(), after2.write(), block_status.data(), nullptr, nullptr});
             after1.store(out1 + 9 * start, from1, n);
             after2.store(out2 + 9 * start, from2, n);

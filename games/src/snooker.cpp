@@ -1,6 +1,7 @@
 // Snooker by the World Professional Billiards and Snooker Association, section 3, except misses, which a
 // referee judges.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -53,7 +54,8 @@ bool snookered_at(const Vec2& from, double R, std::span<const Lying> on, std::sp
         const double way = std::sqrt(distance * distance - both * both);
         const double cos = way / distance, sin = both / distance;
         const Vec2 unit = to / distance;
-        return std::ranges::all_of(std::array{sin, -sin}, [&](double side) {
+        const std::array sides{sin, -sin};
+        return std::all_of(sides.begin(), sides.end(), [&](double side) {
             const Vec2 edge(cos * unit.x() - side * unit.y(), side * unit.x() + cos * unit.y());
             return is_clear(from, from + way * edge, R, not_on);
         });

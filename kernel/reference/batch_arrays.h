@@ -1,6 +1,7 @@
 // Converts impacts into the structure of arrays that the batch kernels take, and their results back.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "carom/kernel/batch.h"
@@ -12,7 +13,7 @@ class BatchArrays {
   public:
     explicit BatchArrays(const std::vector<Impact>& impacts, kernel::ClothSlip slip)
         : count_(impacts.size()), data_(36 * count_), steps_(count_, -7), status_(count_) {
-        batch.count = static_cast<long>(count_);
+        batch.count = static_cast<std::int64_t>(count_);
         batch.params.cloth_slip = slip;
         std::size_t column = 0;
         const auto put = [&](const double*& to, auto get) {
@@ -62,7 +63,7 @@ class BatchArrays {
   private:
     std::size_t count_;
     std::vector<double> data_;
-    std::vector<long> steps_;
+    std::vector<std::int64_t> steps_;
     std::vector<kernel::ImpactStatus> status_;
 };
 

@@ -1,6 +1,8 @@
 // The contact frame of an impact, for all kernels: validation, projection, back-projection.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/impact.h"
 #include "numbers.h"
 
@@ -126,8 +128,8 @@ inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactPara
 }
 
 // Projects back to table coordinates. Vertical velocities do not change.
-inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const FrameState& s, long steps,
-                        ImpactResult& out) {
+inline void leave_frame(const Ball& b1, const Ball& b2, const Frame& f, const FrameState& s,
+                        std::int64_t steps, ImpactResult& out) {
     out.v1[0] = s.v1x * f.yy + s.v1y * f.yx;
     out.v1[1] = s.v1y * f.yy - s.v1x * f.yx;
     out.v1[2] = b1.v[2];

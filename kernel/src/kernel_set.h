@@ -4,6 +4,8 @@
 // defines CAROM_ISA_NAMESPACE as scalar, v3 or v4, the namespace of what a source exports.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/contact_phase.h"
 #include "carom/kernel/isa.h"
 #include "carom/kernel/march.h"
@@ -43,8 +45,8 @@ void summed_march(const Ball& ball1, const Ball& ball2, const ImpactParams& para
 void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
                       ImpactResult& result) noexcept;
 void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept;
-long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
-                   double time_limit) noexcept;
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step,
+                           double look_ahead, double time_limit) noexcept;
 }  // namespace CAROM_ISA_NAMESPACE
 #endif
 

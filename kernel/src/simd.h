@@ -16,6 +16,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 // No vector crosses a function call: all functions below are inlined.
@@ -227,6 +229,14 @@ CAROM_INLINE Pack<2> square_root(Pack<2> v) {
 // Bit i is lane i of the mask.
 CAROM_INLINE int bits(Mask<2> mask) {
     return _mm_movemask_pd((__m128d)mask);
+}
+#elif defined(__wasm_simd128__)
+CAROM_INLINE Pack<2> square_root(Pack<2> v) {
+    return (Pack<2>)wasm_f64x2_sqrt((v128_t)v);
+}
+
+CAROM_INLINE int bits(Mask<2> mask) {
+    return static_cast<int>(wasm_i64x2_bitmask((v128_t)mask));
 }
 #else
 CAROM_INLINE Pack<2> square_root(Pack<2> v) {

@@ -13,6 +13,7 @@ namespace carom::tools {
 void add_simulate(Options& program);
 void add_render(Options& program);
 void add_view(Options& program);
+void add_play(Options& program);
 void add_diagram(Options& program);
 void add_judge(Options& program);
 void add_next(Options& program);
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
     add_simulate(program);
     add_render(program);
     add_view(program);
+    add_play(program);
     add_diagram(program);
     add_next(program);
     add_judge(program);

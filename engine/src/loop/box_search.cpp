@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace carom {
@@ -31,7 +32,7 @@ float up(double x) {
 // [-] Margin of a block's box in the tree, as a share of its circumference.
 constexpr float kBlockMargin = 0.05f;
 // [-] Searches per box before the blocks are rebuilt: sorting costs about 100 ns per box.
-constexpr long kSearchesPerBox = 4;
+constexpr std::int64_t kSearchesPerBox = 4;
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of boxes that are not placed
 
@@ -141,7 +142,7 @@ void BoxSearch::rebuild() {
         }
         update_block(b);
     }
-    until_rebuild_ = kSearchesPerBox * static_cast<long>(count);
+    until_rebuild_ = kSearchesPerBox * static_cast<std::int64_t>(count);
 }
 
 }  // namespace carom

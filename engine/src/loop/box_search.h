@@ -106,7 +106,7 @@ class BoxSearch {
     std::unique_ptr<b2DynamicTree> tree_;
     std::vector<int> slot_, index_, proxy_;
     std::vector<Rounded> sorted_;
-    long until_rebuild_ = 0;
+    std::int64_t until_rebuild_ = 0;
 };
 
 template <class Found>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "contact/place.h"
 
@@ -206,7 +207,7 @@ bool Clusters::closes_still(double v_n) const {
     });
 }
 
-long Clusters::resolve(double v_n, bool friction) {
+std::int64_t Clusters::resolve(double v_n, bool friction) {
     const BallParams& p = plan_.balls;
     ClusterSettings settings{
         .R = unlike_ ? p.R : balls_.radius(members_.front().ball),
@@ -226,10 +227,10 @@ long Clusters::resolve(double v_n, bool friction) {
         return unlike_ ? map_.compliant_unlike(members_, contacts_, settings, v_n)
                        : map_.compliant(members_, contacts_, settings, v_n);
     };
-    long steps = run();
+    std::int64_t steps = run();
     if ((in_space_ || unlike_) && steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
-        const long more = run();
+        const std::int64_t more = run();
         steps = more < 0 ? more : steps + more;
     }
     // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
@@ -237,7 +238,7 @@ long Clusters::resolve(double v_n, bool friction) {
 }
 
 // Balls that all lie push each other in the plane, whatever the tilt of their normals.
-long Clusters::rigid(const ClusterSettings& settings) {
+std::int64_t Clusters::rigid(const ClusterSettings& settings) {
     ClusterSettings without = settings;
     without.e_b = plan_.balls.e_b;
     if (unlike_ && !in_space_) {

@@ -37,7 +37,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     /// @param v_n   [m/s] the fastest approach
     /// @param friction  whether there is friction between the balls
     /// @return number of integration steps
-    long resolve(double v_n, bool friction);
+    std::int64_t resolve(double v_n, bool friction);
 
     /// Number of balls that collect() has examined besides the first two; used by tests.
     std::int64_t looks() const { return looks_; }
@@ -45,7 +45,7 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     double pair_time(int a, int b, double v_n) const;
-    long rigid(const ClusterSettings& settings);
+    std::int64_t rigid(const ClusterSettings& settings);
     void share_turning();
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;

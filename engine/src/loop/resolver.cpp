@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "carom/engine/cushion.h"
@@ -190,7 +191,7 @@ bool Resolver::cluster(int a, int b, double v_n) {
     log_.note_long_round();
     const bool compliant = plan_.clusters == ClusterModel::kCompliant;
     const bool friction = compliant && plan_.in_force(Effect::kThrow) && plan_.ball_ball->reads_friction;
-    long steps;
+    std::int64_t steps;
     {
         const Stopwatch watch(kernel_ns_);
         steps = clusters_.resolve(v_n, friction);

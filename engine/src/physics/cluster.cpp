@@ -20,7 +20,7 @@ constexpr double kClusterLookAhead = 2.0;
 // [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
-constexpr long kRigidSweeps = 100000;
+constexpr std::int64_t kRigidSweeps = 100000;
 
 }  // namespace
 
@@ -169,8 +169,9 @@ double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterC
 
 }  // namespace
 
-long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                           const ClusterSettings& settings, double V) {
+std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
+                                   const std::vector<ClusterContact>& contacts,
+                                   const ClusterSettings& settings, double V) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
     load(balls, settings, V, 2);
@@ -189,23 +190,23 @@ long ClusterMap::compliant(std::vector<ClusterBall>& balls, const std::vector<Cl
                                      on_cache_line(numbers_),
                                      places_.data(),
                                      curvature(L, settings.R, settings.turns)};
-    const long steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
-                                          kClusterLookAhead, kClusterTimeLimit);
+    const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
+                                                  kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 2);
     unload(settings, V, 2, balls);
     return steps;
 }
 
-long ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
-                                    const std::vector<ClusterContact>& contacts,
-                                    const ClusterSettings& settings, double V) {
+std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
+                                            const std::vector<ClusterContact>& contacts,
+                                            const ClusterSettings& settings, double V) {
     return in_space(balls, contacts, settings, V, false);
 }
 
-long ClusterMap::compliant_unlike(std::vector<ClusterBall>& balls,
-                                  const std::vector<ClusterContact>& contacts,
-                                  const ClusterSettings& settings, double V) {
+std::int64_t ClusterMap::compliant_unlike(std::vector<ClusterBall>& balls,
+                                          const std::vector<ClusterContact>& contacts,
+                                          const ClusterSettings& settings, double V) {
     return in_space(balls, contacts, settings, V, true);
 }
 
@@ -238,8 +239,9 @@ double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
     return shortest;
 }
 
-long ClusterMap::in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                          const ClusterSettings& settings, double V, bool held) {
+std::int64_t ClusterMap::in_space(std::vector<ClusterBall>& balls,
+                                  const std::vector<ClusterContact>& contacts,
+                                  const ClusterSettings& settings, double V, bool held) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
     load(balls, settings, V, 3);
@@ -262,16 +264,16 @@ long ClusterMap::in_space(std::vector<ClusterBall>& balls, const std::vector<Clu
         phase.unlike = &unlike;
     }
     const double before = energy(3);
-    const long steps = kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step,
-                                                      kClusterLookAhead, kClusterTimeLimit);
+    const std::int64_t steps = kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step,
+                                                              kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
     keep_energy(before, 3);
     unload(settings, V, 3, balls);
     return steps;
 }
 
-long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                       const ClusterSettings& settings) {
+std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                               const ClusterSettings& settings) {
     const double e_b = settings.e_b;
     const auto mobility = [&](int b) { return settings.unlike ? 1.0 / balls[b].mass : 1.0; };
     std::vector<Vec3>& v = velocity_;
@@ -281,7 +283,7 @@ long ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<Cluste
     impulse.assign(contacts.size() + balls.size(), 0.0);
     double scale = 0.0;
     for (const Vec3& x : v) scale = std::max(scale, length3(x));
-    long sweeps = 0;
+    std::int64_t sweeps = 0;
     for (; sweeps < kRigidSweeps; ++sweeps) {
         double change = 0.0;
         for (std::size_t c = 0; c < contacts.size(); ++c) {

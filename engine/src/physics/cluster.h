@@ -4,6 +4,7 @@
 // cannot claim.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -73,29 +74,31 @@ class ClusterMap {
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
     /// -1 if the contacts did not separate within kClusterTimeLimit.
-    long compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                   const ClusterSettings& settings, double V);
+    std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                           const ClusterSettings& settings, double V);
 
     /// The same in space, if a ball flies or may leave the cloth: without the cloth, which reacts next.
     /// Ignores `turn` and the friction of the cloth.
-    long compliant_in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                            const ClusterSettings& settings, double V);
+    std::int64_t compliant_in_space(std::vector<ClusterBall>& balls,
+                                    const std::vector<ClusterContact>& contacts,
+                                    const ClusterSettings& settings, double V);
 
     /// As compliant() for balls that differ in size, and so touch along tilted normals.
-    long compliant_unlike(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                          const ClusterSettings& settings, double V);
+    std::int64_t compliant_unlike(std::vector<ClusterBall>& balls,
+                                  const std::vector<ClusterContact>& contacts,
+                                  const ClusterSettings& settings, double V);
 
     /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that
     /// close no contact (equations 7, 8), nor press a ball that lies (r_z not above its R) into the cloth;
     /// frictionless. Of the settings only R, e_b and `unlike` are read. Returns the number of sweeps.
-    long rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-               const ClusterSettings& settings);
+    std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                       const ClusterSettings& settings);
 
   private:
     void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V, int axes);
     void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls) const;
-    long in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                  const ClusterSettings& settings, double V, bool held);
+    std::int64_t in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
+                          const ClusterSettings& settings, double V, bool held);
     double describe_unlike(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            double L, const ClusterSettings& settings, bool held);
     void keep_energy(double before, int axes);

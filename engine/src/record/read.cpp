@@ -190,7 +190,7 @@ EventCost read_cost(const JsonObject& all, const Format& format) {
     cost.detect_ns = all.at("detect_ns").non_negative();
     cost.resolve_ns = all.at("resolve_ns").non_negative();
     cost.kernel_ns = all.at("kernel_ns").non_negative();
-    cost.steps = static_cast<long>(all.at("steps").integer(0, std::numeric_limits<std::int64_t>::max()));
+    cost.steps = all.at("steps").integer(0, std::numeric_limits<std::int64_t>::max());
     cost.method = all.at("method").text();
     if (format.version > 1 || all.has("queue_ns")) cost.queue_ns = all.at("queue_ns").non_negative();
     return cost;

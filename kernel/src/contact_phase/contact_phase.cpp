@@ -5,6 +5,8 @@
 // numbers. A lane computes what a scalar program would, and every sum has one fixed order. Only contacts that
 // overlap at that stage take part. Memory is laid out for whole registers: the velocity and the horizontal
 // spin of a ball are one row of four numbers.
+#include <cstdint>
+
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/flight.h"
 #include "contact_phase/law.h"
@@ -304,8 +306,8 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, doubl
 }
 
 template <bool kFalls>
-long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
-               double time_limit) {
+std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
+                       double time_limit) {
     Work w = lay_out(phase);
     const Law<kFalls> lanes{broadcast<4>(law.a),
                             broadcast<4>(law.b),
@@ -319,7 +321,7 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
                             law.mu_s > 0.0 && has_friction(law),
                             has_friction(law)};
     update_rates(w);
-    long steps = 0;
+    std::int64_t steps = 0;
     double next = longest_step;
     double time = 0.0;
     for (;;) {
@@ -348,8 +350,8 @@ long integrate(const ContactPhase& phase, const HertzLaw& law, double longest_st
 
 namespace CAROM_ISA_NAMESPACE {
 
-long contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
-                   double time_limit) noexcept {
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step,
+                           double look_ahead, double time_limit) noexcept {
     return law.mu_b_more > 0.0 ? integrate<true>(phase, law, longest_step, look_ahead, time_limit)
                                : integrate<false>(phase, law, longest_step, look_ahead, time_limit);
 }

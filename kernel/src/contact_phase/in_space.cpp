@@ -1,4 +1,6 @@
 // The contact phase in space, one contact at a time: clusters with a ball in the air are rare and small.
+#include <cstdint>
+
 #include "carom/kernel/contact_phase.h"
 #include "contact_phase/law.h"
 #include "numbers.h"
@@ -78,10 +80,10 @@ class InSpace {
         }
     }
 
-    long run(double longest_step, double look_ahead, double time_limit) {
+    std::int64_t run(double longest_step, double look_ahead, double time_limit) {
         next_ = longest_step;
         double time = 0.0;
-        for (long steps = 1; time < time_limit; ++steps) {
+        for (std::int64_t steps = 1; time < time_limit; ++steps) {
             time += step(longest_step);
             if (presses(time_limit - time)) continue;
             const double flight = next_touch();
@@ -316,8 +318,8 @@ class InSpace {
 
 }  // namespace
 
-long contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law, double longest_step,
-                            double look_ahead, double time_limit) noexcept {
+std::int64_t contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law,
+                                    double longest_step, double look_ahead, double time_limit) noexcept {
     return InSpace(phase, law).run(longest_step, look_ahead, time_limit);
 }
 

@@ -2,6 +2,8 @@
 // not: validation, projection into the contact frame, back-projection.
 #pragma once
 
+#include <cstdint>
+
 #include "frame.h"
 
 namespace carom::kernel {
@@ -19,7 +21,7 @@ void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int
     Frame frame;
     FrameState state;
     if (enter_frame(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const long steps =
+    const std::int64_t steps =
         params.cloth_slip == ClothSlip::kAsPublished
             ? March::template loop<+1>(state, params, n)
             : March::template loop<-1>(state, params, n);  // NOLINT(misc-redundant-expression): +1, -1

@@ -6,6 +6,8 @@
 // of the cloth on ball i (1) and ball j (2); C = 5/(2 m R); W is the work of the normal impulse.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/march.h"
 #include "frame.h"
 #include "loop_marks.h"
@@ -21,16 +23,16 @@ constexpr double kSlipCutoff = 1e-16;
 // kSign is +1 for the cloth slip u = (v_x + R w_y, v_y - R w_x), as published, and -1 for the consistent
 // sign. Returns the number of steps, or -1 at the limit of steps.
 template <int kSign>
-long march_loop(FrameState& s, const ImpactParams& p, int n) {
+std::int64_t march_loop(FrameState& s, const ImpactParams& p, int n) {
     const double R = p.R, m = p.m;
     const double dP = 0.5 * (1.0 + p.e_b) * m * absolute(s.v2y - s.v1y) / n;
     const double C = 5.0 / (2.0 * m * R);
     const double u_floor = cloth_slip_floor(s, R, kSign);
-    const long limit = kMarchStepLimit * static_cast<long>(n);
+    const std::int64_t limit = kMarchStepLimit * static_cast<std::int64_t>(n);
     double W = 0.0, W_f = 0.0;
     bool compressing = true;
     double v_n = s.v2y - s.v1y;  // < 0 while approaching
-    long steps = 0;
+    std::int64_t steps = 0;
     while (v_n < 0.0 || compressing || W < W_f) {
         CAROM_LOOP_BEGIN("baseline");
         if (++steps > limit) return -1;
@@ -85,7 +87,7 @@ long march_loop(FrameState& s, const ImpactParams& p, int n) {
 
 struct PublishedMarch {
     template <int kSign>
-    static long loop(FrameState& s, const ImpactParams& p, int n) {
+    static std::int64_t loop(FrameState& s, const ImpactParams& p, int n) {
         return march_loop<kSign>(s, p, n);
     }
 };

@@ -2,6 +2,8 @@
 // block of the summed integration may be (summed.h).
 #pragma once
 
+#include <cstdint>
+
 #include "numbers.h"
 #include "simd.h"
 
@@ -24,9 +26,10 @@ struct Path {
 // Has an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of
 // the root.
 inline double eighth_root(double x) {
-    long bits;
+    // Not long, which has 4 bytes on wasm32, 32-bit ARM and 64-bit Windows.
+    std::int64_t bits;
     __builtin_memcpy(&bits, &x, sizeof x);
-    bits = bits / 8 + 0x3ff0000000000000L / 8 * 7;
+    bits = bits / 8 + std::int64_t{0x3ff0000000000000} / 8 * 7;
     __builtin_memcpy(&x, &bits, sizeof x);
     return x;
 }

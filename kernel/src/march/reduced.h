@@ -15,6 +15,8 @@
 // sigma = +1 as published, -1 consistent. Ball 2 (index 1) is pressed if z < 0.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/march.h"
 #include "frame.h"
 #include "march/loop.h"
@@ -74,7 +76,7 @@ inline void expand(FrameState& f, const Sums& s, double R) {
 
 struct ReducedConstants {
     double h, mu_h, mu_s[2], work_ratio, u_floor;  // step of p, mu_b h, 1 + e_b^2
-    long limit;
+    std::int64_t limit;
 };
 
 template <int kSign>
@@ -85,7 +87,7 @@ ReducedConstants reduced_constants(const FrameState& s, const ImpactParams& p, i
             {p.mu_s1, p.mu_s2},
             1.0 + p.e_b * p.e_b,
             cloth_slip_floor(s, p.R, kSign),
-            kMarchStepLimit * static_cast<long>(n)};
+            kMarchStepLimit * static_cast<std::int64_t>(n)};
 }
 
 template <int kSign>
@@ -134,7 +136,8 @@ struct StopTest {
 
 // Makes exact steps until the impact ends or `count` steps are done.
 template <int kSign>
-void reduced_steps(Reduced& r, StopTest& stop, long& steps, long count, const ReducedConstants& k) {
+void reduced_steps(Reduced& r, StopTest& stop, std::int64_t& steps, std::int64_t count,
+                   const ReducedConstants& k) {
     for (; count > 0 && stop.goes_on(r.v_n); --count, ++steps) {
         const double before = r.v_n;
         reduced_step<kSign>(r, k);

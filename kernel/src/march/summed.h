@@ -11,6 +11,8 @@
 // tie within rounding.
 #pragma once
 
+#include <cstdint>
+
 #include "loop_marks.h"
 #include "march/path.h"
 #include "march/reduced.h"
@@ -31,7 +33,7 @@ constexpr double kEarlySlack = 10.0;
 constexpr double kSweepRounding = 4e-15;
 // Exact steps, and the growth of a small difference over them, after which an impact is left to the published
 // integration: near stick, or if a cloth slip comes close to zero, rounding may decide the sign of a slip.
-constexpr long kMostExactSteps = 40;
+constexpr std::int64_t kMostExactSteps = 40;
 constexpr double kMostGrowth = 10.0;
 // How close v_n and the work may come to the values that end a phase, relative to the approach speed; in
 // addition the published integration rounds v_n by up to half an ulp of the fastest speed in each step.
@@ -49,8 +51,8 @@ class SummedMarch {
           tie_W(close * absolute(start.v_n)) {}
 
     // Returns the number of steps, or -1 if the published integration is needed.
-    long run() {
-        long patience = 1, exact = 0;
+    std::int64_t run() {
+        std::int64_t patience = 1, exact = 0;
         while (stop.goes_on(r.v_n)) {
             if (steps > k.limit || tied || enlarged > kMostGrowth || exact > kMostExactSteps) return -1;
             const FirstStep first = first_step();
@@ -71,7 +73,7 @@ class SummedMarch {
     ReducedConstants k;
     double scale, tie_v, tie_W;
     StopTest stop;
-    long steps = 0;
+    std::int64_t steps = 0;
     bool tied = false;
     double enlarged = 1.0;
 
@@ -88,8 +90,8 @@ class SummedMarch {
     }
 
     // Makes exact steps until the impact ends or `count` are done; returns how many. Checks each for a tie.
-    long exact_steps(long count) {
-        const long before = steps;
+    std::int64_t exact_steps(std::int64_t count) {
+        const std::int64_t before = steps;
         while (count-- > 0 && stop.goes_on(r.v_n)) {
             const bool compressing = stop.compressing;
             enlarged *= growth_of_step();
@@ -267,7 +269,7 @@ class SummedMarch {
         if (!crosses && (stop.compressing || stop.W + h * V < stop.W_f)) {
             stop.W += stop.compressing ? -h * V : h * V;
             take(f, load<8>(table.total), K, pressed);
-            steps += static_cast<long>(K);
+            steps += static_cast<std::int64_t>(K);
             return true;
         }
         const Profile at(table, f.q_y, v0, h);
@@ -328,7 +330,7 @@ class SummedMarch {
             weight[l] = total(table.once_low[l], load<8>(powers)) + highest * table.once_high[0][l];
         const Eight weights = load<8>(weight);
         take(f, weights, last, pressed);
-        steps += static_cast<long>(last);
+        steps += static_cast<std::int64_t>(last);
         return true;
     }
 
@@ -357,7 +359,7 @@ class SummedMarch {
 
     // t rounded down to a whole number in 1 .. K.
     static double whole(double t, double K) {
-        return t > 1.0 ? (t < K ? static_cast<double>(static_cast<long>(t)) : K) : 1.0;
+        return t > 1.0 ? (t < K ? static_cast<double>(static_cast<std::int64_t>(t)) : K) : 1.0;
     }
 
     // The first whole t in 1 .. K at which `reached` holds, searched from the guess; -1 if there is none.
@@ -398,7 +400,7 @@ struct Summed {
 
     // Returns the number of steps, or -1 if the published integration is needed; the state is then unchanged.
     template <int kSign>
-    static long loop(FrameState& s, const ImpactParams& p, int n) {
+    static std::int64_t loop(FrameState& s, const ImpactParams& p, int n) {
         if (n < kFewestSubsteps || !usual(p, kSign)) return -1;
         ReducedConstants k = reduced_constants<kSign>(s, p, n);
         // Without friction between the balls the cloth has no effect, and its slips must not decide where the
@@ -407,7 +409,7 @@ struct Summed {
         const Reduced start = reduce<kSign>(s, p.R);
         SummedMarch<kSign> march(start, k,
                                  kTie * absolute(start.v_n) + kTieRounding * n * sum_of_speeds(s, p.R));
-        const long steps = march.run();
+        const std::int64_t steps = march.run();
         if (steps >= 0) expand(s, sums_between<kSign>(start, march.r, static_cast<double>(steps) * k.h), p.R);
         return steps;
     }

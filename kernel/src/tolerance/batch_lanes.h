@@ -3,6 +3,8 @@
 // this way.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/batch.h"
 #include "tolerance/single.h"
 #include "tolerance/wide.h"
@@ -33,12 +35,12 @@ struct BatchView {
     const double* in[kInputs];
     double* out[kOutputs];
     ImpactStatus* status;
-    long* steps;
+    std::int64_t* steps;
     ToleranceMethod* method;
     ClothSlip cloth_slip;
     const double *mass_ratio, *radius_ratio;  // null: 1
 
-    bool alike(long i) const {
+    bool alike(std::int64_t i) const {
         return (mass_ratio == nullptr || mass_ratio[i] == 1.0) &&
                (radius_ratio == nullptr || radius_ratio[i] == 1.0);
     }
@@ -222,17 +224,17 @@ CAROM_INLINE void solve_block(const Wide (&in)[kInputs], ClothSlip cloth_slip, d
 }
 
 // Writes lane `from` of a block as result i of the batch.
-CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int from, long i,
+CAROM_INLINE void write_lane(const BatchView& v, const BlockResult& block, int from, std::int64_t i,
                              ToleranceMethod method) {
     for (int k = 0; k < kOutputs; ++k) v.out[k][i] = lane(block.out[k], from);
     v.status[i] = ImpactStatus::kOk;
-    if (v.steps != nullptr) v.steps[i] = static_cast<long>(lane(block.sweeps, from));
+    if (v.steps != nullptr) v.steps[i] = static_cast<std::int64_t>(lane(block.sweeps, from));
     if (v.method != nullptr) v.method[i] = method;
 }
 
 // Loads the impacts index[0], ..., index[lanes - 1]; the first one fills the remaining lanes.
-CAROM_INLINE void gather(const BatchView& v, const long* index, int lanes, Wide (&in)[kInputs]) {
-    long from[kWidth];
+CAROM_INLINE void gather(const BatchView& v, const std::int64_t* index, int lanes, Wide (&in)[kInputs]) {
+    std::int64_t from[kWidth];
     for (int i = 0; i < kWidth; ++i) from[i] = index[i < lanes ? i : 0];
     for (int k = 0; k < kInputs; ++k) {
         for (int i = 0; i < kWidth; ++i) set_lane(in[k], i, v.in[k][from[i]]);

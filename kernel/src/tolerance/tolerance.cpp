@@ -3,6 +3,8 @@
 // A batch solves its easy impacts in lanes in their order, by one collocation of 4 nodes. Impacts that need 8
 // nodes are collected until they fill a register. Those that need stretches are collected too, and each lane
 // starts the next one as soon as it has finished one. Special cases are left to the single kernel.
+#include <cstdint>
+
 #include "kernel_set.h"
 #include "tolerance/batch_lanes.h"
 #include "tolerance/batch_pool.h"
@@ -11,12 +13,12 @@ namespace carom::kernel {
 namespace {
 
 // Impacts between two checks of the collected ones.
-constexpr long kChunk = 256;
+constexpr std::int64_t kChunk = 256;
 // Impacts that need 8 nodes, and those that need stretches, are solved when this many have been collected.
 constexpr int kMostResolvable = 256, kMostHard = 256;
 
 // Solves lane i of a batch with the single kernel.
-inline void solve_single(const BatchView& v, long i, double tolerance) {
+inline void solve_single(const BatchView& v, std::int64_t i, double tolerance) {
     Ball ball1, ball2;
     for (int k = 0; k < 3; ++k) {
         ball1.r[k] = v.in[kR1 + k][i];
@@ -50,7 +52,7 @@ inline void solve_single(const BatchView& v, long i, double tolerance) {
 
 // The remaining impacts: those that one collocation of 8 nodes may solve, and those that need stretches.
 struct Remaining {
-    long resolvable[kMostResolvable + kChunk], hard[kMostHard + kMostResolvable + kChunk];
+    std::int64_t resolvable[kMostResolvable + kChunk], hard[kMostHard + kMostResolvable + kChunk];
     double hardness[kMostResolvable + kChunk];  // of the resolvable
     int resolvables, hards;
 };
@@ -66,7 +68,7 @@ inline void sort_resolvable(Remaining& rest) {
     int end[kBins] = {};
     for (int i = 0; i < rest.resolvables; ++i) ++end[bin(i)];
     for (int b = 1; b < kBins; ++b) end[b] += end[b - 1];
-    long index[kMostResolvable + kChunk];
+    std::int64_t index[kMostResolvable + kChunk];
     double hardness[kMostResolvable + kChunk];
     for (int i = rest.resolvables - 1; i >= 0; --i) {
         const int to = --end[bin(i)];
@@ -80,16 +82,17 @@ inline void sort_resolvable(Remaining& rest) {
 }
 
 // Solves the impacts [begin, end) with 4 nodes.
-inline void sweep_easy(const BatchView& v, long begin, long end, double tolerance, Remaining& rest) {
+inline void sweep_easy(const BatchView& v, std::int64_t begin, std::int64_t end, double tolerance,
+                       Remaining& rest) {
     Wide in[kInputs];
     BlockResult block;
     const bool unlike = v.mass_ratio != nullptr || v.radius_ratio != nullptr;
-    for (long i = begin; i < end; i += kWidth) {
+    for (std::int64_t i = begin; i < end; i += kWidth) {
         const int lanes = static_cast<int>(end - i < kWidth ? end - i : kWidth);
         if (lanes == kWidth) {
             for (int k = 0; k < kInputs; ++k) in[k] = load<kWidth>(v.in[k] + i);
         } else {
-            long index[kWidth] = {};
+            std::int64_t index[kWidth] = {};
             for (int j = 0; j < lanes; ++j) index[j] = i + j;
             gather(v, index, lanes, in);
         }
@@ -98,7 +101,8 @@ inline void sweep_easy(const BatchView& v, long begin, long end, double toleranc
             for (int k = 0; k < kOutputs; ++k) store(v.out[k] + i, block.out[k]);
             for (int j = 0; j < kWidth; ++j) v.status[i + j] = ImpactStatus::kOk;
             if (v.steps != nullptr) {
-                for (int j = 0; j < kWidth; ++j) v.steps[i + j] = static_cast<long>(lane(block.sweeps, j));
+                for (int j = 0; j < kWidth; ++j)
+                    v.steps[i + j] = static_cast<std::int64_t>(lane(block.sweeps, j));
             }
             if (v.method != nullptr) {
                 for (int j = 0; j < kWidth; ++j) v.method[i + j] = ToleranceMethod::kCollocation4;
@@ -129,7 +133,7 @@ inline void sweep_resolvable(const BatchView& v, double tolerance, Remaining& re
     sort_resolvable(rest);
     for (int first = 0; first < rest.resolvables; first += kWidth) {
         const int lanes = rest.resolvables - first < kWidth ? rest.resolvables - first : kWidth;
-        const long* index = rest.resolvable + first;
+        const std::int64_t* index = rest.resolvable + first;
         gather(v, index, lanes, in);
         solve_block<8>(in, v.cloth_slip, tolerance, block);
         for (int j = 0; j < lanes; ++j) {
@@ -149,7 +153,7 @@ inline void sweep_hard(const BatchView& v, double tolerance, Remaining& rest) {
     HardPool pool;
     for (int first = 0; first < rest.hards; first += kPool) {
         const int count = rest.hards - first < kPool ? rest.hards - first : kPool;
-        const long* index = rest.hard + first;
+        const std::int64_t* index = rest.hard + first;
         for (int i = 0; i < count; i += kWidth) {
             gather(v, index + i, count - i, in);
             wide_pose(in, v.cloth_slip, tolerance, q);
@@ -203,13 +207,13 @@ void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBat
     const BatchView v = view(batch, result);
     if (!(tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance)) {
         // The single kernel reports what is wrong.
-        for (long i = 0; i < batch.count; ++i) solve_single(v, i, tolerance);
+        for (std::int64_t i = 0; i < batch.count; ++i) solve_single(v, i, tolerance);
         return;
     }
     const double solved = smallest(tolerance, kLoosestSolved);
     Remaining rest;
     rest.resolvables = rest.hards = 0;
-    for (long begin = 0; begin < batch.count; begin += kChunk) {
+    for (std::int64_t begin = 0; begin < batch.count; begin += kChunk) {
         const bool last = batch.count - begin <= kChunk;
         sweep_easy(v, begin, last ? batch.count : begin + kChunk, solved, rest);
         if (last || rest.resolvables >= kMostResolvable) sweep_resolvable(v, solved, rest);

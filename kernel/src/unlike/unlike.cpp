@@ -6,6 +6,8 @@
 // or that its nodes do not resolve, is tried again with 0.4 of its length. Alike balls have a faster kernel.
 #include "unlike/unlike.h"
 
+#include <cstdint>
+
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
 #include "gauss.h"
@@ -137,7 +139,7 @@ class Solver {
 
     double p = 0.0;
     Forces total{};
-    long sweeps = 0;
+    std::int64_t sweeps = 0;
 
   private:
     static constexpr double kFar = 1e300;
@@ -425,11 +427,11 @@ void march_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
     Slips s = slips_of(tilt, state, R1, R2, approach);
     drop_noise(ball1, ball2, R1, R2, approach, 0.0, s);
     const double h = (1.0 + tilt.e_b) * s.v / (tilt.C * tilt.C) / n;
-    const long limit = kMarchStepLimit * static_cast<long>(n);
+    const std::int64_t limit = kMarchStepLimit * static_cast<std::int64_t>(n);
     double p = 0.0, work = 0.0, goal = 0.0;
     Forces total{};
     bool compressing = true;
-    long steps = 0;
+    std::int64_t steps = 0;
     while (s.v > 0.0 || compressing || work < goal) {
         if (++steps > limit) {
             copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);

@@ -3,89 +3,13 @@
 // The manifest: {chromium, profile, pages: [{name, file, bounds, times, states, second: {time, apart} for two
 // shots}], reports: [{name, file, column, command}]}, where states[k] is the list of {id, x, y, z, state,
 // radius} at times[k]. With PICTURES, screenshots go to that folder.
-import {spawn} from "node:child_process";
-import {readFileSync, writeFileSync} from "node:fs";
+import {readFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
+import {Browser} from "./chromium.mjs";
 
 const manifest = JSON.parse(readFileSync(process.argv[2], "utf8")), pictures = process.argv[3];
 let faults = 0;
 const fault = (page, text) => { ++faults; console.log(`${page}: ${text}`); };
-
-/** A browser with two pipes, file descriptors 3 and 4: messages are JSON, each followed by a 0. */
-class Browser {
-  constructor() {
-    this.process = spawn(manifest.chromium, ["--headless=new", "--no-sandbox", "--disable-gpu",
-      "--hide-scrollbars", "--remote-debugging-pipe", "--host-resolver-rules=MAP * ~NOTFOUND",
-      "--no-first-run", "--disable-background-networking", `--user-data-dir=${manifest.profile}`,
-      "about:blank"],
-    {stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"]});
-    this.waiting = new Map();
-    this.listeners = [];
-    this.next = 0;
-    let text = "";
-    this.process.stdio[4].setEncoding("utf8").on("data", (data) => {
-      text += data;
-      for (let end; (end = text.indexOf("\0")) >= 0; text = text.slice(end + 1))
-        this.receive(JSON.parse(text.slice(0, end)));
-    });
-    this.process.on("exit", () => {
-      for (const {reject} of this.waiting.values()) reject(new Error("the browser ended"));
-    });
-  }
-  receive(message) {
-    const call = this.waiting.get(message.id);
-    if (!call) { this.listeners.forEach((listen) => listen(message)); return; }
-    this.waiting.delete(message.id);
-    if (message.error) call.reject(new Error(message.error.message));
-    else call.resolve(message.result);
-  }
-  send(method, params = {}, sessionId = this.session) {
-    const id = ++this.next;
-    this.process.stdio[3].write(JSON.stringify({id, method, params, sessionId}) + "\0");
-    return new Promise((resolve, reject) => this.waiting.set(id, {resolve, reject}));
-  }
-  async open() {
-    const {targetId} = await this.send("Target.createTarget", {url: "about:blank"}, undefined);
-    this.session = (await this.send("Target.attachToTarget", {targetId, flatten: true}, undefined)).sessionId;
-    for (const domain of ["Page", "Runtime", "Log", "Network"]) await this.send(`${domain}.enable`);
-  }
-  async value(expression) {
-    const {result, exceptionDetails} =
-      await this.send("Runtime.evaluate", {expression, returnByValue: true, awaitPromise: true});
-    if (exceptionDetails) throw new Error(exceptionDetails.exception?.description || exceptionDetails.text);
-    return result.value;
-  }
-  async until(expression) {
-    for (let i = 0; i < 400; ++i) {
-      if (await this.value(expression)) return;
-      await new Promise((resolve) => setTimeout(resolve, 25));
-    }
-    throw new Error(`never true: ${expression}`);
-  }
-  async size(width, height, mobile = false) {
-    const deviceScaleFactor = mobile ? 2 : 1;
-    await this.send("Emulation.setDeviceMetricsOverride", {width, height, deviceScaleFactor, mobile});
-  }
-  async media(scheme, motion = "no-preference") {
-    const features =
-      [{name: "prefers-color-scheme", value: scheme}, {name: "prefers-reduced-motion", value: motion}];
-    await this.send("Emulation.setEmulatedMedia", {features});
-  }
-  async key(key, code = key) {
-    const text = key.length === 1 ? key : undefined;
-    await this.send("Input.dispatchKeyEvent", {type: "keyDown", key, code, text});
-    await this.send("Input.dispatchKeyEvent", {type: "keyUp", key, code});
-  }
-  async mouse(type, x, y) {
-    const buttons = type === "mouseReleased" ? 0 : 1;
-    await this.send("Input.dispatchMouseEvent", {type, x, y, button: "left", buttons, clickCount: 1});
-  }
-  async picture(name) {
-    if (!pictures) return;
-    const {data} = await this.send("Page.captureScreenshot", {format: "png"});
-    writeFileSync(`${pictures}/${name}.png`, Buffer.from(data, "base64"));
-  }
-}
 
 const near = (a, b, by = 1e-9) => Math.abs(a - b) <= by;
 const settled = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))";
@@ -383,7 +307,7 @@ async function frameTimes(browser, page) {
     requestAnimationFrame(frame); })`);
 }
 
-const browser = new Browser();
+const {chromium, profile} = manifest, browser = new Browser({chromium, profile, pictures});
 try {
   await browser.open();
   await browser.media("light");

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -105,7 +106,13 @@ State read_state(const std::string& path) {
     if (std::filesystem::file_size(path, error) > kLargestState)
         throw UsageError(fmt::format("{}: expected a state of a game of less than 64 kB", shown));
     std::ifstream stream(path);
-    const Json json = Json::parse(stream, nullptr, false);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return parse_state(text.str(), shown);
+}
+
+State parse_state(const std::string& text, const std::string& shown) {
+    const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object())
         throw UsageError(shown + ": expected a state of a game, as carom judge --state-out writes it");
     for (const auto& [key, value] : json.items()) {

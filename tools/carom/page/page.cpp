@@ -80,10 +80,16 @@ void add_page_files(const std::vector<PageFile>& more) {
 }
 
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
-                      const std::vector<PageData>& data) {
-    const PageFile& style = page_file("style.css");
-    std::string policy = "default-src 'none'; base-uri 'none'; form-action 'none'; style-src" +
-                         policy_hash(style) + "; script-src";
+                      const std::vector<PageData>& data, const PageExtras& extras) {
+    std::vector<std::string> style_names = {"style.css"};
+    style_names.insert(style_names.end(), extras.styles.begin(), extras.styles.end());
+    std::string policy = "default-src 'none'; base-uri 'none'; form-action 'none'; style-src", styles;
+    for (const std::string& name : style_names) {
+        policy += policy_hash(page_file(name));
+        styles += std::string("<style>") + page_file(name).text + "</style>\n";
+    }
+    policy += "; script-src";
+    if (extras.wasm) policy += " 'wasm-unsafe-eval'";
     for (const std::string& name : scripts) policy += policy_hash(page_file(name));
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -91,8 +97,8 @@ std::string page_html(const std::string& title, const std::vector<std::string>& 
         policy +
         "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-        as_html(title) + "</title>\n<style>" + style.text +
-        "</style>\n</head>\n<body>\n<noscript>This page needs JavaScript.</noscript>\n";
+        as_html(title) + "</title>\n" + styles +
+        "</head>\n<body>\n<noscript>This page needs JavaScript.</noscript>\n";
     for (const PageData& item : data)
         html +=
             "<script type=\"application/json\" id=\"" + item.id + "\">" + inlined(item.json) + "</script>\n";

@@ -23,9 +23,15 @@ struct PageData {
     std::string id, json;
 };
 
+/// What few pages need.
+struct PageExtras {
+    std::vector<std::string> styles;  ///< names of page files, after style.css
+    bool wasm = false;                ///< the page may compile WebAssembly
+};
+
 /// The whole file. @param scripts  names of page files, in their order
 std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
-                      const std::vector<PageData>& data);
+                      const std::vector<PageData>& data, const PageExtras& extras = {});
 
 /// What every page says about itself: title, subtitle, the command that made it, program and machine.
 nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,

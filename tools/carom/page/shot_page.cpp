@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "carom/render/draw_list.h"
+#include "page/ball_styles.h"
 #include "page/page.h"
 #include "page/table_shape.h"
 
@@ -17,24 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json style_json(const render::BallStyle& style) {
-    constexpr std::array kPatterns = {"solid", "stripe", "dots", "halves"};
-    Json color = Json::array();
-    for (const float c : style.color) color.push_back(std::round(1e4 * c) / 1e4);
-    return {{"color", color},
-            {"pattern", kPatterns.at(static_cast<std::size_t>(style.pattern))},
-            {"number", style.number}};
-}
-
 /// What a page needs besides the record: the shape of the table, and each ball's look as the renderer paints
 /// it.
 Json shot_json(const Record& record) {
     const render::Stage stage(record, {});
-    Json styles = Json::array();
-    for (std::size_t i = 0; i < record.tracks.size(); ++i)
-        styles.push_back(
-            style_json(render::ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i))));
-    return {{"shape", table_shape(*stage.table())}, {"styles", styles}};
+    std::vector<std::string> ids;
+    for (const BallTrack& track : record.tracks) ids.push_back(track.id);
+    return {{"shape", table_shape(*stage.table())}, {"styles", ball_styles(ids, record.table.preset)}};
 }
 
 std::string counted(std::size_t count, const char* what) {

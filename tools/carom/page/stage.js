@@ -75,18 +75,24 @@ class TableView {
     return list.sort((a, b) => a.p[2] - b.p[2] || a.since - b.since);
   }
 
-  draw(t, {trails = "off", ghost = null, marked = -1} = {}) {
+  /** Draws the balls at t. `until`: how far their paths are drawn. `only`: the ball whose path is drawn,
+   * or -1 for all. `ends`: whether to outline where the balls end. */
+  draw(t, {trails = "off", ghost = null, marked = -1, until = t, only = -1, ends = false} = {}) {
     const context = this.over.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, this.over.width, this.over.height);
     if (ghost !== null && trails !== "off") this.trails(context, ghost, t, trails, true);
-    if (trails !== "off") this.trails(context, this.record, t, trails, false);
+    if (trails !== "off") this.trails(context, this.record, until, trails, false, only);
     this.seen = this.balls(this.record, t);
     this.shadows(context);
     const {projection, shape: {lamp}} = this;
     for (const {i, x, y, r, p, R} of this.seen)
       this.pictures[i].draw(context, projection, lamp, x, y, r, p, R, this.orientation(i, t));
     if (ghost !== null) this.ghosts(context, ghost, t);
+    if (ends) {
+      const moves = (i) => this.record.tracks[i].segments.length > 1 && (only < 0 || i === only);
+      this.ghosts(context, this.record, this.record.duration, moves);
+    }
     for (const ball of this.seen) {
       if (ball.i !== marked) continue;
       context.lineWidth = 2 * this.dense;
@@ -126,10 +132,10 @@ class TableView {
     context.restore();
   }
 
-  /** Outlines of another record's balls on this table. */
-  ghosts(context, record, t) {
+  /** Outlines of a record's balls at t, of those that are wanted. */
+  ghosts(context, record, t, wanted = () => true) {
     for (const {i, state, x, y, r} of this.balls(record, t)) {
-      if (isGone(state.state)) continue;
+      if (isGone(state.state) || !wanted(i)) continue;
       context.beginPath();
       context.arc(x, y, r, 0, 7);
       context.globalAlpha = 0.45;
@@ -146,7 +152,7 @@ class TableView {
   }
 
   /** The balls' paths up to t. A segment is a parabola, which a canvas draws exactly as a quadratic curve. */
-  trails(context, record, t, kind, dashed) {
+  trails(context, record, t, kind, dashed, only = -1) {
     context.save();
     context.setTransform(...this.projection.matrix);
     context.lineWidth = 1.6 * this.dense / this.projection.scale;
@@ -154,6 +160,7 @@ class TableView {
     context.globalAlpha = dashed ? 0.55 : 0.85;
     if (dashed) context.setLineDash([5, 4].map((x) => x * this.dense / this.projection.scale));
     record.tracks.forEach((track, ball) => {
+      if (only >= 0 && ball !== only) return;
       for (let i = 0; i < track.segments.length; ++i) {
         const s = track.segments[i], next = track.segments[i + 1];
         if (s.start >= t || isGone(s.state)) break;

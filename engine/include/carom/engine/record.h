@@ -163,7 +163,7 @@ struct EventCost {
     double detect_ns = 0.0;   ///< finding the next event, and detecting again after this one
     double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
     double kernel_ns = 0.0;   ///< inside the impact kernel
-    long steps = 0;           ///< of the kernel
+    std::int64_t steps = 0;   ///< of the kernel
     std::string method{};     ///< "march", "elastic", "han_2005", ...
     double queue_ns = 0.0;    ///< part of detect_ns: choosing the next event
     bool operator==(const EventCost&) const = default;

@@ -5,6 +5,8 @@
 // instruction set include no std templates.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/impact.h"
 
 namespace carom::kernel {
@@ -39,7 +41,7 @@ struct VelocityLanes {
 
 /// The impacts of one call.
 struct ImpactBatch {
-    long count;  ///< lanes; <= 0: none
+    std::int64_t count;  ///< lanes; <= 0: none
     BallLanes ball1, ball2;
     ParamLanes params;
 };
@@ -48,7 +50,7 @@ struct ImpactBatch {
 struct ImpactBatchResult {
     VelocityLanes ball1, ball2;
     ImpactStatus* status;
-    long* steps;              ///< may be null
+    std::int64_t* steps;      ///< may be null
     ToleranceMethod* method;  ///< may be null
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "carom/kernel/isa.h"
 
@@ -58,8 +59,9 @@ constexpr std::size_t contact_phase_places(int contacts) noexcept {
 /// are open the balls fly without steps. A contact that closes late in look_ahead turns less, and at its end
 /// not at all. A ball's contacts are summed in the order in which they are given.
 /// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
-using ContactPhaseFunction = long (*)(const ContactPhase& phase, const HertzLaw& law, double longest_step,
-                                      double look_ahead, double time_limit) noexcept;
+using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law,
+                                              double longest_step, double look_ahead,
+                                              double time_limit) noexcept;
 
 /// The integration built for one instruction set (which must be available). All give the same bits.
 ContactPhaseFunction contact_phase_function(Isa isa) noexcept;
@@ -99,7 +101,7 @@ constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) no
 /// last a tenth as long as the impact with the cloth, which comes next. The positions of the balls are
 /// integrated too, and give every normal. Steps, flights and the end are those of ContactPhaseFunction.
 /// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
-long contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law, double longest_step,
-                            double look_ahead, double time_limit) noexcept;
+std::int64_t contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law,
+                                    double longest_step, double look_ahead, double time_limit) noexcept;
 
 }  // namespace carom::kernel

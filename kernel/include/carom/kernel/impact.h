@@ -4,6 +4,8 @@
 // same height, and the vertical velocities do not change.
 #pragma once
 
+#include <cstdint>
+
 namespace carom::kernel {
 
 /// One ball at the instant of the impact.
@@ -62,7 +64,7 @@ enum class ToleranceMethod : unsigned char {
 struct ImpactResult {
     double v1[3], w1[3];  ///< ball 1 [m/s], [rad/s]
     double v2[3], w2[3];  ///< ball 2
-    long steps;           ///< steps of the integration, 1 for a closed form, 0 if nothing was computed
+    std::int64_t steps;   ///< steps of the integration, 1 for a closed form, 0 if nothing was computed
     ImpactStatus status;
     ToleranceMethod method;
 };

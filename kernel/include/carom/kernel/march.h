@@ -1,6 +1,8 @@
 // The published integration ("march"): explicit Euler steps in the normal impulse, one by one or summed.
 #pragma once
 
+#include <cstdint>
+
 #include "carom/kernel/impact.h"
 #include "carom/kernel/isa.h"
 
@@ -33,6 +35,6 @@ inline constexpr double kSummedDifference = 1e-10, kSummedRounding = 0x1p-53;
 
 /// An impact of v_n > 0 ends after N + 1 to about N + 31 steps; only degenerate parameters come near this
 /// limit.
-inline constexpr long kMarchStepLimit = 64;
+inline constexpr std::int64_t kMarchStepLimit = 64;
 
 }  // namespace carom::kernel

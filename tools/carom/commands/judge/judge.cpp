@@ -17,6 +17,7 @@
 #include "base/options.h"
 #include "base/output_file.h"
 #include "base/setup.h"
+#include "base/verdict.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/printable.h"
 #include "carom/games/rules.h"
@@ -90,23 +91,6 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
     return {std::move(verdict), std::move(option)};
 }
 
-std::string foul_text(games::Game game, games::Foul foul) {
-    const std::string rule = games::rule_of(game, foul);
-    return name(foul) + (rule.empty() ? "" : " (" + rule + ")");
-}
-
-/// "player 2 shoots, cue ball in hand anywhere"
-std::string next_text(const State& state) {
-    if (state.over)
-        return state.winner < 0 ? "the game is over, nobody wins"
-                                : fmt::format("the game is over, player {} wins", state.winner + 1);
-    std::string text = fmt::format("player {} shoots", state.turn + 1);
-    if (state.in_hand == InHand::kAnywhere) text += ", cue ball in hand anywhere";
-    if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
-    if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
-    return text;
-}
-
 std::string verdict_text(const Judged& judged) {
     const Verdict& verdict = judged.verdict;
     const games::Game game = judged.option.state.game;
@@ -130,27 +114,6 @@ std::string verdict_text(const Judged& judged) {
     return text;
 }
 
-std::string verdict_json(const Judged& judged) {
-    const Verdict& verdict = judged.verdict;
-    Json fouls = Json::array(), options = Json::array();
-    for (const games::Foul foul : verdict.fouls)
-        fouls.push_back({{"foul", name(foul)}, {"rule", games::rule_of(judged.option.state.game, foul)}});
-    for (const games::Option& option : verdict.options) {
-        Json respots = Json::array();
-        for (const games::Respot& back : option.respots)
-            respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
-        options.push_back(
-            {{"decision", name(option.decision)}, {"state", state_json(option.state)}, {"respots", respots}});
-    }
-    return Json{{"fouls", fouls},
-                {"points", verdict.points},
-                {"penalty", verdict.penalty},
-                {"chooser", verdict.chooser},
-                {"options", options}}
-               .dump() +
-           "\n";
-}
-
 int run_judge(const JudgeArgs& args) {
     if (args.game.game.empty() && args.game.state.empty())
         throw UsageError("give --game, or the state of a game with --state");
@@ -158,7 +121,8 @@ int run_judge(const JudgeArgs& args) {
     const Judged verdict = judged(args.shot, record, args.game);
     if (!args.game.state_out.empty())
         write_text(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
-    print(args.json ? verdict_json(verdict) : verdict_text(verdict));
+    print(args.json ? verdict_json(verdict.verdict, verdict.option.state.game).dump() + "\n"
+                    : verdict_text(verdict));
     return kOk;
 }
 
@@ -174,41 +138,7 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const g
         return place;
     }
     if (option.state.in_hand == InHand::kNo) return std::nullopt;
-    const Table& table = record.table;
-    const Vec2 from = games::head_spot(table);
-    // Rings about the head spot, one ball radius apart.
-    const double step = record.balls.R;
-    const int rings = static_cast<int>(std::ceil((table.width + table.length) / step));
-    for (int ring = 0; ring <= rings; ++ring) {
-        const int places = std::max(1, 6 * ring);
-        for (int k = 0; k < places; ++k) {
-            const double angle = 2.0 * std::numbers::pi * k / places - 0.5 * std::numbers::pi;
-            const Vec2 place = from + step * ring * Vec2(std::cos(angle), std::sin(angle));
-            if (games::may_place(record, option, place)) return place;
-        }
-    }
-    throw UsageError(fmt::format("{}: there is no free place for the cue ball", harmless(args.scene)));
-}
-
-/// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
-/// side.
-Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
-             const std::vector<std::string>& first) {
-    Cue cue = before;
-    cue.ball = ball;
-    cue.side = 0.0;
-    const auto struck =
-        std::find_if(table.ball.begin(), table.ball.end(), [&](const BallStart& b) { return b.id == ball; });
-    double least = HUGE_VAL;
-    for (const BallStart& other : table.ball) {
-        if (struck == table.ball.end() || other.id == ball) continue;
-        if (!first.empty() && std::find(first.begin(), first.end(), other.id) == first.end()) continue;
-        const Vec2 way = planar(other.position - struck->position);
-        if (way.norm() >= least) continue;
-        least = way.norm();
-        cue.aim_deg = std::atan2(way.y(), way.x()) * 180.0 / std::numbers::pi;
-    }
-    return cue;
+    return asked(args.scene, [&] { return free_place(record, option); });
 }
 
 int run_next(const NextArgs& args) {

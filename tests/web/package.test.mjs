@@ -1,0 +1,157 @@
+// The npm package: its functions, its errors, the example of its README, its types.
+import assert from "node:assert/strict";
+import {readFileSync, writeFileSync, mkdtempSync, rmSync} from "node:fs";
+import {execFileSync} from "node:child_process";
+import {tmpdir} from "node:os";
+import * as path from "node:path";
+import {before, test} from "node:test";
+import {PACKAGE, carom, sceneText} from "./support.mjs";
+
+const {CaromError, STATES, Scene, games, simulate, simulateMany} = carom;
+
+before(() => carom.init());
+
+const draw = () => Scene.parse(sceneText("draw.toml"), "draw.toml");
+
+test("a mistake in a scene has its place", () => {
+  assert.throws(() => Scene.parse("[table]\npreset = \"nine_fot\"\n", "mine.toml"), (error) => {
+    assert.ok(error instanceof CaromError);
+    assert.equal(error.kind, "scene");
+    assert.deepEqual([error.file, error.line], ["mine.toml", 2]);
+    assert.match(error.message, /^mine\.toml:2:\d+: .*nine_fot/);
+    return true;
+  });
+  assert.throws(() => Scene.parse("[table", "x"), CaromError);
+});
+
+test("any text is a scene or refused", () => {
+  const text = sceneText("three_cushion.toml");
+  let seed = 7;
+  const random = (n) => { seed = (Math.imul(seed, 1103515245) + 12345) & 0x7fffffff; return seed % n; };
+  for (let i = 0; i < 1000; ++i) {
+    const at = random(text.length), cut = random(12);
+    const put = String.fromCharCode(32 + random(200)).repeat(random(4));
+    try {
+      const scene = Scene.parse(text.slice(0, at) + put + text.slice(at + cut));
+      simulate(scene, {seconds: 2}).free();
+      scene.free();
+    } catch (error) {
+      assert.ok(error instanceof CaromError, error.stack);
+    }
+  }
+});
+
+test("with() makes another scene and keeps the first", () => {
+  const scene = draw(), faster = scene.with({cue: {speed: 3.5, offset: [0.1, -0.2]}});
+  assert.equal(faster.cue.speed, 3.5);
+  assert.deepEqual([faster.cue.side, faster.cue.height], [0.1, -0.2]);
+  assert.notEqual(scene.cue.speed, 3.5);
+  assert.equal(Scene.parse(faster.toml).cue.speed, 3.5);
+  assert.equal(scene.with({"balls.mu_s": 0.25}).toml.includes("0.25"), true);
+  assert.throws(() => scene.with({"cue.sped": 3}), CaromError);
+  assert.throws(() => scene.with({"cue.speed": "fast"}), CaromError);
+  assert.throws(() => scene.with({"cue.speed": -1}), CaromError);
+});
+
+test("the quick path and the file give the same bits", () => {
+  const scene = Scene.parse(sceneText("eight_ball_break.toml"));
+  const quick = scene.with({"cue.speed": 6.1, "cue.offset.side": 0.05, "ball.cue.position.x": 0.5});
+  const read = Scene.parse(quick.toml), written = Scene.parse(quick.everything);
+  const hash = simulate(quick).hash;
+  assert.equal(simulate(read).hash, hash);
+  assert.equal(simulate(written).hash, hash);
+  // A racked ball can be moved; then the balls are placed one by one.
+  const moved = scene.with({"ball.3.position.x": 0.2, "ball.3.position.y": 0.3});
+  assert.equal(simulate(Scene.parse(moved.toml)).hash, simulate(moved).hash);
+});
+
+test("a shot has events, states, an outcome and a record", () => {
+  const shot = simulate(draw());
+  assert.match(shot.hash, /^[0-9a-f]{16}$/);
+  assert.equal(shot.events.length, shot.eventCount);
+  assert.equal(shot.events[0].type, "cue_strike");
+  assert.ok(shot.events.every((e, i) => i === 0 || e.time >= shot.events[i - 1].time));
+  assert.equal(shot.record.tracks.length, shot.balls.length);
+  const times = [0, 0.3, shot.duration], all = shot.states(times);
+  assert.equal(all.numbers.length, 9 * times.length * shot.balls.length);
+  assert.equal(all.states.length, times.length * shot.balls.length);
+  const one = shot.stateAt(shot.balls[0], 0.3);
+  assert.deepEqual(one.position, [...all.numbers.subarray(9 * shot.balls.length, 9 * shot.balls.length + 3)]);
+  assert.ok(STATES.includes(one.state));
+  assert.equal(shot.outcome.stopped, "at_rest");
+  assert.equal(shot.outcome.balls.length, shot.balls.length);
+  assert.throws(() => shot.stateAt("nobody", 0), RangeError);
+  assert.ok(shot.after().balls.length <= shot.balls.length);
+  shot.free();
+  assert.throws(() => shot.states(0), /freed/);
+});
+
+test("until and seconds end a shot", () => {
+  const scene = Scene.parse(sceneText("snooker_break.toml"));
+  assert.equal(simulate(scene, {until: 0.5}).duration, 0.5);
+  assert.throws(() => simulate(scene, {seconds: 0}), (error) => error.kind === "limit");
+  const broken = Scene.parse(sceneText("eight_ball_break.toml"));
+  assert.throws(() => simulate(broken, {events: 60}), (error) => error.kind === "limit");
+});
+
+test("many shots are the single shots", () => {
+  const scene = draw(), speeds = [1, 1.5, 2.25, -1], aims = [90, 90.5, 89, 90];
+  const batch = simulateMany(scene, {"cue.speed": speeds, "cue.aim_deg": aims}, {hash: true});
+  assert.deepEqual([batch.shots, batch.balls], [4, scene.balls.length]);
+  for (let i = 0; i < 3; ++i) {
+    const shot = simulate(scene.with({"cue.speed": speeds[i], "cue.aim_deg": aims[i]}));
+    assert.equal(batch.hash[i].toString(16).padStart(16, "0"), shot.hash);
+    assert.equal(batch.x[i * batch.balls], shot.outcome.balls[0].x);
+  }
+  assert.equal(carom.STATUSES[batch.status[3]], "invalid");
+  assert.equal(batch.messages[0].shot, 3);
+  assert.throws(() => simulateMany(scene, {"cue.speed": [1], "cue.aim_deg": [1, 2]}), RangeError);
+  assert.throws(() => simulateMany(scene, {"cue.sped": [1]}), CaromError);
+});
+
+test("games judge shots and give the next scene", () => {
+  const scene = Scene.parse(sceneText("nine_ball_break.toml")), start = games.start("nine_ball");
+  assert.deepEqual(games.legal(start, scene).first, ["1"]);
+  const shot = simulate(scene), verdict = games.judge(start, shot);
+  assert.ok(verdict.options.length >= 1);
+  assert.match(verdict.options[0].text, /player [12] shoots|over/);
+  const next = verdict.next(), state = verdict.options[0].state;
+  assert.equal(next.cue.ball, "cue");
+  assert.equal(games.judge(state, simulate(next)).options.length > 0, true);
+  assert.throws(() => games.start("chess"), CaromError);
+  assert.throws(() => games.judge({game: "nine_ball", turn: 7}, shot), CaromError);
+  const carambole = Scene.parse(sceneText("three_cushion.toml"));
+  const middle = {...games.start("three_cushion", {target: 30}), opening: false};
+  const other = games.judge(middle, simulate(carambole));
+  assert.deepEqual([other.fouls, other.points], [[], 1]);
+});
+
+test("a thousand shots do not fill the memory", () => {
+  const scene = draw();
+  for (let i = 0; i < 1000; ++i) {
+    const changed = scene.with({"cue.aim_deg": 80 + i / 50}), shot = simulate(changed);
+    shot.free();
+    changed.free();
+  }
+});
+
+test("the example of the README runs", () => {
+  const readme = readFileSync(path.join(PACKAGE, "README.md"), "utf8");
+  const code = /```js\n([^]*?)```/.exec(readme)[1];
+  const folder = mkdtempSync(path.join(tmpdir(), "carom-readme-"));
+  try {
+    writeFileSync(path.join(folder, "example.mjs"),
+      code.replace('"carom"', JSON.stringify(path.join(PACKAGE, "index.js"))));
+    const said = execFileSync(process.execPath, [path.join(folder, "example.mjs")], {encoding: "utf8"});
+    assert.match(said, /cue_strike cue/);
+    assert.match(said, /ball_ball/);
+  } finally {
+    rmSync(folder, {recursive: true});
+  }
+});
+
+test("every exported name has a type", () => {
+  const types = readFileSync(path.join(PACKAGE, "index.d.ts"), "utf8");
+  for (const name of Object.keys(carom))
+    if (name !== "start") assert.match(types, new RegExp(`export (function|class|const) ${name}\\b`), name);
+});

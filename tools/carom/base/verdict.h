@@ -1,0 +1,31 @@
+// Verdicts of games in words and as JSON, and the shot that follows.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "carom/games/rules.h"
+
+namespace carom::tools {
+
+/// "wrong ball first (WPA 6.2)"
+std::string foul_text(games::Game game, games::Foul foul);
+
+/// "player 2 shoots, cue ball in hand anywhere"
+std::string next_text(const games::State& state);
+
+/// The verdict as `carom judge --json` prints it.
+nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
+
+/// The free place for the cue ball in hand that is nearest to the head spot. @throws std::invalid_argument if
+/// there is none
+Vec2 free_place(const Record& record, const games::Option& option);
+
+/// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
+/// side.
+/// @param first  ids of these balls; empty: any ball
+Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
+             const std::vector<std::string>& first);
+
+}  // namespace carom::tools

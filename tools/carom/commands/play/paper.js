@@ -1,0 +1,76 @@
+// The shot on white paper, for printing.
+"use strict";
+
+/** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes
+ * to the right, its x down. */
+function drawnOnPaper(record, shape, styles, cue) {
+  const {low, high} = shape.bounds, at = (x, y) => [y - low[1], x - low[0]];
+  const text = (x, y) => at(x, y).map((v) => v.toFixed(4)).join(" ");
+  const outline = (loop) => {
+    const corners = [];
+    for (let i = 0; i < loop.length; i += 2) corners.push(text(loop[i], loop[i + 1]));
+    return `M${corners.join("L")}Z`;
+  };
+  const filled = (loops, fill) =>
+    make("path", {d: loops.map(outline).join(""), fill, stroke: "#000", "stroke-width": 0.003});
+  const circle = (x, y, r, attributes) => {
+    const [cx, cy] = at(x, y);
+    return make("circle", {cx, cy, r, stroke: "#000", "stroke-width": 0.002, ...attributes});
+  };
+  const bright = ([red, green, blue], than = 0.75) => 0.3 * red + 0.6 * green + 0.1 * blue > than;
+  const ink = (i) => bright(styles[i].color) ? "#555" : cssColour(styles[i].color);
+  const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"),
+    filled(shape.cushion, "#dcd8cf"), filled(shape.inlay, "#000"),
+    ...shape.holes.map(({center, radius}) => circle(center[0], center[1], radius, {fill: "#666"}))];
+  record.tracks.forEach((track, i) => {
+    const pieces = track.segments.map((s, k) => {
+      const until = track.segments[k + 1]?.start ?? record.duration;
+      const tau = Math.min(until - s.start, s.duration ?? Infinity);
+      if (isGone(s.state) || s.state === "falling" || !(tau > 0)) return "";
+      const bend = [0, 1].map((j) => s.r[j] + 0.5 * tau * s.v[j]);
+      const end = [0, 1].map((j) => s.r[j] + tau * (s.v[j] + 0.5 * tau * s.a[j]));
+      return `M${text(s.r[0], s.r[1])}Q${text(...bend)} ${text(...end)}`;
+    });
+    parts.push(make("path", {d: pieces.join(""), fill: "none", stroke: ink(i), "stroke-width": 0.006}));
+    const end = stateAt(record, i, record.duration), R = radiusOf(record, i);
+    if (!isGone(end.state) && track.segments.length > 1)
+      parts.push(circle(end.r[0], end.r[1], R,
+        {fill: "none", stroke: ink(i), "stroke-width": 0.004, "stroke-dasharray": "0.012 0.008"}));
+  });
+  record.tracks.forEach((track, i) => {
+    const [x, y] = stateAt(record, i, 0).r, R = radiusOf(record, i), {color, pattern, number} = styles[i];
+    const [cx, cy] = at(x, y), striped = pattern === "stripe", ring = 0.3 * R;
+    parts.push(striped
+      ? circle(x, y, R - ring / 2, {fill: "#fff", stroke: cssColour(color), "stroke-width": ring})
+      : circle(x, y, R, {fill: cssColour(color)}));
+    if (number > 0)
+      parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle",
+        class: striped || bright(color, 0.6) ? "on-paper" : "on-paper on-dark"}, track.id));
+  });
+  const struck = cue === null ? -1 : record.tracks.findIndex((track) => track.id === cue.ball);
+  if (struck >= 0) {
+    const [x, y] = stateAt(record, struck, 0).r, R = radiusOf(record, struck);
+    const angle = cue.aim_deg * Math.PI / 180;
+    const back = (s) => text(x - s * Math.cos(angle), y - s * Math.sin(angle));
+    parts.push(make("path", {d: `M${back(1.5 * R)}L${back(0.6)}`, stroke: "#000", "stroke-width": 0.009}));
+  }
+  const [wide, tall] = [high[1] - low[1], high[0] - low[0]];
+  return make("svg", {viewBox: `0 0 ${wide.toFixed(4)} ${tall.toFixed(4)}`}, ...parts);
+}
+
+/** Puts the shot onto paper whenever the page is printed. `play`: {scene(), shot()} */
+function printsShots(play) {
+  const paper = make("section", {class: "paper", "aria-hidden": "true"});
+  document.body.append(paper);
+  window.addEventListener("beforeprint", () => {
+    const scene = play.scene(), shot = play.shot(), {cue} = scene, {shape, styles} = scene.look();
+    const offset = (x, one, other) => `${Math.abs(x).toFixed(2)} R ${x < 0 ? other : one}`;
+    const speed = cue && withUnit("metric", "speed", cue.speed);
+    const stroke = cue === null ? [] : [`Ball ${cue.ball} is struck at ${speed}`,
+      `aim ${cue.aim_deg.toFixed(2)}°`, `tip ${offset(cue.side, "left", "right")} and ` +
+      `${offset(cue.height, "above", "below")} the centre`, `cue raised by ${cue.elevation_deg.toFixed(1)}°`];
+    const fell = shot.outcome.balls.filter(({pocket}) => pocket).map(({id, pocket}) => `${id} in ${pocket}`);
+    paper.replaceChildren(drawnOnPaper(shot.record, shape, styles, cue),
+      make("p", {}, `${stroke.concat(fell).join(", ")}. ${shot.duration.toFixed(2)} s, hash ${shot.hash}.`));
+  });
+}

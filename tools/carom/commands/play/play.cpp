@@ -1,0 +1,137 @@
+// carom play: a page to play on, with carom in it.
+#include "commands/play/play_wasm.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/console.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "carom/engine/plan.h"
+#include "carom/engine/printable.h"
+#include "page/page.h"
+#include "report/table.h"
+
+namespace carom::tools {
+
+/// Made by the build: scripts and styles in this folder, and core.js of the npm package.
+const std::vector<PageFile>& play_files();
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PlayArgs {
+    std::string scene, output = "play.html", lock;
+};
+
+/// "cue.speed,balls" as a list of keys. @throws UsageError
+Json locked_keys(const std::string& list) {
+    Json keys = Json::array();
+    for (std::size_t begin = 0; begin < list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        const std::string key = list.substr(begin, end - begin);
+        const std::string part = key.substr(0, key.find('.'));
+        if (part != "cue" && part != "ball" && part != "balls" && part != "table" && part != "physics")
+            throw UsageError(
+                fmt::format("--lock {}: expected keys of [cue], [[ball]], [balls], [table] or [physics], "
+                            "such as cue.speed,ball",
+                            harmless(list)));
+        keys.push_back(key);
+        begin = end + 1;
+    }
+    return keys;
+}
+
+/// The first comment of a scene file, up to its first full stop or colon.
+std::string title_of(std::string_view scene) {
+    scene.remove_prefix(std::min(scene.find_first_not_of("# "), scene.size()));
+    return std::string(scene.substr(0, scene.find_first_of(".:\n")));
+}
+
+/// The scenes that come with carom: a list of {name, title, text} by title.
+Json shipped_scenes() {
+    Json scenes = Json::array();
+    for (const PageFile& file : play_files()) {
+        const std::string_view name = file.name;
+        if (name.ends_with(".toml"))
+            scenes.push_back({{"name", name}, {"title", title_of(file.text)}, {"text", file.text}});
+    }
+    std::sort(scenes.begin(), scenes.end(),
+              [](const Json& a, const Json& b) { return a.at("title") < b.at("title"); });
+    return scenes;
+}
+
+/// The keys that a page can set, by section: numbers, names and lists of numbers.
+Json keys_to_set() {
+    const auto schema = std::find_if(play_files().begin(), play_files().end(), [](const PageFile& file) {
+        return std::string_view(file.name) == "scene.schema.json";
+    });
+    const Json sections = Json::parse(schema->text).at("properties");
+    Json keys;
+    for (const char* section : {"table", "balls", "physics"}) {
+        for (const auto& [key, about] : sections.at(section).at("properties").items()) {
+            const bool list = about.at("type") == "array";
+            if (list && about.at("items").at("type") != "number") continue;
+            keys[section][key] = {{"type", about.at("type")},
+                                  {"description", about.value("description", "")}};
+            if (about.contains("enum")) keys[section][key]["enum"] = about.at("enum");
+        }
+    }
+    return keys;
+}
+
+int run(const PlayArgs& args) {
+    if (*kPlayWasm == '\0')
+        throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
+    check_page_path("-o", args.output);
+    Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());
+    page["lock"] = locked_keys(args.lock);
+    page["scenes"] = shipped_scenes();
+    page["keys"] = keys_to_set();
+    page["scene"] = "";
+    if (!args.scene.empty()) {
+        if (is_record(args.scene))
+            throw UsageError(
+                fmt::format("{}: expected a scene file (TOML), not a record", harmless(args.scene)));
+        plan_scene(args.scene);  // refuses a bad scene here rather than in the browser
+        page["scene"] = read_scene_text(args.scene);
+        page["lead"] = harmless(args.scene);
+    }
+    static const bool added = [] {
+        add_page_files(play_files());
+        return true;
+    }();
+    static_cast<void>(added);
+    const std::vector<std::string> scripts = {"dom.js",    "motion.js", "look.js",   "stage.js",
+                                              "core.js",   "share.js",  "words.js",  "tip.js",
+                                              "tables.js", "paper.js",  "extras.js", "play.js"};
+    const std::vector<PageData> data = {{"wasm", '"' + std::string(kPlayWasm) + '"'},
+                                        {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}};
+    PageExtras extras;
+    for (const char* style : {"play.css", "extras.css"}) extras.styles.emplace_back(style);
+    extras.wasm = true;
+    const std::string html = page_html("carom", scripts, data, extras);
+    write_report(args.output, html);
+    print(fmt::format("{}: open it in a browser; {} kB\n", args.output, (html.size() + 500) / 1000));
+    return kOk;
+}
+
+}  // namespace
+
+void add_play(Options& program) {
+    auto [command, args] =
+        program.command<PlayArgs>("play", "Write a page to play on: aim, shoot, follow a game", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML) to begin with (default: a practice table)");
+    command.option("-o,--output", &args.output, "FILE.html", "Page to write");
+    command.option("--lock", &args.lock, "KEYS",
+                   "What cannot be changed on the page, such as cue.speed,ball (default: nothing)");
+}
+
+}  // namespace carom::tools

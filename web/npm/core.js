@@ -1,0 +1,258 @@
+// carom in WebAssembly: the classes of the package, for a module that is loaded already. index.js loads it.
+// Units are SI; keys of scenes are those of scene files, with their units (docs/reference/scene_format.md).
+
+/** What can go wrong: `kind` is "scene", "simulation", "argument", "limit" or "memory". A mistake in a scene
+ * has a place: file, line and column, which also begin the message. */
+export class CaromError extends Error {
+  constructor({kind, message, file, line, column}) {
+    super(line > 0 ? `${file}:${line}:${column}: ${message}` : file ? `${file}: ${message}` : message);
+    Object.assign(this, {name: "CaromError", kind, file, line, column, reason: message});
+  }
+}
+
+/** How balls move, in the order of the numbers in `states`. */
+export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed", "falling", "airborne",
+  "out"];
+
+/** How shots of simulateMany end, in the order of the numbers in `status`. */
+export const STATUSES = ["at_rest", "time", "events", "endless", "invalid", "failed"];
+
+let wasm = null;
+
+/** The few functions of a system that the module asks for: a clock, and no files. */
+function system() {
+  const BAD_FILE = 8, OK = 0;
+  const now = () => BigInt(Math.round(performance.now() * 1e6));
+  const none = (counts, sizes) => {
+    const view = new DataView(wasm.memory.buffer);
+    view.setUint32(counts, 0, true);
+    view.setUint32(sizes, 0, true);
+    return OK;
+  };
+  const known = {
+    clock_time_get: (id, precision, out) => {
+      new DataView(wasm.memory.buffer).setBigUint64(out, now(), true);
+      return OK;
+    },
+    environ_sizes_get: none,
+    args_sizes_get: none,
+    environ_get: () => OK,
+    args_get: () => OK,
+    proc_exit: (code) => { throw new Error(`carom.wasm ended with status ${code}`); },
+    emscripten_notify_memory_growth: () => {},
+  };
+  // Nothing reads or writes files, so every other function refuses.
+  return new Proxy({}, {get: (_, name) => known[name] || (() => BAD_FILE)});
+}
+
+/** Makes the classes work. `source`: the bytes of carom.wasm, or a compiled WebAssembly.Module. */
+export async function start(source) {
+  if (wasm !== null) return;
+  const module = source instanceof WebAssembly.Module ? source : await WebAssembly.compile(source);
+  const functions = system(), imports = {};
+  for (const {module: from, name} of WebAssembly.Module.imports(module))
+    (imports[from] ||= {})[name] = functions[name];
+  const instance = await WebAssembly.instantiate(module, imports);
+  wasm = instance.exports;
+  wasm._initialize();
+}
+
+const encoder = new TextEncoder(), decoder = new TextDecoder();
+
+/** Copies into the module's memory while `use` runs. Texts become a pointer and a size. */
+function lend(values, use) {
+  const taken = [], args = [];
+  try {
+    for (const value of values) {
+      if (typeof value !== "string" && !ArrayBuffer.isView(value)) {
+        args.push(value);
+        continue;
+      }
+      const bytes = typeof value === "string" ? encoder.encode(value)
+        : new Uint8Array(value.buffer, value.byteOffset, value.byteLength);
+      const at = wasm.carom_allocate(bytes.length + 1);
+      if (at === 0) throw new CaromError({kind: "memory", message: "out of memory", file: "", line: 0});
+      taken.push(at);
+      new Uint8Array(wasm.memory.buffer, at, bytes.length).set(bytes);
+      args.push(at);
+      if (typeof value === "string") args.push(bytes.length);
+    }
+    return use(args);
+  } finally {
+    for (const at of taken) wasm.carom_release(at);
+  }
+}
+
+function lastText() {
+  return decoder.decode(new Uint8Array(wasm.memory.buffer, wasm.carom_text(), wasm.carom_text_size()));
+}
+
+/** Calls a function of the module. @returns its text. @throws CaromError */
+function call(name, ...values) {
+  if (wasm === null) throw new Error("carom: call init() first, and await it");
+  if (lend(values, (args) => wasm[name](...args)) === 0) return lastText();
+  throw new CaromError(JSON.parse(lastText() || '{"kind": "memory", "message": "out of memory"}'));
+}
+
+/** Frees what a lost object held in the module's memory. */
+const lost = new FinalizationRegistry(([free, handle]) => wasm[free](handle));
+
+/** An object in the module's memory. */
+class Held {
+  #handle;
+  #free;
+  constructor(free) {
+    this.#handle = wasm.carom_handle();
+    this.#free = free;
+    lost.register(this, [free, this.#handle], this);
+  }
+  get handle() {
+    if (this.#handle === 0) throw new Error("carom: this object has been freed");
+    return this.#handle;
+  }
+  /** Frees its memory now rather than when the browser finds time for it. */
+  free() {
+    if (this.#handle === 0) return;
+    lost.unregister(this);
+    wasm[this.#free](this.#handle);
+    this.#handle = 0;
+  }
+}
+
+/** {cue: {speed: 4}} as {"cue.speed": 4}: the keys of a scene file, with dots. */
+function flat(changes, before = "", out = {}) {
+  for (const [key, value] of Object.entries(changes)) {
+    const nested = value !== null && typeof value === "object" && !Array.isArray(value);
+    if (nested) flat(value, `${before}${key}.`, out);
+    else out[before + key] = value;
+  }
+  return out;
+}
+
+export function version() {
+  return call("carom_version");
+}
+
+// The C++ library of WebAssembly writes numbers with 17 digits; most need fewer to be read back to the bit.
+const TEXTS_AND_NUMBERS = /'[^'\n]*'|"(?:[^"\\\n]|\\.)*"|#.*|-?\d+\.\d{14,}(?:e[+-]?\d+)?/g;
+const shortened = (toml) =>
+  toml.replace(TEXTS_AND_NUMBERS, (found) => /^[-\d]/.test(found) ? String(Number(found)) : found);
+
+/** A scene: table, balls, cue. It never changes; with() makes another one. */
+export class Scene extends Held {
+  #described = null;
+  constructor() { super("carom_free_scene"); }
+
+  static parse(toml, name = "scene.toml") {
+    call("carom_scene_parse", toml, name);
+    return new Scene();
+  }
+  with(changes) {
+    call("carom_scene_change", this.handle, JSON.stringify(flat(changes)));
+    return new Scene();
+  }
+  get toml() { return shortened(call("carom_scene_source", this.handle)); }
+  get everything() { return call("carom_scene_text", this.handle); }
+  describe() { return this.#described ??= JSON.parse(call("carom_scene_describe", this.handle)); }
+  get balls() { return this.describe().balls; }
+  get cue() { return this.describe().cue; }
+  get table() { return this.describe().table; }
+  look() { return JSON.parse(call("carom_scene_look", this.handle)); }
+}
+
+/** A simulated shot. */
+export class Shot extends Held {
+  #recordText = null;
+  #record = null;
+  #events = null;
+  constructor(summary, scene) {
+    super("carom_free_shot");
+    const {hash, duration, events, balls, outcome} = JSON.parse(summary);
+    Object.assign(this, {scene, hash, duration, eventCount: events, balls, outcome});
+  }
+  get recordJson() { return this.#recordText ??= call("carom_shot_record", this.handle); }
+  get record() { return this.#record ??= JSON.parse(this.recordJson); }
+  get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }
+
+  states(times) {
+    const list = typeof times === "number" ? Float64Array.of(times) : Float64Array.from(times);
+    const count = list.length * this.balls.length;
+    const numbers = wasm.carom_allocate(72 * count + 8), states = wasm.carom_allocate(count + 8);
+    try {
+      call("carom_shot_states", this.handle, list.length, list, numbers, states);
+      const all = new Float64Array(wasm.memory.buffer, numbers, 9 * count).slice();
+      return {balls: this.balls.length, numbers: all,
+        states: new Uint8Array(wasm.memory.buffer, states, count).slice()};
+    } finally {
+      wasm.carom_release(numbers);
+      wasm.carom_release(states);
+    }
+  }
+  stateAt(ball, time) {
+    const i = typeof ball === "string" ? this.balls.indexOf(ball) : ball;
+    if (!(i >= 0 && i < this.balls.length)) throw new RangeError(`no ball is called ${ball}`);
+    const {numbers, states} = this.states(time);
+    const at = (k) => Array.from(numbers.subarray(9 * i + k, 9 * i + k + 3));
+    return {state: STATES[states[i]], position: at(0), velocity: at(3), spin: at(6)};
+  }
+  after() {
+    call("carom_shot_after", this.handle);
+    return new Scene();
+  }
+}
+
+export function simulate(scene, {until = -1, seconds = 60, events = 1e6} = {}) {
+  return new Shot(call("carom_simulate", scene.handle, until, seconds, events), scene);
+}
+
+const ARRAYS = {status: [Uint8Array, 0], duration: [Float64Array, 0], events: [BigInt64Array, 0],
+  firstHit: [Int32Array, 0], contacts: [Int32Array, 0], approachCushions: [Int32Array, 0],
+  x: [Float64Array, 1], y: [Float64Array, 1], pocket: [Int32Array, 1], fell: [Int32Array, 1],
+  cushions: [Int32Array, 1], hash: [BigUint64Array, 0]};
+
+export function simulateMany(scene, columns, {hash = false} = {}) {
+  const keys = Object.keys(columns), shots = keys.length > 0 ? columns[keys[0]].length : 0;
+  const values = new Float64Array(keys.length * shots);
+  keys.forEach((key, i) => {
+    if (columns[key].length !== shots)
+      throw new RangeError(`${key} has ${columns[key].length} values, and ${keys[0]} has ${shots}`);
+    values.set(columns[key], i * shots);
+  });
+  const {arrays, ...result} = JSON.parse(
+    call("carom_simulate_many", scene.handle, JSON.stringify(keys), shots, values, hash ? 1 : 0));
+  const batch = new Held("carom_free_batch");
+  for (const [name, [Type, each]] of Object.entries(ARRAYS)) {
+    if (name === "hash" && !hash) continue;
+    const count = each ? result.shots * result.balls : result.shots;
+    result[name] = count > 0 ? new Type(wasm.memory.buffer, arrays[name], count).slice() : new Type(0);
+  }
+  batch.free();
+  return {...result, ids: scene.balls.map((ball) => ball.id)};
+}
+
+/** A verdict on a shot, and the ways in which the game may continue. */
+export class Verdict extends Held {
+  #shot;
+  constructor(json, shot) {
+    super("carom_free_verdict");
+    Object.assign(this, JSON.parse(json));
+    this.#shot = shot;
+  }
+  mayPlace(x, y, option = 0) {
+    return call("carom_game_may_place", this.#shot.handle, this.handle, option, x, y) === "true";
+  }
+  next({option = 0, place = null} = {}) {
+    const [x, y] = place || [NaN, NaN];
+    call("carom_game_next", this.#shot.handle, this.handle, option, x, y);
+    return new Scene();
+  }
+}
+
+/** Rules of games: "eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three". */
+export const games = {
+  start: (game, {first = 0, target = 0} = {}) => JSON.parse(call("carom_game_new", game, first, target)),
+  legal: (state, scene) => JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle)),
+  judge: (state, shot, announced = {}) =>
+    new Verdict(
+      call("carom_game_judge", shot.handle, JSON.stringify(state), JSON.stringify(announced)), shot),
+};

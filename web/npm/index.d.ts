@@ -1,0 +1,258 @@
+// Types of carom for JavaScript. Units are SI: m, m/s, rad/s, s. Keys of scenes are those of scene files
+// (docs/reference/scene_format.md); angles there are degrees, and their names end in _deg.
+
+/** Loads carom.wasm, once. Without `source`, from the file beside the package. */
+export function init(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module
+  | Promise<Response>): Promise<void>;
+
+/** The version of carom, such as "0.2.0". */
+export function version(): string;
+
+export class CaromError extends Error {
+  /** "scene": a mistake in a scene. "simulation": the shot cannot continue. "limit": it took too long. */
+  readonly kind: "scene" | "simulation" | "argument" | "limit" | "memory";
+  /** The place in the scene; line 0 stands for the whole scene. The message begins with file:line:column. */
+  readonly file: string;
+  readonly line: number;
+  readonly column: number;
+  /** The message without the place. */
+  readonly reason: string;
+}
+
+export type BallState =
+  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out";
+export const STATES: readonly BallState[];
+export const STATUSES: readonly ("at_rest" | "time" | "events" | "endless" | "invalid" | "failed")[];
+
+/** A value of a scene file. */
+export type Value = number | boolean | string | Value[];
+/** Keys of a scene file, nested or with dots: {cue: {speed: 4}}, {"ball.red.position.x": 0.7}. */
+export interface Changes { [key: string]: Value | Changes }
+
+export interface BallPlace {
+  id: string;
+  /** Centre [m]. */
+  x: number;
+  y: number;
+  /** [m] */
+  radius: number;
+  /** [kg] */
+  mass: number;
+}
+
+export interface Cue {
+  /** Id of the ball that it strikes. */
+  ball: string;
+  /** Of the cue [m/s]. */
+  speed: number;
+  /** [degrees] 0 is +x, 90 is +y. */
+  aim_deg: number;
+  /** Of the butt [degrees]. */
+  elevation_deg: number;
+  /** Offset of the tip [ball radii]: left and up positive. */
+  side: number;
+  height: number;
+}
+
+export interface TableInfo {
+  /** "nine_foot", ..., or "" for an outline of its own. */
+  preset: string;
+  cloth: string;
+  /** Between the noses [m]: along x and along y. */
+  width: number;
+  length: number;
+  /** Its corner of smallest x and y [m]. */
+  corner: [number, number];
+  pockets: {id: string; name: string; center: [number, number]}[];
+}
+
+/** A scene: table, balls and cue. It never changes. */
+export class Scene {
+  /** Reads a scene file. @throws CaromError with file:line:column */
+  static parse(toml: string, name?: string): Scene;
+  /** Another scene with these values. @throws CaromError */
+  with(changes: Changes): Scene;
+  /** The scene file. */
+  readonly toml: string;
+  /** The scene file with every value written out and every ball placed on its own. */
+  readonly everything: string;
+  readonly balls: BallPlace[];
+  /** null if no ball is struck. */
+  readonly cue: Cue | null;
+  readonly table: TableInfo;
+  /** The table's outlines [m] and how the balls look, for drawing. */
+  look(): {shape: object; styles: {color: [number, number, number]; pattern: string; number: number}[]};
+  /** Frees its memory now; otherwise the garbage collector does. */
+  free(): void;
+}
+
+export interface ShotEvent {
+  /** Since the start of the shot [s]. */
+  time: number;
+  /** "ball_ball", "ball_cushion", "slide_roll", ... (docs/reference/record_format.md) */
+  type: string;
+  /** Id of the ball. */
+  ball: string;
+  /** Id of the other ball, cushion, jaw or pocket; "" if there is none. */
+  other: string;
+  /** The same for people: "left rail, head half". */
+  otherName: string;
+  /** Centre of the ball [m]. */
+  place: [number, number, number];
+  /** Of the ball [m/s], just before and just after. */
+  speedBefore: number | null;
+  speed: number | null;
+  /** Speed at which the two approach [m/s]. */
+  closing: number | null;
+  /** Cut angle [rad]. */
+  cut: number | null;
+  /** Place along the rail in diamonds: 0 to 4 on short rails, 0 to 8 on long ones. */
+  diamond: number | null;
+  /** Ids of all balls of a cluster. */
+  balls?: string[];
+}
+
+export interface Outcome {
+  stopped: "at_rest" | "time" | "events" | "endless";
+  /** The ball that the struck ball meets first. */
+  firstHit: string | null;
+  /** How many balls it meets. */
+  contacts: number;
+  /** How many cushions it meets before its second ball. */
+  approachCushions: number;
+  balls: {
+    id: string;
+    /** At the end [m]. */
+    x: number;
+    y: number;
+    /** Id of the pocket that holds it. */
+    pocket: string | null;
+    offTable: boolean;
+    /** 0 for the ball that fell first, 1, ..., or -1. */
+    fell: number;
+    /** How often it met a cushion or a jaw. */
+    cushions: number;
+  }[];
+}
+
+export class Shot {
+  readonly scene: Scene;
+  /** 16 hexadecimal digits, equal to those of `carom simulate --hash`. */
+  readonly hash: string;
+  /** [s] */
+  readonly duration: number;
+  readonly eventCount: number;
+  /** Ids. */
+  readonly balls: string[];
+  readonly outcome: Outcome;
+  readonly events: ShotEvent[];
+  /** The record file (docs/reference/record_format.md), as text and parsed. */
+  readonly recordJson: string;
+  readonly record: object;
+  /** States of all balls at these times [s]. `numbers` has nine for each time and ball, ball after ball:
+   * centre [m], velocity [m/s], angular velocity [rad/s]. `states` has one for each: an index into STATES. */
+  states(times: number | ArrayLike<number>): {balls: number; numbers: Float64Array; states: Uint8Array};
+  /** The same for one ball. */
+  stateAt(ball: string | number, time: number): {
+    state: BallState;
+    position: [number, number, number];
+    velocity: [number, number, number];
+    spin: [number, number, number];
+  };
+  /** The table as it rests, without pocketed balls and with the same cue. */
+  after(): Scene;
+  free(): void;
+}
+
+/** Simulates a shot. `until`: stop there [s]. It throws after `seconds` of computing (60), or after more than
+ * `events` events (1e6).
+ * @throws CaromError */
+export function simulate(scene: Scene, options?: {until?: number; seconds?: number; events?: number}): Shot;
+
+export interface Batch {
+  shots: number;
+  balls: number;
+  ids: string[];
+  /** Why a shot has no result. */
+  messages: {shot: number; message: string}[];
+  /** One for each shot: an index into STATUSES. */
+  status: Uint8Array;
+  /** [s] */
+  duration: Float64Array;
+  events: BigInt64Array;
+  /** Index of a ball, or -1. */
+  firstHit: Int32Array;
+  contacts: Int32Array;
+  approachCushions: Int32Array;
+  /** One for each shot and ball, the balls of the first shot first: the place at the end [m]. */
+  x: Float64Array;
+  y: Float64Array;
+  /** Index of the pocket, -2 for a ball that has left the table, or -1. */
+  pocket: Int32Array;
+  fell: Int32Array;
+  cushions: Int32Array;
+  /** With `hash: true`. */
+  hash?: BigUint64Array;
+}
+
+/** Simulates many shots of one scene, in which these numbers differ: {"cue.speed": [1, 2, 3]}. */
+export function simulateMany(scene: Scene, columns: {[key: string]: ArrayLike<number>},
+  options?: {hash?: boolean}): Batch;
+
+export type Game = "eight_ball" | "nine_ball" | "three_cushion" | "snooker" | "sum_to_three";
+
+/** What a game remembers between two shots, as `carom judge --state-out` writes it. Players are 0 and 1. */
+export interface GameState {
+  game: Game;
+  turn: number;
+  opening: boolean;
+  in_hand: "no" | "anywhere" | "head string" | "D";
+  points: [number, number];
+  target: number;
+  over: boolean;
+  winner: number;
+  group: [string, string];
+  may_push_out: boolean;
+  fouls: [number, number];
+  on: string;
+  free_ball: boolean;
+}
+
+export class Verdict {
+  /** Empty for a fair shot. */
+  readonly fouls: {foul: string; rule: string}[];
+  readonly points: number;
+  readonly penalty: number;
+  /** The player who chooses among the options, or -1. */
+  readonly chooser: number;
+  readonly options: {
+    decision: string;
+    /** "player 2 shoots, cue ball in hand anywhere" */
+    text: string;
+    rerack: boolean;
+    state: GameState;
+    respots: {ball: string; place: [number, number]}[];
+  }[];
+  /** Whether the cue ball may lie there [m]. */
+  mayPlace(x: number, y: number, option?: number): boolean;
+  /** The next scene. `place`: of the cue ball in hand [m]; without it, near the head spot.
+   * @throws CaromError */
+  next(choice?: {option?: number; place?: [number, number] | null}): Scene;
+  free(): void;
+}
+
+export const games: {
+  /** The state before the first shot. `target`: points that win a carom game, 0 for no end. */
+  start(game: Game, options?: {first?: 0 | 1; target?: number}): GameState;
+  /** What the next shot may do. */
+  legal(state: GameState, scene: Scene): {
+    cueBalls: string[];
+    first: string[];
+    callable: string[];
+    inHand: GameState["in_hand"];
+    mayPushOut: boolean;
+    text: string;
+  };
+  judge(state: GameState, shot: Shot,
+    announced?: {ball?: string; pocket?: string; safety?: boolean; pushOut?: boolean}): Verdict;
+};

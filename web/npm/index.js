@@ -1,0 +1,31 @@
+// carom for node and browsers: `import {init, Scene, simulate} from "carom"; await init();`
+import {start} from "./core.js";
+
+export * from "./core.js";
+
+let starting = null;
+
+/** Loads carom.wasm, once. `source`: its bytes, a compiled WebAssembly.Module, a Response or a URL; without
+ * it, the file beside this one. */
+export function init(source = new URL("carom.wasm", import.meta.url)) {
+  return starting ??= load(source).then(start).catch((error) => {
+    starting = null;
+    throw error;
+  });
+}
+
+async function load(given) {
+  const source = await given;
+  if (source instanceof WebAssembly.Module || ArrayBuffer.isView(source) || source instanceof ArrayBuffer)
+    return source;
+  if (typeof Response !== "undefined" && source instanceof Response) return source.arrayBuffer();
+  const url = new URL(source, import.meta.url);
+  // node's fetch knows no files.
+  if (url.protocol === "file:" && typeof process !== "undefined") {
+    const {readFile} = await import("node:fs/promises");
+    return readFile(url);
+  }
+  const answer = await fetch(url);
+  if (!answer.ok) throw new Error(`carom: ${url}: ${answer.status} ${answer.statusText}`);
+  return answer.arrayBuffer();
+}

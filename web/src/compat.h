@@ -1,0 +1,55 @@
+// What the C++ library of emscripten 3.1.6 (libc++ 13) lacks of C++20. The preset wasm includes this header
+// before everything else.
+#pragma once
+
+#if defined(__cplusplus) && defined(__EMSCRIPTEN__)
+#include <charconv>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#if _LIBCPP_VERSION < 14000
+namespace std {
+/// The shortest text that reads back to the same bits.
+inline to_chars_result to_chars(char* first, char* last, double value) {
+    constexpr int kMostDigits = 17;
+    char text[32];
+    int size = 0;
+    for (int digits = 1; digits <= kMostDigits; ++digits) {
+        size = snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, nullptr) == value) break;
+    }
+    if (last - first < size) return {last, errc::value_too_large};
+    memcpy(first, text, static_cast<size_t>(size));
+    return {first + size, errc()};
+}
+}  // namespace std
+_LIBCPP_BEGIN_NAMESPACE_STD
+template <class To, class From>
+constexpr To bit_cast(const From& from) noexcept {
+    return __builtin_bit_cast(To, from);
+}
+_LIBCPP_END_NAMESPACE_STD
+#endif
+
+#if _LIBCPP_VERSION < 200000
+namespace std {
+// By strtod, which musl rounds correctly. Callers have checked that the text is a number of their format.
+inline from_chars_result from_chars(const char* first, const char* last, double& value) {
+    constexpr size_t kLongest = 1100;  // more digits than any double needs
+    char buffer[kLongest + 1];
+    const auto size = static_cast<size_t>(last - first);
+    if (size == 0 || size > kLongest || *first == '+' || *first == ' ')
+        return {first, errc::invalid_argument};
+    memcpy(buffer, first, size);
+    buffer[size] = '\0';
+    char* end = nullptr;
+    const double x = strtod(buffer, &end);
+    if (end == buffer) return {first, errc::invalid_argument};
+    value = x;
+    return {first + (end - buffer), errc()};
+}
+}  // namespace std
+#endif
+#endif

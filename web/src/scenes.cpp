@@ -1,0 +1,179 @@
+// Scenes: read, changed, described.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/scene_number.h"
+#include "carom/render/table_mesh.h"
+#include "page/ball_styles.h"
+#include "page/table_shape.h"
+#include "web.h"
+
+namespace carom::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Replaces the value of a key, or adds it.
+void keep(std::vector<NewValue>& changed, const NewValue& value) {
+    const auto same = std::find_if(changed.begin(), changed.end(),
+                                   [&](const NewValue& known) { return known.key == value.key; });
+    if (same == changed.end())
+        changed.push_back(value);
+    else
+        same->value = value.value;
+}
+
+/// The file of a scene with all its changes. Racked balls cannot be changed in a file; then every ball is
+/// placed on its own.
+std::string source_of(const WebScene& scene) {
+    if (scene.changed.empty()) return scene.source;
+    try {
+        return with_values(scene.source, scene.scene.file, scene.changed);
+    } catch (const VariationError&) {
+        return scene_text(scene.scene);
+    }
+}
+
+/// Sets numbers without reading the file again. @return whether all keys are numbers of the scene
+bool put_numbers(WebScene& scene, const Json& changes) {
+    Change most = Change::kNumbers;
+    for (const auto& [key, value] : changes.items()) {
+        if (!value.is_number()) return false;
+        try {
+            const SceneNumber number(scene.scene, key);
+            most = std::max(most, number.put(scene.scene, value.get<double>()));
+        } catch (const std::invalid_argument&) {
+            return false;
+        } catch (const SceneError&) {
+            return false;
+        }
+    }
+    if (most == Change::kAnything) return false;
+    validate_change(scene.scene, most);
+    return true;
+}
+
+WebScene changed(const WebScene& before, const Json& changes) {
+    WebScene after = before;
+    std::vector<NewValue> values;
+    // JSON writes numbers, truth values, texts and lists as TOML does.
+    for (const auto& [key, value] : changes.items()) values.push_back({key, value.dump()});
+    if (put_numbers(after, changes)) {
+        for (const NewValue& value : values) keep(after.changed, value);
+        return after;
+    }
+    std::string text;
+    try {
+        text = with_values(source_of(before), before.scene.file, values);
+    } catch (const VariationError&) {
+        text = with_values(scene_text(before.scene), before.scene.file, values);
+    }
+    return {parse_scene(text, before.scene.file), text, {}};
+}
+
+Json place(const Vec2& p) {
+    return {p.x(), p.y()};
+}
+
+Json described(const Scene& scene) {
+    Json balls = Json::array(), pockets = Json::array();
+    for (const BallStart& ball : scene.ball) {
+        const BallSize size = scene.size_of(ball);
+        balls.push_back({{"id", ball.id},
+                         {"x", ball.position.x()},
+                         {"y", ball.position.y()},
+                         {"radius", size.R},
+                         {"mass", size.m}});
+    }
+    for (const Pocket& pocket : scene.table.pockets)
+        pockets.push_back({{"id", pocket.id}, {"name", pocket.name}, {"center", place(pocket.center)}});
+    Json cue = nullptr;
+    if (scene.cue) {
+        const Cue& c = *scene.cue;
+        cue = {{"ball", c.ball},       {"speed", c.speed},
+               {"aim_deg", c.aim_deg}, {"elevation_deg", c.elevation_deg},
+               {"side", c.side},       {"height", c.height}};
+    }
+    const BallParams& b = scene.balls;
+    return {{"balls", balls},
+            {"cue", cue},
+            {"table",
+             {{"preset", scene.table.preset},
+              {"cloth", scene.table.cloth.value_or("")},
+              {"width", scene.table.width},
+              {"length", scene.table.length},
+              {"corner", place(scene.table.corner)},
+              {"pockets", pockets}}},
+            {"ballPreset", scene.ball_preset},
+            {"material",
+             {{"radius", b.R},
+              {"mass", b.m},
+              {"mu_s", b.mu_s},
+              {"mu_r", b.mu_r},
+              {"mu_sp", b.mu_sp},
+              {"mu_b", b.mu_b},
+              {"e_b", b.e_b},
+              {"e_c", b.e_c},
+              {"f_c", b.f_c}}}};
+}
+
+/// What a page needs to draw the scene: the shape of the table, and the look of each ball.
+Json look(const Scene& scene) {
+    std::vector<Vec2> places;
+    std::vector<std::string> ids;
+    for (const BallStart& ball : scene.ball) {
+        places.push_back(ball.position.head<2>());
+        ids.push_back(ball.id);
+    }
+    const render::TableMesh mesh =
+        render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
+    return {{"shape", tools::table_shape(mesh)}, {"styles", tools::ball_styles(ids, scene.table.preset)}};
+}
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+}  // namespace carom::web
+
+using carom::web::WebScene;
+
+CAROM_WEB int carom_scene_parse(const char* text, std::size_t size, const char* name, std::size_t name_size) {
+    return carom::web::guarded([&] {
+        const std::string source(text, size);
+        const std::string file(name, name_size);
+        carom::web::give(new WebScene{carom::parse_scene(source, file), source, {}}, "");
+    });
+}
+CAROM_WEB void carom_free_scene(WebScene* scene) {
+    delete scene;
+}
+/// @param changes JSON: an object of keys with dots, and their values
+CAROM_WEB int carom_scene_change(const WebScene* scene, const char* changes, std::size_t size) {
+    return carom::web::guarded([&] {
+        const auto json = carom::web::Json::parse(carom::web::text_at(changes, size));
+        carom::web::give(new WebScene(carom::web::changed(*scene, json)), "");
+    });
+}
+CAROM_WEB int carom_scene_source(const WebScene* scene) {
+    return carom::web::guarded([&] { carom::web::give(nullptr, carom::web::source_of(*scene)); });
+}
+/// Every value written out, and every ball placed on its own.
+CAROM_WEB int carom_scene_text(const WebScene* scene) {
+    return carom::web::guarded([&] { carom::web::give(nullptr, carom::scene_text(scene->scene)); });
+}
+CAROM_WEB int carom_scene_describe(const WebScene* scene) {
+    return carom::web::guarded(
+        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::described(scene->scene))); });
+}
+CAROM_WEB int carom_scene_look(const WebScene* scene) {
+    return carom::web::guarded(
+        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::look(scene->scene))); });
+}

@@ -1,0 +1,195 @@
+// Shots: one with its record, or many with their outcomes.
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carom/engine/batch.h"
+#include "carom/engine/event_details.h"
+#include "carom/engine/plan.h"
+#include "web.h"
+
+namespace carom::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// JSON has no NaN: null.
+Json number(double x) {
+    return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+Json outcome_json(const Record& record, const Outcome& outcome) {
+    const auto ball_id = [&](int ball) {
+        return ball < 0 ? Json(nullptr) : Json(record.tracks[static_cast<std::size_t>(ball)].id);
+    };
+    Json balls = Json::array();
+    for (std::size_t i = 0; i < outcome.balls.size(); ++i) {
+        const BallOutcome& ball = outcome.balls[i];
+        const bool held = ball.pocket >= 0;
+        balls.push_back(
+            {{"id", record.tracks[i].id},
+             {"x", ball.position.x()},
+             {"y", ball.position.y()},
+             {"pocket", held ? Json(record.table.pockets[static_cast<std::size_t>(ball.pocket)].id) : Json()},
+             {"offTable", ball.pocket == kOffTable},
+             {"fell", ball.fell},
+             {"cushions", ball.cushions}});
+    }
+    return {{"stopped", words(outcome.stopped).word},
+            {"firstHit", ball_id(outcome.first_hit)},
+            {"contacts", outcome.contacts},
+            {"approachCushions", outcome.approach_cushions},
+            {"balls", balls}};
+}
+
+Json shot_json(const WebShot& shot) {
+    Json ids = Json::array();
+    for (const BallTrack& track : shot.record.tracks) ids.push_back(track.id);
+    return {{"hash", shot.record.hash()},
+            {"duration", shot.record.duration},
+            {"events", shot.record.events.size()},
+            {"balls", ids},
+            {"outcome", outcome_json(shot.record, shot.outcome)}};
+}
+
+Json events_json(const Record& record) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < record.events.size(); ++i) {
+        const Event& event = record.events[i];
+        const EventDetails d = details_of(record, i);
+        const BallAtEvent& a = d.balls.front();
+        Json item = {{"time", event.time},
+                     {"type", name(event.type)},
+                     {"ball", record.tracks[static_cast<std::size_t>(event.a)].id},
+                     {"other", record.partner_id(event)},
+                     {"otherName", met_name(record, event)},
+                     {"place", {a.after.position.x(), a.after.position.y(), a.after.position.z()}},
+                     {"speedBefore", number(a.before.velocity.norm())},
+                     {"speed", number(a.after.velocity.norm())},
+                     {"closing", number(d.closing)},
+                     {"cut", number(d.cut)},
+                     {"diamond", number(d.diamond)}};
+        if (event.type == EventType::kBallCluster) {
+            Json balls = Json::array();
+            for (const int ball : record.clusters[static_cast<std::size_t>(event.detail)])
+                balls.push_back(record.tracks[static_cast<std::size_t>(ball)].id);
+            item["balls"] = balls;
+        }
+        list.push_back(std::move(item));
+    }
+    return list;
+}
+
+Json many_json(const Batch& batch) {
+    const auto at = [](const auto& list) { return reinterpret_cast<std::uintptr_t>(list.data()); };
+    Json messages = Json::array();
+    for (const Batch::Message& message : batch.messages)
+        messages.push_back({{"shot", message.shot}, {"message", message.text}});
+    return {{"shots", batch.shots},
+            {"balls", batch.balls},
+            {"messages", messages},
+            {"arrays",
+             {{"status", at(batch.status)},
+              {"duration", at(batch.duration)},
+              {"events", at(batch.events)},
+              {"firstHit", at(batch.first_hit)},
+              {"contacts", at(batch.contacts)},
+              {"approachCushions", at(batch.approach_cushions)},
+              {"x", at(batch.x)},
+              {"y", at(batch.y)},
+              {"pocket", at(batch.pocket)},
+              {"fell", at(batch.fell)},
+              {"cushions", at(batch.cushions)},
+              {"hash", at(batch.hash)}}}};
+}
+
+}  // namespace
+}  // namespace carom::web
+
+using carom::web::guarded;
+using carom::web::WebScene;
+using carom::web::WebShot;
+
+/// @param until   [s] of the shot; negative: the scene's own end
+/// @param seconds of computing, and most_events: beyond them the call fails
+CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds, double most_events) {
+    return guarded([&] {
+        using carom::web::Clock;
+        const auto start = Clock::now();
+        carom::SimulateOptions options;
+        if (until >= 0.0) options.until = until;
+        options.progress = [&](std::size_t events, double) {
+            const bool late = std::chrono::duration<double>(Clock::now() - start).count() > seconds;
+            if (!late && static_cast<double>(events) <= most_events) return;
+            throw carom::web::TooLong("the shot has " + std::to_string(events) + " events so far, which " +
+                                      (late ? "takes too long" : "is too many") +
+                                      "; give it an end in [stop], or allow more");
+        };
+        auto shot = std::make_unique<WebShot>();
+        shot->scene = scene->scene;
+        carom::RunBuffers buffers;
+        const carom::Plan plan = carom::make_plan(shot->scene, carom::web::kIsa);
+        carom::simulate(plan, buffers, shot->outcome, shot->record, options);
+        std::string text = carom::web::dumped(carom::web::shot_json(*shot));
+        carom::web::give(shot.release(), std::move(text));
+    });
+}
+CAROM_WEB void carom_free_shot(WebShot* shot) {
+    delete shot;
+}
+CAROM_WEB int carom_shot_record(const WebShot* shot) {
+    return guarded([&] { carom::web::give(nullptr, carom::record_json(shot->record)); });
+}
+CAROM_WEB int carom_shot_events(const WebShot* shot) {
+    return guarded(
+        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::events_json(shot->record))); });
+}
+/// States of all balls at `count` times: nine numbers for each ball, and its carom::MotionState.
+CAROM_WEB int carom_shot_states(const WebShot* shot, std::size_t count, const double* times, double* numbers,
+                                std::uint8_t* states) {
+    return guarded([&] {
+        const auto balls = static_cast<int>(shot->record.tracks.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            for (int ball = 0; ball < balls; ++ball) {
+                const carom::BallState state = shot->record.state_at(ball, times[i]);
+                for (const carom::Vec3& v : {state.position, state.velocity, state.spin})
+                    for (const double x : v) *numbers++ = x;
+                *states++ = static_cast<std::uint8_t>(state.state);
+            }
+        }
+        carom::web::give(nullptr, "");
+    });
+}
+
+/// @param keys    JSON: a list of keys
+/// @param values  keys x shots numbers, all shots of the first key first
+CAROM_WEB int carom_simulate_many(const WebScene* scene, const char* keys, std::size_t size,
+                                  std::size_t shots, const double* values, int hash) {
+    return guarded([&] {
+        std::vector<carom::BatchColumn> columns;
+        for (const auto& key : carom::web::Json::parse(carom::web::text_at(keys, size)))
+            columns.push_back({key.get<std::string>(), std::span(values + columns.size() * shots, shots)});
+        carom::BatchOptions options;
+        options.threads = 1;
+        options.hash = hash != 0;
+        auto batch = std::make_unique<carom::Batch>(
+            carom::simulate_many(scene->scene, shots, columns, carom::web::kIsa, options));
+        std::string text = carom::web::dumped(carom::web::many_json(*batch));
+        carom::web::give(batch.release(), std::move(text));
+    });
+}
+CAROM_WEB void carom_free_batch(carom::Batch* batch) {
+    delete batch;
+}
