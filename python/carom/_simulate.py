@@ -206,6 +206,8 @@ def _columns_of(
         raise ValueError("the number of shots is unknown: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
+    if n > 2**31:
+        raise ValueError(f"shots = {n} is out of range; it must be at most {2**31}")
     columns: list[tuple[str, NDArray[np.float64]]] = []
     for name, keys, values in given:
         if len(values) != n:

@@ -83,6 +83,7 @@ WRONG = [
     (("None",), None),
     (("int", "float", "ArrayLike"), 5),
     (("float", "ArrayLike"), 2.5),
+    (("int",), 10**400),  # no double is as large
     (("str", "Literal", "SceneLike"), "a text"),
     (("list",), [object()]),
     (("Mapping", "dict", "SceneLike"), {"a": object()}),
