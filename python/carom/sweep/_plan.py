@@ -88,7 +88,7 @@ class Plan(NamedTuple):
         name = os.fspath(path)
         if os.path.exists(name):
             if Plan.load(name) != self:
-                what = "there is another plan already; remove it, or write to another place"
+                what = "another plan is already there; remove it, or write elsewhere"
                 raise SweepError(f"{name}: {what}")
             return
         try:
@@ -114,7 +114,7 @@ class Plan(NamedTuple):
     @classmethod
     def _of(cls, tree: Any, name: str) -> Plan:
         if not isinstance(tree, dict) or tree.get("format") != FORMAT:
-            raise SweepError(f'{name}: no plan of a sweep: "format" has to be "{FORMAT}"')
+            raise SweepError(f'{name}: not a plan of a sweep: "format" must be "{FORMAT}"')
         content = {key: value for key, value in tree.items() if key not in ("format", "sha256")}
         digest = sha256(canonical({"format": FORMAT, **content}))
         if tuple(content) != cls._fields or tree.get("sha256") != digest:
@@ -190,7 +190,7 @@ def plan(
         raise ValueError(f"shard={shard}: expected at least 1")
     if -(-shots // shard) > _MOST_SHARDS:
         least = -(-shots // _MOST_SHARDS)
-        what = f"these are more than {_MOST_SHARDS} shards; take at least {least} shots for each"
+        what = f"that makes more than {_MOST_SHARDS} shards; use at least {least} shots in each"
         raise ValueError(f"shard={shard}: {what}")
     if hashes not in _HASHES:
         raise ValueError(f"hashes={hashes!r}: expected one of {', '.join(_HASHES)}")
@@ -200,5 +200,5 @@ def plan(
     made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes,
                 _carom.VERSION, probe)
     if "record_hash" in player.types():
-        raise ValueError("vary: record_hash is the name of a column of its own")
+        raise ValueError("vary: record_hash names a column that is always there")
     return made

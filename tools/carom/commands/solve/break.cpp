@@ -87,7 +87,7 @@ double gain(const Scene& scene) {
 
 std::string told(const Solution& best, const BreakArgs& args, double per_cue, int rank) {
     const Scene& scene = best.scene;
-    const Table& table = scene.table;
+    const carom::Table& table = scene.table;
     const Units units = units_of(args.units);
     const Unit length = length_unit(units);
     const double x = best.values[0], y = best.values[1], hit = best.values[2];
