@@ -39,7 +39,7 @@ struct Rooms {
 };
 const std::array<Rooms, 5> kRooms = {{
     {"kernel/src", {"unlike"}, {"march", "tolerance", "contact_phase"}},
-    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
+    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch", "tangent"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
     // Inner rooms come before the rooms that contain them.
     {"tools/carom/commands",
