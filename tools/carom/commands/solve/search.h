@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/hand.h"
 #include "base/options.h"
 #include "carom/engine/variation.h"
 #include "carom/games/solve.h"
@@ -16,15 +17,12 @@ namespace carom::tools {
 
 /// The options of a search.
 struct SearchArgs {
-    std::string hand = "aim=0.2,speed=3%,tip=0.02", output;
+    std::string hand = kHand, output;
     std::uint64_t shots = 400000, seed = 1;
     int jobs = 0, best = 3;
     bool json = false;
 };
 void add_search(Options& command, SearchArgs& args);
-
-/// "aim=0.2,speed=3%,tip=0.02". @throws UsageError
-games::Hand read_hand(const std::string& text);
 
 /// The scene with racks as they come out each time, if it has one. @param make  the variation with these
 /// rules
