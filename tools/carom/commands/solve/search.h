@@ -5,12 +5,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/hand.h"
 #include "base/options.h"
-#include "carom/engine/variation.h"
 #include "carom/games/solve.h"
 
 namespace carom::tools {
@@ -24,21 +22,6 @@ struct SearchArgs {
 };
 void add_search(Options& command, SearchArgs& args);
 
-/// The scene with racks as they come out each time, if it has one. @param make  the variation with these
-/// rules
-template <class Make>
-std::vector<Scene> read_layouts(int count, Make&& make) {
-    std::vector<Scene> layouts;
-    try {
-        const Variation racks = make(std::vector<std::string>{"rack.seed=integer(1,1000000000)"});
-        for (int i = 0; count > 1 && i < count; ++i)
-            if (auto shot = racks.shot(static_cast<std::uint64_t>(i)); shot.scene)
-                layouts.push_back(std::move(*shot.scene));
-    } catch (const VariationError&) {
-        // There is no rack: the balls lie where they are.
-    }
-    return layouts;
-}
 
 /// Searches with a progress bar. @param name  of the scene, for messages  @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Scene& scene, const std::string& name, const std::string& want,
