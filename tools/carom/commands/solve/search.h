@@ -22,7 +22,6 @@ struct SearchArgs {
 };
 void add_search(Options& command, SearchArgs& args);
 
-
 /// Searches with a progress bar. @param name  of the scene, for messages  @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Scene& scene, const std::string& name, const std::string& want,
                                     std::optional<games::Game> game, std::vector<games::Choice> choices,
