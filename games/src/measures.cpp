@@ -644,6 +644,16 @@ MeasureValue Measure::of(const Record& record) const {
     return value_of(*root_, PlayedShot(record));
 }
 
+MeasureValue Measure::in_table(const Record& record) const {
+    try {
+        return of(record);
+    } catch (const std::invalid_argument&) {
+        if (record.stopped == StopReason::kAtRest) throw;
+        if (is_number()) return kNone;
+        return Texts();
+    }
+}
+
 bool Measure::holds(const Record& record) const {
     return truth(of(record));
 }

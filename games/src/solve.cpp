@@ -390,6 +390,20 @@ class Solver {
 
 }  // namespace
 
+Share share_of(std::size_t part, std::size_t whole) {
+    // Of the normal distribution: 95 % lie within.
+    constexpr double kZ = 1.959963984540054;
+    if (whole == 0) return {0.0, 0.0, 1.0};
+    const double n = static_cast<double>(whole), p = static_cast<double>(part) / n, z2 = kZ * kZ / n;
+    const double middle = (p + 0.5 * z2) / (1.0 + z2);
+    const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
+    return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+std::vector<Choice> default_choices() {
+    return {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}, {"cue.offset.height", -0.4, 0.4}};
+}
+
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
                             const SolveOptions& options) {
     return Solver(scene, want, isa, options).run();

@@ -182,7 +182,7 @@ TEST(CliSweep, APartIsLookedAt) {
     for (const std::string& short_one :
          {std::string(), text.substr(0, 20), text.substr(0, text.size() - 1)}) {
         write(short_one);
-        refused("are not those that were written");
+        refused("differ from those that were written");
     }
 
     // From another build, which has other bits.

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._names import GameName
 from carom._record import Record
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
+GAMES: tuple[GameName, ...] = get_args(GameName)
 
 
 class State(NamedTuple):
@@ -120,7 +121,7 @@ class Verdict(NamedTuple):
 
 
 @checked
-def new_game(game: str, first: int = 0, target: int = 0) -> State:
+def new_game(game: GameName, first: int = 0, target: int = 0) -> State:
     """The state before the first shot.
 
     game: "eight_ball", "nine_ball" (World Pool-Billiard Association), "three_cushion" (Union Mondiale de
