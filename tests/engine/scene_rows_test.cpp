@@ -53,7 +53,9 @@ static_assert(members<RenderSettings, 2>() == in_rows(kRenderFields));
 static_assert(members<Cushion>() == in_rows(kCushionFields));
 static_assert(members<Jaw>() == in_rows(kJawFields));
 static_assert(members<Pocket>() == in_rows(kPocketFields));
-static_assert(members<Table, 1>() == in_rows(kTableFields) + 3);  // the lists
+static_assert(members<Table, 1>() == in_rows(kTableFields) + 4);  // the lists; measures
+static_assert(members<PocketMeasures>() == in_rows(kPocketMeasureFields));
+static_assert(members<Measures>() == in_rows(kMeasureFields) + 2);  // both kinds of pocket
 
 // A row is found by its key.
 TEST(Rows, KeysOfASectionDiffer) {
@@ -70,6 +72,7 @@ TEST(Rows, KeysOfASectionDiffer) {
     expect_distinct(kPhysicsFields);
     expect_distinct(kRenderFields);
     expect_distinct(kTableFields);
+    expect_distinct(kPocketMeasureFields);
 }
 
 }  // namespace

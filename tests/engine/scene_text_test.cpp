@@ -161,6 +161,11 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
                                "a.toml")) +
         scene_text(parse_scene(with(kEveryKey, "camera = \"rail\"", "eye = [1, 2, 3]\ntarget = [0, 1, 0]"),
                                "a.toml"));
+    text +=
+        scene_text(parse_scene("[table]\nsize = [1.2, 2.4]\ncushion_height = 0.036\nrail_width = 0.05\n"
+                               "[table.corner_pockets]\nthroat = 0.1\n[table.side_pockets]\nmouth = 0.13\n"
+                               "angle_deg = 103\nshelf = 0\njaw_radius = 0\nradius = 0.07\n[[ball]]\n",
+                               "a.toml"));
     for (const EffectInfo& effect : effect_table())
         text += std::string(effect.keyword) + " = true\n";  // one stands for all
     // These stand for aim_deg and speed, which are written.

@@ -87,10 +87,16 @@ std::vector<T> read_list(const JsonValue& value, const Field<T> (&fields)[kRows]
 
 Table read_table(const JsonValue& value, const Format& format) {
     std::vector<std::string_view> keys = keys_of(kTableFields, Files::kRecord);
+    for (const std::string_view key : keys_of(kMeasureFields, Files::kRecord)) keys.push_back(key);
+    for (const PocketSection& pockets : kPocketSections) keys.emplace_back(pockets.key);
     keys.insert(keys.end(), {"cushions", "jaws", "pockets"});
     const JsonObject all(value, keys);
     Table table;
     read_fields(all, kTableFields, format, table);
+    read_fields(all, kMeasureFields, format, table.measures);
+    for (const PocketSection& of : kPocketSections)
+        if (all.has(of.key))
+            table.measures.*of.pockets = read_object(all.at(of.key), kPocketMeasureFields, format);
     table.cushions = read_list(all.at("cushions"), kCushionFields, format);
     table.jaws = read_list(all.at("jaws"), kJawFields, format);
     table.pockets = read_list(all.at("pockets"), kPocketFields, format);

@@ -53,6 +53,11 @@ OrderedJson json_of(const Field<T> (&fields)[kRows], const std::vector<T>& list)
 
 OrderedJson table_json(const Table& table) {
     OrderedJson json = json_of(kTableFields, table);
+    if (const OrderedJson changed = json_of(kMeasureFields, table.measures); !changed.is_null())
+        json.update(changed);
+    for (const PocketSection& of : kPocketSections)
+        if (table.measures.*of.pockets != PocketMeasures{})
+            json[of.key] = json_of(kPocketMeasureFields, table.measures.*of.pockets);
     json["cushions"] = json_of(kCushionFields, table.cushions);
     json["jaws"] = json_of(kJawFields, table.jaws);
     json["pockets"] = json_of(kPocketFields, table.pockets);

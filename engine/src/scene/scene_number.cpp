@@ -143,6 +143,20 @@ Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, con
                 [parts, i](Scene& s) -> Part& { return (s.table.*parts)[i]; });
 }
 
+/// A measure of the table: changing it makes the parts anew.
+Found rebuilding(Found found) {
+    found.put = [put = std::move(found.put)](Scene& s, double value) {
+        const Change change = put(s, value);
+        if (s.table.preset.empty()) return change;  // which validate() refuses
+        Table table = make_table(s.table.preset, s.table.measures);
+        table.cloth = s.table.cloth;
+        table.bed = s.table.bed;
+        s.table = std::move(table);
+        return change;
+    };
+    return found;
+}
+
 Found find_number(const Scene& scene, std::string_view key) {
     if (take(key, "balls")) return find_in_balls(key);
     if (take(key, "ball")) return find_in_ball(scene, key);
@@ -156,11 +170,19 @@ Found find_number(const Scene& scene, std::string_view key) {
     if (take(key, "stop"))
         return find(kStopFields, "stop", key, Change::kNumbers, [](Scene& s) -> Stop& { return s.stop; });
     if (take(key, "table")) {
+        for (const PocketSection& section : kPocketSections)
+            if (take(key, section.key))
+                return rebuilding(find(kPocketMeasureFields, section.path, key, Change::kAnything,
+                                       [pockets = section.pockets](Scene& s) -> PocketMeasures& {
+                                           return s.table.measures.*pockets;
+                                       }));
         if (take(key, "cushion"))
             return find_in_parts(kCushionFields, "table.cushion", "cushion", &Table::cushions, scene, key);
         if (take(key, "jaw")) return find_in_parts(kJawFields, "table.jaw", "jaw", &Table::jaws, scene, key);
         if (take(key, "pocket"))
             return find_in_parts(kPocketFields, "table.pocket", "pocket", &Table::pockets, scene, key);
+        return rebuilding(find(kMeasureFields, "table", key, Change::kAnything,
+                               [](Scene& s) -> Measures& { return s.table.measures; }));
     }
     fail(
         "name a number in its section, such as cue.speed; sections are balls, ball, cue, physics, stop and "

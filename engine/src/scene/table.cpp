@@ -1,11 +1,15 @@
 // The section [table]: a preset or a custom outline.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
+#include "scene/pocket_table.h"
 #include "scene/sections.h"
 
 namespace carom::detail {
@@ -65,20 +69,75 @@ void number_parts(Table& table) {
     number('p', table.pockets);
 }
 
+void check_measures(const Section& section, const Scene& scene) {
+    const Table& table = scene.table;
+    if (table.measures == Measures{}) return;
+    if (table.preset.empty())
+        section.fail(SourceLocation{}, "table.measures change a preset, but this table has none; name one");
+    const std::optional<PocketTable> preset = pocket_table(table.preset);
+    for (const auto& [key, path, pockets] : kPocketSections) {
+        const PocketMeasures& of = table.measures.*pockets;
+        if (of == PocketMeasures{}) continue;
+        if (!preset)
+            section.fail(key, "the table {} has no pockets; leave out {}", in_quotes(table.preset), path);
+        if (of.throat && of.angle_deg)
+            section.fail(section.where(key, "throat"),
+                         "{0}.throat and {0}.angle_deg are two values for one facing; remove one", path);
+    }
+    if (!preset) {
+        if (table.measures.rail_width)
+            section.fail("rail_width", "the table {} has no pockets; leave out {}", in_quotes(table.preset),
+                         section.full("rail_width"));
+        if (table.width > table.length)
+            section.fail("size", "table.size = [{}, {}] has the long side first; swap the two", table.width,
+                         table.length);
+        return;
+    }
+    const double R = scene.balls.R, cue = scene.cue_ball.value_or(scene.balls.size()).R;
+    const PocketTable whole = with_measures(*preset, table.measures);
+    for (const PocketSection& of : kPocketSections) {
+        // A facing at a right angle leaves the widest throat.
+        const double got = *(measures_of(whole).*of.pockets).throat;
+        const double wanted = (table.measures.*of.pockets).throat.value_or(got);
+        if (wanted > got + 1e-9)
+            section.fail(section.where(of.key, "throat"),
+                         "{}.throat = {} m is wider than any facing leaves it; use at most {:.4g} m", of.path,
+                         wanted, got);
+    }
+    const auto wrong = misfit(whole, std::min(R, cue), std::max(R, cue));
+    if (!wrong) return;
+    const std::string inside = *wrong->section == '\0' ? "" : fmt::format("{}.", wrong->section);
+    section.fail(inside.empty() ? section.where(wrong->key) : section.where(wrong->section, wrong->key),
+                 "{} {}", section.full(inside + wrong->key), wrong->message);
+}
+
 void read_table(const Section& top, Scene& scene) {
-    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kScene);
+    std::vector<std::string_view> keys = keys_of(kTableFields, Files::kScene),
+                                  of_preset = keys_of(kMeasureFields, Files::kScene);
+    for (const PocketSection& pockets : kPocketSections) of_preset.emplace_back(pockets.key);
+    keys.insert(keys.end(), of_preset.begin(), of_preset.end());
     keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
+    of_preset.emplace_back("preset");
     const auto s = top.section("table", keys);
     const bool custom = s && (s->has("cushion") || s->has("jaw") || s->has("pocket"));
-    if (custom && s->has("preset")) {
-        s->fail(
-            "preset",
-            "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the two");
-    }
+    for (const std::string_view key : of_preset)
+        if (custom && s->has(key))
+            s->fail(
+                key,
+                "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the "
+                "two");
     Table named;
     if (!custom) named.preset = kStandardTable;
-    if (s) s->read(kTableFields, named);
-    if (!custom) scene.table = make_table(named.preset);
+    if (s) {
+        s->read(kTableFields, named);
+        s->read(kMeasureFields, named.measures);
+        for (const PocketSection& of : kPocketSections)
+            s->read(of.key, kPocketMeasureFields, named.measures.*of.pockets);
+    }
+    if (!custom) {
+        scene.table = make_table(named.preset, named.measures);
+        if (s) check_measures(*s, scene);
+    }
     scene.table.cloth = named.cloth;
     scene.table.bed = named.bed;
     if (named.cloth && !top.has("balls", "mu_r")) scene.balls.mu_r = cloth_mu_r(*named.cloth);

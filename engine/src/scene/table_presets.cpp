@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,29 +14,11 @@
 #include "carom/engine/printable.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
+#include "scene/pocket_table.h"
 #include "scene/sections.h"
 
 namespace carom {
 namespace {
-
-/// Dimensions of a table with six pockets. Lengths in m, angles in degrees.
-struct PocketTable {
-    double length, width;  ///< between nose lines
-    double cushion_width;  ///< how far the jaw facings extend behind the nose line
-    double nose_height;
-    double corner_mouth;   ///< between the points where the facings' lines meet the nose lines
-    double corner_angle;   ///< facing against the direction into the pocket (45 degrees to the rails)
-    double corner_depth;   ///< pocket centre behind the corner of the nose lines
-    double corner_radius;  ///< of the pocket circle
-    double corner_jaw_radius;
-    double side_mouth;
-    double side_angle;  ///< facing against the normal of the rail
-    double side_depth;
-    double side_radius;
-    double side_jaw_radius;
-    /// how far the side facing closes in, per length of depth: tan(side_angle) if straight
-    double side_run;
-};
 
 /// Seven-foot table. The numbers are those of pooltool 0.6.0 for a Showood table. Its side facings end at
 /// sin(angle) instead of tan(angle) times the depth, 5e-5 m off the tangent; that is kept, so that the two
@@ -44,18 +27,14 @@ PocketTable seven_foot() {
     constexpr double kSideAngle = 7.14;
     return {.length = 1.9812,
             .width = 0.9906,
-            .cushion_width = 0.0508,
+            .rail_width = 0.0508,
             .nose_height = 0.64 * 2.0 * 0.028575,
-            .corner_mouth = 0.118,
-            .corner_angle = 5.3,
-            .corner_depth = 0.0417,
-            .corner_radius = 0.062,
-            .corner_jaw_radius = 0.02095,
-            .side_mouth = 0.137,
-            .side_angle = kSideAngle,
-            .side_depth = 0.0685,
-            .side_radius = 0.0645,
-            .side_jaw_radius = 0.00795,
+            .corner = {.mouth = 0.118, .angle = 5.3, .depth = 0.0417, .radius = 0.062, .jaw_radius = 0.02095},
+            .side = {.mouth = 0.137,
+                     .angle = kSideAngle,
+                     .depth = 0.0685,
+                     .radius = 0.0645,
+                     .jaw_radius = 0.00795},
             .side_run = sin_cos_deg(kSideAngle).sin};
 }
 
@@ -65,9 +44,8 @@ constexpr double kCornerShelf = 1.75 * 0.0254;
 /// [m] Radius of the point between a nose and a facing: on a pool table only the rubber rounds it.
 constexpr double kPointRadius = 0.003;
 
-/// The depth of the pocket's centre that gives this shelf.
 double depth_of_shelf(const PocketTable& t, double shelf) {
-    return shelf + t.corner_radius - t.corner_mouth / 2.0;
+    return shelf + t.corner.radius - t.corner.mouth / 2.0;
 }
 
 /// Nine-foot table. The playing surface is 100 x 50 in. The mouths are the middle of the range in the WPA
@@ -79,13 +57,13 @@ PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
     t.width = 1.27;
-    t.corner_mouth = 4.5625 * 0.0254;
-    t.corner_angle = 142.0 - 135.0;
-    t.corner_depth = depth_of_shelf(t, kCornerShelf);
-    t.corner_jaw_radius = t.side_jaw_radius = kPointRadius;
-    t.side_mouth = 5.0625 * 0.0254;
-    t.side_angle = 104.0 - 90.0;
-    t.side_run = tan_deg(t.side_angle);
+    t.corner.mouth = 4.5625 * 0.0254;
+    t.corner.angle = 142.0 - 135.0;
+    t.corner.depth = depth_of_shelf(t, kCornerShelf);
+    t.corner.jaw_radius = t.side.jaw_radius = kPointRadius;
+    t.side.mouth = 5.0625 * 0.0254;
+    t.side.angle = 104.0 - 90.0;
+    t.side_run = tan_deg(t.side.angle);
     return t;
 }
 
@@ -106,11 +84,11 @@ PocketTable bar_table() {
     PocketTable t = nine_foot();
     t.length = 80.0 * 0.0254;
     t.width = 40.0 * 0.0254;
-    t.corner_mouth = 4.875 * 0.0254;
-    t.corner_depth = depth_of_shelf(t, kCornerShelf);
-    t.side_mouth = 4.75 * 0.0254;
-    t.side_angle = 103.0 - 90.0;
-    t.side_run = tan_deg(t.side_angle);
+    t.corner.mouth = 4.875 * 0.0254;
+    t.corner.depth = depth_of_shelf(t, kCornerShelf);
+    t.side.mouth = 4.75 * 0.0254;
+    t.side.angle = 103.0 - 90.0;
+    t.side_run = tan_deg(t.side.angle);
     return t;
 }
 
@@ -121,21 +99,14 @@ PocketTable bar_table() {
 /// when its centre passes the corner, or the rail line at the side.
 PocketTable snooker_table() {
     constexpr double kSideAngle = 10.0;
-    return {.length = 3.569,
-            .width = 1.778,
-            .cushion_width = 0.0508,
-            .nose_height = 1.4 * 0.02625,
-            .corner_mouth = 0.089,
-            .corner_angle = 0.0,
-            .corner_depth = 0.055,
-            .corner_radius = 0.050,
-            .corner_jaw_radius = 0.100,
-            .side_mouth = 0.105,
-            .side_angle = kSideAngle,
-            .side_depth = 0.055,
-            .side_radius = 0.050,
-            .side_jaw_radius = 0.040,
-            .side_run = tan_deg(kSideAngle)};
+    return {
+        .length = 3.569,
+        .width = 1.778,
+        .rail_width = 0.0508,
+        .nose_height = 1.4 * 0.02625,
+        .corner = {.mouth = 0.089, .angle = 0.0, .depth = 0.055, .radius = 0.050, .jaw_radius = 0.100},
+        .side = {.mouth = 0.105, .angle = kSideAngle, .depth = 0.055, .radius = 0.050, .jaw_radius = 0.040},
+        .side_run = tan_deg(kSideAngle)};
 }
 
 /// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, and all of
@@ -146,14 +117,14 @@ PocketTable english_pool_table() {
     t.length = 1.8288;  // 6 ft
     t.width = 0.9144;
     for (double* length :
-         {&t.nose_height, &t.corner_mouth, &t.corner_depth, &t.corner_radius, &t.corner_jaw_radius,
-          &t.side_mouth, &t.side_depth, &t.side_radius, &t.side_jaw_radius})
+         {&t.nose_height, &t.corner.mouth, &t.corner.depth, &t.corner.radius, &t.corner.jaw_radius,
+          &t.side.mouth, &t.side.depth, &t.side.radius, &t.side.jaw_radius})
         *length *= kBalls;
     return t;
 }
 
-/// A jaw and the straight facing beside it, in the frame
-/// of the corner: x and y from the corner into the table.
+/// A jaw and the straight facing beside it, in the frame of the corner: x and y from the corner into the
+/// table.
 struct JawAndFacing {
     Vec2 jaw;        ///< centre of the circle
     Vec2 tip, back;  ///< ends of the facing, at the nose and behind it
@@ -163,21 +134,21 @@ struct JawAndFacing {
 
 /// At the corner pocket, on the short rail. The jaw's circle touches the nose line and the facing.
 JawAndFacing corner_jaw(const PocketTable& t) {
-    const double angle = 45.0 + t.corner_angle, r = t.corner_jaw_radius;
-    const double mouth = t.corner_mouth * sin_cos_deg(45.0).cos;
+    const double angle = 45.0 + t.corner.angle, r = t.corner.jaw_radius;
+    const double mouth = t.corner.mouth * sin_cos_deg(45.0).cos;
     const double start = mouth + r / tan_deg((90.0 + angle) / 2.0);
     const SinCos c = sin_cos_deg(angle);
     return {{start, -r},
             {start - r * c.cos, -r + r * c.sin},
-            {mouth - t.cushion_width * tan_deg(angle), -t.cushion_width}};
+            {mouth - t.rail_width * tan_deg(angle), -t.rail_width}};
 }
 
 /// At the side pocket, on the long rail.
 JawAndFacing side_jaw(const PocketTable& t) {
-    const double end = (t.length - t.side_mouth) / 2.0, r = t.side_jaw_radius;
-    const double y = end - r / tan_deg((90.0 + t.side_angle) / 2.0);
-    const SinCos s = sin_cos_deg(t.side_angle);
-    return {{-r, y}, {-r + r * s.sin, y + r * s.cos}, {-t.cushion_width, end + t.cushion_width * t.side_run}};
+    const double end = (t.length - t.side.mouth) / 2.0, r = t.side.jaw_radius;
+    const double y = end - r / tan_deg((90.0 + t.side.angle) / 2.0);
+    const SinCos s = sin_cos_deg(t.side.angle);
+    return {{-r, y}, {-r + r * s.sin, y + r * s.cos}, {-t.rail_width, end + t.rail_width * t.side_run}};
 }
 
 /// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail.
@@ -186,7 +157,7 @@ Table build(const char* preset, const PocketTable& t) {
     const JawAndFacing short_rail = corner_jaw(t), long_rail = short_rail.swapped(), side = side_jaw(t);
     const double w = t.width, l = t.length, h = t.nose_height;
     const double start = long_rail.jaw.y(), end = side.jaw.y();  // of the straight nose on the long rail
-    const double diagonal = t.corner_depth * sin_cos_deg(45.0).cos;
+    const double diagonal = t.corner.depth * sin_cos_deg(45.0).cos;
     Table table;
     table.preset = preset;
     table.width = w;
@@ -207,20 +178,20 @@ Table build(const char* preset, const PocketTable& t) {
                 {"", at(part.back), at(part.tip), h, fmt::format("{}, facing of the {}", place, of)});
             jaws.push_back({"", at(part.jaw), r, h, fmt::format("{}, jaw of the {}", place, of)});
         };
-        add(corner, across + " rail", short_rail, t.corner_jaw_radius);
-        add(corner, along + " rail", long_rail, t.corner_jaw_radius);
+        add(corner, across + " rail", short_rail, t.corner.jaw_radius);
+        add(corner, along + " rail", long_rail, t.corner.jaw_radius);
         const Vec2 from = at({0.0, to_corner ? end : start}), to = at({0.0, to_corner ? start : end});
         cushions.push_back({"", from, to, h, fmt::format("{} rail, {} half", along, across)});
-        add(middle, across + " half", side, t.side_jaw_radius);
+        add(middle, across + " half", side, t.side.jaw_radius);
         table.pockets.push_back(
-            {"", at({-diagonal, -diagonal}), t.corner_radius, kPocketDepth, corner + " pocket"});
+            {"", at({-diagonal, -diagonal}), t.corner.radius, kPocketDepth, corner + " pocket"});
         if (to_corner) {
             std::reverse(cushions.begin(), cushions.end());
             std::reverse(jaws.begin(), jaws.end());
             const double y = foot ? l : 0.0, x = right ? w - start : start;
             cushions.push_back({"", {x, y}, {right ? start : w - start, y}, h, across + " rail"});
         } else {
-            table.pockets.push_back({"", at({-t.side_depth, l / 2.0}), t.side_radius, kPocketDepth, middle});
+            table.pockets.push_back({"", at({-t.side.depth, l / 2.0}), t.side.radius, kPocketDepth, middle});
         }
         table.cushions.insert(table.cushions.end(), cushions.begin(), cushions.end());
         table.jaws.insert(table.jaws.end(), jaws.begin(), jaws.end());
@@ -229,11 +200,15 @@ Table build(const char* preset, const PocketTable& t) {
     return table;
 }
 
-/// Carom table, 2.84 x 1.42 m between nose lines, nose 37 mm above the cloth (UMB rules), no pockets.
-Table carom_table() {
-    const double w = 1.42, l = 2.84, h = 0.037;
+/// [m] Nose of a carom table (UMB rules).
+constexpr double kCaromNose = 0.037;
+
+/// Carom table, no pockets, nose 37 mm above the cloth (UMB rules).
+Table carom_table(const char* preset, double length, const Measures& changed) {
+    const Vec2 size = changed.size.value_or(Vec2(length / 2.0, length));
+    const double w = size.x(), l = size.y(), h = changed.cushion_height.value_or(kCaromNose);
     Table table;
-    table.preset = "carom";
+    table.preset = preset;
     table.width = w;
     table.length = l;
     table.cushions = {{"", {0.0, 0.0}, {0.0, l}, h, "left rail"},
@@ -244,23 +219,64 @@ Table carom_table() {
     return table;
 }
 
+struct WithPockets {
+    const char* name;
+    PocketTable (*make)();
+};
+constexpr WithPockets kWithPockets[] = {{"seven_foot", seven_foot}, {"seven_foot_bar", bar_table},
+                                        {"eight_foot", eight_foot}, {"nine_foot", nine_foot},
+                                        {"snooker", snooker_table}, {"english_pool", english_pool_table}};
+
+const WithPockets* with_pockets(std::string_view preset) {
+    for (const WithPockets& row : kWithPockets)
+        if (preset == row.name) return &row;
+    return nullptr;
+}
+
+struct WithoutPockets {
+    const char *name, *also;
+    double length;
+};
+/// Match table, 2.84 x 1.42 m between nose lines (UMB rules).
+constexpr WithoutPockets kWithoutPockets[] = {{"carom", "carom_ten_foot", 2.84}};
+
+const WithoutPockets& without_pockets(std::string_view preset) {
+    for (const WithoutPockets& row : kWithoutPockets)
+        if (preset == row.name || preset == row.also) return row;
+    throw std::invalid_argument(
+        fmt::format("unknown table preset {}{}", in_quotes(preset),
+                    did_you_mean(preset, {std::begin(kTablePresets), std::end(kTablePresets)})));
+}
+
 }  // namespace
 
 Vec2 foot_spot(const Table& table) {
     return {table.corner.x() + table.width / 2.0, table.corner.y() + 3.0 * table.length / 4.0};
 }
 
-Table make_table(std::string_view preset) {
-    if (preset == "seven_foot") return build("seven_foot", seven_foot());
-    if (preset == "seven_foot_bar") return build("seven_foot_bar", bar_table());
-    if (preset == "nine_foot") return build("nine_foot", nine_foot());
-    if (preset == "eight_foot") return build("eight_foot", eight_foot());
-    if (preset == "snooker") return build("snooker", snooker_table());
-    if (preset == "english_pool") return build("english_pool", english_pool_table());
-    if (preset == "carom" || preset == "carom_ten_foot") return carom_table();
-    throw std::invalid_argument(
-        fmt::format("unknown table preset {}{}", in_quotes(preset),
-                    did_you_mean(preset, {std::begin(kTablePresets), std::end(kTablePresets)})));
+std::optional<PocketTable> pocket_table(std::string_view preset) {
+    const WithPockets* row = with_pockets(preset);
+    return row != nullptr ? std::optional(row->make()) : std::nullopt;
+}
+
+Table make_table(std::string_view preset, const Measures& changed) {
+    Table table;
+    if (const WithPockets* row = with_pockets(preset)) {
+        table = build(row->name, with_measures(row->make(), changed));
+    } else {
+        const WithoutPockets& known = without_pockets(preset);
+        table = carom_table(known.name, known.length, changed);
+    }
+    table.measures = changed;
+    return table;
+}
+
+Measures measures_of(std::string_view preset, const Measures& changed) {
+    if (const WithPockets* row = with_pockets(preset))
+        return measures_of(with_measures(row->make(), changed));
+    const double length = without_pockets(preset).length;
+    return {.size = changed.size.value_or(Vec2(length / 2.0, length)),
+            .cushion_height = changed.cushion_height.value_or(kCaromNose)};
 }
 
 }  // namespace carom

@@ -67,11 +67,11 @@ bool same_parts(const Field<Part> (&fields)[kRows], const std::vector<Part>& a, 
     });
 }
 
-/// Whether the table is still that of its preset.
+/// Whether the table is still that of its preset and its measures.
 bool is_preset(const Table& table) {
     if (table.preset.empty()) return false;
     try {
-        const Table preset = make_table(table.preset);
+        const Table preset = make_table(table.preset, table.measures);
         return same_parts(kCushionFields, table.cushions, preset.cushions) &&
                same_parts(kJawFields, table.jaws, preset.jaws) &&
                same_parts(kPocketFields, table.pockets, preset.pockets);
@@ -81,7 +81,14 @@ bool is_preset(const Table& table) {
 }
 
 void write_table(Out out, const Table& table) {
-    if (is_preset(table)) return write_fields(out, "[table]\n", kTableFields, table);
+    if (is_preset(table)) {
+        write_fields(out, "[table]\n", kTableFields, table);
+        write_fields(out, "", kMeasureFields, table.measures);
+        for (const PocketSection& of : kPocketSections)
+            write_fields(out, fmt::format("[{}]\n", of.path).c_str(), kPocketMeasureFields,
+                         table.measures.*of.pockets);
+        return;
+    }
     fmt::format_to(out, "[table]\n{}", table.cushions.empty() ? "cushion = []\n" : "");
     for (const Field<Table>& f : kTableFields)
         if (f.key != std::string_view("preset") && is_written(kTableFields, f, table))

@@ -51,13 +51,17 @@ void check_parts(const Scene& scene, const char* path, const Field<Part> (&field
     }
 }
 
-/// The parts of a preset are in range, so it does not matter whether they have been changed.
 void check_table(const Scene& scene) {
     Table named;
     named.cloth = scene.table.cloth;
     named.bed = scene.table.bed;
     named.preset = scene.table.preset.empty() ? kStandardTable : scene.table.preset;
-    Section(scene.file, "table").check(kTableFields, named);
+    const Section table(scene.file, "table");
+    table.check(kTableFields, named);
+    table.check(kMeasureFields, scene.table.measures);
+    for (const PocketSection& of : kPocketSections)
+        Section(scene.file, of.path).check(kPocketMeasureFields, scene.table.measures.*of.pockets);
+    check_measures(table, scene);
     check_parts(scene, "table.cushion", kCushionFields, scene.table.cushions);
     check_parts(scene, "table.jaw", kJawFields, scene.table.jaws);
     check_parts(scene, "table.pocket", kPocketFields, scene.table.pockets);

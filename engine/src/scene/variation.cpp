@@ -159,6 +159,13 @@ std::vector<Step> find_section(toml::table& file, std::string_view& key) {
     }
     std::vector<Step> path = {{section}};
     if (section != "table") return path;
+    for (const PocketSection& of : kPocketSections) {
+        if (!take(key, of.key)) continue;
+        toml::table* table = file["table"].as_table();
+        if (table != nullptr && !table->contains(of.key)) table->insert(of.key, toml::table());
+        path.push_back({of.key});
+        return path;
+    }
     for (const std::string list : {"cushion", "jaw", "pocket"}) {
         if (!take(key, list)) continue;
         path.push_back({list});

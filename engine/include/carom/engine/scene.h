@@ -507,8 +507,11 @@ std::string scene_text(const Scene& scene);
 /// @throws SceneError without a line
 void validate(const Scene& scene);
 
-/// A preset by name. @throws std::invalid_argument for an unknown one
-Table make_table(std::string_view preset);
+/// A preset by name, with measures of its own. validate() tells whether they fit each other.
+/// @throws std::invalid_argument for an unknown preset
+Table make_table(std::string_view preset, const Measures& changed = {});
+/// All the measures of such a table; those of pockets are absent if it has none.
+Measures measures_of(std::string_view preset, const Measures& changed = {});
 BallParams make_ball_params(std::string_view preset);
 /// Gives a scene the balls of a preset, and the cushion model that belongs to them.
 void use_balls(Scene& scene, std::string_view preset);

@@ -242,6 +242,9 @@ std::string scene_schema() {
     table["properties"]["cushion"] = list_of(object_of(kCushionFields, {}, kScene), kMaxTableParts);
     table["properties"]["jaw"] = list_of(object_of(kJawFields, {}, kScene), kMaxTableParts);
     table["properties"]["pocket"] = list_of(object_of(kPocketFields, {}, kScene), kMaxTableParts);
+    add_properties(table, kMeasureFields, Measures{}, kScene);
+    for (const PocketSection& of : kPocketSections)
+        table["properties"][of.key] = object_of(kPocketMeasureFields, PocketMeasures{}, kScene);
     Json balls = object_of(kBallPresetFields, Scene{}, kScene);
     add_properties(balls, kBallFields, make_ball_params(Scene{}.ball_preset), kScene);
     balls["properties"]["cue"] = object_of(kSizeFields, {}, kScene);
@@ -283,6 +286,9 @@ std::string scene_schema() {
 std::string record_schema() {
     constexpr Files kRecord = Files::kRecord;
     Json table = object_of(kTableFields, carom::Table{}, kRecord);
+    add_properties(table, kMeasureFields, Measures{}, kRecord);
+    for (const PocketSection& of : kPocketSections)
+        table["properties"][of.key] = object_of(kPocketMeasureFields, PocketMeasures{}, kRecord);
     for (const auto& [list, part, meaning] : {std::array{"cushions", "cushion", "straight noses"},
                                               {"jaws", "jaw", "round noses"},
                                               {"pockets", "pocket", "where balls fall"}}) {
@@ -310,7 +316,9 @@ std::string record_schema() {
 std::string scene_format() {
     constexpr const char* kHeader = "| key | default | values | meaning |";
     std::string page = built_in("scene_format.md");
-    put_table(page, "table", kHeader, lines_of(kTableFields, make_table(kStandardTable)));
+    put_table(page, "table", kHeader,
+              lines_of(kTableFields, make_table(kStandardTable)) + lines_of(kMeasureFields, Measures{}));
+    put_table(page, "measures", kHeader, lines_of(kPocketMeasureFields, PocketMeasures{}));
     put_table(page, "outline", "| list | key | default | values | meaning |",
               lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
                   lines_of(kJawFields, {}, "`[[table.jaw]]`") +

@@ -1,0 +1,236 @@
+// A preset with measures of its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+#include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
+#include "carom/engine/variation.h"
+#include "support/scene_errors.h"
+
+namespace carom::test {
+namespace {
+
+constexpr char kShot[] =
+    "[[ball]]\nposition = [0.4, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.5, 0.9]\n[cue]\nspeed = 4\n"
+    "aim_deg = 70\n";
+
+std::string with_corner(const std::string& keys) {
+    return "[table]\npreset = \"nine_foot\"\n[table.corner_pockets]\n" + keys + "\n" + kShot;
+}
+
+auto hash_of(const std::string& text) {
+    return simulate(make_plan(parse_scene(text, "s.toml"), kernel::Isa::kFastest)).hash();
+}
+
+const Cushion& named(const Table& table, const std::string& name) {
+    for (const Cushion& c : table.cushions)
+        if (c.name == name) return c;
+    throw std::logic_error("no cushion " + name);
+}
+
+const char* const kFacing = "head-left corner, facing of the head rail";
+const char* const kOther = "head-left corner, facing of the left rail";
+
+// All that a preset says of itself, written out, is the preset bit for bit.
+TEST(Measures, OfAPresetAreThePreset) {
+    for (const char* preset : kTablePresets) {
+        const Table plain = make_table(preset);
+        Measures all = measures_of(preset);
+        for (const bool throat : {false, true}) {
+            for (const PocketSection& of : kPocketSections)
+                (throat ? (all.*of.pockets).angle_deg : (all.*of.pockets).throat).reset();
+            const Table same = make_table(preset, all);
+            EXPECT_TRUE(same.cushions == plain.cushions) << preset;
+            EXPECT_TRUE(same.jaws == plain.jaws) << preset;
+            EXPECT_TRUE(same.pockets == plain.pockets) << preset;
+            all = measures_of(preset);
+        }
+        EXPECT_EQ(error_of("[table]\npreset = \"" + std::string(preset) +
+                           "\"\nsize = [0.9, 1.8]\n[[ball]]\nposition = [0.4, 0.5]\n"),
+                  "")
+            << preset;
+    }
+    EXPECT_EQ(hash_of(with_corner("mouth = \"4.5625 in\"\nangle_deg = 142\nshelf = \"1.75 in\"")),
+              hash_of(kShot));
+    EXPECT_NE(hash_of("[table]\nsize = [1.2, 2.4]\n" + std::string(kShot)), hash_of(kShot));
+}
+
+TEST(Measures, AreThoseOfTheTable) {
+    const Scene scene = parse_scene(
+        "[table]\nrail_width = 0.045\ncushion_height = 0.036\nsize = [1.25, 2.5]\n"
+        "[table.corner_pockets]\nmouth = 0.11\nangle_deg = 140\nshelf = 0.03\n"
+        "radius = 0.06\njaw_radius = 0.004\n[table.side_pockets]\nmouth = 0.12\n"
+        "angle_deg = 100\nshelf = 0.005\n" +
+            std::string(kShot),
+        "s.toml");
+    const Table& t = scene.table;
+    EXPECT_EQ(t.width, 1.25);
+    EXPECT_EQ(t.length, 2.5);
+    const Cushion &facing = named(t, kFacing), &other = named(t, kOther);
+    EXPECT_EQ(facing.height, 0.036);
+    EXPECT_NEAR(facing.from.y(), -0.045, 1e-15);
+    // The lines of facing and nose meet at the ends of the mouth.
+    const Vec2 along = facing.to - facing.from;
+    const double x = facing.to.x() - facing.to.y() * along.x() / along.y();
+    EXPECT_NEAR(x * std::sqrt(2.0), 0.11, 1e-14);
+    EXPECT_NEAR(std::atan2(along.y(), -along.x()), 140.0 * M_PI / 180.0, 1e-12);
+    // From the middle of the mouth to the nearest point of the hole.
+    const Pocket& hole = t.pockets[0];
+    EXPECT_NEAR((Vec2(x / 2.0, x / 2.0) - hole.center).norm() - hole.radius, 0.03, 1e-14);
+    EXPECT_EQ(hole.radius, 0.06);
+    EXPECT_EQ(t.jaws[0].radius, 0.004);
+    const Cushion& side = named(t, "left side pocket, facing of the head half");
+    EXPECT_NEAR(side.from.y(), (2.5 - 0.12) / 2.0 + 0.045 * std::tan(10.0 * M_PI / 180.0), 1e-14);
+    EXPECT_NEAR(-t.pockets[1].center.x() - t.pockets[1].radius, 0.005, 1e-15);
+    // The throat is what the back ends leave, and gives the facing back.
+    const Measures all = measures_of("nine_foot", t.measures);
+    EXPECT_NEAR((facing.from - other.from).norm(), *all.corner_pockets.throat, 1e-14);
+    const Table again =
+        parse_scene("[table]\nrail_width = 0.045\n[table.corner_pockets]\nmouth = 0.11\nthroat = " +
+                        std::to_string(0.08) + "\n" + kShot,
+                    "s.toml")
+            .table;
+    EXPECT_NEAR((named(again, kFacing).from - named(again, kOther).from).norm(), 0.08, 1e-14);
+}
+
+// A tighter mouth leaves the shelf as it is.
+TEST(Measures, KeepWhatIsNotChanged) {
+    const Measures plain = measures_of("nine_foot"),
+                   tight = measures_of("nine_foot", {.corner_pockets = {.mouth = 0.108}});
+    EXPECT_EQ(*tight.corner_pockets.mouth, 0.108);
+    EXPECT_NEAR(*tight.corner_pockets.shelf, *plain.corner_pockets.shelf, 1e-15);
+    EXPECT_TRUE(tight.side_pockets == plain.side_pockets);
+}
+
+TEST(Measures, ThatDoNotFitAreRefusedAtTheirPlace) {
+    const struct {
+        const char *keys, *says;
+    } kCases[] = {
+        {"mouth = 0.05", "s.toml:4:9: table.corner_pockets.mouth is 0.05 m, not wider than a ball"},
+        {"angle_deg = 170", "s.toml:4:13: table.corner_pockets.angle_deg lets the facings cross"},
+        {"angle_deg = 180", "s.toml:4:13: table.corner_pockets.angle_deg = 180 is out of range"},
+        {"throat = 0.2", "s.toml:4:10: table.corner_pockets.throat = 0.2 m is wider than any facing"},
+        {"throat = 0.01\nshelf = 0.1", "s.toml:4:10: table.corner_pockets.throat is too narrow: at the hole"},
+        {"shelf = 0.2", "s.toml:4:9: table.corner_pockets.shelf = 0.2 m puts the hole behind the facings"},
+        {"shelf = -0.01", "s.toml:4:9: table.corner_pockets.shelf = -0.01 is out of range"},
+        {"radius = 0.01", "s.toml:4:10: table.corner_pockets.radius = 0.01 m lets a ball pass"},
+        {"jaw_radius = 0.3", "s.toml:4:14: table.corner_pockets.jaw_radius = 0.3 m leaves no facing"},
+        {"mouth = nan", "s.toml:4:9: table.corner_pockets.mouth must be a finite number"},
+        {"mouht = 0.1", "s.toml:4:1: unknown key \"mouht\" in [table.corner_pockets]"},
+        {"throat = 0.09\nangle_deg = 140", "s.toml:4:10: table.corner_pockets.throat and "},
+        {"mouth = 1", "s.toml:3:1: table.corner_pockets.radius = 0.062 m lets a ball pass"},
+    };
+    for (const auto& c : kCases)
+        EXPECT_EQ(error_of(with_corner(c.keys)).find(c.says), 0u) << error_of(with_corner(c.keys));
+    const auto starts = [](const std::string& table, const std::string& says) {
+        const std::string got = error_of("[table]\n" + table + "\n" + kShot);
+        EXPECT_EQ(got.find("s.toml:" + says), 0u) << got;
+    };
+    starts("size = [2.54, 1.27]", "2:8: table.size = [2.54, 1.27] has the long side first");
+    starts("size = [0.1, 0.3]", "2:8: table.size = [0.1, 0.3] leaves no straight nose");
+    starts("cushion_height = 0", "2:18: table.cushion_height = 0 is out of range");
+    starts("preset = \"carom\"\nrail_width = 0.05", "3:14: the table \"carom\" has no pockets");
+    starts("preset = \"carom\"\n[table.side_pockets]\nmouth = 0.1",
+           "3:1: the table \"carom\" has no pockets");
+    starts("cushion = []\nsize = [1, 2]", "3:8: a table has a preset or cushions");
+    // Built in code, they meet the same rules.
+    Scene scene = parse_scene(kShot, "s.toml");
+    scene.table = make_table("nine_foot", {.corner_pockets = {.mouth = 0.05}});
+    EXPECT_THROW(validate(scene), SceneError);
+    scene.table = make_table("nine_foot", {.corner_pockets = {.mouth = std::nan("")}});
+    EXPECT_THROW(validate(scene), SceneError);
+}
+
+TEST(Measures, StayInTextsAndRecords) {
+    const Scene scene = parse_scene(with_corner("mouth = 0.108\nthroat = 0.09"), "s.toml");
+    const std::string text = scene_text(scene);
+    EXPECT_NE(text.find("[table.corner_pockets]\nmouth = 0.108\nthroat = 0.09\n"), text.npos) << text;
+    EXPECT_TRUE(parse_scene(text, "s.toml").table == scene.table);
+    const Record record = simulate(make_plan(scene, kernel::Isa::kFastest));
+    const Record kept = parse_record(record_json(record), "r.json");
+    EXPECT_TRUE(kept.table == scene.table);
+    EXPECT_EQ(kept.hash(), hash_of(text));
+}
+
+TEST(Measures, VaryInSweeps) {
+    const Variation varied = Variation::from_text(
+        kShot, "s.toml", {"table.corner_pockets.mouth=list(0.1, 0.12)", "table.cushion_height=list(0.036)"},
+        1);
+    for (std::uint64_t i = 0; i < 4; ++i) {
+        const VariedShot shot = varied.shot(i);
+        ASSERT_TRUE(shot.scene) << shot.error;
+        const double mouth = std::stod(shot.values[0]);
+        EXPECT_TRUE(*shot.scene ==
+                        parse_scene("[table]\ncushion_height = 0.036\n[table.corner_pockets]\nmouth = " +
+                                        shot.values[0] + "\n" + kShot,
+                                    "s.toml") ||
+                    shot.scene->table == make_table("nine_foot", shot.scene->table.measures));
+        EXPECT_EQ(*shot.scene->table.measures.corner_pockets.mouth, mouth);
+    }
+    EXPECT_EQ(varied.unit(0), "m");
+    EXPECT_THROW(Variation::from_text(kShot, "s.toml", {"table.corner_pockets.muoth=list(0.1)"}, 1),
+                 VariationError);
+}
+
+/// A draw in [low, high) from a simple generator.
+class Draw {
+  public:
+    double operator()(double low, double high) {
+        state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+        return low + (high - low) * (static_cast<double>(state_ >> 11) * 0x1p-53);
+    }
+
+  private:
+    std::uint64_t state_ = 1;
+};
+
+// Every table either plays until rest, with its balls on it or in a pocket, or is refused with a line.
+TEST(Measures, AtRandomPlayOrAreRefused) {
+    Draw draw;
+    int played = 0;
+    for (int i = 0; i < 1000; ++i) {
+        std::string text = "[table]\npreset = \"" + std::string(i % 2 ? "nine_foot" : "snooker") + "\"\n";
+        if (draw(0, 1) < 0.3) text += "rail_width = " + std::to_string(draw(0.01, 0.1)) + "\n";
+        for (const char* section : {"corner_pockets", "side_pockets"}) {
+            text += "[table." + std::string(section) + "]\n";
+            const auto maybe = [&](const char* key, double low, double high) {
+                if (draw(0, 1) < 0.35)
+                    text += std::string(key) + " = " + std::to_string(draw(low, high)) + "\n";
+            };
+            maybe("mouth", 0.04, 0.2);
+            if (draw(0, 1) < 0.5)
+                maybe("throat", 0.02, 0.15);
+            else
+                maybe("angle_deg", 90, 150);
+            maybe("shelf", 0.0, 0.1);
+            maybe("jaw_radius", 0.0, 0.1);
+            maybe("radius", 0.01, 0.1);
+        }
+        text += "[[ball]]\nposition = [0.6, 0.8]\n[cue]\nspeed = " + std::to_string(draw(2, 6)) +
+                "\naim_deg = " + std::to_string(draw(0, 360)) + "\n";
+        const std::string error = error_of(text);
+        if (!error.empty()) {
+            EXPECT_NE(error.find("s.toml:"), error.npos) << error;
+            EXPECT_EQ(error.find("s.toml: "), error.npos) << error;
+            continue;
+        }
+        ++played;
+        const Record record = simulate(make_plan(parse_scene(text, "s.toml"), kernel::Isa::kFastest));
+        const Segment& last = record.tracks[0].segments.back();
+        const Table& t = record.table;
+        const bool on_table = last.r.x() > -0.1 && last.r.x() < t.width + 0.1 && last.r.y() > -0.1 &&
+                              last.r.y() < t.length + 0.1;
+        EXPECT_TRUE(record.tracks[0].pocket >= 0 || on_table) << text;
+    }
+    EXPECT_GT(played, 50);
+    EXPECT_LT(played, 900);
+}
+
+}  // namespace
+}  // namespace carom::test
