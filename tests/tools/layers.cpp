@@ -45,7 +45,7 @@ const std::array<Rooms, 5> kRooms = {{
     {"tools/carom/commands",
      {},
      {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
-      "diagram", "judge", "play", "sensitivity", "solve", "margin"}},
+      "diagram", "judge", "play", "fit", "sensitivity", "solve", "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
 /// Public headers about what a station of the engine made or does. No toolbox of the engine knows them.

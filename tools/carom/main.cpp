@@ -23,6 +23,7 @@ void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
 void add_sensitivity(Options& program);
+void add_fit(Options& program);
 void add_solve(Options& program);
 void add_break(Options& program);
 void add_check(Options& program);
@@ -67,6 +68,7 @@ int run(int argc, char** argv) {
     add_break(program);
     add_solve(program);
     add_sensitivity(program);
+    add_fit(program);
     add_check(program);
     add_impact(program);
     add_describe(program);

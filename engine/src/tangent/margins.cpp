@@ -2,13 +2,13 @@
 // of every contact that nearly does.
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/tangents.h"
 #include "contact/roots.h"

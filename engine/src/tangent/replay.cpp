@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 

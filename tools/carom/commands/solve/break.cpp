@@ -130,7 +130,7 @@ int run(const BreakArgs& args) {
 void add_break(Options& program) {
     auto [command, args] = program.command<BreakArgs>(
         "break", "Recommend a break: where from, how full, how hard, and how sure it is", run);
-    Option& game = command.argument("GAME", args.wanted.game, "The game (default: nine_ball)");
+    Option& game = command.argument("GAME", args.wanted.game, "The game");
     game.choices.assign(games::kBreakGames.begin(), games::kBreakGames.end());
     command.option("--table", &args.wanted.table, "PRESET", "The table, as a scene names it");
     command.flag("--box", args.wanted.box,
