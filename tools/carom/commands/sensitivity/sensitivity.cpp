@@ -124,7 +124,7 @@ double window_end(const Plan& plan, const BallResult& result, int pocket, double
 
 struct Sensitivity {
     std::vector<Nudge> nudges;
-    std::vector<Margin> margins;
+    std::vector<carom::Margin> margins;
     std::vector<BallResult> balls;
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
@@ -224,7 +224,7 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
     }
     std::string text = table_text(table);
     const auto nearest = [&](std::size_t k) {
-        const Margin& m = s.margins[k];
+        const carom::Margin& m = s.margins[k];
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
     text += "\nx and y, to first order. The events change first if\n";
@@ -268,7 +268,7 @@ Json ellipse_json(const Ellipse& e) {
 Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
     Json inputs = Json::array(), balls = Json::array();
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
-        const Margin& m = s.margins[k];
+        const carom::Margin& m = s.margins[k];
         inputs.push_back({{"input", s.nudges[k].key},
                           {"nudge", s.nudges[k].size},
                           {"down", number_json(m.down)},
