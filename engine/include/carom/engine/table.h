@@ -148,9 +148,10 @@ struct Table {
 inline constexpr const char* kCloths[] = {"club", "tournament", "match_heated"};
 inline constexpr const char* kStandardTable = "nine_foot";
 /// carom_ten_foot is another name of carom, which has ten feet.
-inline constexpr const char* kTablePresets[] = {"seven_foot", "seven_foot_bar", "eight_foot",
-                                                "nine_foot",  "snooker",        "english_pool",
-                                                "carom",      "carom_ten_foot"};
+inline constexpr const char* kTablePresets[] = {
+    "seven_foot", "seven_foot_bar", "eight_foot",     "nine_foot",        "nine_foot_tight",
+    "ten_foot",   "snooker",        "english_pool",   "snooker_ten_foot", "chinese_eight_ball",
+    "pyramid",    "carom",          "carom_ten_foot", "carom_small"};
 /// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
