@@ -142,10 +142,10 @@ PocketTable snooker_ten_foot() {
 /// mouths of 84 to 86 mm (recalled).
 PocketTable chinese_eight_ball() {
     const Measures pool = measures_of(nine_foot());
-    return with_measures(snooker_table(), {.size = pool.size,
-                                           .cushion_height = pool.cushion_height,
+    return with_measures(snooker_table(), {.cushion_height = pool.cushion_height,
                                            .corner_pockets = {.mouth = 0.085},
-                                           .side_pockets = {.mouth = 0.086}});
+                                           .side_pockets = {.mouth = 0.086},
+                                           .size = pool.size});
 }
 
 /// Russian pyramid, twelve feet: 3.55 x 1.775 m, points at the sides rounded by 11 mm (basic requirements of
@@ -156,12 +156,12 @@ PocketTable pyramid_table() {
     constexpr double kSharp = 0.005;
     return with_measures(
         nine_foot(),
-        {.size = Vec2(1.775, 3.55),
-         .cushion_height = 0.0425,
+        {.cushion_height = 0.0425,
          .corner_pockets =
              {.mouth = 0.0725, .angle_deg = 136.0, .shelf = 0.03, .jaw_radius = kSharp, .radius = 0.05},
-         .side_pockets = {
-             .mouth = 0.0825, .angle_deg = 100.0, .shelf = 0.01, .jaw_radius = 0.011, .radius = 0.05}});
+         .side_pockets =
+             {.mouth = 0.0825, .angle_deg = 100.0, .shelf = 0.01, .jaw_radius = 0.011, .radius = 0.05},
+         .size = Vec2(1.775, 3.55)});
 }
 
 /// A jaw and the straight facing beside it, in the frame of the corner: x and y from the corner into the
@@ -326,8 +326,8 @@ Measures measures_of(std::string_view preset, const Measures& changed) {
     if (const WithPockets* row = with_pockets(preset))
         return measures_of(with_measures(row->make(), changed));
     const double length = without_pockets(preset).length;
-    return {.size = changed.size.value_or(Vec2(length / 2.0, length)),
-            .cushion_height = changed.cushion_height.value_or(kCaromNose)};
+    return {.cushion_height = changed.cushion_height.value_or(kCaromNose),
+            .size = changed.size.value_or(Vec2(length / 2.0, length))};
 }
 
 }  // namespace carom
