@@ -195,7 +195,7 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     EXPECT_EQ(std::string(carom_last_error()).rfind("x.toml:1:1: ", 0), 0u) << carom_last_error();
     EXPECT_EQ(h.scene, nullptr);
     EXPECT_EQ(carom_scene_read("/no/such/scene.toml", &h.scene), CAROM_BAD_SCENE);
-    EXPECT_EQ(carom_scene_create("ten_foot", "pool", &h.scene), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_scene_create("twenty_foot", "pool", &h.scene), CAROM_BAD_ARGUMENT);
     ASSERT_EQ(carom_scene_create("", "pool", &h.scene), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
     EXPECT_EQ(h.record, nullptr);
@@ -410,7 +410,7 @@ TEST(CApi, NullIsAnAnswerNotACrash) {
 }
 
 TEST(CApi, EachThreadHasItsOwnMessage) {
-    EXPECT_EQ(carom_scene_create("ten_foot", "pool", nullptr), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_scene_create("twenty_foot", "pool", nullptr), CAROM_BAD_ARGUMENT);
     const std::string mine = carom_last_error();
     std::thread([] { EXPECT_STREQ(carom_last_error(), ""); }).join();
     EXPECT_EQ(carom_last_error(), mine);

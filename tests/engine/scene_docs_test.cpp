@@ -83,7 +83,9 @@ TEST(SceneDocs, EveryKeyOfTheReaderIsDescribedAndNoOther) {
                     for (const std::string& key : code(row.cells[1])) described.insert(key);
             }
         } else if (name == "table") {
-            described = {"preset", "cloth", "bed", "cushion", "jaw", "pocket"};
+            described = {"preset", "cloth",          "bed",         "cushion", "jaw",
+                         "pocket", "corner_pockets", "side_pockets"};
+            for (const Key& key : kMeasureFields) described.insert(key.key);
         } else {
             for (const Row& row : rows.at(name)) {
                 const auto keys = code(row.cells[0]);

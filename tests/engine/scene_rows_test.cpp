@@ -55,7 +55,7 @@ static_assert(members<Jaw>() == in_rows(kJawFields));
 static_assert(members<Pocket>() == in_rows(kPocketFields));
 static_assert(members<Table, 1>() == in_rows(kTableFields) + 4);  // the lists; measures
 static_assert(members<PocketMeasures>() == in_rows(kPocketMeasureFields));
-static_assert(members<Measures>() == in_rows(kMeasureFields) + 2);  // both kinds of pocket
+static_assert(members<Measures, 1>() == in_rows(kMeasureFields) + 2);  // both kinds of pocket
 
 // A row is found by its key.
 TEST(Rows, KeysOfASectionDiffer) {

@@ -226,7 +226,7 @@ TEST(CaromTable, HasFourRailsAndNothingElse) {
 }
 
 TEST(Tables, UnknownPresetIsRefused) {
-    EXPECT_THROW(make_table("ten_foot"), std::invalid_argument);
+    EXPECT_THROW(make_table("twenty_foot"), std::invalid_argument);
     EXPECT_THROW(make_table(""), std::invalid_argument);
 }
 

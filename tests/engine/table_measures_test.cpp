@@ -1,6 +1,8 @@
 // A preset with measures of its own.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -176,6 +178,108 @@ TEST(Measures, VaryInSweeps) {
     EXPECT_EQ(varied.unit(0), "m");
     EXPECT_THROW(Variation::from_text(kShot, "s.toml", {"table.corner_pockets.muoth=list(0.1)"}, 1),
                  VariationError);
+}
+
+/// The outline of a preset as a person would write it.
+std::string outline_of(const Table& table, double dx, double dy) {
+    const auto at = [&](const Vec2& p) { return fmt::format("[{}, {}]", p.x() + dx, p.y() + dy); };
+    std::string text;
+    for (const Cushion& c : table.cushions)
+        text += fmt::format("[[table.cushion]]\nfrom = {}\nto = {}\nheight = {}\n", at(c.from), at(c.to),
+                            c.height);
+    for (const Jaw& j : table.jaws)
+        text += fmt::format("[[table.jaw]]\ncenter = {}\nradius = {}\nheight = {}\n", at(j.center), j.radius,
+                            j.height);
+    for (const Pocket& p : table.pockets)
+        text += fmt::format("[[table.pocket]]\ncenter = {}\nradius = {}\n", at(p.center), p.radius);
+    return text;
+}
+
+constexpr char kBreak[] =
+    "[rack]\ngame = \"nine_ball\"\n[[ball]]\nposition = [0.5, 0.4]\n[cue]\nspeed = 6\naim_deg = 86\n";
+
+// The facings reach behind the noses; they moved the rack.
+TEST(Outlines, LieByTheirNoses) {
+    for (const char* preset : {"nine_foot", "seven_foot", "english_pool"}) {
+        const Table table = make_table(preset);
+        EXPECT_EQ(hash_of(outline_of(table, 0.0, 0.0) + kBreak),
+                  hash_of("[table]\npreset = \"" + std::string(preset) + "\"\n" + kBreak))
+            << preset;
+        const Table moved = parse_scene(outline_of(table, 0.25, -0.5) + kShot, "s.toml").table;
+        EXPECT_NEAR(moved.corner.x(), 0.25, 1e-15);
+        EXPECT_NEAR(moved.corner.y(), -0.5, 1e-15);
+        EXPECT_NEAR(moved.length, table.length, 1e-15);
+        EXPECT_NEAR((foot_spot(moved) - foot_spot(table) - Vec2(0.25, -0.5)).norm(), 0.0, 1e-15);
+    }
+    // An outline without straight rails has the box around it.
+    const Table turned =
+        parse_scene(
+            "[[table.cushion]]\nfrom = [0, 1]\nto = [1, 0]\n[[table.cushion]]\nfrom = [1, 0]\n"
+            "to = [2, 1]\n[[ball]]\nposition = [1, 1]\n",
+            "s.toml")
+            .table;
+    EXPECT_EQ(turned.width, 2.0);
+    EXPECT_EQ(turned.length, 1.0);
+}
+
+// The balls of each game fit its mouths, and a break ends at rest.
+TEST(Presets, AreRackedAndBroken) {
+    const struct {
+        const char *table, *balls, *game;
+        double width, length, corner, side;
+    } kCases[] = {{"nine_foot_tight", "pool", "nine_ball", 1.27, 2.54, 0.10795, 0.1285875},
+                  {"ten_foot", "pool", "ten_ball", 1.4224, 2.8448, 0.1158875, 0.1285875},
+                  {"chinese_eight_ball", "pool", "eight_ball", 1.27, 2.54, 0.085, 0.086},
+                  {"pyramid", "pyramid", "pyramid", 1.775, 3.55, 0.0725, 0.0825},
+                  {"snooker_ten_foot", "snooker", "snooker", 1.4732, 2.8702, 0.089, 0.105},
+                  {"carom_small", "carom", "three_cushion", 1.15, 2.3, 0.0, 0.0}};
+    for (const auto& c : kCases) {
+        const std::string cue = std::string(c.game) == "three_cushion"
+                                    ? "[cue]\nball = \"white\"\n"
+                                    : "[[ball]]\nposition = [0.5, 0.4]\n[cue]\n";
+        const Scene scene =
+            parse_scene(fmt::format("[table]\npreset = \"{}\"\n[balls]\npreset = \"{}\"\n[rack]\n"
+                                    "game = \"{}\"\n{}speed = 6\naim_deg = 82\n",
+                                    c.table, c.balls, c.game, cue),
+                        "s.toml");
+        EXPECT_EQ(scene.table.preset, c.table);
+        EXPECT_NEAR(scene.table.width, c.width, 1e-15) << c.table;
+        EXPECT_NEAR(scene.table.length, c.length, 1e-15) << c.table;
+        const Measures all = measures_of(c.table);
+        if (c.corner > 0.0) {
+            EXPECT_NEAR(*all.corner_pockets.mouth, c.corner, 1e-15) << c.table;
+            EXPECT_NEAR(*all.side_pockets.mouth, c.side, 1e-15) << c.table;
+            // The rules that measures of one's own meet hold for the preset.
+            Scene same = scene;
+            same.table =
+                make_table(c.table, {.cushion_height = all.cushion_height, .rail_width = all.rail_width});
+            EXPECT_NO_THROW(validate(same)) << c.table;
+        }
+        const Record record = simulate(make_plan(scene, kernel::Isa::kFastest));
+        EXPECT_EQ(record.tracks.size(), scene.ball.size());
+        EXPECT_GT(record.events.size(), 5u) << c.table;
+    }
+}
+
+// Fifteen balls at the foot spot; one of them rolled straight at a corner falls through a mouth that leaves
+// 2.25 mm at either side.
+TEST(Presets, APyramidBallFallsThroughItsMouth) {
+    const Scene rack = parse_scene(
+        "[table]\npreset = \"pyramid\"\n[balls]\npreset = \"pyramid\"\n[rack]\ngame = \"pyramid\"\ngap = 0\n",
+        "s.toml");
+    ASSERT_EQ(rack.ball.size(), 15u);
+    EXPECT_NEAR((planar(rack.ball[0].position) - Vec2(0.8875, 2.6625)).norm(), 0.0, 1e-15);
+    EXPECT_NEAR((rack.ball[14].position - rack.ball[10].position).norm(), 8.0 * 0.034, 1e-15);
+    const auto pocket = [](double aside) {
+        const Scene scene = parse_scene(fmt::format("[table]\npreset = \"pyramid\"\n[balls]\npreset = "
+                                                    "\"pyramid\"\n[[ball]]\nposition = [{}, {}]\n"
+                                                    "velocity = [-1, -1]\n",
+                                                    0.5 + aside, 0.5 - aside),
+                                        "s.toml");
+        return simulate(make_plan(scene, kernel::Isa::kFastest)).tracks[0].pocket;
+    };
+    EXPECT_EQ(pocket(0.0), 0);
+    EXPECT_EQ(pocket(0.04), -1);
 }
 
 /// A draw in [low, high) from a simple generator.

@@ -181,7 +181,7 @@ const std::map<std::string, Mistake>& mistakes() {
         {"march_without_substeps", [](Scene& s) { s.physics.march = March::kPublished; }},
         {"substeps_zero", [](Scene& s) { s.physics.substeps = 0; }},
         {"preset_mistyped", [](Scene& s) { s.table.preset = "nine_fot"; }},
-        {"table_unknown", [](Scene& s) { s.table.preset = "ten_foot"; }},
+        {"table_unknown", [](Scene& s) { s.table.preset = "twenty_foot"; }},
         {"too_far", [](Scene& s) { place(s, 0, 1e7, 0.5); }},
         {"too_many_balls",
          [](Scene& s) {

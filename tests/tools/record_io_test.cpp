@@ -52,12 +52,17 @@ void expect_unusual(std::vector<double> values) {
 
 TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     const Record record = sample_record();
-    const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets, bed] = record.table;
+    const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets, measures, bed] = record.table;
     ASSERT_TRUE(bed);
     expect_unusual({(*bed)[0], (*bed)[1], (*bed)[2], (*bed)[3]});
     EXPECT_FALSE(cloth);  // its friction is in the balls
     EXPECT_NE(preset, Table().preset);
     expect_unusual({width, length, corner.x(), corner.y()});
+    const auto& [nose, rail, corners, sides, size] = measures;
+    const auto& [mouth, throat, angle, shelf, jaw, hole] = corners;
+    ASSERT_TRUE(nose && rail && size && mouth && throat && angle && shelf && jaw && hole && sides.mouth);
+    expect_unusual(
+        {*nose, *rail, size->x(), size->y(), *mouth, *throat, *angle, *shelf, *jaw, *hole, *sides.mouth});
     const auto& [c_id, from, to, c_height, c_name] = cushions.at(0);
     expect_unusual({to.x(), to.y(), c_height});
     const auto& [j_id, j_center, j_radius, j_height, j_name] = jaws.at(0);

@@ -51,6 +51,11 @@ inline Record sample_record() {
     record.table.width = 1.27;
     record.table.length = 2.54;
     record.table.corner = {-1.0 / 3.0, 1e-3};
+    record.table.measures = {.cushion_height = 0.0361,
+                             .rail_width = 0.0521,
+                             .corner_pockets = {0.1131, 0.0911, 141.5, 0.0421, 0.0041, 0.0631},
+                             .side_pockets = {.mouth = 0.1271},
+                             .size = Vec2(1.2611, 2.5311)};
     record.table.bed = Rectangle(-0.5, 1e-2, 1.5, 2.75);
     record.table.cushions = {{"left", {0.0, -0.0}, {0.1, 2.54}, 0.037, "left rail"}};
     record.table.jaws = {{"jaw \"1\"", {1e-300, 0.1}, 0.04, 0.037, "a jaw\n"}};

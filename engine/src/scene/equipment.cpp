@@ -74,6 +74,12 @@ constexpr BallParams english_pool() {
     p.R = 1.0 * 0.0254, p.m = by_volume(p.R);
     return p;
 }
+/// Balls of Russian pyramid, 68 mm, of the same resin: 0.287 kg. Coefficients as for pool.
+constexpr BallParams pyramid_balls() {
+    BallParams p = pool();
+    p.R = 0.034, p.m = by_volume(p.R);
+    return p;
+}
 constexpr double kOversized = 2.375 / 2.0 * 0.0254, kEnglishCue = 1.875 / 2.0 * 0.0254, kOunce = 0.028349523;
 
 /// In the order of kBallPresets. The oversized cue ball of a coin-operated table has 2 3/8 in and the resin
@@ -85,6 +91,7 @@ constexpr BallPreset kBalls[] = {
     {"bar_box_oversized", pool(), &kHan2005, {kOversized, by_volume(kOversized)}},
     {"bar_box_heavy", pool(), &kHan2005, {pool().R, pool().m + 0.75 * kOunce}},
     {"english_pool", english_pool(), &kHan2005, {kEnglishCue, by_volume(kEnglishCue)}},
+    {"pyramid", pyramid_balls(), &kHan2005},
     {"pool_classic", kPoolClassic, &kHan2005},
     {"snooker_classic", kSnookerClassic, &kHan2005},
     {"carom_classic", kCaromClassic, &kHan2005}};

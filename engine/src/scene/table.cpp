@@ -36,7 +36,8 @@ void read_parts(const Section& outline, const char* key, const Field<Part> (&fie
     }
 }
 
-/// Box around the cushions, or around jaws and pockets if there are none.
+/// Box inside the nose lines: the cushions along x and along y bound it, so that facings do not count. If
+/// they bound nothing, it is the box around the cushions, or around jaws and pockets if there are none.
 void set_surface(Table& table) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec2 low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
@@ -44,7 +45,16 @@ void set_surface(Table& table) {
         low = low.cwiseMin(p - Vec2(r, r));
         high = high.cwiseMax(p + Vec2(r, r));
     };
+    for (const Cushion& c : table.cushions)
+        for (int k = 0; k < 2; ++k)
+            if (c.from[k] == c.to[k]) {
+                low[k] = std::min(low[k], c.from[k]);
+                high[k] = std::max(high[k], c.from[k]);
+            }
+    const bool bounded = low.x() < high.x() && low.y() < high.y();
+    if (!bounded) low = Vec2(kInfinity, kInfinity), high = Vec2(-kInfinity, -kInfinity);
     for (const Cushion& c : table.cushions) {
+        if (bounded) break;
         include(c.from, 0.0);
         include(c.to, 0.0);
     }

@@ -112,11 +112,11 @@ PocketTable with_measures(PocketTable t, const Measures& changed) {
 }
 
 Measures measures_of(const PocketTable& t) {
-    return {.size = Vec2(t.width, t.length),
-            .cushion_height = t.nose_height,
+    return {.cushion_height = t.nose_height,
             .rail_width = t.rail_width,
             .corner_pockets = measures(t.corner, corner_channel(t), kCornerAxis),
-            .side_pockets = measures(t.side, side_channel(t), kSideAxis)};
+            .side_pockets = measures(t.side, side_channel(t), kSideAxis),
+            .size = Vec2(t.width, t.length)};
 }
 
 namespace {

@@ -123,6 +123,47 @@ PocketTable english_pool_table() {
     return t;
 }
 
+/// Nine-foot table with corner mouths of 4 1/4 in, as many professional events have them.
+PocketTable nine_foot_tight() {
+    return with_measures(nine_foot(), {.corner_pockets = {.mouth = 4.25 * 0.0254}});
+}
+
+/// Ten-foot pool table, twice as long as wide: 112 x 56 in (recalled). Pockets as on the nine-foot table.
+PocketTable ten_foot() {
+    return with_measures(nine_foot(), {.size = Vec2(56.0 * 0.0254, 112.0 * 0.0254)});
+}
+
+/// Ten-foot snooker table: 9 ft 5 in x 4 ft 10 in, as its owners give it. Pockets as on the twelve-foot one.
+PocketTable snooker_ten_foot() {
+    return with_measures(snooker_table(), {.size = Vec2(58.0 * 0.0254, 113.0 * 0.0254)});
+}
+
+/// Chinese eight-ball: the surface and nose of a nine-foot pool table, the round jaws of a snooker table,
+/// mouths of 84 to 86 mm (recalled).
+PocketTable chinese_eight_ball() {
+    const Measures pool = measures_of(nine_foot());
+    return with_measures(snooker_table(), {.cushion_height = pool.cushion_height,
+                                           .corner_pockets = {.mouth = 0.085},
+                                           .side_pockets = {.mouth = 0.086},
+                                           .size = pool.size});
+}
+
+/// Russian pyramid, twelve feet: 3.55 x 1.775 m, points at the sides rounded by 11 mm (basic requirements of
+/// the International Committee of Pyramid); mouths 72 to 73 and 82 to 83 mm; nose at 5/8 of the ball, the
+/// share of a pool table (recalled). Facings, shelves, holes and points at the corners are chosen so that a
+/// ball just passes.
+PocketTable pyramid_table() {
+    constexpr double kSharp = 0.005;
+    return with_measures(
+        nine_foot(),
+        {.cushion_height = 0.0425,
+         .corner_pockets =
+             {.mouth = 0.0725, .angle_deg = 136.0, .shelf = 0.03, .jaw_radius = kSharp, .radius = 0.05},
+         .side_pockets =
+             {.mouth = 0.0825, .angle_deg = 100.0, .shelf = 0.01, .jaw_radius = 0.011, .radius = 0.05},
+         .size = Vec2(1.775, 3.55)});
+}
+
 /// A jaw and the straight facing beside it, in the frame of the corner: x and y from the corner into the
 /// table.
 struct JawAndFacing {
@@ -223,9 +264,17 @@ struct WithPockets {
     const char* name;
     PocketTable (*make)();
 };
-constexpr WithPockets kWithPockets[] = {{"seven_foot", seven_foot}, {"seven_foot_bar", bar_table},
-                                        {"eight_foot", eight_foot}, {"nine_foot", nine_foot},
-                                        {"snooker", snooker_table}, {"english_pool", english_pool_table}};
+constexpr WithPockets kWithPockets[] = {{"seven_foot", seven_foot},
+                                        {"seven_foot_bar", bar_table},
+                                        {"eight_foot", eight_foot},
+                                        {"nine_foot", nine_foot},
+                                        {"nine_foot_tight", nine_foot_tight},
+                                        {"ten_foot", ten_foot},
+                                        {"snooker", snooker_table},
+                                        {"english_pool", english_pool_table},
+                                        {"snooker_ten_foot", snooker_ten_foot},
+                                        {"chinese_eight_ball", chinese_eight_ball},
+                                        {"pyramid", pyramid_table}};
 
 const WithPockets* with_pockets(std::string_view preset) {
     for (const WithPockets& row : kWithPockets)
@@ -237,8 +286,10 @@ struct WithoutPockets {
     const char *name, *also;
     double length;
 };
-/// Match table, 2.84 x 1.42 m between nose lines (UMB rules).
-constexpr WithoutPockets kWithoutPockets[] = {{"carom", "carom_ten_foot", 2.84}};
+/// Match table, 2.84 x 1.42 m between nose lines (UMB rules), and the small one of clubs, 2.3 x 1.15 m
+/// (recalled).
+constexpr WithoutPockets kWithoutPockets[] = {{"carom", "carom_ten_foot", 2.84},
+                                              {"carom_small", "carom_small", 2.3}};
 
 const WithoutPockets& without_pockets(std::string_view preset) {
     for (const WithoutPockets& row : kWithoutPockets)
@@ -275,8 +326,8 @@ Measures measures_of(std::string_view preset, const Measures& changed) {
     if (const WithPockets* row = with_pockets(preset))
         return measures_of(with_measures(row->make(), changed));
     const double length = without_pockets(preset).length;
-    return {.size = changed.size.value_or(Vec2(length / 2.0, length)),
-            .cushion_height = changed.cushion_height.value_or(kCaromNose)};
+    return {.cushion_height = changed.cushion_height.value_or(kCaromNose),
+            .size = changed.size.value_or(Vec2(length / 2.0, length))};
 }
 
 }  // namespace carom

@@ -54,7 +54,13 @@ int number_of(const std::string& id) {
 BallStyle ball_style(const std::string& id, const std::string& table_preset, int index) {
     BallStyle style;
     const int number = number_of(id);
-    if (number > 0 && table_preset == "snooker") {
+    if (number > 0 && table_preset == "pyramid") {
+        style.number = number;
+        style.color = kWhite;
+        style.pattern = BallPattern::kSolid;
+        return style;
+    }
+    if (number > 0 && table_preset.starts_with("snooker")) {
         style.color = kNamed[2].color;
         style.pattern = BallPattern::kDots;
         return style;

@@ -51,7 +51,8 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
 // section 1: the baulk line is 29 in from the face of the bottom cushion, the D
 // has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
-    const double w = table.width, l = table.length, baulk = 0.737, d = 0.292;
+    const double w = table.width, l = table.length, scale = l / 3.569;  // as the balls are placed
+    const double baulk = 0.737 * scale, d = 0.292 * scale;
     line(builder, {{0.0, baulk}, {w, baulk}}, 0.003, 0.6);
     constexpr int kPieces = 48;  // [-] straight pieces of the D
     std::vector<Vec2> arc;
@@ -61,7 +62,7 @@ void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     }
     line(builder, arc, 0.003, 0.6);
     for (double x : {0.5 * w - d, 0.5 * w, 0.5 * w + d}) spot(builder, {x, baulk}, 0.005);
-    for (double y : {0.5 * l, 0.75 * l, l - 0.324}) spot(builder, {0.5 * w, y}, 0.005);
+    for (double y : {0.5 * l, 0.75 * l, l - 0.324 * scale}) spot(builder, {0.5 * w, y}, 0.005);
 }
 
 }  // namespace
@@ -69,12 +70,12 @@ void add_snooker_marks(const Table& table, MeshBuilder& builder) {
 void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, double rail) {
     if (table.preset.empty() || table.width <= 0.0 || table.length <= 0.0) return;
     const double w = table.width, l = table.length;
-    if (table.preset == "snooker") {
+    if (table.preset.starts_with("snooker")) {
         add_snooker_marks(table, builder);
         return;
     }
     add_diamonds(table, mesh, builder, rail);
-    if (table.preset == "carom") {
+    if (table.preset.starts_with("carom")) {
         for (double y : {0.25 * l, 0.5 * l, 0.75 * l}) spot(builder, {0.5 * w, y}, 0.006);
         return;
     }

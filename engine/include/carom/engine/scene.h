@@ -212,11 +212,12 @@ enum class RackGame : std::uint8_t {
     kThreeCushion,
     kTriangle,
     kLine,
-    kScatter
+    kScatter,
+    kPyramid
 };
 constexpr auto names_of(RackGame) {
-    return std::array{"eight_ball",    "nine_ball", "ten_ball", "snooker",
-                      "three_cushion", "triangle",  "line",     "scatter"};
+    return std::array{"eight_ball", "nine_ball", "ten_ball", "snooker", "three_cushion",
+                      "triangle",   "line",      "scatter",  "pyramid"};
 }
 
 /// Balls that a scene does not place one by one.
@@ -482,8 +483,8 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 inline constexpr const char* kBallPresets[] = {
-    "pool",         "snooker",      "carom",           "bar_box_oversized", "bar_box_heavy",
-    "english_pool", "pool_classic", "snooker_classic", "carom_classic"};
+    "pool",         "snooker", "carom",        "bar_box_oversized", "bar_box_heavy",
+    "english_pool", "pyramid", "pool_classic", "snooker_classic",   "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
     field<&Scene::ball_preset>("preset", "ball properties, and the cushion model, to start from",

@@ -85,39 +85,39 @@ inline constexpr Interval kMeasure = more_than(0.0, kMaxLength, "m");
 inline constexpr Field<PocketMeasures> kPocketMeasureFields[] = {
     field<&PocketMeasures::mouth>("mouth", kMeasure,
                                   "between the points where the facings begin, at the nose",
-                                  {.later = true, .standard = "of the preset"}),
+                                  {.later = true, .standard = "preset's"}),
     field<&PocketMeasures::angle_deg>(
         "angle_deg", {90.0, false, 180.0, true, "degrees"},
         "between nose and facing: 135 at a corner and 90 at a side are parallel "
         "facings",
-        {.later = true, .standard = "of the preset"}),
+        {.later = true, .standard = "preset's"}),
     field<&PocketMeasures::throat>(
         "throat", kMeasure, "between the back ends of the facings",
         {.later = true, .standard = "from `angle_deg`", .instead_of = "angle_deg"}),
     field<&PocketMeasures::shelf>("shelf", at_least(0.0, kMaxLength, "m"),
                                   "from the middle of the mouth to the edge of the hole",
-                                  {.later = true, .standard = "of the preset"}),
+                                  {.later = true, .standard = "preset's"}),
     field<&PocketMeasures::jaw_radius>("jaw_radius", at_least(0.0, kMaxLength, "m"),
                                        "of the point between nose and facing",
-                                       {.later = true, .standard = "of the preset"}),
+                                       {.later = true, .standard = "preset's"}),
     field<&PocketMeasures::radius>("radius", kMeasure, "of the hole",
-                                   {.later = true, .standard = "of the preset"}),
+                                   {.later = true, .standard = "preset's"}),
 };
 
 /// Measures that replace those of a preset, as people take them.
 struct Measures {
-    std::optional<Vec2> size = std::nullopt;  ///< between the noses
     std::optional<double> cushion_height = std::nullopt, rail_width = std::nullopt;
     PocketMeasures corner_pockets{}, side_pockets{};
+    std::optional<Vec2> size = std::nullopt;  ///< between the noses
     bool operator==(const Measures&) const = default;
 };
 inline constexpr Field<Measures> kMeasureFields[] = {
     field<&Measures::size>("size", more_than(0.0, kMaxLength, "m"), "between the noses, the short side first",
-                           {.shape = "[width, length]", .later = true, .standard = "of the preset"}),
+                           {.shape = "[width, length]", .later = true, .standard = "preset's"}),
     field<&Measures::cushion_height>("cushion_height", kNoseHeight, "of the noses above the cloth",
-                                     {.later = true, .standard = "of the preset"}),
+                                     {.later = true, .standard = "preset's"}),
     field<&Measures::rail_width>("rail_width", kMeasure, "from the noses to the back ends of the facings",
-                                 {.later = true, .standard = "of the preset"}),
+                                 {.later = true, .standard = "preset's"}),
 };
 /// The sections of both kinds of pocket, inside [table].
 struct PocketSection {
@@ -140,17 +140,18 @@ struct Table {
     std::vector<Cushion> cushions;
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
+    Measures measures{};  ///< that differ from the preset's
     /// A ball in the air is out beyond it; nothing: behind any cushion.
     std::optional<Rectangle> bed = std::nullopt;
-    Measures measures{};  ///< that differ from the preset's
     bool operator==(const Table&) const = default;
 };
 inline constexpr const char* kCloths[] = {"club", "tournament", "match_heated"};
 inline constexpr const char* kStandardTable = "nine_foot";
 /// carom_ten_foot is another name of carom, which has ten feet.
-inline constexpr const char* kTablePresets[] = {"seven_foot", "seven_foot_bar", "eight_foot",
-                                                "nine_foot",  "snooker",        "english_pool",
-                                                "carom",      "carom_ten_foot"};
+inline constexpr const char* kTablePresets[] = {
+    "seven_foot", "seven_foot_bar", "eight_foot",     "nine_foot",        "nine_foot_tight",
+    "ten_foot",   "snooker",        "english_pool",   "snooker_ten_foot", "chinese_eight_ball",
+    "pyramid",    "carom",          "carom_ten_foot", "carom_small"};
 /// The lists of cushions, jaws and pockets beside.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),

@@ -53,6 +53,31 @@ std::string isa_line(const Plan& plan) {
                                              : "the widest; this processor was not measured"));
 }
 
+/// What can be measured at a table: its spots, and, of a preset, its noses and pockets.
+std::string measures_lines(const carom::Table& table) {
+    constexpr double kMillimetres = 1000.0;
+    std::string text;
+    if (table.length > 0.0) {
+        const Vec2 foot = foot_spot(table);
+        text += fmt::format("          head spot [{:.6g}, {:.6g}], foot spot [{:.6g}, {:.6g}] m\n", foot.x(),
+                            table.corner.y() + table.length / 4.0, foot.x(), foot.y());
+    }
+    if (table.preset.empty()) return text;
+    const Measures all = measures_of(table.preset, table.measures);
+    text += fmt::format("          noses {:.4g} mm high\n", *all.cushion_height * kMillimetres);
+    for (const PocketSection& of : kPocketSections) {
+        const PocketMeasures& p = all.*of.pockets;
+        if (!p.mouth) continue;
+        text += fmt::format(
+            "          {}: mouth {:.4g} mm, throat {:.4g} mm, facings at {:.4g} degrees, shelf {:.3g} mm, "
+            "points "
+            "rounded by {:.4g} mm\n",
+            of.key, *p.mouth * kMillimetres, *p.throat * kMillimetres, *p.angle_deg, *p.shelf * kMillimetres,
+            *p.jaw_radius * kMillimetres);
+    }
+    return text;
+}
+
 std::string stop_line(const Stop& stop) {
     std::string text = "at rest";
     if (stop.time) text += fmt::format(", or after {} s", *stop.time);
@@ -70,6 +95,7 @@ std::string report(const Plan& plan) {
     fmt::format_to(line, "scene     {}: valid\n", scene.file);
     fmt::format_to(line, "table     {}, {} x {} m{}\n", table.preset.empty() ? "custom" : table.preset,
                    table.width, table.length, table.cloth ? ", cloth " + *table.cloth : "");
+    fmt::format_to(line, "{}", measures_lines(table));
     fmt::format_to(line, "balls     {}: {}\n", scene.ball.size(), ids(scene.ball));
     fmt::format_to(
         line,
