@@ -1,16 +1,16 @@
 #include "carom/games/refine.h"
 
 #include <Eigen/SVD>
-#include <span>
-#include <string>
-#include <vector>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"

@@ -12,6 +12,7 @@ number of threads.
 from carom import games, kernel, plot, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError
+from carom._fit import FitResult, fit
 from carom._program import accuracy, margin
 from carom._record import Event, Record, TablePlan
 from carom._scene import Scene
@@ -25,6 +26,7 @@ setattr(Record, "_repr_png_", picture)
 
 __all__ = [
     "Event",
+    "FitResult",
     "Record",
     "Scene",
     "SceneError",
@@ -34,6 +36,7 @@ __all__ = [
     "TablePlan",
     "__version__",
     "accuracy",
+    "fit",
     "games",
     "kernel",
     "margin",
