@@ -68,7 +68,8 @@ def fit(
     played = as_scene(scene)
     times, places = np.asarray(t, np.float64).reshape(-1), np.asarray(xy, np.float64)
     if places.shape != (len(times), 2) or len(ball) != len(times):
-        raise ValueError(f"t, ball and xy: expected {len(times)} of each, xy with the shape ({len(times)}, 2)")
+        n = len(times)
+        raise ValueError(f"t, ball and xy: expected {n} of each, xy with the shape ({n}, 2)")
     if not (times >= 0).all():
         raise ValueError("t: expected times of at least 0, since the stroke")
     numbers = {name: i for i, name in enumerate(played.ids)}
