@@ -37,7 +37,7 @@ constexpr double kDamping = 1e-4, kLess = 0.1, kMoreDamped = 10.0, kMostDamping 
 constexpr double kDone = 1e-9, kStill = 1e-4;
 // [-] Correlation at which two numbers are told to look alike; share of the largest eigenvalue below which a
 // direction is not determined at all.
-constexpr double kAlike = 0.98, kNothing = 1e-12;
+constexpr double kAlike = 0.99, kNothing = 1e-12;
 
 double median(std::vector<double> list) {
     if (list.empty()) return 0.0;

@@ -12,6 +12,7 @@ number of threads.
 from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError
+from carom._fit import FitResult, fit
 from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin
 from carom._record import Event, EventColumn, Record, TablePlan, event_columns
@@ -29,6 +30,7 @@ __all__ = [
     "Event",
     "EventColumn",
     "Fall",
+    "FitResult",
     "Hand",
     "Measure",
     "Record",
@@ -43,6 +45,7 @@ __all__ = [
     "accuracy",
     "best_break",
     "event_columns",
+    "fit",
     "games",
     "kernel",
     "margin",

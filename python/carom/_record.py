@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -229,6 +230,25 @@ class Record:
         turned = np.empty((*shape, self._native.balls, 4))
         self._native.orientations(times, turned.reshape(-1))
         return turned
+
+    def jacobian(
+        self, inputs: Sequence[str], t: ArrayLike | None = None, *, scene: SceneLike | None = None
+    ) -> NDArray[np.float64]:
+        """How the states of the balls depend on numbers of the scene, exact through every impact.
+
+        inputs: keys as in a sweep: "cue.speed", "ball.1.position.x", "balls.mu_s"
+        t: times [s] of any shape; None for the end, at rest
+        scene: the scene that was played; needed if the record was loaded from a file, which holds no physics
+
+        Returns t.shape + (balls, 3, 3, inputs): position, velocity and spin as in `states`, by each input in
+        its own unit. A ball that is out of play has zeros. Raises ValueError if an input is no number of the
+        scene, or if an event has no derivative, such as a break or a resting contact.
+        """
+        times, shape = self._times(self.duration if t is None else t)
+        slopes = np.empty((*shape, self._native.balls, 3, 3, len(inputs)))
+        played = None if scene is None else as_scene(scene)._native
+        _carom.jacobian(self._native, played, list(inputs), times, slopes.reshape(-1))
+        return slopes
 
     def final_scene(self, *, scene: SceneLike | None = None, cue: Any = None) -> Scene:
         """The scene for the next shot: the balls as they are at the end, without those in pockets.

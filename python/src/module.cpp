@@ -69,4 +69,5 @@ NB_MODULE(_carom, m) {
     add_judged(m);
     add_games_aim(m);
     add_games_rules(m);
+    add_tangents(m);
 }

@@ -92,5 +92,6 @@ void add_arrays(nb::module_& m);
 void add_judged(nb::module_& m);
 void add_games_aim(nb::module_& m);
 void add_games_rules(nb::module_& m);
+void add_tangents(nb::module_& m);
 
 }  // namespace carom::python

@@ -60,6 +60,14 @@ TEST_F(CliFit, FindsWhatMadeTheTracks) {
     EXPECT_TRUE(contains(read_file(rows), "t,ball,x,y,dx,dy\n0,cue,0.6,1.94,"));
 }
 
+TEST_F(CliFit, ReadsTheSamplesOfAShot) {
+    const std::string samples = folder_.file("samples.csv");
+    ASSERT_EQ(carom({"simulate", draw_, "--samples", samples, "--sample-dt", "0.02"}).status, 0);
+    const ProcessResult result = carom({"fit", guess(), samples, "--vary", "cue.speed,balls.mu_s"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(contains(result.out, "cue.speed                             2.25")) << result.out;
+}
+
 TEST_F(CliFit, WarnsOfWhatTheTracksCannotTell) {
     const ProcessResult result =
         carom({"fit", guess(), tracks(), "--vary", "balls.mu_s", "--vary", "balls.e_c"});

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/plan.h"
 #include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
 #include "cli.h"
 
 namespace carom::test {
@@ -33,6 +35,30 @@ TEST_F(CliSolve, FindsAShotAndWritesIt) {
         carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--json", "--hand", "aim=0"}).out);
     EXPECT_EQ(json.at("solutions").at(0).at("values").size(), 3u);
     EXPECT_TRUE(json.at("solutions").at(0).at("success").is_number());
+}
+
+TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
+    const std::string file = folder_.file("exact.toml");
+    const std::vector<std::string> call = {"solve",   draw_,
+                                           "--want",  "pocket_of(1) == \"p3\"",
+                                           "--want",  "cue near (1.0, 1.5, 0.15)",
+                                           "--shots", "60000",
+                                           "--best",  "1",
+                                           "--exact"};
+    std::vector<std::string> written = call;
+    written.insert(written.end(), {"-o", file, "--json"});
+    const ProcessResult result = carom(written);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json exact = Json::parse(result.out).at("exact").at(0);
+    EXPECT_EQ(exact.at("trouble"), "");
+    EXPECT_LE(exact.at("miss_m").get<double>(), 1e-6);
+    const Scene scene = read_scene(file);
+    const Record record = simulate(make_plan(scene, kernel::Isa::kScalar));
+    EXPECT_LT((planar(record.state_at(0, record.duration).position) - Vec2(1.0, 1.5)).norm(), 1e-5);
+    EXPECT_TRUE(contains(carom(call).out, "   exactly there, within "));
+    const ProcessResult nowhere = carom({"solve", draw_, "--want", "scratch", "--exact"});
+    EXPECT_EQ(nowhere.status, 2);
+    EXPECT_TRUE(contains(nowhere.err, "--exact: no place is wanted; add one")) << nowhere.err;
 }
 
 TEST_F(CliSolve, RecommendsABreak) {

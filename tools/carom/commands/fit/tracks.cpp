@@ -73,8 +73,9 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         if (!places) {
             places.emplace();
             for (std::size_t k = 0; k < kNames.size(); ++k) {
-                const auto found = std::find_if(words.begin(), words.end(),
-                                                [&](const Word& word) { return word.text == kNames[k]; });
+                const auto found = std::find_if(words.begin(), words.end(), [&](const Word& word) {
+                    return word.text == kNames[k] || (k == 0 && word.text == "time");
+                });
                 if (found == words.end())
                     fail(1, fmt::format("there is no column {}; the first line names the columns t,ball,x,y",
                                         kNames[k]));

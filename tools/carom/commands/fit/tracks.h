@@ -8,7 +8,7 @@
 
 namespace carom::tools {
 
-/// Reads a CSV file with a line of names first: t, ball, x, y in any order; other columns are ignored. Any
+/// Reads a CSV file with a line of names first: t (or time), ball, x, y in any order; others are ignored. Any
 /// rate, with gaps; a place that is empty or nan was not seen.
 /// @throws UsageError "file:line:col: what is wrong and what to do"
 std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene& scene);

@@ -1,0 +1,103 @@
+"""Numbers of a scene from tracked places of its balls."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from carom import _carom
+from carom._arguments import checked
+from carom._scene import Scene, SceneLike, as_scene
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+class FitResult(NamedTuple):
+    """What `fit` found, with the names of `scipy.optimize.least_squares` where it has them."""
+
+    #: The fitted values, in the order of `vary`.
+    x: NDArray[np.float64]
+    #: Their covariance; infinite for what the tracks do not determine.
+    cov: NDArray[np.float64]
+    #: Simulated minus tracked places [m]: (points, 2). Zero for a ball in a pocket.
+    fun: NDArray[np.float64]
+    #: Whether it converged, and otherwise why not.
+    success: bool
+    message: str
+    #: Typical residual of a coordinate [m], without outliers.
+    noise: float
+    #: Coordinates farther away than three times that.
+    outliers: int
+    #: Shots simulated.
+    nfev: int
+    #: What the tracks cannot tell apart, a sentence each.
+    warnings: tuple[str, ...]
+    #: The scene with the fitted values.
+    scene: Scene
+
+    @property
+    def std(self) -> NDArray[np.float64]:
+        """Standard deviations of `x`."""
+        return np.sqrt(np.diag(self.cov))
+
+
+@checked
+def fit(
+    scene: SceneLike,
+    t: ArrayLike,
+    ball: Sequence[str],
+    xy: ArrayLike,
+    *,
+    vary: Sequence[str],
+    most_shots: int = 100,
+) -> FitResult:
+    """Fits numbers of a scene to tracked places, by Gauss-Newton with a loss that outliers do not move.
+
+    scene: the shot, with first guesses; it should meet the same things in the same order as the tracks
+    t, ball, xy: time since the stroke [s], id of the ball and place [m] of every point: (points,), (points,),
+        (points, 2), at any rate and with gaps; a place that is NaN was not seen
+    vary: keys of the numbers, as in a sweep: "balls.mu_s", "cue.speed"
+
+    Raises ValueError for an unknown ball or key, or a shot without derivatives. A warning says what the
+    tracks cannot tell apart.
+    """
+    played = as_scene(scene)
+    times, places = np.asarray(t, np.float64).reshape(-1), np.asarray(xy, np.float64)
+    if places.shape != (len(times), 2) or len(ball) != len(times):
+        n = len(times)
+        raise ValueError(f"t, ball and xy: expected {n} of each, xy with the shape ({n}, 2)")
+    if not (times >= 0).all():
+        raise ValueError("t: expected times of at least 0, since the stroke")
+    numbers = {name: i for i, name in enumerate(played.ids)}
+    unknown = [name for name in ball if name not in numbers]
+    if unknown:
+        raise ValueError(f"ball: the scene has no ball {unknown[0]!r}; it has {', '.join(numbers)}")
+    seen = np.isfinite(places).all(axis=1)
+    found = _carom.fit(
+        played._native,
+        np.ascontiguousarray(times[seen]),
+        np.array([numbers[name] for name in ball], np.int32)[seen],
+        np.ascontiguousarray(places[seen]).reshape(-1),
+        list(vary),
+        most_shots,
+    )
+    for warning in found.warnings:
+        warnings.warn(warning, stacklevel=3)
+    residuals = np.full(places.shape, np.nan)
+    residuals[seen] = np.reshape(found.residuals, (-1, 2))
+    return FitResult(
+        x=np.array(found.values),
+        cov=np.reshape(found.covariance, (len(vary), len(vary))),
+        fun=residuals,
+        success=found.converged,
+        message=found.trouble or "converged",
+        noise=found.noise,
+        outliers=found.outliers,
+        nfev=found.shots,
+        warnings=tuple(found.warnings),
+        scene=Scene._of(found.scene),
+    )

@@ -1,0 +1,97 @@
+// Derivatives of shots, and fits.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/tangents.h"
+#include "carom/games/fit.h"
+#include "native.h"
+
+namespace carom::python {
+namespace {
+
+/// Runs without the GIL. @throws nb::value_error for what has no derivative
+template <class Work>
+auto without_gil(Work&& work) {
+    try {
+        const nb::gil_scoped_release no_gil;
+        return work();
+    } catch (const TangentError& error) {
+        throw nb::value_error(error.what());
+    }
+}
+
+/// Position, velocity and spin of every ball at every time, each by every input.
+void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector<std::string>& inputs,
+              const Flat<const double>& times, const Flat<double>& out) {
+    const Scene& scene = scene_of(r, other);
+    const kernel::Isa isa = chosen_isa();
+    double* at = out.data();
+    without_gil([&] {
+        const Tangents tangents(make_plan(scene, isa), *r.record, inputs);
+        for (std::size_t k = 0; k < times.size(); ++k)
+            for (int ball = 0; ball < static_cast<int>(r.record->tracks.size()); ++ball) {
+                for (std::size_t i = 0; i < inputs.size(); ++i) {
+                    const StateTangent slope = tangents.state_at(ball, times.data()[k], i);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        const auto a = static_cast<Eigen::Index>(axis);
+                        at[axis * inputs.size() + i] = slope.position[a];
+                        at[(3 + axis) * inputs.size() + i] = slope.velocity[a];
+                        at[(6 + axis) * inputs.size() + i] = slope.spin[a];
+                    }
+                }
+                at += 9 * inputs.size();
+            }
+    });
+}
+
+games::Fit fit(const NativeScene& scene, const Flat<const double>& times,
+               const Flat<const std::int32_t>& balls, const Flat<const double>& places,
+               const std::vector<std::string>& vary, int most_shots) {
+    std::vector<games::TrackPoint> points;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        points.push_back(
+            {times.data()[i], balls.data()[i], {places.data()[2 * i], places.data()[2 * i + 1]}});
+    const kernel::Isa isa = chosen_isa();
+    return without_gil([&] { return games::fit(*scene.scene, points, {vary, most_shots}, isa); });
+}
+
+std::vector<double> covariance(const games::Fit& f) {
+    return {f.covariance.data(), f.covariance.data() + f.covariance.size()};
+}
+
+std::vector<double> residuals(const games::Fit& f) {
+    std::vector<double> list;
+    for (const Vec2& r : f.residuals) list.insert(list.end(), {r.x(), r.y()});
+    return list;
+}
+
+}  // namespace
+
+void add_tangents(nb::module_& m) {
+    m.def("jacobian", jacobian, nb::arg("record"), nb::arg("scene").none(), nb::arg("inputs"),
+          nb::arg("times"), nb::arg("out").noconvert());
+    nb::class_<games::Fit>(m, "Fit")
+        .def_ro("values", &games::Fit::values)
+        .def_prop_ro("covariance", covariance)
+        .def_prop_ro("residuals", residuals)
+        .def_ro("noise", &games::Fit::noise)
+        .def_ro("outliers", &games::Fit::outliers)
+        .def_ro("shots", &games::Fit::shots)
+        .def_ro("converged", &games::Fit::converged)
+        .def_ro("trouble", &games::Fit::trouble)
+        .def_ro("warnings", &games::Fit::warnings)
+        .def_prop_ro("scene", [](const games::Fit& f) { return parsed_with("", f.scene); });
+    m.def("fit", fit, nb::arg("scene"), nb::arg("times"), nb::arg("balls"), nb::arg("places"),
+          nb::arg("vary"), nb::arg("most_shots"));
+}
+
+}  // namespace carom::python

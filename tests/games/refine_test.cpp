@@ -1,0 +1,66 @@
+// Shots that are moved until balls rest at given places.
+#include "carom/games/refine.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/simulate.h"
+
+namespace carom::games {
+namespace {
+
+Scene scene_of(const std::string& name) {
+    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
+
+const std::vector<Choice> kStroke{{"cue.aim_deg", -360.0, 360.0},
+                                  {"cue.speed", 0.5, 6.0},
+                                  {"cue.offset.side", -0.4, 0.4},
+                                  {"cue.offset.height", -0.4, 0.4}};
+
+Vec2 end_of(const Scene& scene, int ball) {
+    const Record record = simulate(make_plan(scene, kernel::Isa::kScalar));
+    return planar(record.state_at(ball, record.duration).position);
+}
+
+TEST(Refine, MovesABallToItsPlace) {
+    struct Case {
+        const char* scene;
+        Vec2 by;
+    };
+    for (const Case& c :
+         {Case{"draw", {-0.06, 0.05}}, Case{"draw", {0.04, 0.02}}, Case{"three_cushion", {0.003, 0.005}}}) {
+        const Scene scene = scene_of(c.scene);
+        const Vec2 place = end_of(scene, 0) + c.by;
+        const std::vector<Place> places{{0, place}};
+        const Refined found = refine(scene, kStroke, places, kernel::Isa::kScalar);
+        EXPECT_EQ(found.trouble, "") << c.scene;
+        EXPECT_LE(found.miss, kRefined) << c.scene;
+        EXPECT_LE(found.shots, 12) << c.scene;
+        EXPECT_LT((end_of(found.scene, 0) - place).norm(), 1e-6) << c.scene;
+    }
+}
+
+TEST(Refine, TwoBallsAtOnce) {
+    const Scene scene = scene_of("three_cushion");
+    const std::vector<Place> places{{0, end_of(scene, 0) + Vec2(0.002, 0.001)},
+                                    {1, end_of(scene, 1) + Vec2(0.001, 0.002)}};
+    const Refined found = refine(scene, kStroke, places, kernel::Isa::kScalar);
+    EXPECT_EQ(found.trouble, "");
+    for (const Place& place : places) EXPECT_LT((end_of(found.scene, place.ball) - place.at).norm(), 1e-6);
+}
+
+TEST(Refine, SaysIfItCannot) {
+    const Scene scene = scene_of("draw");
+    // Behind the rail; and a ball that falls.
+    const std::vector<Place> outside{{0, Vec2(-1.0, 1.0)}}, fallen{{1, Vec2(0.5, 0.5)}};
+    EXPECT_NE(refine(scene, kStroke, outside, kernel::Isa::kScalar).trouble, "");
+    EXPECT_EQ(refine(scene, kStroke, fallen, kernel::Isa::kScalar).trouble,
+              "a ball that is wanted at rest falls");
+}
+
+}  // namespace
+}  // namespace carom::games
