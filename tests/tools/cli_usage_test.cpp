@@ -84,6 +84,9 @@ TEST(CliUsage, VersionAndHelpExit0) {
         EXPECT_EQ(result.status, 0) << command;
         EXPECT_EQ(result.err, "") << command;
     }
+    for (const char* group : {"\nPlay:\n  simulate", "\nLook:\n  view", "\nMany shots:\n  sweep",
+                              "\nAsk:\n  check", "\nFor programs:\n  impact"})
+        EXPECT_TRUE(contains(help.out, group)) << group;
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {
