@@ -19,7 +19,6 @@ namespace {
 // All in points of the page.
 constexpr double kWidth = 420.0, kHeight = 300.0, kLeft = 64.0, kTop = 40.0, kRight = 84.0, kBottom = 52.0;
 constexpr double kTitleSize = 13.0, kTextSize = 9.0;
-constexpr int kTicks = 5;
 
 class Plot {
   public:
@@ -53,20 +52,26 @@ class Plot {
         cairo_show_text(cr_, words.c_str());
         cairo_new_path(cr_);
     }
+    /// Round numbers between two values, about six of them.
+    static std::vector<double> ticks(double low, double high) {
+        std::vector<double> values;
+        const double rough = (high - low) / 6.0, power = std::pow(10.0, std::floor(std::log10(rough)));
+        const double step = power * (rough <= 2.0 * power ? 2.0 : rough <= 5.0 * power ? 5.0 : 10.0);
+        const double first = std::ceil(low / step);
+        for (int i = 0; i < 8; ++i)
+            if (const double value = (first + i) * step; value <= high) values.push_back(value);
+        return values;
+    }
     void x_axis(double low, double high, const std::string& name) {
-        for (int i = 0; i < kTicks; ++i) {
-            const double share = i / (kTicks - 1.0);
-            text(kLeft + share * kWidth, kTop + kHeight + 14.0,
-                 fmt::format("{:.4g}", low + share * (high - low)), kTextSize, 0.5);
-        }
+        for (const double value : ticks(low, high))
+            text(kLeft + (value - low) / (high - low) * kWidth, kTop + kHeight + 14.0,
+                 fmt::format("{:.6g}", value), kTextSize, 0.5);
         text(kLeft + 0.5 * kWidth, kTop + kHeight + 32.0, name, kTextSize, 0.5);
     }
     void y_axis(double low, double high, const std::string& name) {
-        for (int i = 0; i < kTicks; ++i) {
-            const double share = i / (kTicks - 1.0);
-            text(kLeft - 6.0, kTop + (1.0 - share) * kHeight + 3.0,
-                 fmt::format("{:.4g}", low + share * (high - low)), kTextSize, 1.0);
-        }
+        for (const double value : ticks(low, high))
+            text(kLeft - 6.0, kTop + (1.0 - (value - low) / (high - low)) * kHeight + 3.0,
+                 fmt::format("{:.6g}", value), kTextSize, 1.0);
         cairo_save(cr_);
         cairo_translate(cr_, 14.0, kTop + 0.5 * kHeight);
         cairo_rotate(cr_, -0.5 * std::numbers::pi);
@@ -77,7 +82,7 @@ class Plot {
     std::vector<double> column(int axis) const {
         std::vector<double> values;
         for (const PlotShot& shot : plot_.shots)
-            if (!std::isnan(shot.value))
+            if (std::isfinite(shot.value))
                 values.push_back(axis < 0 ? shot.value : shot.place[static_cast<std::size_t>(axis)]);
         return values;
     }

@@ -11,7 +11,7 @@ namespace carom::tools {
 
 struct PlotShot {
     std::array<double, 2> place;  ///< the values that vary, of a map
-    double value;                 ///< of the measure; NaN: none
+    double value;                 ///< of the measure; left out unless it is finite
 };
 
 struct SweepPlot {
