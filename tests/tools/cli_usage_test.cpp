@@ -18,8 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
-         "accuracy, sweep, break, solve, check, impact or describe; see carom --help"},
+         "no command given: expected simulate, play, next, judge, view, render, diagram, export, compare, "
+         "sweep, "
+         "break, solve, check, accuracy, margin, impact or describe; see carom --help"},
         {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
