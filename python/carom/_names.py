@@ -11,7 +11,7 @@ RackName: TypeAlias = Literal["nine_ball", "ten_ball", "eight_ball"]
 TableName: TypeAlias = Literal["seven_foot", "seven_foot_bar", "eight_foot", "nine_foot", "snooker",
                                "english_pool", "carom", "carom_ten_foot"]
 CameraName: TypeAlias = Literal["scene", "top", "rail", "player", "follow"]
-OverlayName: TypeAlias = Literal["trails", "events", "spin", "ghost", "clock"]
+OverlayName: TypeAlias = Literal["trails", "events", "spin", "ghost", "clock", "diamonds"]
 BallBallModel: TypeAlias = Literal["mathavan", "inelastic", "elastic"]
 CushionModel: TypeAlias = Literal["han_2005", "mathavan_2010", "stronge", "impulse", "smooth"]
 

@@ -38,7 +38,7 @@ def render(
     size: (width, height) in pixels; from [render] if it is left out
     fps: frames per second of the shot, from its start to its end; from [render] if it is left out
     times: the times [s] to draw instead of fps, in any order
-    overlays: any of "trails", "events", "spin", "ghost" and "clock"
+    overlays: any of "trails", "events", "spin", "ghost", "clock" and "diamonds" (their numbers)
     backend: the drawing library; "auto" tries EGL first, then OSMesa
 
     Memory does not grow with the number of frames. The first frame takes longest because the table is drawn
@@ -60,7 +60,7 @@ def render(
         raise ValueError("a time is not a number; leave NaN out")
     unknown = set(overlays) - set(get_args(OverlayName))
     if unknown:
-        names = "trails, events, spin, ghost and clock"
+        names = "trails, events, spin, ghost, clock and diamonds"
         raise ValueError(f"overlays: expected a list of {names}, not {overlays!r}")
     if camera not in get_args(CameraName):
         raise ValueError(f"camera={camera!r}: expected scene, top, rail, player or follow")

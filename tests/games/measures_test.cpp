@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 #include "carom/games/shot.h"
 #include "support/engine_cases.h"
@@ -134,6 +135,22 @@ TEST(Measures, MistakesAreToldWhereTheyAre) {
     refused("1 $ 2", "expected the end");
     refused(std::string(500, '(') + "1", "fewer levels");
     refused("not " + std::string(400, ' ') + std::string(100, '('), "fewer levels");
+}
+
+// The corner-five system: from the corner, number 5, with running side and aimed at diamond D behind the
+// nose, the ball meets its third cushion near 5 - D. Both are counted from the far end.
+TEST(Measures, TheCornerFiveSystemHolds) {
+    for (const double aimed : {1.5, 2.0, 2.5, 3.0, 3.5}) {
+        const Scene scene = parse_scene(
+            "[table]\npreset = \"carom\"\n[balls]\npreset = \"carom\"\n[[ball]]\nid = \"white\"\n"
+            "position = [0.0689, 0.0887]\n[cue]\nball = \"white\"\nspeed = 4.0\noffset = [0.4, 0.0]\n"
+            "aim_at = [1.515, " +
+                std::to_string(2.84 * (8.0 - aimed) / 8.0) + "]\n",
+            "corner five");
+        const Record record = simulate(plan_of(scene));
+        const double third = std::get<double>(Measure("cushion_diamond(3)", scene).of(record));
+        EXPECT_NEAR(8.0 - third, 5.0 - aimed, 0.4) << aimed;
+    }
 }
 
 }  // namespace

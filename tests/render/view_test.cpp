@@ -147,6 +147,8 @@ TEST(Overlays, NamesAreReadAndUnknownOnesRefused) {
     EXPECT_FALSE(some.events || some.spin || some.ghost || some.margin);
     const Overlay all = parse_overlay("all");
     EXPECT_TRUE(all.trails && all.events && all.spin && all.ghost && all.clock && all.margin);
+    EXPECT_TRUE(parse_overlay("diamonds").diamonds && parse_overlay("diamonds").any());
+    EXPECT_FALSE(all.diamonds);
     EXPECT_TRUE(parse_overlay("trails=ball").trails && parse_overlay("trails=ball").ball_trails);
     EXPECT_FALSE(all.ball_trails);
     for (const char* bad : {"trail", "clock=ball", "trails,", "trails, clock", "trails;clock"}) {

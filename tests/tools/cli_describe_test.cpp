@@ -106,7 +106,7 @@ TEST(Formats, ThePageOfTheCommandLineIsThatOfTheOptions) {
     EXPECT_TRUE(read_source("docs/reference/command_line.md") == page)
         << "docs/reference/command_line.md is stale; run tools/renew_formats.py";
     for (const char* text :
-         {"\n## carom sweep\n", "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --count N --output FILE.csv`\n",
+         {"\n## carom sweep\n", "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --output FILE.csv`\n",
           "* `--jobs N`: Threads that encode and write; 0: one per core (default: 0); 0 to 256\n",
           "; one of `top`, `rail`, `player`, `follow`\n", "143 terminated"})
         EXPECT_NE(page.find(text), std::string::npos) << text;

@@ -77,7 +77,7 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
     // On its way to the first hit, whose place the ghost shows.
     const std::string at = "0.1";
     std::vector<std::string> seen = {picture({}, at)};
-    for (const char* layer : {"trails", "events", "spin", "ghost", "clock", "margin", "all"}) {
+    for (const char* layer : {"trails", "events", "spin", "ghost", "clock", "margin", "all", "diamonds"}) {
         const std::string with = picture({"--overlay", layer}, at);
         for (const std::string& other : seen) EXPECT_TRUE(with != other) << layer;
         seen.push_back(with);

@@ -18,9 +18,9 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "no command given: expected simulate, render, view, play, diagram, next, judge, export, compare, "
-         "margin, "
-         "accuracy, sweep, break, solve, check, impact or describe; see carom --help"},
+         "no command given: expected simulate, play, next, judge, view, render, diagram, export, compare, "
+         "sweep, break, solve, sensitivity, fit, check, accuracy, margin, impact or describe; see carom "
+         "--help"},
         {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},
         {{"--fast"}, "--fast"},
@@ -85,6 +85,9 @@ TEST(CliUsage, VersionAndHelpExit0) {
         EXPECT_EQ(result.status, 0) << command;
         EXPECT_EQ(result.err, "") << command;
     }
+    for (const char* group : {"\nPlay:\n  simulate", "\nLook:\n  view", "\nMany shots:\n  sweep",
+                              "\nAsk:\n  check", "\nFor programs:\n  impact"})
+        EXPECT_TRUE(contains(help.out, group)) << group;
 }
 
 TEST(CliUsage, HelpNamesEveryDefault) {

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "report/sweep_plot.h"
 
 namespace carom::tools {
 namespace {
@@ -42,6 +45,25 @@ TEST(Table, JsonHasWhatIsThere) {
     EXPECT_EQ(rows.dump(),
               R"([{"name":"a","n":3,"ns":0.3333333333333333,"same":true,"hidden":1.5},)"
               R"({"name":"b","n":null,"ns":null,"same":false,"hidden":2.5},{"name":"c","n":5}])");
+}
+
+TEST(Bins, OfAGridAreItsStepsAndOthersReachFromEndToEnd) {
+    const std::vector<double> grid = {1.0, 1.5, 2.0, 2.5, 1.0};
+    const Bins steps = bins_of(grid, 2);
+    EXPECT_EQ(steps.count, 4u);
+    EXPECT_DOUBLE_EQ(steps.low, 0.75);
+    EXPECT_DOUBLE_EQ(steps.high(), 2.75);
+    EXPECT_EQ(steps.of(1.0), 0u);
+    EXPECT_EQ(steps.of(2.5), 3u);
+    std::vector<double> many;
+    for (int i = 0; i < 400; ++i) many.push_back(std::pow(i / 399.0, 2));
+    const Bins wide = bins_of(many, 1);
+    EXPECT_EQ(wide.count, 20u);  // the root of 400
+    EXPECT_EQ(wide.of(0.0), 0u);
+    EXPECT_EQ(wide.of(1.0), 19u);
+    EXPECT_EQ(wide.of(0.051), 1u);
+    EXPECT_EQ(bins_of(std::vector<double>(3, 7.0), 1).count, 1u);
+    EXPECT_EQ(bins_of({}, 1).count, 1u);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The program carom and its commands.
 #include <fmt/core.h>
 
+#include <initializer_list>
 #include <string>
 
 #include "base/console.h"
@@ -53,25 +54,17 @@ int run(int argc, char** argv) {
         "page that plays it\nCAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: "
         "the fastest one for each kernel).\nExit status: 0 success, 1 failed while running, 2 bad usage or "
         "bad scene, 130 or 143 interrupted.";
-    add_simulate(program);
-    add_render(program);
-    add_view(program);
-    add_play(program);
-    add_diagram(program);
-    add_next(program);
-    add_judge(program);
-    add_export(program);
-    add_compare(program);
-    add_margin(program);
-    add_accuracy(program);
-    add_sweep(program);
-    add_break(program);
-    add_solve(program);
-    add_sensitivity(program);
-    add_fit(program);
-    add_check(program);
-    add_impact(program);
-    add_describe(program);
+    const auto add = [&program](const char* group, std::initializer_list<void (*)(Options&)> commands) {
+        for (const auto add_command : commands) {
+            add_command(program);
+            program.commands.back().group = group;
+        }
+    };
+    add("Play", {add_simulate, add_play, add_next, add_judge});
+    add("Look", {add_view, add_render, add_diagram, add_export, add_compare});
+    add("Many shots", {add_sweep, add_break, add_solve, add_sensitivity, add_fit});
+    add("Ask", {add_check, add_accuracy, add_margin});
+    add("For programs", {add_impact, add_describe});
     return run_command_line(program, argc, argv);
 }
 

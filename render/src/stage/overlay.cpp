@@ -26,6 +26,7 @@ Overlay parse_overlay(std::string_view list) {
         more = comma != std::string_view::npos;
         if (more) list.remove_prefix(comma + 1);
         bool known = word == "all" || word == "trails=ball";
+        if (word == "diamonds") known = overlay.diamonds = true;
         if (word == "trails=ball") overlay.trails = overlay.ball_trails = true;
         for (const auto& [name, member] : kNames) {
             if (word != name && word != "all") continue;
@@ -35,8 +36,9 @@ Overlay parse_overlay(std::string_view list) {
         if (!known) {
             throw RenderError(
                 "unknown overlay '" + printable(word) +
-                "'; use trails (or trails=ball), events, spin, ghost, clock, margin, or all" +
-                did_you_mean(word, {"trails", "events", "spin", "ghost", "clock", "margin", "all"}));
+                "'; use trails (or trails=ball), events, spin, ghost, clock, margin, diamonds, or all" +
+                did_you_mean(word,
+                             {"trails", "events", "spin", "ghost", "clock", "margin", "diamonds", "all"}));
         }
     }
     return overlay;

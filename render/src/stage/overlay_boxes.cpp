@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "carom/render/table_mesh.h"
 #include "font/glyphs.h"
 
 namespace carom::render {
@@ -57,6 +58,17 @@ void add_clock(DrawList& list, double t) {
     list.boxes.push_back(
         {{left, room}, {left + 2.0 * room + text_width(height, text), 3.0 * room + height}, kPanel, -1});
     add_text(list, {left + room, 2.0 * room}, height, text, kTextInk);
+}
+
+void add_diamond_numbers(DrawList& list, const Table& table) {
+    const double nose = table.cushions.empty() ? 0.0 : table.cushions.front().height;
+    for (const auto& [at, number] : diamond_numbers(table, *list.table)) {
+        const auto pixel = list.camera.project({at.x(), at.y(), nose});
+        if (!pixel) continue;
+        const std::string text = fmt::format("{}", number);
+        const double height = 0.8 * text_height(list);
+        add_text(list, *pixel - 0.5 * Vec2(text_width(height, text), height), height, text, kTextInk);
+    }
 }
 
 void add_margin_bar(DrawList& list, const FrameBudget& cost) {

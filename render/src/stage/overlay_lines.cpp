@@ -196,6 +196,7 @@ void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, d
     if (overlay.events) add_events(list, record, t);
     if (overlay.ghost) add_ghost(list, record, t);
     if (overlay.spin) add_spin(list, record, t);
+    if (overlay.diamonds) add_diamond_numbers(list, record.table);
     if (overlay.clock) add_clock(list, t);
     if (overlay.margin && cost) add_margin_bar(list, *cost);
 }

@@ -83,4 +83,21 @@ void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, 
     spot(builder, foot_spot(table), 0.007);
 }
 
+std::vector<DiamondNumber> diamond_numbers(const Table& t, const TableMesh& mesh) {
+    std::vector<DiamondNumber> numbers;
+    if (!(t.width > 0.0 && t.length > 0.0)) return numbers;
+    const Vec2 far = t.corner + Vec2(t.width, t.length);
+    const Vec2 low = 0.5 * (t.corner + mesh.inner_low), high = 0.5 * (far + mesh.inner_high);
+    const auto add = [&](const Vec2& at, int number) {
+        for (const Pocket& p : t.pockets)
+            if ((at - p.center).norm() < 1.6 * p.radius) return;
+        numbers.push_back({at, number});
+    };
+    for (int k = 0; k <= 8; ++k)
+        for (const double x : {low.x(), high.x()}) add({x, t.corner.y() + t.length * k / 8.0}, k);
+    for (int k = 1; k < 4; ++k)
+        for (const double y : {low.y(), high.y()}) add({t.corner.x() + t.width * k / 4.0, y}, k);
+    return numbers;
+}
+
 }  // namespace carom::render

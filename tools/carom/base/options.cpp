@@ -113,8 +113,11 @@ void fill(CLI::App& app, const Options& command, const Options*& named) {
     app.callback([&app, &command, &named] {
         if (app.get_subcommands().empty()) named = &command;
     });
-    for (const Options& inner : command.commands)
-        fill(*app.add_subcommand(inner.name, inner.text), inner, named);
+    for (const Options& inner : command.commands) {
+        CLI::App& below = *app.add_subcommand(inner.name, inner.text);
+        if (!inner.group.empty()) below.group(inner.group);
+        fill(below, inner, named);
+    }
 }
 
 /// "simulate, render or check".

@@ -48,6 +48,7 @@ struct Options {
     std::string name, text;
     std::string footer;   ///< printed after the options in --help; empty: the program's
     std::string version;  ///< of the program
+    std::string group;    ///< of a command in the program's --help
     std::vector<Option> rows;
     std::list<Options> commands;
     /// Does the work and returns the exit status; empty: one of `commands` must be named.

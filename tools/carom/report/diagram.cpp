@@ -2,8 +2,6 @@
 // points down, is x of the table. Each piece of a ball's motion is a parabola, which is a Bezier curve.
 #include "report/diagram.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 
@@ -12,7 +10,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +20,7 @@
 #include "carom/render/look.h"
 #include "carom/render/table_mesh.h"
 #include "page/table_shape.h"
+#include "report/diagram_page.h"
 
 namespace carom::tools {
 namespace {
@@ -34,8 +32,6 @@ using Color = look::Color;
 // All in points of the page.
 constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 74.0;
 constexpr double kTitleSize = 15.0, kTextSize = 8.0;
-// [pixels per point] In a PNG.
-constexpr double kPngScale = 2.5;
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGray{0.55, 0.55, 0.55};
 // [m/s] Slower contacts are drawn without a speed.
 constexpr double kLeastSpeed = 0.05;
@@ -159,20 +155,9 @@ class Drawing {
     }
     /// On the cushions, beside the diamonds of the rail.
     void draw_diamond_numbers() {
-        const carom::Table& t = record_.table;
-        if (!(t.width > 0.0 && t.length > 0.0)) return;
-        const Vec2 low = t.corner - 0.5 * (t.corner - mesh_.inner_low),
-                   far = t.corner + Vec2(t.width, t.length), high = far + 0.5 * (mesh_.inner_high - far);
-        const auto number = [&](const Vec2& at, int k) {
-            for (const Pocket& p : t.pockets)
-                if ((at - p.center).norm() < 1.6 * p.radius) return;
-            text(px(at), py(at) + 0.35 * kTextSize, fmt::format("{}", k), kTextSize,
+        for (const auto& [at, number] : render::diamond_numbers(record_.table, mesh_))
+            text(px(at), py(at) + 0.35 * kTextSize, fmt::format("{}", number), kTextSize,
                  style_.color ? kWhite : kBlack, 0.5);
-        };
-        for (int k = 0; k <= 8; ++k)
-            for (const double x : {low.x(), high.x()}) number({x, t.corner.y() + t.length * k / 8.0}, k);
-        for (int k = 1; k < 4; ++k)
-            for (const double y : {low.y(), high.y()}) number({t.corner.x() + t.width * k / 4.0, y}, k);
     }
 
     Color ball_color(int ball) const {
@@ -410,28 +395,9 @@ class Drawing {
     int struck_ = -1;
 };
 
-cairo_status_t append(void* to, const unsigned char* data, unsigned int length) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
-    return CAIRO_STATUS_SUCCESS;
-}
-
-/// A cairo context that releases itself.
-struct Context {
-    explicit Context(cairo_surface_t* made) : surface(made), cr(cairo_create(made)) {}
-    ~Context() {
-        cairo_destroy(cr);
-        cairo_surface_destroy(surface);
-    }
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
-    cairo_surface_t* surface;
-    cairo_t* cr;
-};
-
 /// Draws all shots, in two columns if there are several. @return the size of the page
 std::pair<double, double> draw_page(cairo_t* cr, const std::vector<DiagramShot>& shots,
                                     const DiagramStyle& style) {
-    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     const std::size_t columns = shots.size() > 1 ? 2 : 1;
     double y = kMargin;
     for (std::size_t first = 0; first < shots.size(); first += columns) {
@@ -459,35 +425,7 @@ std::string diagram_format(const std::string& path) {
 
 std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,
                          const std::string& format) {
-    // The size is known once everything has been drawn, so the first pass draws into nothing.
-    std::pair<double, double> size;
-    {
-        const Context nowhere(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr));
-        size = draw_page(nowhere.cr, shots, style);
-    }
-    std::string bytes;
-    cairo_status_t status = CAIRO_STATUS_SUCCESS;
-    {
-        const bool png = format == ".png";
-        const auto pixels = [](double points) { return static_cast<int>(std::ceil(kPngScale * points)); };
-        const Context page(
-            png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(size.first), pixels(size.second))
-            : format == ".pdf"
-                ? cairo_pdf_surface_create_for_stream(append, &bytes, size.first, size.second)
-                : cairo_svg_surface_create_for_stream(append, &bytes, size.first, size.second));
-        if (png) cairo_scale(page.cr, kPngScale, kPngScale);
-        cairo_set_source_rgb(page.cr, 1.0, 1.0, 1.0);
-        cairo_paint(page.cr);
-        draw_page(page.cr, shots, style);
-        status = cairo_status(page.cr);
-        if (png && status == CAIRO_STATUS_SUCCESS)
-            status = cairo_surface_write_to_png_stream(page.surface, append, &bytes);
-        cairo_surface_finish(page.surface);
-    }
-    if (status != CAIRO_STATUS_SUCCESS)
-        throw std::runtime_error(
-            fmt::format("the diagram cannot be drawn: {}", cairo_status_to_string(status)));
-    return bytes;
+    return cairo_page(format, [&](cairo_t* cr) { return draw_page(cr, shots, style); });
 }
 
 }  // namespace carom::tools

@@ -5,6 +5,7 @@
 
 #include "base/console.h"
 #include "report/diagram.h"
+#include "report/sweep_plot.h"
 
 namespace carom::tools {
 
@@ -14,6 +15,10 @@ std::string diagram_format(const std::string&) {
 
 std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {
     throw std::runtime_error("this build cannot draw diagrams");
+}
+
+std::string draw_plot(const SweepPlot&, const std::string&) {
+    throw std::runtime_error("this build cannot draw plots");
 }
 
 }  // namespace carom::tools

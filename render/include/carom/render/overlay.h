@@ -16,7 +16,9 @@ struct Overlay {
     bool clock = false;   ///< time of the shot [s]
     bool margin = false;  ///< computing time of the frame compared with the available time, 1 / fps
 
-    bool any() const { return trails || events || spin || ghost || clock || margin; }
+    bool diamonds = false;  ///< their numbers; not one of "all", because they belong to the table
+
+    bool any() const { return trails || events || spin || ghost || clock || margin || diamonds; }
 };
 
 /// "trails,clock" ("trails=ball": in the colours of the balls), "all", or "" (none). @throws RenderError for

@@ -62,4 +62,12 @@ enum class Edges : std::uint8_t { kRounded, kSharp };
 TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited,
                           Edges edges = Edges::kRounded);
 
+/// The number of a diamond, and where it is written: on the cushion beside it. 0 to 8 along long rails and 1
+/// to 3 along short ones, from the table's corner; none in front of a pocket or on an endless cloth.
+struct DiamondNumber {
+    Vec2 at;
+    int number;
+};
+std::vector<DiamondNumber> diamond_numbers(const Table& table, const TableMesh& mesh);
+
 }  // namespace carom::render

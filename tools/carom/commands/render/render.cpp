@@ -326,7 +326,7 @@ void add_render(Options& program) {
     command.option("--ball", &args.ball, "ID", "Ball for camera follow (default: the first that moves)");
     command.option("--overlay", &args.overlay, "LIST",
                    "Overlays: trails (or trails=ball, in the balls' colours), events, spin, ghost, clock, "
-                   "margin, or all (default: none)");
+                   "margin, or all; and diamonds, their numbers (default: none)");
     command.flag("--trails", args.trails, "Same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
                    "One contact sheet of columns x rows pictures, as wide as --size (default: off)");

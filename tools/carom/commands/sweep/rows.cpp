@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/console.h"
@@ -71,6 +72,15 @@ SweepRows play_part(const Sweep& sweep, std::uint64_t first, std::size_t shots) 
                 append_value(rows.text, columns[k], values[k], shot, has_result(batch.status[shot]));
         }
         const bool result = has_result(batch.status[shot]);
+        if (sweep.plot && result) {
+            PlotShot& plotted = rows.plotted.emplace_back();
+            plotted.value = std::get<double>(measured[shot * measures]);
+            for (std::size_t axis = 0; axis < sweep.plot_keys.size(); ++axis) {
+                const ColumnValues& of = values[sweep.plot_keys[axis] + 1];
+                plotted.place[axis] =
+                    of.numbers.empty() ? static_cast<double>(of.wholes[shot]) : of.numbers[shot];
+            }
+        }
         for (std::size_t m = 0; m < measures; ++m) {
             games::MeasureValue& value = measured[shot * measures + m];
             append_csv(rows.text, std::string_view(result ? games::text_of(value) : ""));
@@ -107,6 +117,7 @@ SweepRows play_rows(const Sweep& sweep, std::uint64_t first, std::size_t shots) 
         rows.text += more.text;
         rows.values.insert(rows.values.end(), std::make_move_iterator(more.values.begin()),
                            std::make_move_iterator(more.values.end()));
+        rows.plotted.insert(rows.plotted.end(), more.plotted.begin(), more.plotted.end());
         for (std::size_t i = 0; i < rows.outcomes.size(); ++i) rows.outcomes[i] += more.outcomes[i];
     }
     return rows;

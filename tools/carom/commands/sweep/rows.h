@@ -12,6 +12,7 @@
 #include "carom/engine/variation.h"
 #include "carom/games/measures.h"
 #include "carom/kernel/isa.h"
+#include "report/sweep_plot.h"
 
 namespace carom::tools {
 
@@ -23,6 +24,9 @@ struct Sweep {
     const std::vector<games::Measure>& measures;
     kernel::Isa isa;
     int threads;
+    /// A shot for the plot: the first measure, over these keys if there are two.
+    bool plot = false;
+    std::vector<std::size_t> plot_keys{};
 };
 
 /// The names of the columns, with a line end.
@@ -34,6 +38,7 @@ struct SweepRows {
     Outcomes outcomes{};
     /// For each shot with a result, the values of all measures.
     std::vector<games::MeasureValue> values;
+    std::vector<PlotShot> plotted;  ///< the same shots, if there is a plot
 };
 
 /// Plays shots first, first + 1, ... on several threads, and writes their rows. A row depends only on the

@@ -22,12 +22,15 @@
 #include "base/console.h"
 #include "base/game_state.h"
 #include "base/options.h"
+#include "base/output_file.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
 #include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
 #include "commands/sweep/table_in_parts.h"
 #include "commands/sweep/tally.h"
+#include "report/diagram.h"
+#include "report/sweep_plot.h"
 
 namespace carom::tools {
 namespace {
@@ -43,6 +46,7 @@ struct SweepArgs {
     std::string status;  ///< a file; empty: none
     std::vector<std::string> measures;
     std::string game;
+    std::string plot;
     bool json = false;
 };
 
@@ -53,6 +57,9 @@ constexpr std::uint64_t kMostShards = 1000000;
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
+
+/// [shots] A plot shows the first ones: more would not change it, and need memory.
+constexpr std::size_t kMostPlotted = 1000000;
 
 /// Shots `first` to `last - 1`.
 struct ShotRange {
@@ -78,7 +85,7 @@ std::uint64_t failures(const Outcomes& outcomes) {
 /// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
 /// one is awaited and written, so that no thread is idle.
 Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
-                    std::vector<Tally>& tallies) {
+                    std::vector<Tally>& tallies, SweepPlot& plot) {
     Outcomes outcomes{};
     ProgressLine line("sweep");
     auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
@@ -101,6 +108,10 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
         table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
         for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
+        const std::size_t room = kMostPlotted - std::min(kMostPlotted, plot.shots.size());
+        plot.shots.insert(
+            plot.shots.end(), rows.plotted.begin(),
+            rows.plotted.begin() + static_cast<std::ptrdiff_t>(std::min(room, rows.plotted.size())));
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(table.next(), outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
@@ -147,6 +158,30 @@ std::vector<games::Measure> read_measures(const SweepArgs& args, const Scene& sc
     return measures;
 }
 
+/// What a plot needs from every shot: the first measure, over the first two numbers that vary.
+SweepPlot prepare_plot(const SweepArgs& args, Sweep& sweep) {
+    SweepPlot plot;
+    if (args.plot.empty()) return plot;
+    diagram_format(args.plot);
+    if (sweep.measures.empty() || !sweep.measures.front().is_number())
+        throw UsageError(
+            "--plot draws the first --measure, which has to be a number; carom describe measures "
+            "lists them");
+    plot.measure = sweep.measures.front().text();
+    sweep.plot = true;
+    const Variation& variation = sweep.variation;
+    for (std::size_t k = 0; k < variation.keys().size() && plot.axes.size() < 2; ++k) {
+        if (variation.kind(k) == ValueKind::kText) continue;
+        const std::string unit = variation.unit(k);
+        plot.axes.push_back(variation.keys()[k] + (unit.empty() ? "" : " [" + unit + "]"));
+        sweep.plot_keys.push_back(k);
+    }
+    if (plot.axes.size() == 2) return plot;
+    plot.axes.clear();
+    sweep.plot_keys.clear();
+    return plot;
+}
+
 Variation read_variation(const SweepArgs& args) {
     try {
         return Variation(args.scene, args.vary, args.seed);
@@ -179,7 +214,8 @@ int run(const SweepArgs& args) {
             args.output));
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const Sweep sweep{variation, measures, isa, jobs};
+    Sweep sweep{variation, measures, isa, jobs};
+    SweepPlot plot = prepare_plot(args, sweep);
     std::vector<Tally> tallies(measures.begin(), measures.end());
     TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first);
     const std::uint64_t from = table.next();
@@ -196,7 +232,7 @@ int run(const SweepArgs& args) {
     Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(table, sweep, range, status, tallies);
+        outcomes = write_rows(table, sweep, range, status, tallies, plot);
     } catch (const std::system_error& error) {
         throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
                                              counted(static_cast<std::size_t>(jobs), "thread"),
@@ -209,6 +245,11 @@ int run(const SweepArgs& args) {
         throw;
     }
     table.commit();
+    if (sweep.plot) {
+        OutputFile file(args.plot);
+        file.write(draw_plot(plot, diagram_format(args.plot)));
+        file.commit();
+    }
     status.end("done");
     print(
         summary(outcomes, tallies, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
@@ -235,6 +276,9 @@ void add_sweep(Options& program) {
                    "measures explains, as often as wanted (default: none)");
     command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
         .one_of(game_names());
+    command.option("--plot", &args.plot, "FILE",
+                   "Draw the first measure of the shots of this run: a map over the first two numbers that "
+                   "vary, or a histogram; .svg, .png or .pdf (default: not drawn)");
     command.flag("--json", args.json, "Print the summary as JSON (default: off)");
     command.option("--count", &args.count, "N", "Number of shots (default: every point of the grids once)");
     command.option("--seed", &args.seed, "S", "Seed of all draws");
