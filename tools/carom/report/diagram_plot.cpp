@@ -128,8 +128,9 @@ class Plot {
                      tall = kHeight / static_cast<double>(up.count);
         for (std::size_t i = 0; i < sums.size(); ++i) {
             if (counts[i] == 0.0) continue;
+            const std::size_t up_from_below = i / across.count;
             const auto column = static_cast<double>(i % across.count),
-                       row = static_cast<double>(i / across.count);
+                       row = static_cast<double>(up_from_below);
             shade(high > low ? (sums[i] / counts[i] - low) / (high - low) : 0.5);
             cairo_rectangle(cr_, kLeft + wide * column, kTop + kHeight - tall * (row + 1.0), wide + 0.3,
                             tall + 0.3);
