@@ -18,14 +18,14 @@ namespace {
 
 // All in points of the page.
 constexpr double kWidth = 420.0, kHeight = 300.0, kLeft = 64.0, kTop = 40.0, kRight = 84.0, kBottom = 52.0;
-constexpr double kTitleSize = 13.0, kTextSize = 9.0;
+constexpr double kHeading = 13.0, kLabel = 9.0;
 
-class Plot {
+class SweepDrawing {
   public:
-    Plot(cairo_t* cr, const SweepPlot& plot) : cr_(cr), plot_(plot) {}
+    SweepDrawing(cairo_t* cr, const SweepPlot& plot) : cr_(cr), plot_(plot) {}
 
     std::pair<double, double> draw() {
-        text(kLeft, kTop - 16.0, printable(plot_.measure), kTitleSize, 0.0);
+        text(kLeft, kTop - 16.0, printable(plot_.measure), kHeading, 0.0);
         plot_.axes.empty() ? histogram() : map();
         cairo_rectangle(cr_, kLeft, kTop, kWidth, kHeight);
         ink(0.0);
@@ -65,17 +65,17 @@ class Plot {
     void x_axis(double low, double high, const std::string& name) {
         for (const double value : ticks(low, high))
             text(kLeft + (value - low) / (high - low) * kWidth, kTop + kHeight + 14.0,
-                 fmt::format("{:.6g}", value), kTextSize, 0.5);
-        text(kLeft + 0.5 * kWidth, kTop + kHeight + 32.0, name, kTextSize, 0.5);
+                 fmt::format("{:.6g}", value), kLabel, 0.5);
+        text(kLeft + 0.5 * kWidth, kTop + kHeight + 32.0, name, kLabel, 0.5);
     }
     void y_axis(double low, double high, const std::string& name) {
         for (const double value : ticks(low, high))
             text(kLeft - 6.0, kTop + (1.0 - (value - low) / (high - low)) * kHeight + 3.0,
-                 fmt::format("{:.6g}", value), kTextSize, 1.0);
+                 fmt::format("{:.6g}", value), kLabel, 1.0);
         cairo_save(cr_);
         cairo_translate(cr_, 14.0, kTop + 0.5 * kHeight);
         cairo_rotate(cr_, -0.5 * std::numbers::pi);
-        text(0.0, 0.0, name, kTextSize, 0.5);
+        text(0.0, 0.0, name, kLabel, 0.5);
         cairo_restore(cr_);
     }
 
@@ -147,8 +147,8 @@ class Plot {
                             kHeight / kSteps + 0.3);
             cairo_fill(cr_);
         }
-        text(right + 17.0, kTop + kHeight, fmt::format("{:.4g}", low), kTextSize, 0.0);
-        text(right + 17.0, kTop + 8.0, fmt::format("{:.4g}", high), kTextSize, 0.0);
+        text(right + 17.0, kTop + kHeight, fmt::format("{:.4g}", low), kLabel, 0.0);
+        text(right + 17.0, kTop + 8.0, fmt::format("{:.4g}", high), kLabel, 0.0);
     }
 
     cairo_t* cr_;
@@ -158,7 +158,7 @@ class Plot {
 }  // namespace
 
 std::string draw_plot(const SweepPlot& plot, const std::string& format) {
-    return cairo_page(format, [&](cairo_t* cr) { return Plot(cr, plot).draw(); });
+    return cairo_page(format, [&](cairo_t* cr) { return SweepDrawing(cr, plot).draw(); });
 }
 
 }  // namespace carom::tools
