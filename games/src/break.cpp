@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,19 @@ const BreakGame& game_of(const std::string& name) {
     return kGames[found - kBreakGames.begin()];
 }
 
+/// The keys of [rack] for options.rack.
+std::string method_of(const std::string& rack) {
+    if (rack == "template" || rack == "triangle") return fmt::format("method = \"{}\"\n", rack);
+    double gap = -1.0;
+    const char* const end = rack.data() + rack.size();
+    if (rack.starts_with("gap=") && std::from_chars(rack.data() + 4, end, gap).ptr == end && gap >= 0.0 &&
+        gap <= kLargestGap)
+        return fmt::format("gap = {}\njitter = {}\n", gap, 0.5 * gap);
+    throw std::invalid_argument(
+        fmt::format("the rack {} is not known; use template, triangle or gap=METRES with 0 to {}",
+                    in_quotes(rack), kLargestGap));
+}
+
 /// Speed that the ball gets from one metre per second of the cue, hit in its centre.
 double ball_speed(const Scene& scene, kernel::Isa isa) {
     Scene alone = scene;
@@ -69,13 +83,11 @@ BreakSearch break_search(const BreakOptions& options, kernel::Isa isa) {
     const BreakGame& game = game_of(options.game);
     if (!(options.speed_max >= 1.0 && options.speed_max <= 20.0))
         throw std::invalid_argument("the largest speed of a break must be 1 to 20 m/s");
-    if (!(options.gap >= 0.0 && options.gap <= kLargestGap))
-        throw std::invalid_argument(fmt::format("the gap in a rack must be 0 to {} m", kLargestGap));
     const std::string text = fmt::format(
-        "[table]\npreset = \"{}\"\n[rack]\ngame = \"{}\"\n{}gap = {}\njitter = {}\n"
+        "[table]\npreset = \"{}\"\n[balls]\nradius_sd = {}\n[rack]\ngame = \"{}\"\n{}{}"
         "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[cue]\npreset = \"break\"\nspeed = 5\noffset = [0, "
         "0]\n",
-        options.table, options.game, game.rack, options.gap, 0.5 * options.gap);
+        options.table, options.radius_sd, options.game, game.rack, method_of(options.rack));
     const std::string name = "break of " + options.game;
     BreakSearch search;
     search.scene = parse_scene(text, name);

@@ -156,6 +156,7 @@ def best_break(
     *,
     table: TableName = "nine_foot",
     rack: Literal["template", "triangle"] | float = "template",
+    radius_sd: float = 0.0,
     speed_max: float = 10.0,
     box: bool = False,
     hand: Hand = Hand(),
@@ -167,6 +168,7 @@ def best_break(
     """Recommends a break: where from, how full, how hard, and how sure it is: `carom break`.
 
     rack: how it was made, or the gap between its balls [m]
+    radius_sd: how much the radii of the racked balls vary [m]
     speed_max: the hardest that the player hits: speed of the cue ball [m/s]
     box: the cue ball at least a diamond from either long rail
     hand, shots, best, seed, threads: as for `solve`
@@ -174,10 +176,7 @@ def best_break(
     Raises ValueError for a game without a break or a number out of range.
     """
     _limits(shots, best, seed, threads)
-    gaps = dict(zip(("template", "triangle"), _carom.rack_gaps()))
-    if isinstance(rack, str) and rack not in gaps:
-        raise ValueError(f"rack={rack!r}: expected template, triangle or a gap in m")
-    gap = gaps[rack] if isinstance(rack, str) else float(rack)
-    keys, _, _, rows = _carom.best_break(game, table, gap, float(speed_max), box, _checked_hand(hand),
-                                         shots, best, seed, threads)
+    how = rack if isinstance(rack, str) else f"gap={float(rack)!r}"
+    keys, _, _, rows = _carom.best_break(game, table, how, float(radius_sd), float(speed_max), box,
+                                         _checked_hand(hand), shots, best, seed, threads)
     return _solutions(keys, rows)

@@ -155,9 +155,10 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
 
 /// The keys that were chosen, what was wanted, the speed of the ball for each m/s of the cue, the solutions.
 std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
-    const std::string& game, const std::string& table, double gap, double speed_max, bool box,
-    const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed, int threads) {
-    games::BreakOptions wanted{game, table, gap, speed_max, box, seed};
+    const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
+    double speed_max, bool box, const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,
+    int threads) {
+    games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
         search = games::break_search(wanted, chosen_isa());
@@ -186,9 +187,9 @@ void add_measures(nb::module_& m) {
     m.def("solve", solve, nb::arg("scene"), nb::arg("want"), nb::arg("game").none(), nb::arg("choices"),
           nb::arg("hand"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
           nb::arg("threads"));
-    m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("gap"), nb::arg("speed_max"),
-          nb::arg("box"), nb::arg("hand"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
-          nb::arg("threads"));
+    m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("rack"), nb::arg("radius_sd"),
+          nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("shots"), nb::arg("best"),
+          nb::arg("seed"), nb::arg("threads"));
     m.def("standard_hand", standard_hand);
     m.def("default_choices", [] {
         std::vector<ChoiceRow> rows;
@@ -197,7 +198,6 @@ void add_measures(nb::module_& m) {
     });
     m.def("break_games",
           [] { return std::vector<std::string>(games::kBreakGames.begin(), games::kBreakGames.end()); });
-    m.def("rack_gaps", [] { return std::pair(games::kTemplateGap, games::kTriangleGap); });
 }
 
 }  // namespace carom::python

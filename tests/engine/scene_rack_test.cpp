@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/scene.h"
 #include "support/scene_errors.h"
 
@@ -318,6 +319,100 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
     EXPECT_NE(scatter("", 7).ball, scatter("", 8).ball);
 }
 
+/// [m] Between two balls that lie on the cloth.
+double gap_between(const Scene& s, std::size_t i, std::size_t j) {
+    return (at(s, i) - at(s, j)).norm() -
+           carom::contact_distance(s.size_of(s.ball[i]).R, s.size_of(s.ball[j]).R);
+}
+
+std::string unlike(const std::string& sd, const std::string& rack) {
+    return "[balls]\nradius_sd = " + sd + "\n[rack]\n" + rack;
+}
+
+// N balls pressed together have 2N - 3 ways to move against each other, so that many contacts close;
+// nine-ball has one contact more, ten-ball one, fifteen balls three.
+TEST(Template, OnlyRedundantContactsOpen) {
+    struct Case {
+        const char* rack;
+        std::size_t balls, contacts;
+    };
+    constexpr double kTolerance = 4e-15;
+    for (const Case& c : {Case{"game = \"nine_ball\"\n", 9, 16},
+                          {"game = \"ten_ball\"\n", 10, 18},
+                          {"game = \"eight_ball\"\n", 15, 30},
+                          {"game = \"nine_ball\"\nspot_ball = 9\n", 9, 16},
+                          {"game = \"triangle\"\nrows = 2\n", 3, 3}}) {
+        const std::string keys = std::string(c.rack) + "method = \"template\"\nseed = ";
+        for (int seed = 0; seed < 1000; ++seed) {
+            const Scene s = parse_scene(unlike("2e-5", keys + std::to_string(seed) + "\n"), "s.toml");
+            std::size_t closed = 0, near = 0;
+            int at_spot = 0;
+            for (std::size_t i = 0; i < c.balls; ++i) {
+                at_spot += at(s, i) == Vec2(0.635, 1.905);
+                for (std::size_t j = 0; j < i; ++j) {
+                    const double gap = gap_between(s, i, j);
+                    EXPECT_GE(gap, -kTolerance);
+                    closed += gap <= kTolerance;
+                    near += gap < 0.001;
+                }
+            }
+            EXPECT_EQ(closed, 2 * c.balls - 3) << c.rack << seed;
+            EXPECT_EQ(near, c.contacts) << c.rack << seed;
+            EXPECT_EQ(at_spot, 1) << c.rack << seed;
+        }
+    }
+}
+
+TEST(Template, OfAlikeBallsIsTheTouchingRack) {
+    for (const std::string game : {"eight_ball", "nine_ball", "ten_ball"}) {
+        const std::string keys = "game = \"" + game + "\"\n";
+        EXPECT_EQ(rack(keys + "method = \"template\"\n").ball, rack("gap = 0\n" + keys).ball);
+        EXPECT_EQ(rack(keys + "method = \"triangle\"\n").ball,
+                  rack("gap = 5e-5\njitter = 5e-5\n" + keys).ball);
+        EXPECT_EQ(rack(keys + "method = \"gap\"\n").ball, rack(keys).ball);
+    }
+    EXPECT_EQ(rack("method = \"triangle\"\ngap = 1e-5\njitter = 0\n").ball, rack("gap = 1e-5\n").ball);
+}
+
+// A normal distribution cut at 2.5 standard deviations has 0.9546 of the deviation: 1 - 2 c phi(c) / (2
+// Phi(c) - 1) is its variance.
+TEST(Rack, RadiiVaryAndMassesFollow) {
+    constexpr double kSd = 2e-5;
+    double sum = 0.0, squares = 0.0, most = 0.0;
+    int n = 0;
+    for (int seed = 0; seed < 1000; ++seed) {
+        const std::string keys = "game = \"ten_ball\"\nseed = " + std::to_string(seed) + "\n";
+        const Scene s = parse_scene("[[ball]]\nid = \"cue\"\n" + unlike("2e-5", keys), "s.toml");
+        const Scene alike = parse_scene("[[ball]]\nid = \"cue\"\n[rack]\n" + keys, "s.toml");
+        EXPECT_FALSE(s.ball[0].own);
+        for (std::size_t i = 1; i < s.ball.size(); ++i) {
+            const carom::BallSize size = s.size_of(s.ball[i]);
+            EXPECT_NEAR(size.m / s.balls.m, std::pow(size.R / kR, 3), 1e-15);
+            EXPECT_EQ(s.ball[i].position.z(), size.R);
+            EXPECT_LT((at(s, i) - at(alike, i)).norm(), 0.001) << "the same ball lies there";
+            const double off = (size.R - kR) / kSd;
+            sum += off, squares += off * off, ++n;
+            most = std::fmax(most, std::abs(off));
+        }
+    }
+    EXPECT_NEAR(sum / n, 0.0, 0.05);
+    EXPECT_NEAR(std::sqrt(squares / n), 0.9546, 0.03);
+    EXPECT_LE(most, 2.5 + 1e-9);
+    EXPECT_GT(most, 2.4);
+    // The other methods and games know them, too.
+    for (const char* keys : {"method = \"triangle\"\n", "gap = 0\njitter = 1e-4\n", "game = \"snooker\"\n",
+                             "game = \"three_cushion\"\n", "game = \"line\"\ncount = 7\n",
+                             "game = \"scatter\"\ncount = 30\n", "game = \"triangle\"\nrows = 10\n"}) {
+        const Scene s = parse_scene(unlike("1e-4", keys), "s.toml");
+        EXPECT_FALSE(s.of_one_radius()) << keys;
+        const Scene again = parse_scene(carom::scene_text(s), "s.toml");
+        for (std::size_t i = 0; i < s.ball.size(); ++i) {
+            EXPECT_EQ(again.ball[i].own, s.ball[i].own);
+            EXPECT_EQ(again.ball[i].position, s.ball[i].position);
+        }
+    }
+}
+
 TEST(Rack, RefusesWhatHasNoPlace) {
     const auto error = [](const std::string& keys) { return carom::test::error_of("[rack]\n" + keys); };
     EXPECT_EQ(error("game = \"nine_ball\"\nspot_ball = 10\n"),
@@ -330,6 +425,20 @@ TEST(Rack, RefusesWhatHasNoPlace) {
     EXPECT_EQ(
         error("game = \"scatter\"\njitter = 0.001\n"),
         "s.toml:3:10: rack.jitter is for balls that lie together, and a scatter spreads them; leave it out");
+    EXPECT_EQ(error("method = \"template\"\ngap = 0\n"),
+              "s.toml:3:7: rack.gap opens contacts, and a template closes them; leave out rack.gap or "
+              "rack.method");
+    EXPECT_EQ(error("game = \"line\"\nmethod = \"triangle\"\n"),
+              "s.toml:3:10: rack.method is for balls racked in rows; leave it out or choose another game");
+    EXPECT_EQ(
+        carom::test::error_of("[balls]\nradius_sd = 1e-5\n[[ball]]\n"),
+        "s.toml:2:13: balls.radius_sd is of racked balls, and there is no [rack]; leave it out, or give "
+        "a ball its own radius");
+    EXPECT_EQ(carom::test::error_of(unlike("1e-5", "game = \"triangle\"\nrows = 11\n")),
+              "s.toml:5:8: at most 55 balls of unlike size can be racked, not 66; leave some out");
+    EXPECT_EQ(carom::test::error_of("[balls]\nradius = 0.01\nradius_sd = 1e-4\n[rack]\n"),
+              "s.toml:3:13: balls.radius_sd = 0.0001 is more than a 200th of the radius, 0.01 m; make it "
+              "smaller");
     EXPECT_EQ(carom::test::error_of("[table]\ncushion = []\n[rack]\ngame = \"scatter\"\n"),
               "s.toml:4:8: a scatter needs the rectangle between the cushions of a table; choose one by its "
               "preset");

@@ -45,7 +45,7 @@ constexpr std::size_t in_rows(const Field<T> (&fields)[kRows]) {
 static_assert(members<BallSize>() == in_rows(kSizeFields));
 static_assert(members<BallParams>() == in_rows(kBallFields));
 static_assert(members<BallStart>() == in_rows(kBallStartFields) + 2);  // where; own: kSizeFields
-static_assert(members<Rack, 2>() == in_rows(kRackFields));
+static_assert(members<Rack, 2>() == in_rows(kRackFields) + in_rows(kRackedBallFields));
 static_assert(members<Cue>() == in_rows(kCueFields) + 1);  // where
 static_assert(members<Physics>() == in_rows(kPhysicsFields));
 static_assert(members<Stop>() == in_rows(kStopFields));

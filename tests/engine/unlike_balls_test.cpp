@@ -118,5 +118,19 @@ TEST(UnlikeBalls, BreaksWithAnOddCueBallEndAtRest) {
     }
 }
 
+// Break shots into pressed racks of unlike balls, each other than the one before, follow the laws.
+TEST(UnlikeBalls, TemplateBreaks) {
+    constexpr int kBreaks = 500;
+    constexpr const char* kGames[] = {"nine_ball", "ten_ball", "eight_ball"};
+    for (int i = 0; i < kBreaks; ++i) {
+        const std::string text =
+            "[balls]\nradius_sd = 2e-5\n[[ball]]\nposition = [" + std::to_string(0.2 + 0.87 * i / kBreaks) +
+            ", 0.5]\n[rack]\nmethod = \"template\"\ngame = \"" + kGames[i % 3] +
+            "\"\nseed = " + std::to_string(i) + "\n[cue]\naim_at = \"1\"\nball_speed = 10\n";
+        const Record record = run_verified(parse_scene(text, "break.toml"));
+        EXPECT_EQ(record.stopped, StopReason::kAtRest) << text;
+    }
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -248,6 +248,13 @@ TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
                  "rack.angle_deg=uniform(-5,5)", "balls.mu_r=uniform(0.01,0.02)"},
                 60);
     expect_same({"rack.spot_ball=integer(1,15)"}, 0);
+    expect_same({"rack.method=list(\"template\", \"triangle\")"}, 0);
+    expect_same({"balls.radius_sd=uniform(0,1e-5)"}, 0);
+    text_ = "[balls]\nradius_sd = 1e-5\n" + text_.substr(text_.find("[table]"));
+    expect_same({"rack.seed=integer(1,100)"}, 0);
+    text_ = text_.substr(text_.find("[table]"));
+    text_.insert(text_.find("[cue]"), "method = \"triangle\"\n");
+    expect_same({"rack.seed=integer(1,100)"}, 60);
 }
 
 TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {

@@ -73,9 +73,13 @@ toml::table read_toml(const std::string& path) {
     return toml_from(read_scene_text(path), path);
 }
 
+Section top_of(const toml::table& file, const std::string& name) {
+    return {
+        file, name, "", {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"}};
+}
+
 Scene scene_from(const toml::table& file, const std::string& name) {
-    const Section top(file, name, "",
-                      {"table", "balls", "rack", "ball", "cue", "physics", "stop", "render", "effects"});
+    const Section top = top_of(file, name);
     Scene scene;
     scene.file = name;
     read_balls(top, scene);

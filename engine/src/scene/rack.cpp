@@ -8,8 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/splitmix64.h"
+#include "base/draws.h"
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/math.h"
+#include "scene/press.h"
 
 namespace carom {
 namespace {
@@ -69,6 +71,8 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
     return out;
 }
 
+constexpr std::size_t kPink = 4;  // among the colours of snooker
+
 /// Balls that have spots. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is
 /// 292 mm, and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion:
 /// white is 182.5 mm to the left of yellow, which is on the head spot (opening position of the rules of the
@@ -112,15 +116,16 @@ std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
 }
 
 /// Metropolis sampling of hard discs, starting with the rack without jitter. Every step is a valid rack.
-void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix64& random) {
+void add_jitter(std::vector<Vec2>& places, const std::vector<double>& radii, const Rack& rack,
+                SplitMix64& random) {
     // With a gap of 0, only the outer balls can move at first; after a hundred rounds every ball has moved.
     constexpr int kRounds = 100;
     const std::vector<Vec2> slots = places;
-    const double contact = 4.0 * R * R;
-    const double reach = 2.0 * R + 3.0 * rack.jitter;  // opposite corners of two boxes, 2 sqrt(2) jitter
     std::vector<std::vector<std::size_t>> near(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i) {
         for (std::size_t j = 0; j < slots.size(); ++j) {
+            // Opposite corners of two boxes: 2 sqrt(2) jitter.
+            const double reach = contact_distance(radii[i], radii[j]) + 3.0 * rack.jitter;
             if (i != j && (slots[i] - slots[j]).squaredNorm() < reach * reach) near[i].push_back(j);
         }
     }
@@ -130,24 +135,35 @@ void add_jitter(std::vector<Vec2>& places, const Rack& rack, double R, SplitMix6
             const double dy = rack.jitter * (2.0 * random.uniform() - 1.0);
             const Vec2 place = slots[i] + Vec2(dx, dy);
             const bool free = std::none_of(near[i].begin(), near[i].end(), [&](std::size_t j) {
-                return (place - places[j]).squaredNorm() < contact;
+                return (place - places[j]).squaredNorm() < 4.0 * radii[i] * radii[j];
             });
             if (free) places[i] = place;
         }
     }
 }
 
+/// Normal about R, cut at kCut standard deviations.
+std::vector<double> radii_of(const Rack& rack, double R, std::size_t balls, SplitMix64& random) {
+    constexpr double kCut = 2.5;
+    std::vector<double> radii(balls, R);
+    if (!(rack.radius_sd > 0.0)) return radii;
+    for (double& radius : radii) {
+        double off;
+        do off = standard_normal(random);
+        while (std::abs(off) > kCut);
+        radius += rack.radius_sd * off;
+    }
+    return radii;
+}
+
 /// Draws positions until they are free, ball after ball.
-std::vector<RackedBall> scattered(const Rack& rack, const Table& table, double R,
+std::vector<RackedBall> scattered(const Rack& rack, const Table& table, const std::vector<double>& radii,
                                   std::span<const BallStart> others) {
     // Enough to find 1 % of the bed free, except once in 10^8 racks.
     constexpr int kTries = 2000;
     SplitMix64 random(rack.seed);
-    const double aside = R + rack.gap;
-    const Vec2 low = table.corner + Vec2(aside, aside);
-    const Vec2 room = Vec2(table.width, table.length) - 2.0 * Vec2(aside, aside);
     std::vector<RackedBall> out;
-    const auto is_free = [&](const Vec2& place) {
+    const auto is_free = [&](const Vec2& place, double aside) {
         const auto clear = [&place](const Vec2& other, double apart) {
             return (place - other).squaredNorm() >= apart * apart;
         };
@@ -162,9 +178,12 @@ std::vector<RackedBall> scattered(const Rack& rack, const Table& table, double R
                                return clear(planar(ball.position), aside + radius);
                            }) &&
                std::all_of(out.begin(), out.end(),
-                           [&](const RackedBall& ball) { return clear(ball.position, aside + R); });
+                           [&](const RackedBall& ball) { return clear(ball.position, aside + ball.radius); });
     };
     for (int number = 1; number <= rack.count; ++number) {
+        const double R = radii[static_cast<std::size_t>(number) - 1], aside = R + rack.gap;
+        const Vec2 low = table.corner + Vec2(aside, aside);
+        const Vec2 room = Vec2(table.width, table.length) - 2.0 * Vec2(aside, aside);
         int tries = kTries;
         Vec2 place;
         do {
@@ -175,13 +194,19 @@ std::vector<RackedBall> scattered(const Rack& rack, const Table& table, double R
             // One statement each: the order of the draws belongs to the layout.
             place.x() = low.x() + room.x() * random.uniform();
             place.y() = low.y() + room.y() * random.uniform();
-        } while (!is_free(place));
-        out.push_back({std::to_string(number), place});
+        } while (!is_free(place, aside));
+        out.push_back({std::to_string(number), place, R});
     }
     return out;
 }
 
 }  // namespace
+
+void RackedBall::put(BallStart& ball, const BallSize& common) const {
+    ball.position = {position.x(), position.y(), radius};
+    const double ratio = radius / common.R;
+    if (radius != common.R) ball.own = BallSize{radius, common.m * ratio * ratio * ratio};
+}
 
 int balls_of(const Rack& rack) {
     const std::vector<int> rows = rows_of(rack);
@@ -190,19 +215,29 @@ int balls_of(const Rack& rack) {
 
 std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R,
                                   std::span<const BallStart> others) {
-    if (rack.game == RackGame::kScatter) return scattered(rack, table, R, others);
+    const std::vector<RackedBall> fixed = spotted(rack, table);
+    const auto racked = static_cast<std::size_t>(balls_of(rack));
+    SplitMix64 sizes = draws_of(rack.seed, 0, "balls.radius_sd");
+    const std::vector<double> radii = radii_of(rack, R, racked + fixed.size(), sizes);
+    if (rack.game == RackGame::kScatter) return scattered(rack, table, radii, others);
     const Vec2 place = rack.position.value_or(foot_spot(table));
     Vec2 apex = place;
-    if (rack.game == RackGame::kSnooker) apex.y() += 2.0 * R + rack.gap;
+    if (rack.game == RackGame::kSnooker)
+        apex.y() += contact_distance(radii[0], radii[racked + kPink]) + rack.gap;
     SplitMix64 random(rack.seed);
     const std::vector<int> numbers = numbers_of(rack, random);
     std::vector<Vec2> slots = slots_of(rack, apex, R);
+    std::size_t spot = 0;
     if (rack.spot_ball) {
-        const auto there = std::find(numbers.begin(), numbers.end(), *rack.spot_ball) - numbers.begin();
-        apex = place - (slots[static_cast<std::size_t>(there)] - place);
+        spot = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), *rack.spot_ball) -
+                                        numbers.begin());
+        apex = place - (slots[spot] - place);
         slots = slots_of(rack, apex, R);
     }
-    if (rack.jitter > 0.0) add_jitter(slots, rack, R, random);
+    std::vector<double> by_slot(racked);
+    for (std::size_t i = 0; i < racked; ++i) by_slot[i] = radii[static_cast<std::size_t>(numbers[i]) - 1];
+    if (rack.radius_sd > 0.0 && racked > 0) press(slots, by_slot, R, rack.gap, spot, sizes);
+    if (rack.jitter > 0.0) add_jitter(slots, by_slot, rack, random);
     if (rack.angle_deg != 0.0) {
         const auto [sin, cos] = sin_cos_deg(rack.angle_deg);
         for (Vec2& slot : slots) {
@@ -213,7 +248,8 @@ std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R
     std::vector<RackedBall> out(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i)
         out[numbers[i] - 1] = {std::to_string(numbers[i]), slots[i]};
-    for (const RackedBall& ball : spotted(rack, table)) out.push_back(ball);
+    out.insert(out.end(), fixed.begin(), fixed.end());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].radius = radii[i];
     return out;
 }
 

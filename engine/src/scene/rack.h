@@ -12,6 +12,9 @@ namespace carom {
 struct RackedBall {
     std::string id;  ///< "1", "2", ..., or a colour
     Vec2 position;
+    double radius = 0.0;
+    /// Puts it on the cloth; the mass goes with the cube of the radius.
+    void put(BallStart& ball, const BallSize& common) const;
 };
 
 /// Number of numbered balls in a rack.
@@ -20,6 +23,10 @@ int balls_of(const Rack& rack);
 /// Places a rack, ordered by number; colours with spots come last.
 ///
 /// @param R  ball radius [m]
+///
+/// With rack.radius_sd, the radii are normal about R, cut at 2.5 standard deviations, from a stream of draws
+/// of their own. Unlike balls of a rack are pressed together until neighbours are rack.gap apart (press.h),
+/// then jitter.
 ///
 /// The apex, or rack.spot_ball (which must be in the rack), is at rack.position, by default the foot spot
 /// (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about

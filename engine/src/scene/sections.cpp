@@ -20,6 +20,11 @@
 namespace carom::detail {
 namespace {
 
+// [m] Between balls in a wooden triangle, on average.
+constexpr double kTriangleGap = 5e-5;
+// [-] Largest balls.radius_sd, of the radius: balls that differ more do not lie in rows.
+constexpr double kMostOfRadius = 0.005;
+
 BallStart read_ball(const Section& s, const BallSize& common, const std::optional<BallSize>& cue_ball,
                     const std::string& cue_id) {
     BallStart ball;
@@ -40,12 +45,36 @@ std::vector<std::string_view> joined(std::vector<std::string_view> keys,
     return keys;
 }
 
+std::optional<Section> balls_section(const Section& top) {
+    auto keys = joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene));
+    keys = joined(std::move(keys), keys_of(kRackedBallFields, Files::kScene));
+    keys.emplace_back("cue");
+    return top.section("balls", keys);
+}
+
+/// What the method of a rack says of its other keys, and what it leaves no room for.
+void apply_method(const Section& s, Rack& rack) {
+    if (rack.method == RackMethod::kGap) return;
+    for (const RackGame game : {RackGame::kThreeCushion, RackGame::kLine, RackGame::kScatter})
+        if (rack.game == game)
+            s.fail("method", "rack.method is for balls racked in rows; leave it out or choose another game");
+    if (rack.method == RackMethod::kTriangle) {
+        if (!s.has("gap")) rack.gap = kTriangleGap;
+        if (!s.has("jitter")) rack.jitter = kTriangleGap;
+        return;
+    }
+    for (const char* key : {"gap", "jitter"})
+        if (s.has(key))
+            s.fail(key,
+                   "rack.{} opens contacts, and a template closes them; leave out rack.{} or rack.method",
+                   key, key);
+    rack.gap = 0.0;
+}
+
 }  // namespace
 
 void read_balls(const Section& top, Scene& scene) {
-    auto keys = joined(keys_of(kBallPresetFields, Files::kScene), keys_of(kBallFields, Files::kScene));
-    keys.emplace_back("cue");
-    const auto s = top.section("balls", keys);
+    const auto s = balls_section(top);
     if (s) s->read(kBallPresetFields, scene);
     use_balls(scene, scene.ball_preset);
     if (!s) return;
@@ -72,10 +101,32 @@ void read_ball_list(const Section& top, Scene& scene) {
     }
 }
 
+std::optional<Section> read_rack_keys(const Section& top, Rack& rack) {
+    const auto s = top.read("rack", kRackFields, rack);
+    if (!s && top.has("balls", "radius_sd"))
+        top.fail(
+            top.where("balls", "radius_sd"),
+            "balls.radius_sd is of racked balls, and there is no [rack]; leave it out, or give a ball its "
+            "own radius");
+    if (!s) return s;
+    apply_method(*s, rack);
+    if (const auto balls = balls_section(top)) balls->read(kRackedBallFields, rack);
+    return s;
+}
+
 void read_rack(const Section& top, Scene& scene) {
     Rack rack;
-    const auto s = top.read("rack", kRackFields, rack);
+    const auto s = read_rack_keys(top, rack);
     if (!s) return;
+    if (rack.radius_sd > kMostOfRadius * scene.balls.R)
+        top.fail(top.where("balls", "radius_sd"),
+                 "balls.radius_sd = {} is more than a 200th of the radius, {} m; make it smaller",
+                 rack.radius_sd, scene.balls.R);
+    const bool lattice = rack.radius_sd > 0.0 && rack.game != RackGame::kScatter;
+    if (lattice && balls_of(rack) > kMaxPressedBalls)
+        s->fail(s->has("rows") ? "rows" : "count",
+                "at most {} balls of unlike size can be racked, not {}; leave some out", kMaxPressedBalls,
+                balls_of(rack));
     const bool scatter = rack.game == RackGame::kScatter;
     if (s->has("count") && rack.game != RackGame::kLine && !scatter)
         s->fail("count",
@@ -112,7 +163,7 @@ void read_rack(const Section& top, Scene& scene) {
             s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);
         BallStart start;
         start.id = ball.id;
-        start.position = {ball.position.x(), ball.position.y(), scene.balls.R};
+        ball.put(start, scene.balls.size());
         start.where = s->where();
         scene.ball.push_back(start);
     }

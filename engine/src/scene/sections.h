@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,8 @@ void check_measures(const Section& section, const Scene& scene);
 void read_table(const Section& top, Scene& scene);
 /// Balls placed one by one. Needs scene.balls.
 void read_ball_list(const Section& top, Scene& scene);
+/// The keys of a rack, in [rack] and [balls]; nothing if there is no [rack].
+std::optional<Section> read_rack_keys(const Section& top, Rack& rack);
 /// Racked balls, after the others. Needs scene.balls and scene.table.
 void read_rack(const Section& top, Scene& scene);
 /// Needs scene.ball.
@@ -52,6 +55,8 @@ void check_again(const Section& top, const Scene& scene, Change change);
 toml::table read_toml(const std::string& path);
 /// The same from text; messages call the file `name`.
 toml::table toml_from(std::string_view text, const std::string& name);
+/// The whole file. @throws SceneError for a section that no scene has
+Section top_of(const toml::table& file, const std::string& name);
 /// The validated scene of a file; messages call the file `name`. @throws SceneError
 Scene scene_from(const toml::table& file, const std::string& name);
 

@@ -292,9 +292,9 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
                      std::uint64_t seed) {
     parts->seed = seed;
     parts->base = detail::scene_from(parts->file, parts->path);
-    if (const toml::table* rack = parts->file["rack"].as_table())
-        detail::Section(*rack, parts->path, "rack", keys_of(kRackFields, Files::kScene))
-            .read(kRackFields, parts->rack);
+    detail::read_rack_keys(detail::top_of(parts->file, parts->path), parts->rack);
+    // Such a rack changes the balls themselves.
+    parts->quick = parts->rack.radius_sd == 0.0;
     std::ostringstream content;
     content << parts->file;
     // A rule that sets the aim or the speed replaces the words for it; otherwise they follow the balls.
@@ -444,8 +444,7 @@ std::optional<Change> Variation::put(std::uint64_t index, Scene& scene,
             return std::nullopt;
         }
         std::size_t ball = scene.ball.size() - racked.size();
-        for (const RackedBall& place : racked)
-            scene.ball[ball++].position = {place.position.x(), place.position.y(), scene.balls.R};
+        for (const RackedBall& place : racked) place.put(scene.ball[ball++], scene.balls.size());
         change = std::max(change, Change::kPlaces);
     }
     return change;

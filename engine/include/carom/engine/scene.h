@@ -220,20 +220,30 @@ constexpr auto names_of(RackGame) {
                       "triangle",   "line",      "scatter",  "pyramid"};
 }
 
+/// How balls are put into a rack: as gap and jitter say; pressed together; or in a wooden triangle, which
+/// leaves every contact open.
+enum class RackMethod : std::uint8_t { kGap, kTemplate, kTriangle };
+constexpr auto names_of(RackMethod) {
+    return std::array{"gap", "template", "triangle"};
+}
+
 /// Balls that a scene does not place one by one.
 struct Rack {
     RackGame game = RackGame::kEightBall;
+    RackMethod method = RackMethod::kGap;
     double gap = 1e-4;
     double jitter = 0.0;  ///< each coordinate moves by a uniform draw from [-jitter, jitter] [m]
     std::uint64_t seed = 1;
     int count = 5;
     int rows = 5;
     double angle_deg = 0.0;                       ///< counter-clockwise; 0: rows towards +y
+    double radius_sd = 0.0;                       ///< [m] of the balls' radii, from [balls]
     std::optional<int> spot_ball = std::nullopt;  ///< the ball at the position; nothing: the apex
     std::optional<Vec2> position = std::nullopt;  ///< nothing: the foot spot
 };
 inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::game>("game", "arrangement of the balls"),
+    field<&Rack::method>("method", "how they are put there: see below"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
@@ -248,6 +258,12 @@ inline constexpr Field<Rack> kRackFields[] = {
         {.standard = "the apex"}),
     field<&Rack::angle_deg>("angle_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                             "rotation of the rack about that ball; 0: rows towards +y"),
+};
+/// A key of [balls] that only a rack feels.
+inline constexpr Field<Rack> kRackedBallFields[] = {
+    field<&Rack::radius_sd>("radius_sd", at_least(0.0, kMaxRadiusSd, "m"),
+                            "standard deviation of the radii of racked balls, at most a 200th of the radius; "
+                            "their mass goes with the cube"),
 };
 
 /// The cue's stroke. The defaults are those of a scene file with an empty [cue], and of the C interface.

@@ -53,6 +53,7 @@ inline constexpr double kMaxCoordinate = 1e6;  ///< [m]
 inline constexpr double kMinLength = 1e-6;     ///< [m], smallest ball radius
 inline constexpr double kMaxLength = 1e3;      ///< [m], largest ball radius, jaw or pocket radius, gap
 inline constexpr double kMaxJitter = 0.1;      ///< [m] of the positions in a rack
+inline constexpr double kMaxRadiusSd = 1e-4;   ///< [m] of racked balls
 inline constexpr double kMinMass = 1e-9;       ///< [kg], of a ball and of a cue
 inline constexpr double kMaxMass = 1e6;        ///< [kg]
 inline constexpr double kMaxFriction = 1e3;    ///< [-]
@@ -66,6 +67,7 @@ inline constexpr int kMaxSubsteps = 10000000;  ///< the result stops improving l
 inline constexpr int kMaxImageSize = 16384;    ///< [px] per side, the limit of the OpenGL back ends
 inline constexpr int kMaxBalls = 4096;         ///< balls of a scene, written and racked
 inline constexpr int kMaxRackRows = 90;        ///< of a triangle: 4095 balls
+inline constexpr int kMaxPressedBalls = 55;    ///< of unlike size in a rack: ten rows
 inline constexpr int kMaxTableParts = 4096;    ///< cushions, jaws and pockets of a table, each
 inline constexpr std::size_t kMaxFileSize = 4u << 20;  ///< [bytes] of a scene file
 /// [-] Parts of a dotted key, and depth of nested brackets: a scene needs four of each. toml++ recurses for

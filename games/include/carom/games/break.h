@@ -14,14 +14,15 @@ namespace carom::games {
 inline constexpr std::array kBreakGames{"nine_ball", "ten_ball", "eight_ball"};
 /// The ball at the front of these racks.
 inline constexpr const char* kBreakApex = "1";
-/// [m] Between neighbours in a rack: a template presses the balls together, a triangle leaves them about this
-/// far apart.
-inline constexpr double kTemplateGap = 0.0, kTriangleGap = 5e-5, kLargestGap = 0.001;
+/// [m] Largest gap between neighbours in a rack.
+inline constexpr double kLargestGap = 0.001;
 
 struct BreakOptions {
     std::string game = kBreakGames[0];
     std::string table = kStandardTable;
-    double gap = kTemplateGap;
+    /// "template", "triangle" or "gap=METRES": neighbours are so far apart, and jitter by half of it.
+    std::string rack = "template";
+    double radius_sd = 0.0;   ///< of the racked balls [m]
     double speed_max = 10.0;  ///< the hardest that the player hits: speed of the cue ball [m/s], 1 to 20
     bool box = false;         ///< the cue ball at least a diamond from either long rail
     std::uint64_t seed = 1;   ///< of the racks

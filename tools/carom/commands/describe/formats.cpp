@@ -202,6 +202,7 @@ std::string balls_lines() {
         }
         text += line_of(f, fmt::format("{}", fmt::join(standards, " | ")));
     }
+    text += line_of(kRackedBallFields[0], "0 | 0 | 0");
     text += "| `cue` | - | - | - | `radius`, `mass` as of a ball | `[balls.cue]`: size of the cue ball |\n";
     return text;
 }
@@ -247,6 +248,7 @@ std::string scene_schema() {
         table["properties"][of.key] = object_of(kPocketMeasureFields, PocketMeasures{}, kScene);
     Json balls = object_of(kBallPresetFields, Scene{}, kScene);
     add_properties(balls, kBallFields, make_ball_params(Scene{}.ball_preset), kScene);
+    add_properties(balls, kRackedBallFields, Rack{}, kScene);
     balls["properties"]["cue"] = object_of(kSizeFields, {}, kScene);
     Json ball = object_of(kBallStartFields, BallStart{}, kScene);
     add_properties(ball, kSizeFields, {}, kScene);

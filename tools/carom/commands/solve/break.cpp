@@ -9,7 +9,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/console.h"
@@ -18,7 +17,6 @@
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "base/units.h"
-#include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "carom/games/break.h"
 #include "commands/solve/search.h"
@@ -33,21 +31,9 @@ using games::Solution;
 
 struct BreakArgs {
     games::BreakOptions wanted;
-    std::string rack = "template", diagram, page, units = kUnits[0];
+    std::string diagram, page, units = kUnits[0];
     SearchArgs search;
 };
-
-/// [m] How far neighbours in the rack are apart.
-double gap_of(const std::string& rack) {
-    if (rack == "template") return games::kTemplateGap;
-    if (rack == "triangle") return games::kTriangleGap;
-    if (rack.starts_with("gap=")) {
-        const auto read = numbers_in<double, 1>(rack.substr(4), ',');
-        if (read && (*read)[0] >= 0.0 && (*read)[0] <= games::kLargestGap) return (*read)[0];
-    }
-    throw UsageError(
-        fmt::format("--rack {}: expected template, triangle or gap=METRES with 0 to 0.001", harmless(rack)));
-}
 
 std::string told(const Solution& best, const BreakArgs& args, double per_cue, int rank) {
     const Scene& scene = best.scene;
@@ -76,7 +62,6 @@ std::string told(const Solution& best, const BreakArgs& args, double per_cue, in
 
 games::BreakSearch read_break(const BreakArgs& args) {
     games::BreakOptions options = args.wanted;
-    options.gap = gap_of(args.rack);
     options.seed = args.search.seed;
     try {
         return games::break_search(options, chosen_isa());
@@ -90,7 +75,7 @@ int run(const BreakArgs& args) {
     const games::BreakSearch asked = read_break(args);
     const std::vector<Solution> found = search(asked.scene, "break of " + game, asked.want, asked.game,
                                                asked.choices, asked.layouts, args.search);
-    const std::string title = fmt::format("{} break, {} rack", game, args.rack);
+    const std::string title = fmt::format("{} break, {} rack", game, args.wanted.rack);
     if (!args.search.output.empty()) write_best(args.search.output, found[0], asked.want, args.search);
     if (!args.diagram.empty() || !args.page.empty()) {
         const Record record = simulate(make_plan(found[0].scene, chosen_isa()));
@@ -136,8 +121,10 @@ void add_break(Options& program) {
     command.option("--table", &args.wanted.table, "PRESET", "The table, as a scene names it");
     command.flag("--box", args.wanted.box,
                  "The cue ball at least a diamond from either long rail (default: off)");
-    command.option("--rack", &args.rack, "RACK",
+    command.option("--rack", &args.wanted.rack, "RACK",
                    "template: the balls touch; triangle: 50 micrometres apart; or gap=METRES");
+    command.option("--radius-sd", &args.wanted.radius_sd, "METRES",
+                   "How much the radii of the racked balls vary: their standard deviation");
     command.option("--speed-max", &args.wanted.speed_max, "V",
                    "The hardest that the player hits: speed of the cue ball in m/s");
     add_search(command, args.search);

@@ -1,0 +1,23 @@
+// Balls of a rack pressed together.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/splitmix64.h"
+#include "carom/engine/scene.h"
+
+namespace carom {
+
+/// Moves balls of unlike size from the lattice that balls of radius R would form until neighbours are `gap`
+/// apart. N balls have 2N - 3 ways to move against each other, and a rack with a ball in the middle of six
+/// others has more contacts than that: each such ball leaves one contact open. Neighbours are drawn together
+/// by forces that differ a little, and these decide which contact it is.
+///
+/// @param fixed   the ball that stays where it is; the balls do not turn about each other on the whole
+/// @param random  gives the forces
+/// @throws std::invalid_argument if the balls do not come to rest (radii that differ by tens of percent)
+void press(std::vector<Vec2>& places, std::span<const double> radii, double R, double gap, std::size_t fixed,
+           SplitMix64& random);
+
+}  // namespace carom
