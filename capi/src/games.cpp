@@ -16,6 +16,7 @@
 
 namespace {
 
+using carom::c::asked;
 using carom::c::BadArgument;
 using carom::c::check_index;
 using carom::c::guarded;
@@ -74,18 +75,13 @@ carom_game_state state_of(const games::State& s) {
     return state;
 }
 
-/// Turns an argument that the library refuses into a bad argument of the caller.
-template <class Work>
-auto asked(Work&& work) {
-    try {
-        return work();
-    } catch (const std::invalid_argument& error) {
-        throw BadArgument(error.what());
-    }
-}
-
 std::string text_of(const char* text) {
     return text != nullptr ? text : "";
+}
+
+void check_record(const carom_record& record, const carom_verdict& verdict) {
+    if (verdict.record != record.record.hash())
+        throw BadArgument("the verdict belongs to another record; give the record that was judged");
 }
 
 const games::Option& option_of(const carom_verdict* verdict, size_t index) {
@@ -191,13 +187,22 @@ carom_status carom_verdict_respot(const carom_verdict* verdict, size_t option, s
     });
 }
 
+carom_status carom_may_place(const carom_record* record, const carom_verdict* verdict, size_t option,
+                             const double place[2], int32_t* allowed) {
+    return guarded([&] {
+        need({record, place, allowed});
+        const games::Option& of = option_of(verdict, option);
+        check_record(*record, *verdict);
+        *allowed = asked([&] { return games::may_place(record->record, of, {place[0], place[1]}); }) ? 1 : 0;
+    });
+}
+
 carom_status carom_next_shot(const carom_record* record, const carom_verdict* verdict, size_t option,
                              const carom_cue* cue, const double* place, carom_scene** scene) {
     return made(scene, [&](carom_scene& s) {
         need({record, cue});
         const games::Option& of = option_of(verdict, option);
-        if (verdict->record != record->record.hash())
-            throw BadArgument("the verdict belongs to another record; give the record that was judged");
+        check_record(*record, *verdict);
         std::optional<carom::Vec2> put;
         if (place != nullptr) put = carom::Vec2(place[0], place[1]);
         const carom::Cue strike = carom::c::cue_of(games::cue_ball(of.state), *cue);

@@ -37,6 +37,16 @@ void need(std::initializer_list<const void*> pointers);
 /// @throws BadArgument if there is no such index
 void check_index(std::size_t index, std::size_t count, const char* what);
 
+/// Turns an argument that the library refuses into a bad argument of the caller.
+template <class Work>
+auto asked(Work&& work) {
+    try {
+        return work();
+    } catch (const std::invalid_argument& error) {
+        throw BadArgument(error.what());
+    }
+}
+
 /// Returns a new object to the caller, or NULL on failure.
 template <class T, class Make>
 carom_status made(T** out, Make&& make) {

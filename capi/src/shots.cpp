@@ -15,6 +15,7 @@
 #include "cue.h"
 #include "guard.h"
 #include "handles.h"
+#include "text.h"
 
 namespace {
 
@@ -128,19 +129,10 @@ carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom
 }
 
 size_t carom_scene_text(const carom_scene* scene, char* text, size_t size) {
-    std::size_t length = static_cast<std::size_t>(-1);
-    guarded([&] {
+    return carom::c::written(text, size, [&] {
         need({scene});
-        if (size > 0) need({text});
-        const std::string whole = carom::scene_text(scene->scene);
-        if (size > 0) {
-            const std::size_t part = std::min(whole.size(), size - 1);
-            std::memcpy(text, whole.data(), part);
-            text[part] = '\0';
-        }
-        length = whole.size();
+        return carom::scene_text(scene->scene);
     });
-    return length;
 }
 
 carom_status carom_simulate(const carom_scene* scene, double until, carom_record** record) {

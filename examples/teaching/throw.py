@@ -46,7 +46,7 @@ def formula(v: float, cut: Numbers, roll: float, side: Numbers) -> Numbers:
     return np.degrees(np.arctan(np.minimum(friction(u), limit) * along / u))
 
 
-def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: str) -> Numbers:
+def thrown(v: float, cut: Numbers, roll: float, side: Numbers, model: carom.kernel.BallBallModel) -> Numbers:
     """Throw [degrees] of the object ball. The cue ball comes along +y; the cut turns the line of centres
     right."""
     cut, side = np.broadcast_arrays(np.atleast_1d(cut), side)

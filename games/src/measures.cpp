@@ -34,8 +34,8 @@ struct Arguments {
 };
 
 /// A record, and what several measures read from it.
-struct Played {
-    explicit Played(const Record& played) : record(played) {}
+struct PlayedShot {
+    explicit PlayedShot(const Record& played) : record(played) {}
     const Shot& shot() const {
         if (!shot_) shot_ = shot_of(record);
         return *shot_;
@@ -53,7 +53,7 @@ struct Played {
     mutable std::optional<Shot> shot_;
 };
 
-Texts listed(const Played& played, EventType type, bool partner) {
+Texts listed(const PlayedShot& played, EventType type, bool partner) {
     Texts texts;
     for (const Event& event : played.record.events)
         if (event.type == type)
@@ -61,7 +61,7 @@ Texts listed(const Played& played, EventType type, bool partner) {
     return texts;
 }
 
-double count(const Played& played, EventType type, bool struck) {
+double count(const PlayedShot& played, EventType type, bool struck) {
     const int ball = played.struck();
     return static_cast<double>(
         std::count_if(played.record.events.begin(), played.record.events.end(), [&](const Event& event) {
@@ -70,7 +70,7 @@ double count(const Played& played, EventType type, bool struck) {
 }
 
 /// The events in which the struck ball is driven to a cushion or a jaw.
-std::vector<std::size_t> driven(const Played& played) {
+std::vector<std::size_t> driven(const PlayedShot& played) {
     std::vector<std::size_t> events;
     const int ball = played.struck();
     for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
@@ -85,7 +85,7 @@ std::vector<std::size_t> driven(const Played& played) {
     return events;
 }
 
-std::optional<std::size_t> cushion(const Played& played, double number) {
+std::optional<std::size_t> cushion(const PlayedShot& played, double number) {
     const std::vector<std::size_t> events = driven(played);
     const auto index = static_cast<std::size_t>(number) - 1;
     return index < events.size() ? std::optional(events[index]) : std::nullopt;
@@ -116,17 +116,17 @@ double length_of(const Segment& s, double time) {
     return whole(time + shift) - whole(shift);
 }
 
-BallState last(const Played& played, int ball) {
+BallState last(const PlayedShot& played, int ball) {
     return played.record.state_at(ball, played.record.duration);
 }
 
-double distance(const Played& played, const Arguments& of) {
+double distance(const PlayedShot& played, const Arguments& of) {
     const BallState s = last(played, of.ball);
     if (is_gone(s.state)) return kNone;
     return std::hypot(s.position.x() - of.numbers[0], s.position.y() - of.numbers[1]);
 }
 
-Texts fouls(const Played& played, const Arguments& of, bool opening) {
+Texts fouls(const PlayedShot& played, const Arguments& of, bool opening) {
     const State state = opening ? new_game(*of.game) : state_of_turn(*of.game, Group::kOpen);
     Texts texts;
     for (const Foul foul : judge(state, played.record).fouls) texts.emplace_back(name(foul));
@@ -135,29 +135,29 @@ Texts fouls(const Played& played, const Arguments& of, bool opening) {
 
 struct Row {
     MeasureInfo info;
-    MeasureValue (*value)(const Played&, const Arguments&);
+    MeasureValue (*value)(const PlayedShot&, const Arguments&);
 };
 
 // Names of arguments: BALL, X, Y, R, K (a number from 1), GAME.
 const Row kRows[] = {
     {{"pocketed", "", "list", "balls that fell, in order"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          return listed(p, EventType::kBallPocket, false);
      }},
     {{"pockets", "", "list", "pockets they fell into, in the same order"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          return listed(p, EventType::kBallPocket, true);
      }},
     {{"balls_pocketed", "", "", "number of balls that fell, except the struck ball"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          return count(p, EventType::kBallPocket, false);
      }},
     {{"any_pocketed", "", "truth", "whether a ball other than the struck one fell"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          return double(count(p, EventType::kBallPocket, false) > 0.0);
      }},
     {{"pocket_of", "BALL", "text", "pocket that holds the ball; out if it left the table, else empty"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          for (const Event& event : p.record.events) {
              if (event.a == of.ball && event.type == EventType::kBallPocket)
                  return Texts{p.record.partner_id(event)};
@@ -166,64 +166,68 @@ const Row kRows[] = {
          return Texts{};
      }},
     {{"off_table", "", "list", "balls that left the table"},
-     [](const Played& p, const Arguments&) -> MeasureValue { return listed(p, EventType::kBallOut, false); }},
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
+         return listed(p, EventType::kBallOut, false);
+     }},
     {{"scratch", "", "truth", "whether the struck ball fell or left the table"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          return double(count(p, EventType::kBallPocket, true) + count(p, EventType::kBallOut, true) > 0.0);
      }},
     {{"first_hit", "", "list", "ball that the struck ball hits first; several if it hits them at once"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          Texts texts;
          for (const int ball : p.shot().first_hits) texts.push_back(p.id(ball));
          return texts;
      }},
     {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          Texts texts;
          for (const std::size_t i : driven(p)) texts.push_back(p.record.partner_id(p.record.events[i]));
          return texts;
      }},
     {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.x() : kNone;
      }},
     {{"cushion_y", "K", "m", "y where it does"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.y() : kNone;
      }},
     {{"cushion_diamond", "K", "", "the place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).diamond : kNone;
      }},
     {{"driven", "", "",
       "number of balls driven to a rail, pocketed or off the table, except the struck ball"},
-     [](const Played& p, const Arguments&) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          const std::vector<int> balls = p.shot().driven_after(p.shot().first_time);
          return double(balls.size()) - double(std::count(balls.begin(), balls.end(), p.struck()));
      }},
     {{"legal_break", "GAME", "truth", "whether the shot is a fair break of the game"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return double(fouls(p, of, true).empty()); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
+         return double(fouls(p, of, true).empty());
+     }},
     {{"break_foul", "GAME", "list", "fouls of the shot as a break of the game"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, true); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return fouls(p, of, true); }},
     {{"foul", "GAME", "list", "fouls of the shot in the middle of a game; in eight-ball with an open table"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return fouls(p, of, false); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return fouls(p, of, false); }},
     {{"x", "BALL", "m", "final x"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.x(); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.x(); }},
     {{"y", "BALL", "m", "final y"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.y(); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.y(); }},
     {{"distance", "BALL, X, Y", "m", "from the ball's final position to (X, Y); empty if it is gone"},
-     [](const Played& p, const Arguments& of) -> MeasureValue { return distance(p, of); }},
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return distance(p, of); }},
     {{"travel", "BALL", "m", "length of the ball's path on the table"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          double sum = 0.0;
          pieces(p.record, of.ball, [&sum](const Segment& s, double time) { sum += length_of(s, time); });
          return sum;
      }},
     {{"max_speed", "BALL", "m/s", "largest speed of the ball"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          double most = 0.0;
          // Speed is convex in each piece, so that it is largest at an end.
          pieces(p.record, of.ball, [&](const Segment& s, double time) {
@@ -235,7 +239,7 @@ const Row kRows[] = {
          return most;
      }},
     {{"rest_time", "BALL", "s", "when the ball comes to rest or falls"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          double end = 0.0;
          pieces(p.record, of.ball, [&end](const Segment& s, double time) {
              if (s.state != MotionState::kStationary) end = s.start + time;
@@ -243,7 +247,7 @@ const Row kRows[] = {
          return end;
      }},
     {{"air_time", "BALL", "s", "how long the ball is in the air"},
-     [](const Played& p, const Arguments& of) -> MeasureValue {
+     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
          double sum = 0.0;
          pieces(p.record, of.ball, [&sum](const Segment& s, double time) {
              if (s.state == MotionState::kAirborne) sum += time;
@@ -251,7 +255,7 @@ const Row kRows[] = {
          return sum;
      }},
     {{"duration", "", "s", "duration of the shot"},
-     [](const Played& p, const Arguments&) -> MeasureValue { return p.record.duration; }},
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue { return p.record.duration; }},
 };
 
 }  // namespace
@@ -562,7 +566,7 @@ class Reader {
     int depth_ = 0;
 };
 
-MeasureValue value_of(const Node& node, const Played& played) {
+MeasureValue value_of(const Node& node, const PlayedShot& played) {
     const auto part = [&](std::size_t i) { return value_of(node.parts[i], played); };
     switch (node.kind) {
         case Node::Kind::kValue:
@@ -637,7 +641,17 @@ bool Measure::is_number() const {
 }
 
 MeasureValue Measure::of(const Record& record) const {
-    return value_of(*root_, Played(record));
+    return value_of(*root_, PlayedShot(record));
+}
+
+MeasureValue Measure::in_table(const Record& record) const {
+    try {
+        return of(record);
+    } catch (const std::invalid_argument&) {
+        if (record.stopped == StopReason::kAtRest) throw;
+        if (is_number()) return kNone;
+        return Texts();
+    }
 }
 
 bool Measure::holds(const Record& record) const {

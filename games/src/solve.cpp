@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,16 +18,17 @@
 #include "carom/engine/batch.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/strike.h"
+#include "lines.h"
 
 namespace carom::games {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+using detail::kDegrees;
 
 // Shares of the budget: the first look at the whole space, the generations; the rest is for the figures.
 constexpr double kLook = 0.30, kBreed = 0.52, kReport = 0.10;
 // [shots] Of a candidate in the first look, and how many more the quarter that stays gets each time.
-constexpr std::size_t kFirst = 8, kMore = 3, kHalvings = 3;
+constexpr std::size_t kFirst = 8, kMore = 3, kRounds = 3;
 // Generations, how near to their parents they begin in parts of a range, and by how much that shrinks.
 constexpr int kGenerations = 6;
 constexpr double kNearby = 0.08, kShrink = 0.62;
@@ -244,7 +244,7 @@ class Solver {
     std::vector<Candidate> look() {
         const auto budget = kLook * static_cast<double>(options_.shots);
         double cost = 0.0, share = 1.0, before = 0.0, shots = kFirst;
-        for (std::size_t round = 0; round < kHalvings; ++round, share /= 4.0, before = shots, shots *= kMore)
+        for (std::size_t round = 0; round < kRounds; ++round, share /= 4.0, before = shots, shots *= kMore)
             cost += share * (shots - before);
         const auto count = std::max<std::size_t>(64, static_cast<std::size_t>(budget / cost));
         SplitMix64 random(options_.seed);
@@ -263,10 +263,10 @@ class Solver {
             }
         }
         std::size_t each = kFirst;
-        for (std::size_t round = 0; round < kHalvings; ++round, each *= kMore) {
+        for (std::size_t round = 0; round < kRounds; ++round, each *= kMore) {
             play(all, each);
             sort(all);
-            if (round + 1 < kHalvings) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
+            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
         }
         return different(all, 0.5 * kOtherKind, kParents);
     }
@@ -389,6 +389,20 @@ class Solver {
 };
 
 }  // namespace
+
+Share share_of(std::size_t part, std::size_t whole) {
+    // Of the normal distribution: 95 % lie within.
+    constexpr double kZ = 1.959963984540054;
+    if (whole == 0) return {0.0, 0.0, 1.0};
+    const double n = static_cast<double>(whole), p = static_cast<double>(part) / n, z2 = kZ * kZ / n;
+    const double middle = (p + 0.5 * z2) / (1.0 + z2);
+    const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
+    return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+std::vector<Choice> default_choices() {
+    return {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}, {"cue.offset.height", -0.4, 0.4}};
+}
 
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
                             const SolveOptions& options) {

@@ -9,11 +9,12 @@ Long calls release the GIL, and Ctrl-C ends them. Results have the same bits on 
 number of threads.
 """
 
-from carom import games, kernel, plot, sweep
+from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError
+from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin
-from carom._record import Event, Record, TablePlan
+from carom._record import Event, EventColumn, Record, TablePlan, event_columns
 from carom._scene import Scene
 from carom._render import render
 from carom._show import picture, shown
@@ -24,22 +25,33 @@ setattr(Record, "_repr_html_", shown)
 setattr(Record, "_repr_png_", picture)
 
 __all__ = [
+    "Cost",
     "Event",
+    "EventColumn",
+    "Fall",
+    "Hand",
+    "Measure",
     "Record",
     "Scene",
     "SceneError",
     "ShotStatus",
     "Shots",
     "SimulationError",
+    "Solution",
     "TablePlan",
     "__version__",
     "accuracy",
+    "best_break",
+    "event_columns",
     "games",
     "kernel",
     "margin",
+    "measures",
     "plot",
     "render",
+    "scenes",
     "simulate",
     "simulate_many",
+    "solve",
     "sweep",
 ]

@@ -28,13 +28,23 @@ def _is(*types: type) -> Callable[[Any], bool]:
     return lambda value: isinstance(value, types)
 
 
+def _is_number(value: Any) -> bool:
+    if not isinstance(value, (int, float, np.integer, np.floating)):
+        return False
+    try:
+        float(value)
+    except OverflowError:  # an integer of 309 digits and more
+        return False
+    return True
+
+
 def _is_numbers(value: Any) -> bool:
     if value is None or isinstance(value, (str, bytes)):
         return False
     try:
         array = np.asarray(value)
         return (array.astype(np.float64) if array.dtype.kind == "O" else array).dtype.kind in "biuf"
-    except (TypeError, ValueError):  # lists of different lengths, or no numbers
+    except (TypeError, ValueError, OverflowError):  # lists of different lengths, no numbers, or integers that are too large
         return False
 
 
@@ -49,7 +59,7 @@ _KINDS = {
     "Observation": _ANY,
     "bool": _Kind("a bool", _is(bool, np.bool_)),
     "int": _Kind("a whole number", _is(int, np.integer)),
-    "float": _Kind("a number", _is(int, float, np.integer, np.floating)),
+    "float": _Kind("a number", _is_number),
     "str": _Kind("a string", _is(str)),
     "Literal": _Kind("a string", _is(str)),
     "PathLike": _Kind("a path", _is(os.PathLike)),

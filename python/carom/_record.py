@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ def _dtype(members: list[tuple[str, str, int]], size: int) -> np.dtype[np.void]:
 
 _EVENT = _dtype(_carom.event_members(), _carom.EVENT_SIZE)
 _SEGMENT = _dtype(_carom.segment_members(), _carom.SEGMENT_SIZE)
+_DETAILS = np.dtype([(name, np.float64) for name, _, _ in _carom.event_columns()])
 _NO_NUMBERS = np.empty(0)
 _NO_KINDS = np.empty(0, np.uint8)
 
@@ -36,6 +38,19 @@ class Event(NamedTuple):
     type: str
     a: str
     b: str
+
+
+class EventColumn(NamedTuple):
+    """A column of `Record.event_details`: its name, its unit or "", and its meaning ("": as before)."""
+
+    name: str
+    unit: str
+    what: str
+
+
+def event_columns() -> list[EventColumn]:
+    """The columns of `Record.event_details`, those of `carom describe events`."""
+    return [EventColumn(*row) for row in _carom.event_columns()]
 
 
 class TablePlan(NamedTuple):
@@ -130,6 +145,39 @@ class Record:
         """
         return _carom.events_of(self._native).view(_EVENT)
 
+    @property
+    def event_details(self) -> NDArray[np.void]:
+        """What every event tells beyond `events`: a new structured array with one row per event.
+
+        The columns are those of `carom simulate --events`, and `carom.event_columns()` lists them: position,
+        velocity and spin of both balls before and after [m, m/s, rad/s], the point of contact and the normal,
+        cut_deg, closing [m/s], impulse [N s], lost [J], diamond. NaN where an event has no such number.
+        """
+        details = np.empty((len(self.events), len(_DETAILS.names or ())))
+        _carom.event_details(self._native, details.reshape(-1))
+        return details.view(_DETAILS).reshape(-1)
+
+    @property
+    def met(self) -> list[str]:
+        """What ball a of every event met, by the name that people use: "left rail, head half", "corner
+        pocket, foot left", the id of a ball, "" for nothing."""
+        return _carom.met_names(self._native)
+
+    def measure(
+        self, measure: str, *, game: GameName | None = None, scene: SceneLike | None = None
+    ) -> float | bool | list[str]:
+        """The value of a measure or expression (`carom.measures()`): `record.measure("travel(cue)")`.
+
+        game: the rules for measures such as "foul" without an argument
+        scene: the scene that was played; needed if the record was loaded from a file
+
+        Returns a number (NaN if there is none), True or False, or a list of texts. Raises ValueError for an
+        expression that cannot be read, or a shot that the game cannot judge.
+        """
+        played = None if scene is None else as_scene(scene)._native
+        value, truth = _carom.measured(self._native, played, measure, game)
+        return bool(value) if truth and value == value else value
+
     def event_list(self) -> list[Event]:
         """The events with names instead of numbers."""
         return [Event(*event) for event in self._native.event_list()]
@@ -198,7 +246,8 @@ class Record:
         """The events, or the motion segments of all balls, as a DataFrame; a copy. Needs pandas (extra
         [notebook]).
 
-        "events": time [s], type, a and b (ids; "" for nothing), detail, slow
+        "events": time [s], type, a and b (ids; "" for nothing), detail, slow, met, and the columns of
+            `event_details`
         "segments": ball and the columns of `segments`, with vectors split: rx, ry, rz, vx, ..., ax, ay, dwx,
             dwy
 
@@ -218,7 +267,9 @@ class Record:
             view, listed = self.events, self.event_list()
             columns: dict[str, Any] = {"time": view["time"], "type": named(view["type"], self.EVENT_TYPES)}
             columns |= {"a": [event.a for event in listed], "b": [event.b for event in listed]}
-            return pandas.DataFrame(columns | {name: view[name] for name in ("detail", "slow")})
+            columns |= {name: view[name] for name in ("detail", "slow")} | {"met": self.met}
+            details = self.event_details
+            return pandas.DataFrame(columns | {name: details[name] for name in details.dtype.names or ()})
         segments = np.concatenate(self.segments)
         balls = np.array(self.ids, dtype=object)
         columns = {"ball": np.repeat(balls, [len(of_ball) for of_ball in self.segments])}
@@ -271,7 +322,7 @@ class Record:
         return None if self._native.scene is None else Scene._of(self._native.scene)
 
     def __repr__(self) -> str:
-        counts = f"{self._native.balls} balls, {len(self.events)} events"
+        counts = f"{self._native.balls} balls ({_some(self.ids)}), {len(self.events)} events"
         return f"<carom.Record: {counts}, {self.duration:.3f} s, {self.stopped}>"
 
     @staticmethod
@@ -280,6 +331,10 @@ class Record:
         if np.isnan(times).any():
             raise ValueError("a time is not a number; leave NaN out")
         return np.ascontiguousarray(times).reshape(-1), times.shape
+
+
+def _some(ids: tuple[str, ...]) -> str:
+    return ", ".join(ids[:4]) + (", ..." if len(ids) > 4 else "")
 
 
 def _again(text: str, scene: Scene | None) -> Record:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._names import CameraName, OverlayName
 from carom._record import Record
 from carom._scene import SceneLike
 from carom._simulate import simulate
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
 def render(
     shot: SceneLike | Record,
     *,
-    camera: str = "scene",
+    camera: CameraName = "scene",
     size: tuple[int, int] | None = None,
     fps: float | None = None,
     times: ArrayLike | None = None,
-    overlays: Sequence[str] = (),
+    overlays: Sequence[OverlayName] = (),
     backend: Literal["auto", "egl", "osmesa"] = "auto",
 ) -> Iterator[NDArray[np.uint8]]:
     """Draws a shot without a display. Returns an iterator of frames.
@@ -57,11 +58,11 @@ def render(
     moments = None if times is None else np.asarray(times, np.float64).reshape(-1)
     if moments is not None and np.isnan(moments).any():
         raise ValueError("a time is not a number; leave NaN out")
-    unknown = set(overlays) - {"trails", "events", "spin", "ghost", "clock"}
+    unknown = set(overlays) - set(get_args(OverlayName))
     if unknown:
         names = "trails, events, spin, ghost and clock"
         raise ValueError(f"overlays: expected a list of {names}, not {overlays!r}")
-    if camera not in ("scene", "top", "rail", "player", "follow"):
+    if camera not in get_args(CameraName):
         raise ValueError(f"camera={camera!r}: expected scene, top, rail, player or follow")
     if backend not in ("auto", "egl", "osmesa"):
         raise ValueError(f"backend={backend!r}: expected auto, egl or osmesa")

@@ -168,7 +168,10 @@ class Scene:
         return type(self).loads, (self._native.source, self._native.file)
 
     def __repr__(self) -> str:
-        return f"<carom.Scene {self.file}: {', '.join(self.ids[:4])}{', ...' if len(self.ids) > 4 else ''}>"
+        some = ", ".join(self.ids[:4]) + (", ..." if len(self.ids) > 4 else "")
+        table = self._native.table
+        place = f"{table[0] or 'outline'} {table[1]:.3f} x {table[2]:.3f} m, " if table[1] > 0 else ""
+        return f"<carom.Scene {self.file}: {place}{len(self.ids)} balls ({some})>"
 
 
 #: What functions accept as a scene: a Scene, the path of its file, or its tree.

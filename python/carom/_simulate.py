@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+import importlib
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,6 +16,9 @@ from carom._record import Record, check_output
 from carom._scene import Scene, SceneLike, as_scene
 
 if TYPE_CHECKING:
+    import pandas
+    import polars
+    import pyarrow
     from numpy.typing import ArrayLike, NDArray
 
 #: The columns of `simulate_many(cue=...)`.
@@ -77,6 +81,10 @@ class ShotStatus(enum.IntEnum):
     FAILED = 5  # the simulation could not continue
 
 
+#: The names of a shot's status, by number.
+_STATUS = tuple(_carom.status_names())
+
+
 @checked
 class Shots(NamedTuple):
     """n shots of b balls, in the order of `scene.ids`.
@@ -99,6 +107,8 @@ class Shots(NamedTuple):
     cushions: NDArray[np.int32]  # (n, b) how often the ball met a cushion or a jaw
     hash: NDArray[np.uint64] | None  # (n,) int(record.hash(), 16), if requested
     messages: dict[int, str]  # by shot: why it has no result
+    ids: tuple[str, ...] = ()  # the balls
+    paths: NDArray[np.float64] | None = None  # (n, times, b, 3) [m], if times were given
 
     @property
     def places(self) -> NDArray[np.float64]:
@@ -108,14 +118,59 @@ class Shots(NamedTuple):
         """
         return np.where((self.pocket != -1)[:, :, None], np.nan, self.xy)
 
+    def to_arrow(self) -> pyarrow.Table:
+        """The shots as a pyarrow Table with one row per shot; a copy. Needs pyarrow (extra [sweep]).
+
+        The columns are status (by name), duration [s], events, first_hit (an id or null), contacts,
+        approach_cushions, for every ball ID.x, ID.y [m], ID.pocket, ID.fell and ID.cushions, hash if there is
+        one, and message ("" for a shot with a result). `paths` is left out.
+        """
+        return _optional("pyarrow", "sweep").table(self._columns())
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The columns of `to_arrow` as a DataFrame. Needs pandas (extra [notebook])."""
+        return _optional("pandas", "notebook").DataFrame(self._columns())
+
+    def to_polars(self) -> polars.DataFrame:
+        """The columns of `to_arrow` as a polars DataFrame. Needs polars."""
+        return _optional("polars", "").DataFrame(self._columns())
+
+    def _columns(self) -> dict[str, Any]:
+        n, balls = self.pocket.shape
+        ids = self.ids or tuple(map(str, range(balls)))
+        names = [*ids, None]  # the index -1 is the last one
+        columns: dict[str, Any] = {"status": [_STATUS[status] for status in self.status.tolist()]}
+        columns |= {"duration": self.duration, "events": self.events}
+        columns |= {"first_hit": [names[ball] for ball in self.first_hit.tolist()]}
+        columns |= {"contacts": self.contacts, "approach_cushions": self.approach_cushions}
+        for ball, name in enumerate(ids):
+            columns |= {f"{name}.{axis}": self.xy[:, ball, k].copy() for k, axis in enumerate("xy")}
+            for key in ("pocket", "fell", "cushions"):
+                columns[f"{name}.{key}"] = getattr(self, key)[:, ball].copy()
+        if self.hash is not None:
+            columns["hash"] = self.hash
+        return columns | {"message": [self.messages.get(shot, "") for shot in range(n)]}
+
+    def __repr__(self) -> str:
+        n, balls = self.pocket.shape
+        counts = zip(_STATUS, np.bincount(self.status, minlength=len(_STATUS)).tolist())
+        ended = ", ".join(f"{count} {name}" for name, count in counts if count > 0)
+        paths = "" if self.paths is None else f", paths {self.paths.shape} m"
+        return (
+            f"<carom.Shots: {n} shots of {balls} balls: {ended or 'none'};\n"
+            f" status, duration [s], events, first_hit, contacts, approach_cushions ({n},), "
+            f"xy ({n}, {balls}, 2) m,\n"
+            f" pocket, fell, cushions ({n}, {balls}){'' if self.hash is None else f', hash ({n},)'}{paths}>"
+        )
+
     def _native(self) -> Any:
         """The arrays as the extension module takes them."""
-        arrays = [array.reshape(-1) for array in self if isinstance(array, np.ndarray)]
+        arrays = [array.reshape(-1) for array in self[:11] if isinstance(array, np.ndarray)]
         return tuple(arrays if self.hash is not None else [*arrays, np.empty(0, np.uint64)])
 
     @classmethod
-    def empty(cls, shots: int, balls: int, *, hashes: bool = False) -> Shots:
-        """Arrays for `simulate_many(out=...)`."""
+    def empty(cls, shots: int, balls: int, *, hashes: bool = False, times: int | None = None) -> Shots:
+        """Arrays for `simulate_many(out=...)`; `times` is the number of its times."""
         one, each = (shots,), (shots, balls)
         return cls(
             status=np.empty(one, np.uint8),
@@ -130,6 +185,7 @@ class Shots(NamedTuple):
             cushions=np.empty(each, np.int32),
             hash=np.empty(one, np.uint64) if hashes else None,
             messages={},
+            paths=None if times is None else np.empty((shots, times, balls, 3)),
         )
 
 
@@ -152,6 +208,7 @@ def simulate_many(
     max_events: int | None = None,
     threads: int = 1,
     hashes: bool = False,
+    times: ArrayLike | None = None,
     out: Shots | None = None,
 ) -> Shots:
     """Plays n shots that differ in numbers.
@@ -168,6 +225,8 @@ def simulate_many(
     until, max_events: limits of every shot, as for `simulate`
     threads: 0 uses every core available to the process
     hashes: fill `Shots.hash`
+    times: (t,) times [s]: fill `Shots.paths`, the positions of all balls at these times; earlier than 0 gives
+        the start, later than the end gives the end, and a shot without a result has NaN
     out: arrays from an earlier call or from `Shots.empty`, to fill and return instead of new ones
 
     Raises ValueError if a key does not name a number or an array does not fit. Ctrl-C ends the batch between
@@ -179,10 +238,17 @@ def simulate_many(
     scene = as_scene(scene)
     ids = scene.ids
     n, columns, absent = _columns_of(scene, cue, xy, params, shots)
-    into = Shots.empty(n, len(ids), hashes=hashes) if out is None else _checked(out, n, len(ids), hashes)
-    arrays = into._native()
-    failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads, arrays)
-    return into._replace(messages=dict(failures))
+    moments = np.empty(0) if times is None else np.ascontiguousarray(_array("times", times, (), "(t,)"))
+    if np.isnan(moments).any():
+        raise ValueError("times: a time is not a number; leave NaN out")
+    number = None if times is None else len(moments)
+    wanted = Shots.empty(0, len(ids), hashes=hashes, times=number)
+    into = _checked(out, wanted, n, hashes) if out else Shots.empty(n, len(ids), hashes=hashes, times=number)
+    paths = np.empty(0) if into.paths is None else into.paths
+    paths.fill(np.nan)
+    failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads,
+                                    into._native(), moments, paths.reshape(-1))
+    return into._replace(messages=dict(failures), ids=ids)
 
 
 def _columns_of(
@@ -206,6 +272,8 @@ def _columns_of(
         raise ValueError("the number of shots is unknown: give cue, xy, params or shots")
     if n < 0:
         raise ValueError(f"shots={n}: expected at least 0")
+    if n > 2**31:
+        raise ValueError(f"shots = {n} is out of range; it must be at most {2**31}")
     columns: list[tuple[str, NDArray[np.float64]]] = []
     for name, keys, values in given:
         if len(values) != n:
@@ -214,8 +282,17 @@ def _columns_of(
     return n, columns, absent
 
 
-def _checked(out: Shots, n: int, balls: int, hashes: bool) -> Shots:
-    for name, wanted in Shots.empty(0, balls, hashes=hashes)._asdict().items():
+def _checked(out: Shots, like: Shots, n: int, hashes: bool) -> Shots:
+    for name, wanted in like._asdict().items():
         if isinstance(wanted, np.ndarray):
             check_output(f"out.{name}", getattr(out, name), (n, *wanted.shape[1:]), wanted.dtype)
-    return out if hashes else out._replace(hash=None)
+    return out._replace(hash=out.hash if hashes else None, paths=None if like.paths is None else out.paths)
+
+
+def _optional(module: str, extra: str) -> Any:
+    """A package that need not be installed. Raises ImportError with the way to install it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        what = f"'carom-billiards[{extra}]'" if extra else module
+        raise ImportError(f"{module} is missing ({error}): pip install {what}", name=module) from None

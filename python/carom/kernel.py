@@ -13,6 +13,7 @@ import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._names import BallBallModel as BallBallModel, CushionModel as CushionModel
 from carom._record import _output
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def _states(rvw: ArrayLike, inner: tuple[int, ...]) -> NDArray[np.float64]:
 def ball_ball(
     rvw: ArrayLike,
     *,
-    model: str = "mathavan",
+    model: BallBallModel = "mathavan",
     tolerance: float = 1e-6,
     radius: ArrayLike = 0.028575,
     mass: ArrayLike = 0.170097,
@@ -96,7 +97,7 @@ def ball_cushion(
     rvw: ArrayLike,
     normal: ArrayLike,
     *,
-    model: str = "han_2005",
+    model: CushionModel = "han_2005",
     radius: ArrayLike = 0.028575,
     mass: ArrayLike = 0.170097,
     mu_s: ArrayLike = 0.2,

@@ -61,6 +61,7 @@ NB_MODULE(_carom, m) {
     add_records(m);
     add_shots(m);
     add_batches(m);
+    add_measures(m);
     add_impacts(m);
     add_frames(m);
     add_games(m);

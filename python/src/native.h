@@ -84,6 +84,7 @@ void add_scenes(nb::module_& m);
 void add_records(nb::module_& m);
 void add_shots(nb::module_& m);
 void add_batches(nb::module_& m);
+void add_measures(nb::module_& m);
 void add_impacts(nb::module_& m);
 void add_frames(nb::module_& m);
 void add_games(nb::module_& m);

@@ -1,11 +1,13 @@
 // Scenes: read, changed, written.
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -50,6 +52,11 @@ void add_scenes(nb::module_& m) {
         .def_prop_ro("text", [](const NativeScene& s) { return scene_text(*s.scene); })
         .def_prop_ro("ids", ids)
         .def_prop_ro("balls", [](const NativeScene& s) { return s.scene->ball.size(); })
+        .def_prop_ro("table",
+                     [](const NativeScene& s) {
+                         const Table& table = s.scene->table;
+                         return std::tuple(table.preset, table.width, table.length);
+                     })
         .def("positions", positions, nb::arg("out").noconvert())
         .def("changed", changed);
     m.def("read_scene_text", read_scene_text);

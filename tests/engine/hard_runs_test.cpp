@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/temporary_folder.h"
+#include "carom/engine/math.h"
 #include "reference/random_impacts.h"
 #include "scene/rack.h"
 #include "support/hard_scenes.h"
@@ -262,7 +263,15 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
             "position = [0.2454020237721765, 0.7245632487257941]\n[[ball]]\n"
             "position = [0.2454020237721765, 0.786055119107232]\nheight = 0.001\nvelocity = [11.4, 3.8]\n"
             "[[ball]]\nid = \"b3\"\nposition = [0.27530022344626703, 0.8378403199975961]\n"
-            "height = 0.015375\n"};
+            "height = 0.015375\n",
+        // one that creeps at less than the rounding of its surface, and meets nothing, while another goes on
+        cushion("[0.2, 0.1]", "[0.2, 0.9]", low) + cushion("[0.0, 0.0]", "[1e6, 0.0]", low) +
+            cushion("[0.0, 2.0]", "[1e6, 2.0]", low) +
+            "[physics]\ncushion = \"smooth\"\n[balls]\nmu_s = 0.0\nmu_r = 0.0\nmu_sp = 0.0\ne_c = 1.0\nf_c = "
+            "0.0\n[[ball]]\nid = \"creeps\"\n"
+            "position = [0.2286, 0.5]\nvelocity = [-4e-13, 0.0]\nspin = [100, 0, 1e4]\n[[ball]]\nid = "
+            "\"b2\"\n"
+            "position = [0.8, 0.5]\nvelocity = [0.0, 1e-6]\n"};
     for (const std::string& text : scenes) {
         try {
             run_verified(parse_scene(text + "[stop]\nevents = 1000\n", "s.toml"));
@@ -271,6 +280,52 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
             EXPECT_NE(std::string(error.what()).find("is only known to"), std::string::npos) << error.what();
         }
     }
+}
+
+// The same where nothing more happens, and time alone goes on to the end of the run.
+TEST(HardRuns, NoneCreepsUnseenToTheEndOfTheTime) {
+    const std::string scene =
+        "[[table.cushion]]\nfrom = [0.2, 0.1]\nto = [0.2, 0.9]\n[balls]\nmu_s = 0.0\nmu_r = 0.0\nmu_sp = "
+        "0.0\n[[ball]]\n"
+        "position = [0.2286, 0.5]\nvelocity = [-4e-13, 0.0]\nspin = [100, 0, 1e4]\n[stop]\ntime = ";
+    EXPECT_EQ(run_verified(parse_scene(scene + "1e6\n", "s.toml")).stopped, StopReason::kTime);
+    EXPECT_THROW(simulate(plan_of(parse_scene(scene + "1e9\n", "s.toml"))), SimulationError);
+    // On an endless cloth it has nothing to pass through.
+    const std::string endless = "[table]\ncushion = []\n" + scene.substr(scene.find("[balls]"));
+    EXPECT_EQ(run_verified(parse_scene(endless + "1e9\n", "s.toml")).stopped, StopReason::kTime);
+}
+
+// Far from the origin coordinates are rounded by more than balls may overlap elsewhere: the judge allows it.
+TEST(HardRuns, TurnedTablesFarAway) {
+    for (const double angle : {0.0, 17.0, 45.0, 203.0}) {
+        const SinCos turn = sin_cos_deg(angle);
+        const auto turned = [&](double x, double y) {
+            return Vec2(turn.cos * x - turn.sin * y, turn.sin * x + turn.cos * y);
+        };
+        const auto place = [&](double x, double y) { return Vec2(Vec2(1e5, -1e5) + turned(x, y)); };
+        Scene scene = empty_scene();
+        const Vec2 corners[] = {place(0.0, 0.0), place(1.27, 0.0), place(1.27, 2.54), place(0.0, 2.54)};
+        for (int k = 0; k < 4; ++k)
+            scene.table.cushions.push_back({"", corners[k], corners[(k + 1) % 4], 0.036576});
+        for (int k = 0; k < 5; ++k) {
+            const Vec2 at = place(0.2 + 0.2 * k, 0.5 + 0.3 * k), v = turned(3.0 - 2.0 * k, 5.0 - 1.5 * k);
+            add_ball(scene, std::to_string(k), at.x(), at.y(), v.x(), v.y());
+        }
+        run_verified(scene);
+    }
+    // A table of 10 km on its corner, where it is the rounding of the cushion's own ends that counts.
+    Scene scene = empty_scene();
+    scene.balls.mu_s = 0.0;
+    scene.stop.time = 1e9;
+    scene.physics.cushion = &kSmooth;
+    const Vec2 corners[] = {Vec2(0.0, 0.0), Vec2(7071.067811865476, 7071.067811865475),
+                            Vec2(9.094947017729282e-13, 14142.135623730952),
+                            Vec2(-7071.067811865475, 7071.067811865476)};
+    for (int k = 0; k < 4; ++k) scene.table.cushions.push_back({"", corners[k], corners[(k + 1) % 4], 0.001});
+    scene.balls.e_c = 0.85;
+    add_ball(scene, "a", 702.7490475802756, 6368.318764285201, -194.36959396597803, -47.12176717294075);
+    scene.stop.events = 40;
+    run_verified(scene);
 }
 
 // H40: one seed, one hash; another seed, another rack.

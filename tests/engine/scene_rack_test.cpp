@@ -277,6 +277,47 @@ TEST(Rack, PlaceAndAngle) {
     EXPECT_EQ(touching_pairs(s, 2 * kR), 30);
 }
 
+TEST(Rack, AScatterIsUniformAndTouchesNothing) {
+    const std::string place = "[[ball]]\nid = \"cue\"\nposition = [0.635, 1.27]\n";
+    const auto scatter = [&](const std::string& keys, int seed, const std::string& more = "") {
+        return rack("game = \"scatter\"\nseed = " + std::to_string(seed) + "\n" + keys, more);
+    };
+    // The moments of a uniform distribution between the cushions: its mean, and a twelfth of the squared
+    // side.
+    constexpr double kWidth = 1.27, kLength = 2.54;
+    constexpr int kRacks = 4000;
+    double x = 0.0, y = 0.0, xx = 0.0, yy = 0.0;
+    for (int seed = 1; seed <= kRacks; ++seed) {
+        const Vec2 p = at(scatter("count = 1\ngap = 0\n", seed), 0);
+        x += p.x() / kRacks;
+        y += p.y() / kRacks;
+        xx += std::pow(p.x() - 0.5 * kWidth, 2) / kRacks;
+        yy += std::pow(p.y() - 0.5 * kLength, 2) / kRacks;
+    }
+    const double across = kWidth - 2 * kR, along = kLength - 2 * kR;
+    EXPECT_NEAR(x, 0.5 * kWidth, 4 * across / std::sqrt(12.0 * kRacks));
+    EXPECT_NEAR(y, 0.5 * kLength, 4 * along / std::sqrt(12.0 * kRacks));
+    // The jaws and pockets take a little from the corners.
+    EXPECT_NEAR(xx, across * across / 12, 0.05 * across * across / 12);
+    EXPECT_NEAR(yy, along * along / 12, 0.05 * along * along / 12);
+
+    for (int seed = 1; seed <= 50; ++seed) {
+        const Scene s = scatter("count = 40\ngap = 0.001\n", seed, place);
+        ASSERT_EQ(s.ball.size(), 41u);
+        EXPECT_EQ(s.ball[0].id, "cue");
+        EXPECT_EQ(s.ball[40].id, "40");
+        EXPECT_GE(closest_pair(s), 2 * kR + 0.001 - 1e-15);
+        for (std::size_t i = 1; i < s.ball.size(); ++i) {
+            EXPECT_GE(std::fmin(at(s, i).x(), kWidth - at(s, i).x()), kR + 0.001 - 1e-15);
+            EXPECT_GE(std::fmin(at(s, i).y(), kLength - at(s, i).y()), kR + 0.001 - 1e-15);
+            for (const carom::Pocket& pocket : s.table.pockets)
+                EXPECT_GT((at(s, i) - pocket.center).norm(), pocket.radius);
+        }
+    }
+    EXPECT_EQ(scatter("", 7).ball, scatter("", 7).ball);
+    EXPECT_NE(scatter("", 7).ball, scatter("", 8).ball);
+}
+
 TEST(Rack, RefusesWhatHasNoPlace) {
     const auto error = [](const std::string& keys) { return carom::test::error_of("[rack]\n" + keys); };
     EXPECT_EQ(error("game = \"nine_ball\"\nspot_ball = 10\n"),
@@ -284,6 +325,14 @@ TEST(Rack, RefusesWhatHasNoPlace) {
     EXPECT_EQ(error("game = \"snooker\"\nposition = [0.5, 0.5]\n"),
               "s.toml:3:12: rack.position moves a rack, but the balls of this game have spots of their own; "
               "leave it out");
+    EXPECT_TRUE(
+        error("game = \"scatter\"\ncount = 4000\n").starts_with("s.toml:3:9: there is no room for ball "));
+    EXPECT_EQ(
+        error("game = \"scatter\"\njitter = 0.001\n"),
+        "s.toml:3:10: rack.jitter is for balls that lie together, and a scatter spreads them; leave it out");
+    EXPECT_EQ(carom::test::error_of("[table]\ncushion = []\n[rack]\ngame = \"scatter\"\n"),
+              "s.toml:4:8: a scatter needs the rectangle between the cushions of a table; choose one by its "
+              "preset");
 }
 
 }  // namespace

@@ -272,6 +272,32 @@ TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {
     }
 }
 
+TEST_F(VariationTest, GridsMakeAProductWhoseLastIsFastest) {
+    const Variation v = vary({"cue.speed=grid(1,4,7)", "cue.aim_deg=uniform(0,90)",
+                              "physics.cushion=grid(list(\"stronge\",\"han_2005\"))"});
+    EXPECT_EQ(v.grid(), 14u);
+    EXPECT_EQ(v.kind(0), ValueKind::kNumber);
+    EXPECT_EQ(v.kind(2), ValueKind::kText);
+    for (std::uint64_t i = 0; i < 28; ++i) {
+        const VariedShot shot = v.shot(i);
+        ASSERT_TRUE(shot.scene) << shot.error;
+        EXPECT_EQ(shot.scene->cue->speed, 1.0 + 0.5 * static_cast<double>(i / 2 % 7)) << i;
+        EXPECT_EQ(shot.values[2], i % 2 == 0 ? "stronge" : "han_2005");
+    }
+    // What is drawn beside a grid is drawn anew in its second round.
+    EXPECT_NE(v.shot(0).values[1], v.shot(14).values[1]);
+    EXPECT_EQ(vary({"cue.speed=uniform(1,2)"}).grid(), 0u);
+    // The ends are exact, and whole steps are whole numbers.
+    const Variation tenths = vary({"cue.speed=grid(0.1,0.7,7)", "stop.events=grid(9,3,3)"});
+    EXPECT_EQ(tenths.shot(18).values, (std::vector<std::string>{"0.7", "9"}));
+    EXPECT_EQ(tenths.shot(20).scene->stop.events, 3);
+    EXPECT_EQ(tenths.kind(1), ValueKind::kWhole);
+    Scene scene = tenths.base();
+    std::vector<std::string> values;
+    ASSERT_TRUE(tenths.put(19, scene, values));
+    EXPECT_EQ(values, tenths.shot(19).values);
+}
+
 TEST_F(VariationTest, AllShotsHaveTheSameBalls) {
     text_ = "[rack]\ngame = \"line\"\ncount = 3\n";
     const Variation v = vary({"rack.count=integer(2,4)"});
@@ -320,6 +346,12 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=integer(1,9007199254740993)", "needs -1000000000 <= a <= b"},
         {"cue.speed=uniform(1,2", "expected uniform(a,b)"},
         {"cue.speed=uniform(1],v=[2)", "cannot read the values"},
+        {"cue.speed=grid(1,2)", "grid has 2 values; write grid(a,b,n) or grid(list(v,...))"},
+        {"cue.speed=grid(1,2,1)", "grid(a,b,n) needs n >= 2"},
+        {"cue.speed=grid(1,2,0)", "grid(a,b,n) needs 1 <= n"},
+        {"cue.speed=grid(1,2,1.5)", "value 3 of grid"},
+        {"cue.speed=grid(list())", "list has 0 values"},
+        {"cue.speed=grid(-1e308,1e308,3)", "b - a is too large"},
         {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},
         {"cue.speed=unifrom(1,2)", "; did you mean uniform?"},
         {"cue.speed=normal(-1)", "must be at least 0"},
@@ -371,10 +403,10 @@ TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
     double least = 9.0, most = -9.0;
     std::set<std::int64_t> seen;
     for (int i = 0; i < 10000; ++i) {
-        const double x = std::get<double>(uniform(random));
+        const double x = std::get<double>(uniform.draw(random));
         least = std::min(least, x);
         most = std::max(most, x);
-        seen.insert(std::get<std::int64_t>(integer(random)));
+        seen.insert(std::get<std::int64_t>(integer.draw(random)));
     }
     EXPECT_GE(least, -1.0);
     EXPECT_LT(least, -0.99);

@@ -59,6 +59,9 @@ cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$work/examples/c/main.c" $flags -o
 export LD_LIBRARY_PATH="$library"
 "$work/shot_c" | tee "$work/c.txt"
 grep -q 'refused: .*overlap' "$work/c.txt" || fail "the bad scene in the C example was accepted"
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$work/examples/c/nine_ball.c" $flags -lm -o "$work/nine_ball"
+"$work/nine_ball" "$prefix/share/carom/scenes/nine_ball_break.toml" | tail -1 | grep -q 'player [01] wins' \
+    || fail "nobody won the nine-ball game of the C example"
 
 # Both languages saw the same shot. tests/python compares the Python example.
 for text in cpp c; do grep ' s  [a-z]' "$work/$text.txt" >"$work/$text.events"; done

@@ -1,6 +1,7 @@
 // Shared by the tests of the kernel by tolerance: calls, batches, energy, and impacts built to be hard.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -34,6 +35,16 @@ inline kernel::ImpactResult solve(const Impact& impact, double tolerance,
 inline bool same_velocities(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
     return std::memcmp(a.v1, b.v1, sizeof a.v1) == 0 && std::memcmp(a.w1, b.w1, sizeof a.w1) == 0 &&
            std::memcmp(a.v2, b.v2, sizeof a.v2) == 0 && std::memcmp(a.w2, b.w2, sizeof a.w2) == 0;
+}
+
+/// [m/s] Largest difference of a velocity, or of a spin times R.
+inline double difference(const kernel::ImpactResult& a, const kernel::ImpactResult& b, double R) {
+    double worst = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        worst = std::max({worst, std::fabs(a.v1[k] - b.v1[k]), std::fabs(a.v2[k] - b.v2[k]),
+                          R * std::fabs(a.w1[k] - b.w1[k]), R * std::fabs(a.w2[k] - b.w2[k])});
+    }
+    return worst;
 }
 
 /// Kinetic energy of both balls per mass.

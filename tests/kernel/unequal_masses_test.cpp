@@ -94,15 +94,6 @@ Impact along_y(Generator& rng) {
     return i;
 }
 
-double difference(const ImpactResult& a, const ImpactResult& b, double R) {
-    double worst = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        worst = std::max({worst, std::fabs(a.v1[k] - b.v1[k]), std::fabs(a.v2[k] - b.v2[k]),
-                          R * std::fabs(a.w1[k] - b.w1[k]), R * std::fabs(a.w2[k] - b.w2[k])});
-    }
-    return worst;
-}
-
 TEST(UnequalMasses, AsTheEquationsInSIUnits) {
     Generator rng(71);
     double worst = 0.0;

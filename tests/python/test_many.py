@@ -185,3 +185,9 @@ def test_a_run_without_end_has_a_limit_of_events():
     # A run that asks for more gets more, and one that asks for fewer fewer.
     shots = carom.simulate_many(scene, params={"stop.events": [1_000_001.0, 7.0]})
     assert shots.status.tolist() == [ShotStatus.EVENTS] * 2 and shots.events.tolist() == [1_000_001, 7]
+
+
+def test_more_shots_than_arrays_hold_are_refused(draw_scene):
+    for shots in (2**31 + 1, 2**53 + 1, 2**64):
+        with pytest.raises(ValueError, match=f"^shots = {shots} is out of range; it must be at most 2147483648$"):
+            carom.simulate_many(draw_scene, shots=shots)

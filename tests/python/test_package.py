@@ -76,6 +76,8 @@ def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
     assert wrong[0] <= set(circle) and bool(circle) == bool(wrong[0])
 
 
+#: Names that stand for Literal.
+NAMES = ("GameName", "RackName", "TableName", "CameraName", "OverlayName", "BallBallModel", "CushionModel")
 #: Each value with the annotations that accept it.
 WRONG = [
     ((), b"bytes"),
@@ -83,7 +85,8 @@ WRONG = [
     (("None",), None),
     (("int", "float", "ArrayLike"), 5),
     (("float", "ArrayLike"), 2.5),
-    (("str", "Literal", "SceneLike"), "a text"),
+    (("int",), 10**400),  # no double is as large
+    (("str", "Literal", "SceneLike", *NAMES), "a text"),
     (("list",), [object()]),
     (("Mapping", "dict", "SceneLike"), {"a": object()}),
 ]
@@ -91,7 +94,7 @@ WRONG = [
 
 def public_functions():
     """The functions and methods of carom's public names, without those that other packages define."""
-    modules = [carom, carom.games, carom.kernel, carom.plot, carom.sweep,
+    modules = [carom, carom.games, carom.kernel, carom.plot, carom.scenes, carom.sweep,
                importlib.import_module("carom.io.pooltool")]
     if importlib.util.find_spec("pettingzoo"):
         modules += map(importlib.import_module, ("carom.gym", "carom.gym.match", "carom.gym._env"))
@@ -146,6 +149,7 @@ def test_what_takes_a_scene_takes_its_path_and_its_tree(draw_scene):
         lambda scene: carom.games.pocket_lines(scene, draw_scene.ids[1]),
         lambda scene: carom.sweep.columns(scene, {"cue.speed": [2.0]}, 1)["duration"].tolist(),
         lambda scene: carom.sweep.plan(scene, {"cue.speed": [2.0]}, 1).probe,
+        lambda scene: carom.solve(scene, "scratch", shots=1000, best=1)[0].values,
     ]
     for take in takers:
         wanted = take(draw_scene)

@@ -183,7 +183,7 @@ def test_everything_public_is_documented():
             member = getattr(member, "__func__", member)
             if (callable(member) or isinstance(member, property)) and not member.__doc__:
                 undocumented.append(f"{name}: {member}")
-    for module in (carom.kernel, carom.sweep):
+    for module in (carom.games, carom.kernel, carom.plot, carom.scenes, carom.sweep):
         undocumented += [
             f"{module.__name__}.{name}" for name in module.__all__ if not getattr(module, name).__doc__]
     assert not undocumented

@@ -238,7 +238,7 @@ def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path
     kill(cluster.scheduler)
     out, err = client.communicate(timeout=HANGS)
     assert client.returncode == 1, err
-    assert "what is made is whole: run again" in err, err
+    assert "finished shards are kept; run it again" in err, err
     wait_for(lambda: cluster.processes[1].poll() is not None or unfinished(tmp_path / "a") == [])
     before = stamps(tmp_path / "a")
     assert 3 <= len(before) < plan.shards
@@ -325,7 +325,7 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     arguments = [file, "-o", folder, "--slurm", "--elements", "4", "--sbatch=--time=60"]
     code, out, err = sweep_command(*arguments)
     assert (code, out) == (
-        0, "job 4711: --array=0-3 for 24 of 24 shards; --status says how far they are\n"), err
+        0, "job 4711: --array=0-3 for 24 of 24 shards; --status shows how far they are\n"), err
     before = stamps(folder)
     missing = sweep.status(folder).missing
     assert 1 <= len(missing) <= 6 and len({shard % 4 for shard in missing}) == 1
@@ -340,7 +340,7 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
     stub.write_text("#!/bin/sh\necho 'sbatch: error: invalid partition' >&2\nexit 1\n")
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "-o", tmp_path / "b", "--slurm")
     assert (code, err) == (
-        1, "carom.sweep: sbatch failed with the status 1: sbatch: error: invalid partition\n")
+        1, "carom.sweep: sbatch failed with status 1: sbatch: error: invalid partition\n")
 
 
 def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
@@ -352,7 +352,7 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
     assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     for words, code, message in [
         ([file, *arguments, "--shots", 61], 1,
-         f"{file}: there is another plan already; remove it, or write to another place"),
+         f"{file}: another plan is already there; remove it, or write elsewhere"),
         ([file, *arguments], 2, "--scene needs --vary and --shots"),
         ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
          "no.toml: cannot be read: there is no such file; check the path"),
@@ -361,7 +361,7 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
         ([file, "--part", "3/2"], 2, "--part 3/2: expected I/N with 0 <= I < N, as in 3/100"),
         ([file, "--threads", "-1"], 2, "--threads has to be at least 0, --elements at least 1"),
         ([file, "--thread", "1"], 2, "unrecognized arguments: --thread 1; see python -m carom.sweep --help"),
-        ([file, "--slurm"], 1, "sbatch: there is no such program; this is no machine of a Slurm cluster"),
+        ([file, "--slurm"], 1, "sbatch: program not found; run this on a machine of a Slurm cluster"),
     ]:
         assert sweep_in_process(capsys, monkeypatch, *words) == (code, "", f"carom.sweep: {message}\n")
     # As its own process, the exit status is the code.
@@ -380,9 +380,9 @@ def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, caps
     path = folder / "shard-1.parquet"
     path.write_bytes(path.read_bytes()[:-1])
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "--check")
-    assert code == 1 and err.startswith(f"carom.sweep: {path}: no whole Parquet file"), err
+    assert code == 1 and err.startswith(f"carom.sweep: {path}: not a complete Parquet file"), err
     code, out, err = sweep_in_process(capsys, monkeypatch, file)
-    assert code == 1 and err.startswith(f"carom.sweep: {path}: no whole Parquet file"), err
+    assert code == 1 and err.startswith(f"carom.sweep: {path}: not a complete Parquet file"), err
 
 
 def test_ctrl_c_and_sigterm_end_the_command(tmp_path):

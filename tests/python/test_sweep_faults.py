@@ -84,9 +84,9 @@ def test_a_truncated_file_is_named_by_everyone(tmp_path):
     whole = path.read_bytes()
     for length in 0, 3, 100, len(whole) // 2, len(whole) - 8, len(whole) - 1:
         path.write_bytes(whole[:length])
-        assert "shard-1.parquet: no whole Parquet file" in sweep.check(tmp_path).faults["shard-1.parquet"]
+        assert "shard-1.parquet: not a complete Parquet file" in sweep.check(tmp_path).faults["shard-1.parquet"]
         for call in (lambda: sweep.open(tmp_path, verify=False), lambda: sweep.run(plan, tmp_path)):
-            again = "shard-1.parquet: no whole Parquet file.*remove it, and it is made again"
+            again = "shard-1.parquet: not a complete Parquet file.*remove it to have it made again"
             with pytest.raises(sweep.SweepError, match=again):
                 call()
     path.unlink()
@@ -252,7 +252,7 @@ def test_a_dead_worker_of_a_pool_is_an_error_that_says_what_to_do(tmp_path):
                 os.kill(victim, signal.SIGKILL)
 
         plan = break_plan(2000, 200)
-        with pytest.raises(sweep.SweepError, match="what is made is whole: run again"):
+        with pytest.raises(sweep.SweepError, match="finished shards are kept; run it again"):
             sweep.run(plan, tmp_path, pool, progress=kill)
     done = sweep.status(tmp_path).done
     assert 1 <= done < 10

@@ -190,7 +190,7 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
         (path.read_text().replace('"seed": 4', '"sed": 4'),
          "p.json: the plan was changed by hand or is damaged"),
         (path.read_text()[:-10], r"p.json:\d+:\d+: .*; a plan is what"),
-        ("[]", 'p.json: no plan of a sweep: "format" has to be'),
+        ("[]", 'p.json: not a plan of a sweep: "format" must be'),
         ("\udcff", "p.json: cannot read it: .*utf-8"),
     ]:
         path.write_text(text, errors="surrogateescape")

@@ -47,7 +47,7 @@ TEST(CliDescribe, BashOffersCommandsOptionsValuesAndFiles) {
     const TemporaryFolder folder;
     folder.write("completion", described("bash"));
     folder.write("a shot.toml", "");
-    EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"simulate", "solve", "sweep"}));
+    EXPECT_EQ(offered(folder, {"carom", "s"}), (Words{"sensitivity", "simulate", "solve", "sweep"}));
     EXPECT_EQ(offered(folder, {"carom", "co"}), Words{"compare"});
     EXPECT_EQ(offered(folder, {"carom", "compare", "--to"}), Words{"--tolerance"});
     EXPECT_EQ(offered(folder, {"carom", "compare", "a"}), Words{"a shot.toml"});

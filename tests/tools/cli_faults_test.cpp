@@ -223,21 +223,30 @@ TEST_F(Faults, ASignalEndsAnExport) {
 // A file name may contain anything except "/" and 0. The output is still text.
 TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
     const std::string odd = folder_.file("b\xff\x01<.toml"), page = folder_.file("o.html");
+    const auto made = [&](const char* ending) { return folder_.file(std::string("m\x1b[31m\xff") + ending); };
     fs::copy_file(scene_, odd);
-    const std::vector<std::vector<std::string>> commands = {{"simulate", odd},
-                                                            {"compare", odd, odd},
-                                                            {"compare", odd, odd, "--json"},
-                                                            {"view", odd, "-o", page},
-                                                            {"margin", odd, "--no-render", "--json"},
-                                                            {"margin", odd, "--no-render"},
-                                                            {"accuracy", odd, "--repeat", "1"}};
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", odd},
+        {"compare", odd, odd},
+        {"compare", odd, odd, "--json"},
+        {"view", odd, "-o", page},
+        {"margin", odd, "--no-render", "--json"},
+        {"margin", odd, "--no-render"},
+        {"accuracy", odd, "--repeat", "1"},
+        {"check", odd},
+        {"view", odd, "-o", made(".html")},
+        {"export", odd, "-o", made(".glb")},
+        {"sweep", odd, "--vary", "cue.speed=uniform(1,2)", "--count", "2", "-o", made(".csv")},
+        {"render", odd, "--size", "32x18", "--at", "0.1", "-o", made(".png")},
+        {"render", odd, "--size", "32x18", "--to", "0.1", "-o", made("%d.png")},
+        {"render", odd, "--size", "64x36", "--sheet", "2x2", "-o", made(".png")}};
     for (const std::vector<std::string>& command : commands) {
         const ProcessResult result = carom(command);
         EXPECT_EQ(result.status, 0) << command[0] << result.err;
         std::string all = result.out;
         if (fs::exists(page)) all += read_file(page);
         EXPECT_TRUE(is_utf8(all)) << command[0];
-        EXPECT_EQ(all.find('\x01'), std::string::npos) << command[0];
+        EXPECT_EQ(all.find_first_of("\x01\x1b"), std::string::npos) << command[0];
         fs::remove(page);
     }
 }

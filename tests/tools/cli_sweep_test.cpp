@@ -177,12 +177,12 @@ TEST(CliSweep, APartIsLookedAt) {
         std::string changed = text;
         changed[at] ^= 1;
         write(changed);
-        refused(part + ": its rows are not those that were written; remove it, and it is made again");
+        refused(part + ": its rows differ from those that were written; remove it to have it made again");
     }
     for (const std::string& short_one :
          {std::string(), text.substr(0, 20), text.substr(0, text.size() - 1)}) {
         write(short_one);
-        refused("are not those that were written");
+        refused("differ from those that were written");
     }
 
     // From another build, which has other bits.

@@ -18,7 +18,8 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         const char* message;
     } kCases[] = {
         {{},
-         "no command given: expected simulate, render, view, diagram, next, judge, export, compare, margin, "
+         "no command given: expected simulate, render, view, play, diagram, next, judge, export, compare, "
+         "margin, "
          "accuracy, sweep, break, solve, check, impact or describe; see carom --help"},
         {{"accuracy"}, "accuracy: no scene file given; see --help"},
         {{"fly"}, "fly"},

@@ -39,13 +39,13 @@ struct Rooms {
 };
 const std::array<Rooms, 5> kRooms = {{
     {"kernel/src", {"unlike"}, {"march", "tolerance", "contact_phase"}},
-    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
+    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch", "tangent"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
     // Inner rooms come before the rooms that contain them.
     {"tools/carom/commands",
      {},
      {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
-      "diagram", "judge", "play", "solve", "margin"}},
+      "diagram", "judge", "play", "fit", "sensitivity", "solve", "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
 /// Public headers about what a station of the engine made or does. No toolbox of the engine knows them.

@@ -22,6 +22,8 @@ void add_compare(Options& program);
 void add_margin(Options& program);
 void add_accuracy(Options& program);
 void add_sweep(Options& program);
+void add_sensitivity(Options& program);
+void add_fit(Options& program);
 void add_solve(Options& program);
 void add_break(Options& program);
 void add_check(Options& program);
@@ -65,6 +67,8 @@ int run(int argc, char** argv) {
     add_sweep(program);
     add_break(program);
     add_solve(program);
+    add_sensitivity(program);
+    add_fit(program);
     add_check(program);
     add_impact(program);
     add_describe(program);

@@ -97,10 +97,11 @@ CAROM_API carom_status carom_scene_create(const char* table, const char* balls, 
 CAROM_API void carom_scene_free(carom_scene* scene); /* NULL is allowed */
 
 /* One parameter of the balls: "radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "mu_b_more", "mu_b_fall",
- * "e_b", "e_c", "e_c_fall", "e_c_above", "f_c", "f_c_more" or "f_c_fall". The friction between two balls that
- * slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u), that of a cushion f_c + f_c_more exp(-f_c_fall u), and
- * its restitution at v m/s is e_c - e_c_fall max(0, v - e_c_above); setting mu_b, f_c or e_c sets the other
- * two to 0. A new radius also changes the heights of the existing balls; balls with their own radius keep it.
+ * "e_b", "e_c", "e_c_fall", "e_c_above", "f_c", "f_c_more", "f_c_fall", "e_t", "e_t_more", "e_t_fall" or
+ * "e_h". The friction between two balls that slip at u m/s is mu_b + mu_b_more exp(-mu_b_fall u), that of a
+ * cushion f_c + f_c_more exp(-f_c_fall u), and its restitution at v m/s is e_c - e_c_fall max(0, v -
+ * e_c_above); setting mu_b, f_c or e_c sets the other two to 0. A new radius also changes the heights of the
+ * existing balls; balls with their own radius keep it.
  */
 CAROM_API carom_status carom_scene_set_ball_param(carom_scene* scene, const char* name, double value);
 CAROM_API carom_status carom_scene_get_ball_param(const carom_scene* scene, const char* name, double* value);
@@ -319,6 +320,145 @@ CAROM_API carom_status carom_noisy_cue(const carom_cue* cue, const double deviat
                                        uint64_t index, carom_cue* out);
 /* The deviations of "none", "fastfiz" or "ai3603" for a ball of this radius [m]. */
 CAROM_API carom_status carom_noise(const char* name, double radius, double deviations[5]);
+
+/* ---- What a game draws and asks ----
+ *
+ * Texts in these structs are valid as long as the scene or record exists and is not changed. */
+
+/* Sets a value by its key in scene files, as they write it: "physics.gravity" and "9.81", "physics.ball_ball"
+ * and "\"two_step\"", "physics.tolerance" and "1e-8". The scene must be valid; on failure it is unchanged. */
+CAROM_API carom_status carom_scene_set(carom_scene* scene, const char* key, const char* value);
+
+/* The strike of the scene, and the id of the struck ball unless `ball` is NULL. Returns CAROM_BAD_ARGUMENT if
+ * the scene has no cue. */
+CAROM_API carom_status carom_scene_cue(const carom_scene* scene, carom_cue* cue, const char** ball);
+
+/* The balls of a scene: id, state, and radius [m]; each of these may be NULL. */
+CAROM_API size_t carom_scene_ball_count(const carom_scene* scene);
+CAROM_API carom_status carom_scene_ball(const carom_scene* scene, size_t index, const char** id,
+                                        double rvw[9], double* radius);
+
+typedef struct carom_table {
+    double corner[2];     /* of smallest x and y [m] */
+    double width, length; /* between the nose lines, along x and y [m]; 0 for an endless cloth */
+    size_t cushions, jaws, pockets;
+} carom_table;
+CAROM_API carom_status carom_scene_table(const carom_scene* scene, carom_table* table);
+
+/* What a ball meets in an event, and the parts of a table. */
+typedef enum carom_partner {
+    CAROM_NO_PARTNER = 0,
+    CAROM_BALL = 1,
+    CAROM_CUSHION = 2,
+    CAROM_JAW = 3,
+    CAROM_POCKET = 4
+} carom_partner;
+
+typedef struct carom_part {
+    const char* id;        /* "c1", "j1", "p1", ... */
+    const char* name;      /* for people: "left rail, head half"; "" if it has none */
+    double from[2], to[2]; /* [m] the ends of a cushion; of others both are the centre */
+    double radius;         /* of a jaw or pocket [m]; 0 for a cushion */
+    double height;         /* of the nose above the cloth [m]; 0 for a pocket */
+} carom_part;
+CAROM_API carom_status carom_scene_part(const carom_scene* scene, carom_partner kind, size_t index,
+                                        carom_part* part);
+
+/* A place on the nose line of a rail, "head", "foot", "left" or "right": 0 to 4 diamonds along short rails
+ * and 0 to 8 along long ones, from the table's corner. */
+CAROM_API carom_status carom_scene_diamond(const carom_scene* scene, const char* rail, double number,
+                                           double place[2]);
+/* A spot: "head", "center", "foot", or a colour of snooker. */
+CAROM_API carom_status carom_scene_spot(const carom_scene* scene, const char* name, double place[2]);
+
+/* How every ball has turned since the start, at `count` times: `xyzw` receives count x balls x 4 numbers,
+ * quaternions x, y, z, w from the ball's frame to the table's, in the order of carom_record_states. */
+CAROM_API carom_status carom_record_orientations(const carom_record* record, size_t count,
+                                                 const double* times, double* xyzw);
+
+/* The types of events in the order of docs/reference/record_format.md. */
+typedef enum carom_event_type {
+    CAROM_CUE_STRIKE = 0,
+    CAROM_BALL_BALL = 1,
+    CAROM_BALL_CLUSTER = 2,
+    CAROM_BALL_CUSHION = 3,
+    CAROM_BALL_JAW = 4,
+    CAROM_BALL_POCKET = 5,
+    CAROM_SLIDE_ROLL = 6,
+    CAROM_ROLL_SPIN = 7,
+    CAROM_ROLL_STOP = 8,
+    CAROM_SPIN_STOP = 9,
+    CAROM_BALL_BALL_HOLD = 10,
+    CAROM_BALL_BALL_RELEASE = 11,
+    CAROM_BALL_CUSHION_HOLD = 12,
+    CAROM_BALL_CUSHION_RELEASE = 13,
+    CAROM_BALL_JAW_HOLD = 14,
+    CAROM_BALL_JAW_RELEASE = 15,
+    CAROM_BALL_EDGE = 16,
+    CAROM_BALL_CLOTH = 17,
+    CAROM_BALL_OUT = 18
+} carom_event_type;
+
+/* What an event tells beyond carom_event; NaN for what an event of its type does not have. */
+typedef struct carom_event_details {
+    double time;      /* [s] */
+    int32_t type;     /* a carom_event_type */
+    int32_t a;        /* index of the ball */
+    int32_t partner;  /* a carom_partner: what b is */
+    int32_t b;        /* index of the other ball or of the part, or -1 */
+    double point[3];  /* where ball a touches what it meets [m] */
+    double normal[3]; /* unit vector along which ball a is pushed */
+    double cut_deg;   /* between the velocity and the line of the impact */
+    double closing;   /* speed along the normal [m/s] */
+    double impulse;   /* that ball a received [N s] */
+    double lost;      /* energy [J] */
+    double diamond;   /* of a cushion, as in carom_scene_diamond */
+} carom_event_details;
+CAROM_API carom_status carom_record_event_details(const carom_record* record, size_t index,
+                                                  carom_event_details* details);
+
+/* Records as JSON, in files and as text (as carom_scene_text). A file holds no physics, so reading takes the
+ * scene that was played; it must have the same balls. On failure *record is NULL. */
+CAROM_API carom_status carom_record_write(const carom_record* record, const char* path);
+CAROM_API size_t carom_record_text(const carom_record* record, char* text, size_t size);
+CAROM_API carom_status carom_record_read(const char* path, const carom_scene* scene, carom_record** record);
+CAROM_API carom_status carom_record_parse(const char* text, const carom_scene* scene, carom_record** record);
+
+/* *allowed is 1 if the cue ball may be placed there [m] under this option of a verdict, otherwise 0. */
+CAROM_API carom_status carom_may_place(const carom_record* record, const carom_verdict* verdict,
+                                       size_t option, const double place[2], int32_t* allowed);
+
+/* The straight paths of a ball into a pocket. `towards` is the unit vector in their middle, `width_deg` the
+ * angle between the outermost ones, 0 if there is none; `distance` [m] is from the ball to where it falls.
+ * `ghost` is the centre of the cue ball when it sends the ball there, throw left out [m]. `in_the_way` is the
+ * nearest ball on the middle path, or "". */
+typedef struct carom_pocket_line {
+    double towards[2], ghost[2];
+    double width_deg, distance;
+    char in_the_way[72];
+} carom_pocket_line;
+/* One for each pocket: `lines` receives carom_table.pockets of them. */
+CAROM_API carom_status carom_pocket_lines(const carom_scene* scene, const char* ball, const char* cue_ball,
+                                          carom_pocket_line* lines);
+
+/* A strike that was played and does what was asked, if `found` is 1; otherwise `why` says why there is none.
+ */
+typedef struct carom_aim {
+    int32_t found;
+    carom_cue cue;
+    double geometric_deg; /* carom_aim_pot: the aim without throw, squirt and swerve */
+    double cut_deg;       /* carom_aim_pot: cut angle of that aim */
+    char cushion[8];      /* carom_bank_routes: the cushion that the ball hits */
+    char why[160];
+} carom_aim;
+/* The aim that pots a ball; `how` is the strike of `cue_ball`, its aim is ignored. */
+CAROM_API carom_status carom_aim_pot(const carom_scene* scene, const char* cue_ball, const carom_cue* how,
+                                     const char* ball, const char* pocket, carom_aim* aim);
+/* Aims that pot it off one cushion: at most one per cushion. Writes up to `size` of them; *count receives
+ * how many there are. */
+CAROM_API carom_status carom_bank_routes(const carom_scene* scene, const char* cue_ball, const carom_cue* how,
+                                         const char* ball, const char* pocket, size_t size, carom_aim* aims,
+                                         size_t* count);
 
 /* ---- Many shots ---- */
 

@@ -10,7 +10,7 @@ namespace carom {
 namespace {
 
 // [-] Steps of the search: 3 in the median, 12 at most in 4000 random cases.
-constexpr int kMostSteps = 200;
+constexpr int kMostMarchSteps = 200;
 // [-] Grazes that are skipped before the search ends.
 constexpr int kMostGrazes = 4;
 
@@ -44,7 +44,7 @@ double first_contact(const At& at, double reach, double curving, double rounding
                      double horizon) {
     double t = from;
     int grazes = 0;
-    for (int step = 0; step < kMostSteps && t <= horizon; ++step) {
+    for (int step = 0; step < kMostMarchSteps && t <= horizon; ++step) {
         const Distance now = at(t);
         const double gap = now.d - reach;
         if (gap <= rounding) {
@@ -77,7 +77,7 @@ double first_contact(const At& at, double reach, double curving, double rounding
     return kNever;
 }
 
-double rounding_of(const Flight& flight, double reach) {
+double place_rounding(const Flight& flight, double reach) {
     return 2.0 * kEpsilon *
            (reach + std::abs(flight.r.x()) + std::abs(flight.r.y()) + std::abs(flight.r.z()));
 }
@@ -124,7 +124,7 @@ double flight_to_line(const Flight& f, const Vec3& from, const Vec2& direction, 
         over(dot(direction, planar(g.r)), dot(direction, planar(g.v)), line_length, f.horizon);
     const Vec2 pull = across(g.a);
     const auto at = [&](double t) { return of_length(across(place(g, t)), across(speed(g, t)), pull); };
-    return first_contact(at, reach, length(pull), rounding_of(f, reach), f.noise, window.from, window.to);
+    return first_contact(at, reach, length(pull), place_rounding(f, reach), f.noise, window.from, window.to);
 }
 
 double flight_to_circle(const Flight& f, const Vec3& center, double radius, double reach) {
@@ -138,7 +138,7 @@ double flight_to_circle(const Flight& f, const Vec3& center, double radius, doub
                          Vec2(out.bend, g.a.z()));
     };
     const auto from_point = [&](double t) { return of_length(place(g, t), speed(g, t), g.a); };
-    const double rounding = rounding_of(f, reach + radius), curving = length3(g.a);
+    const double rounding = place_rounding(f, reach + radius), curving = length3(g.a);
     if (radius == 0.0) return first_contact(from_point, reach, curving, rounding, f.noise, 0.0, g.horizon);
     return first_contact(at, reach, curving, rounding, f.noise, 0.0, g.horizon);
 }

@@ -37,6 +37,8 @@ class Run {
     StopReason run(const Record* so_far);
     void start_balls();
     void check_digits(int ball, double time);
+    void check_creeping(double time);
+    [[noreturn]] void lose(int ball, double when);
     /// Whether the run has reached its number of events. @throws SimulationError if [stop] did not ask for
     /// that
     bool is_full();

@@ -69,6 +69,7 @@ StopReason Run::run(const Record* so_far) {
         log_.begin_round();
         const Candidate next = detector_.next();
         if (next.time > stop_ || next.time == kNever) return stop(next.time);
+        if (next.time > kDigitsAreMany) check_creeping(next.time);
         if (next.time > kDigitsAreMany && next.contact.with != With::kNothing) {
             for (const int ball : {next.contact.ball, next.contact.partner()})
                 if (ball >= 0) check_digits(ball, next.time);
@@ -87,12 +88,31 @@ void Run::check_digits(int ball, double time) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);
     const double end = kLostShare * R / (kClosingUlp * kEpsilon * (length3(s.v) + R * length3(s.w)));
-    if (!(time > end)) return;
-    balls_.advance_to(end);
+    if (time > end) lose(ball, end);
+}
+
+// Closing speeds below the rounding of a ball's surface speed count as no approach. With much spin and no
+// friction a ball may creep that slowly, and would pass through what it never meets. A faster one meets
+// something first, or is gone.
+void Run::check_creeping(double time) {
+    const Geometry& g = plan_.geometry;
+    if (!plan_.pairs && g.cushions.empty() && g.noses.empty()) return;
+    for (int ball = 0; ball < balls_.count(); ++ball) {
+        const Segment& s = balls_.segment(ball);
+        if (!translates(s.state) || s.held) continue;
+        const double R = balls_.radius(ball), v = length3(s.v);
+        const double noise = kClosingUlp * kEpsilon * (v + R * length3(s.w)), lost = kLostShare * R / noise;
+        const bool creeps = v > 0.0 && kLostShare * v <= noise && length(s.a) == 0.0;
+        if (creeps && time - s.start > lost) lose(ball, s.start + lost);
+    }
+}
+
+void Run::lose(int ball, double when) {
+    balls_.advance_to(when);
     log_.fail(fmt::format(
         "after such a long time the position of ball {} is only known to {:.2g} m, too coarse for its next "
         "contact; end the run earlier with [stop] time, or add friction",
-        log_.id(ball), kLostShare * R));
+        log_.id(ball), kLostShare * balls_.radius(ball)));
 }
 
 void Run::start_balls() {
@@ -131,6 +151,7 @@ StopReason Run::stop(double next) {
     }
     if (next == kNever && !moves) return StopReason::kAtRest;
     if (stop_ == kNever) return StopReason::kEndless;
+    if (stop_ > kDigitsAreMany) check_creeping(stop_);
     balls_.advance_to(stop_);
     return StopReason::kTime;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "physics/motion.h"
@@ -12,8 +14,6 @@ namespace carom {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-// [-] Diamonds of a whole long and a whole short rail.
-constexpr double kLongRail = 8.0, kShortRail = 4.0;
 
 bool has(const Record& record, const Event& event, int ball) {
     if (event.a == ball || (kind(event.type).partner == Partner::kBall && event.b == ball)) return true;
@@ -154,6 +154,16 @@ Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
     const Cushion& c = table.cushions[part];
     const Vec2 line = c.to - c.from;
     return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
+}
+
+std::optional<Vec2> diamond_place(const Table& t, std::string_view rail, double number) {
+    if (!(t.width > 0.0 && t.length > 0.0)) return std::nullopt;
+    const double across = number / kShortRail * t.width, along = number / kLongRail * t.length;
+    if (rail == "head") return t.corner + Vec2(across, 0.0);
+    if (rail == "foot") return t.corner + Vec2(across, t.length);
+    if (rail == "left") return t.corner + Vec2(0.0, along);
+    if (rail == "right") return t.corner + Vec2(t.width, along);
+    return std::nullopt;
 }
 
 EventDetails details_of(const Record& record, std::size_t event) {

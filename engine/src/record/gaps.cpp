@@ -8,6 +8,7 @@
 #include "contact/detect.h"
 #include "physics/motion.h"
 #include "physics/nose_reach.h"
+#include "physics/touch_tolerance.h"
 
 namespace carom {
 
@@ -20,7 +21,12 @@ double rounding_of(const Vec3& v, const Vec3& w, double R, double t) {
 }
 
 double allowed_depth(const SeenBall& ball) {
-    return kTouchTolerance + ball.rounding;
+    return touch_tolerance(planar(ball.r)) + ball.rounding;
+}
+
+double allowed_depth(const SeenBall& ball, const Vec2& wall) {
+    // Both coordinates are rounded, and so is the direction between them.
+    return touch_tolerance(planar(ball.r).cwiseAbs() + wall.cwiseAbs()) + ball.rounding;
 }
 
 SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,

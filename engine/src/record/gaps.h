@@ -24,8 +24,9 @@ struct SeenBall {
 /// [m] How far a ball with these speeds may have moved too far in t [s]: closing speeds within rounding
 /// (kClosingUlp) count as no approach, and times are rounded.
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
-/// [m] Allowed overlap with anything.
+/// [m] Allowed overlap with another ball or the cloth, or with the wall at this place.
 double allowed_depth(const SeenBall& ball);
+double allowed_depth(const SeenBall& ball, const Vec2& wall);
 
 /// A ball at the position `r`, in its segment of this number.
 /// @param flights  whether balls may leave the cloth

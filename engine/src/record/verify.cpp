@@ -167,10 +167,10 @@ class Checker {
             }
             // A ball may cross a cushion's line only beyond the cushion's ends.
             for (const CushionLine& line : plan_.geometry.cushions)
-                if (const double gap = gap_to(line, ball); gap < -allowed_depth(ball))
+                if (const double gap = gap_to(line, ball); gap < -allowed_depth(ball, line.from))
                     report("U3", "ball {} is {:.3g} m deep in a cushion", id, -gap);
             for (const Nose& nose : plan_.geometry.noses)
-                if (const double gap = gap_to(nose, ball); gap < -allowed_depth(ball))
+                if (const double gap = gap_to(nose, ball); gap < -allowed_depth(ball, nose.center))
                     report("U3", "ball {} is {:.3g} m deep in a jaw or cushion end", id, -gap);
             if (const double gap = gap_to_cloth(ball); gap < -allowed_depth(ball))
                 report("U3", "ball {} is {:.3g} m deep in the cloth", id, -gap);

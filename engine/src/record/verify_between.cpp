@@ -186,7 +186,7 @@ class Between {
                 const double t = from + share * (to - from);
                 const SeenBall there = seen(ball, t);
                 const double gap = gap_to(line, there);
-                if (gap < -allowed_depth(there))
+                if (gap < -allowed_depth(there, line.from))
                     report("U3", t, "ball {} is {:.3g} m deep in a cushion", id(ball), -gap);
             }
         }
@@ -197,11 +197,11 @@ class Between {
                 const double t = from + share * (to - from);
                 const SeenBall there = seen(ball, t);
                 const double gap = gap_to(nose, there);
-                if (gap < -allowed_depth(there))
+                if (gap < -allowed_depth(there, nose.center))
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
                 // It would come down inside of it.
                 const double over = nose.radius - length(planar(there.r) - nose.center);
-                if (in_air && over > allowed_depth(there))
+                if (in_air && over > allowed_depth(there, nose.center))
                     report("U3", t, "ball {} flies on {:.3g} m behind the nose of a jaw", id(ball), over);
             }
         }

@@ -5,14 +5,13 @@
 #include <numbers>
 #include <string>
 
+#include "carom/engine/event_details.h"
 #include "physics/cue.h"
 
 namespace carom::detail {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-// [-] Diamonds of a long and of a short rail.
-constexpr double kLongRail = 8.0, kShortRail = 4.0;
 
 class Aim {
   public:
@@ -75,14 +74,11 @@ class Aim {
         if (!longs && rail != "head" && rail != "foot")
             s_.fail("aim_diamond", "cue.aim_diamond: unknown rail {}; use head, foot, left or right",
                     in_quotes(rail));
-        const Table& t = scene_.table;
-        if (!(t.width > 0.0 && t.length > 0.0))
+        if (!diamond_place(scene_.table, rail, 0.0))
             s_.fail("aim_diamond", "cue.aim_diamond: the cloth is endless; choose a table");
         const double most = longs ? kLongRail : kShortRail;
         const double n = s_.number_of(list[1], "cue.aim_diamond[1]", {0.0, false, most, false, "diamonds"});
-        const double x = rail == "left" ? 0.0 : rail == "right" ? t.width : n / kShortRail * t.width;
-        const double y = rail == "head" ? 0.0 : rail == "foot" ? t.length : n / kLongRail * t.length;
-        return towards("aim_diamond", t.corner + Vec2(x, y));
+        return towards("aim_diamond", *diamond_place(scene_.table, rail, n));
     }
 
     /// The speed of the cue that gives the struck ball this speed.

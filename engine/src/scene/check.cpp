@@ -12,20 +12,11 @@
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "physics/nose_reach.h"
+#include "physics/touch_tolerance.h"
 #include "scene/sections.h"
 
 namespace carom::detail {
 namespace {
-
-// [1] Share of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
-// the rounding of a typed coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference
-// make up to four roundings.
-constexpr double kTouchRounding = 0x1p-51;
-
-/// The largest overlap that still counts as touching, at this distance from the origin.
-double touch_tolerance(const Vec2& p) {
-    return std::max(kTouchTolerance, kTouchRounding * std::max(std::abs(p.x()), std::abs(p.y())));
-}
 
 void check_ids(const Section& top, const Scene& scene) {
     std::unordered_map<std::string, SourceLocation> seen;

@@ -24,7 +24,12 @@ template <class... Values>
 /// A drawn value; the distribution owns the node.
 using Drawn = std::variant<double, std::int64_t, const toml::node*>;
 
-using Distribution = std::function<Drawn(SplitMix64& random)>;
+struct Distribution {
+    std::function<Drawn(SplitMix64& random)> draw;
+    /// A grid has steps instead, and `at` gives the value of each; 0: not a grid.
+    std::uint64_t steps = 0;
+    std::function<Drawn(std::uint64_t step)> at{};
+};
 
 /// The text between the brackets of `name`(`text`), as TOML values. @throws std::invalid_argument
 toml::array arguments(std::string_view name, std::string_view text);

@@ -1,6 +1,7 @@
 // Racked balls and their positions.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,13 @@ int balls_of(const Rack& rack);
 /// right, draws a position (x, then y) in the box of half-width `jitter` around its slot, and keeps its old
 /// one if the new one would overlap. For balls far apart, that is a uniform draw; close together, a uniform
 /// draw among the possible racks. The seed decides the numbers first, then the jitter.
-std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R);
+///
+/// A scatter has no rack: each ball in turn is uniform over the bed of the table, wherever it is at least
+/// rack.gap away from every cushion, jaw and ball before it, and outside the pockets.
+///
+/// @param others  balls that are on the table already, for a scatter
+/// @throws std::invalid_argument if a scatter finds no room
+std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R,
+                                  std::span<const BallStart> others = {});
 
 }  // namespace carom

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/nearest.h"
@@ -43,6 +45,7 @@ std::int64_t whole(const Scene& scene, const Key& row, const char* section, doub
 struct Found {
     const Key* row;
     std::function<Change(Scene&, double)> put;
+    std::function<double(Scene&)> get;  // NaN: the scene does not set it
 };
 
 /// The number that `key` names in the rows of a section.
@@ -56,21 +59,31 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
         if (dot != key.npos) {
             const std::size_t k = element_index(key.substr(dot + 1));
             if (f.element == nullptr || k >= f.count()) break;
-            return {&f, [&f, at, k, change](Scene& scene, double value) {
+            return {&f,
+                    [&f, at, k, change](Scene& scene, double value) {
                         *f.element(at(scene), k) = value;
                         return contains(f.range, value) ? change : Change::kAnything;
-                    }};
+                    },
+                    [&f, at, k](Scene& scene) { return *f.element(at(scene), k); }};
         }
         if (f.kind == Key::Kind::kNumber)
-            return {&f, [&f, at, change](Scene& scene, double value) {
+            return {&f,
+                    [&f, at, change](Scene& scene, double value) {
                         f.set(at(scene), value);
                         return contains(f.range, value) ? change : Change::kAnything;
+                    },
+                    [&f, at](Scene& scene) {
+                        const FieldValue value = f.get(at(scene));
+                        const double* number = std::get_if<double>(&value);
+                        return number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN();
                     }};
         if (f.kind == Key::Kind::kInteger)
-            return {&f, [&f, at, change, section](Scene& scene, double value) {
+            return {&f,
+                    [&f, at, change, section](Scene& scene, double value) {
                         f.set(at(scene), whole(scene, f, section, value));
                         return change;
-                    }};
+                    },
+                    [](Scene&) { return std::numeric_limits<double>::quiet_NaN(); }};
         break;
     }
     fail("there is no such number in [{}]{}", section,
@@ -184,6 +197,7 @@ SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
         Found found = find_number(scene, key);
         row_ = found.row;
         put_ = std::move(found.put);
+        get_ = std::move(found.get);
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
     }

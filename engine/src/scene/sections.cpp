@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,8 +76,10 @@ void read_rack(const Section& top, Scene& scene) {
     Rack rack;
     const auto s = top.read("rack", kRackFields, rack);
     if (!s) return;
-    if (s->has("count") && rack.game != RackGame::kLine)
-        s->fail("count", "rack.count belongs to the game line; leave it out or set game = \"line\"");
+    const bool scatter = rack.game == RackGame::kScatter;
+    if (s->has("count") && rack.game != RackGame::kLine && !scatter)
+        s->fail("count",
+                "rack.count belongs to the games line and scatter; leave it out or set game = \"line\"");
     if (s->has("rows") && rack.game != RackGame::kTriangle)
         s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
     const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
@@ -85,13 +88,26 @@ void read_rack(const Section& top, Scene& scene) {
             s->fail(key,
                     "rack.{} moves a rack, but the balls of this game have spots of their own; leave it out",
                     key);
+    for (const char* key : {"jitter", "position", "spot_ball", "angle_deg"})
+        if (scatter && s->has(key))
+            s->fail(key, "rack.{} is for balls that lie together, and a scatter spreads them; leave it out",
+                    key);
+    if (scatter && scene.table.preset.empty())
+        s->fail("game",
+                "a scatter needs the rectangle between the cushions of a table; choose one by its preset");
     if (spots && !(scene.table.length > 0.0)) {
         s->fail("game", "this layout needs the spots of a table, but the cloth is endless; choose a table");
     }
     if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
         s->fail("spot_ball", "rack.spot_ball = {} is not in this rack; choose 1 to {}", *rack.spot_ball,
                 balls_of(rack));
-    for (const RackedBall& ball : make_rack(rack, scene.table, scene.balls.R)) {
+    std::vector<RackedBall> racked;
+    try {
+        racked = make_rack(rack, scene.table, scene.balls.R, scene.ball);
+    } catch (const std::invalid_argument& error) {
+        s->fail(s->has("count") ? "count" : "game", "{}", error.what());
+    }
+    for (const RackedBall& ball : racked) {
         if (scene.ball.size() == kMaxBalls)
             s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);
         BallStart start;

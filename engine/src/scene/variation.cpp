@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <span>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -46,10 +48,13 @@ struct Rule {
     // The number or rack value of this key, if it can be set without the file.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
+    // Of a grid: how many shots share a value before the next one comes.
+    std::uint64_t stride = 1;
 
     Drawn draw(std::uint64_t seed, std::uint64_t index) const {
+        if (distribution.steps > 0) return distribution.at(index / stride % distribution.steps);
         SplitMix64 random = draws_of(seed, index, key);
-        return distribution(random);
+        return distribution.draw(random);
     }
 };
 
@@ -270,8 +275,9 @@ struct Variation::Parts {
     std::vector<std::string> keys;
     std::uint64_t seed = 0;
     std::uint64_t fingerprint = 0;
-    bool quick = true;  // every rule is a number of the scene or of its rack
-    Rack rack;          // as in the file
+    std::uint64_t grid = 0;  // points of the product of all grids; 0: there is none
+    bool quick = true;       // every rule is a number of the scene or of its rack
+    Rack rack;               // as in the file
 };
 
 Variation::Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed)
@@ -322,6 +328,15 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         print.add(text);
     }
     parts->fingerprint = print.value();
+    // The last grid varies fastest.
+    for (auto rule = parts->rules.rbegin(); rule != parts->rules.rend(); ++rule) {
+        const std::uint64_t steps = rule->distribution.steps;
+        if (steps == 0) continue;
+        rule->stride = std::max<std::uint64_t>(parts->grid, 1);
+        if (steps > kMostShots / rule->stride)
+            throw VariationError(rule->key + ": the grids have more than 2^53 points together; take fewer");
+        parts->grid = rule->stride * steps;
+    }
     parts_ = parts;
     // A mistyped key or a range without valid values spoils every shot: report it here, once.
     for (int i = 0; i < kVariationTrials; ++i)
@@ -363,6 +378,10 @@ std::string Variation::unit(std::size_t key) const {
     } catch (const std::invalid_argument&) {
         return "";
     }
+}
+
+std::uint64_t Variation::grid() const {
+    return parts_->grid;
 }
 
 ValueKind Variation::kind(std::size_t key) const {
@@ -417,7 +436,13 @@ std::optional<Change> Variation::put(std::uint64_t index, Scene& scene,
         }
     }
     if (rack) {
-        const std::vector<RackedBall> racked = make_rack(*rack, scene.table, scene.balls.R);
+        const std::size_t placed = scene.ball.size() - static_cast<std::size_t>(balls_of(*rack));
+        std::vector<RackedBall> racked;
+        try {
+            racked = make_rack(*rack, scene.table, scene.balls.R, std::span(scene.ball).first(placed));
+        } catch (const std::invalid_argument&) {
+            return std::nullopt;
+        }
         std::size_t ball = scene.ball.size() - racked.size();
         for (const RackedBall& place : racked)
             scene.ball[ball++].position = {place.position.x(), place.position.y(), scene.balls.R};

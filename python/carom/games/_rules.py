@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._names import GameName
 from carom._record import Record
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-GAMES = ("eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three")
+GAMES: tuple[GameName, ...] = get_args(GameName)
 
 
 class State(NamedTuple):
@@ -41,7 +42,7 @@ class State(NamedTuple):
     @property
     def cue_ball(self) -> str:
         """The ball that the player strikes: "cue", or in three-cushion "white" or "yellow"."""
-        return _carom.cue_ball(self)
+        return _carom.cue_ball(_fitting(self))
 
 
 class Call(NamedTuple):
@@ -120,7 +121,7 @@ class Verdict(NamedTuple):
 
 
 @checked
-def new_game(game: str, first: int = 0, target: int = 0) -> State:
+def new_game(game: GameName, first: int = 0, target: int = 0) -> State:
     """The state before the first shot.
 
     game: "eight_ball", "nine_ball" (World Pool-Billiard Association), "three_cushion" (Union Mondiale de
@@ -130,6 +131,8 @@ def new_game(game: str, first: int = 0, target: int = 0) -> State:
 
     Raises ValueError for another game.
     """
+    _check_whole("first", first)
+    _check_whole("target", target)
     return State(*_carom.new_game(game, first, target))
 
 
@@ -142,7 +145,7 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
 
     Raises ValueError if the game is over or no ball is left to play at.
     """
-    return Legal(*_carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls)))
+    return Legal(*_carom.legal(_fitting(state), list(balls.ids if isinstance(balls, Scene) else balls)))
 
 
 @checked
@@ -158,7 +161,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     Raises ValueError if the game is over, or the record does not end at rest, has no cue strike, or lacks the
     game's balls.
     """
-    fouls, points, penalty, options, chooser = _carom.judge(state, record._native, call)
+    fouls, points, penalty, options, chooser = _carom.judge(_fitting(state), record._native, call)
     listed = [_option(record.hash(), *option) for option in options]
     return Verdict([Foul(*foul) for foul in fouls], points, penalty, listed, chooser)
 
@@ -167,6 +170,21 @@ def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tup
     option = Option(decision, State(*state), [Respot(*respot) for respot in respots])
     option._record = record
     return option
+
+
+def _check_whole(name: str, value: int) -> None:
+    # The extension module takes 32 bits, and has the narrower ranges.
+    if not -(2**31) <= value < 2**31:
+        raise ValueError(f"{name} = {value} is out of range; it must be {'0 or 1' if name in ('first', 'turn', 'winner') else '0 to 1000000000'}")
+
+
+def _fitting(state: State) -> State:
+    for name in ("turn", "points", "target", "winner", "fouls"):
+        value = getattr(state, name)
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, int):
+                _check_whole(name, number)
+    return state
 
 
 def _check_record(option: Option, record: Record) -> None:
@@ -183,6 +201,7 @@ def may_place(record: Record, option: Option, place: ArrayLike) -> bool:
     Raises ValueError for an option of another record.
     """
     _check_record(option, record)
+    _fitting(option.state)
     return _carom.may_place(record._native, option, _two(place))
 
 

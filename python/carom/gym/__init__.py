@@ -6,6 +6,7 @@ See docs/guide/learning.md.
 
 from __future__ import annotations
 
+import reprlib
 from typing import Any
 
 try:
@@ -56,6 +57,8 @@ _OWN = ("table", "scene")
 
 def _game(name: str, options: dict[str, Any]) -> Game:
     """Makes the game from its own options, which it removes from the others."""
+    if name not in GAMES:
+        raise ValueError(f"game: expected {', '.join(GAMES)}, not {reprlib.repr(name)}")
     return GAMES[name](**{key: options.pop(key) for key in _OWN if key in options})
 
 

@@ -19,6 +19,7 @@ except ImportError as error:
 
 from carom import games
 from carom._arguments import checked
+from carom._names import GameName, TableName
 from carom._record import Record
 from carom._scene import Scene
 from carom._simulate import ShotStatus, SimulationError, simulate
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 #: By the game's name here: its rules, its table, and the cue ball's place at the break in fractions of width
 #: and length.
-_GAMES = {
+_GAMES: dict[str, tuple[GameName, TableName, tuple[float, float]]] = {
     "EightBall": ("eight_ball", "nine_foot", (0.5, 0.2)),
     "NineBall": ("nine_ball", "nine_foot", (0.35, 0.2)),
     "Snooker": ("snooker", "snooker", (0.43, 0.19)),

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import _carom, _toml
 from carom._arguments import checked
+from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene
 from carom._simulate import Shots, ShotStatus
 
@@ -58,12 +59,15 @@ class Player:
     Raises ValueError for a rule that cannot be read or that makes no valid scene.
     """
 
-    def __init__(self, scene: Scene, vary: Mapping[str, Any] | Sequence[str], seed: int) -> None:
+    def __init__(
+        self, scene: Scene, vary: Mapping[str, Any] | Sequence[str], seed: int,
+        measures: Sequence[str] = (), game: str | None = None,
+    ) -> None:
         if not 0 <= seed < 2**64:
             raise ValueError(f"seed={seed}: expected 0 to 2**64 - 1")
         self.rules = rules_of(vary)
         self.balls = len(scene.ids)
-        self._sweep = _carom.make_sweep(scene._native, self.rules, seed)
+        self._sweep = _carom.make_sweep(scene._native, self.rules, seed, list(measures), game)
 
     def types(self) -> dict[str, tuple[str, str]]:
         """For every column its type, "int64", "float64" or "text", and its unit or ""."""
@@ -99,6 +103,8 @@ def columns(
     first: int = 0,
     last: int | None = None,
     threads: int = 0,
+    measures: Sequence[str] = (),
+    game: GameName | None = None,
 ) -> dict[str, Any]:
     """Plays shots of a sweep. Returns the columns of `carom sweep` as arrays, or as lists if they hold
     strings.
@@ -109,18 +115,22 @@ def columns(
     seed: of all draws
     first, last: play only the shots first to last - 1
     threads: 0 uses one thread per core; the rows do not depend on it
+    measures: expressions over `carom.measures()`, a column each: "travel(cue)", '"9" in pocketed'. Numbers
+        are floats, 1 and 0 for a truth; lists are texts with ";" between their items
+    game: the rules for measures such as "foul"
 
     Missing values of a shot without a result are NaN, or None for strings and integers. Raises ValueError for
     a rule that cannot be read or that makes no valid scene, and SceneError for a value that no scene file can
     hold.
     """
-    played = _played(as_scene(scene), vary, shots, seed, first, last, threads)[1]
+    played = _played(as_scene(scene), vary, shots, seed, first, last, threads,
+                     measures, game)[1]
     return {name: _plain(column) for name, column in played.items()}
 
 
 def _played(
     scene: Scene, vary: Mapping[str, Any] | Sequence[str], shots: int, seed: int,
-    first: int, last: int | None, threads: int,
+    first: int, last: int | None, threads: int, measures: Sequence[str], game: str | None,
 ) -> tuple[Player, dict[str, Column], int]:
     """The player, the columns, and the number after the last shot."""
     end = shots if last is None else last
@@ -129,7 +139,7 @@ def _played(
         raise ValueError(f"first={first}, last={last}: expected {wanted}")
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
-    player = Player(scene, vary, seed)
+    player = Player(scene, vary, seed, measures, game)
     return player, player.play(first, end, threads)[0], end
 
 
@@ -185,6 +195,8 @@ def table(
     first: int = 0,
     last: int | None = None,
     threads: int = 0,
+    measures: Sequence[str] = (),
+    game: GameName | None = None,
 ) -> pyarrow.Table:
     """`columns` as a pyarrow Table. Needs pyarrow (extra [sweep]).
 
@@ -192,6 +204,6 @@ def table(
     its unit. Missing values of a shot without a result are null.
     """
     scene = as_scene(scene)
-    player, played, end = _played(scene, vary, shots, seed, first, last, threads)
+    player, played, end = _played(scene, vary, shots, seed, first, last, threads, measures, game)
     about = provenance(scene.source, player.rules, seed, first, end) | {"carom.version": _carom.VERSION}
     return arrow(played, arrow_schema(player.types(), about))

@@ -109,9 +109,10 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
             right = content.hexdigest() == about["carom.content"]
     except Exception as error:  # as in footer()
         what = f"its rows cannot be read ({_first_line(error)})"
-        raise SweepError(f"{path}: {what}; remove it, and it is made again") from None
+        raise SweepError(f"{path}: {what}; remove it to have it made again") from None
     if not right or not described:
-        raise SweepError(f"{path}: its rows are not those that were written; remove it, and it is made again")
+        what = "its rows differ from those that were written"
+        raise SweepError(f"{path}: {what}; remove it to have it made again")
     outcomes: dict[str, int] = json.loads(about["carom.outcomes"])
     return outcomes
 
@@ -167,10 +168,10 @@ def open(
     plan = found.plan
     if found.missing and not (partial and found.done):
         what = f"{len(found.missing)} of {plan.shards} shards are missing"
-        raise SweepError(f"{name}: {what}; run the sweep again, or open with partial=True what is there")
+        raise SweepError(f"{name}: {what}; run the sweep again, or open what is there with partial=True")
     if found.strangers:
         stranger = os.path.join(name, found.strangers[0])
-        raise SweepError(f"{stranger}: a file that is none of this plan's; remove it")
+        raise SweepError(f"{stranger}: this file does not belong to the plan; remove it")
     shards = those_there(found, range(plan.shards))
     paths = [os.path.join(name, plan.file(shard)) for shard in shards]
     if verify:

@@ -7,11 +7,12 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from carom import _carom
 from carom._arguments import checked
 from carom._files import whole_file
+from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
@@ -44,6 +45,8 @@ class Plan(NamedTuple):
     hashes: str  # "none", "digest" or "column"
     version: str  # carom's
     probe: str  # digest of the first shots' records, which shows whether a worker's carom gives the same bits
+    measures: tuple[str, ...] = ()  # expressions, a column each
+    game: str = ""  # the rules for measures such as "foul"
 
     @property
     def id(self) -> str:
@@ -76,7 +79,9 @@ class Plan(NamedTuple):
 
     def _content(self) -> dict[str, Any]:
         content: dict[str, Any] = {"format": FORMAT, **self._asdict(), "vary": list(self.vary)}
-        return content
+        content["measures"] = list(self.measures)
+        # A plan without measures is the one that earlier versions made.
+        return content if self.measures else dict(list(content.items())[:-2])
 
     def text(self) -> str:
         """The content of the plan's file: JSON."""
@@ -88,7 +93,7 @@ class Plan(NamedTuple):
         name = os.fspath(path)
         if os.path.exists(name):
             if Plan.load(name) != self:
-                what = "there is another plan already; remove it, or write to another place"
+                what = "another plan is already there; remove it, or write elsewhere"
                 raise SweepError(f"{name}: {what}")
             return
         try:
@@ -114,13 +119,14 @@ class Plan(NamedTuple):
     @classmethod
     def _of(cls, tree: Any, name: str) -> Plan:
         if not isinstance(tree, dict) or tree.get("format") != FORMAT:
-            raise SweepError(f'{name}: no plan of a sweep: "format" has to be "{FORMAT}"')
+            raise SweepError(f'{name}: not a plan of a sweep: "format" must be "{FORMAT}"')
         content = {key: value for key, value in tree.items() if key not in ("format", "sha256")}
         digest = sha256(canonical({"format": FORMAT, **content}))
-        if tuple(content) != cls._fields or tree.get("sha256") != digest:
+        if tuple(content) not in (cls._fields, cls._fields[:-2]) or tree.get("sha256") != digest:
             what = "the plan was changed by hand or is damaged; make a new one with carom.sweep.plan"
             raise SweepError(f"{name}: {what}")
-        return cls(**content | {"vary": tuple(content["vary"])})
+        lists = {key: tuple(content[key]) for key in ("vary", "measures") if key in content}
+        return cls(**content | lists)
 
 
 def sha256(data: bytes) -> str:
@@ -134,7 +140,7 @@ def canonical(tree: Any) -> bytes:
 
 @lru_cache(maxsize=8)
 def player_of(plan: Plan) -> Player:
-    return Player(Scene.loads(plan.scene, plan.name), plan.vary, plan.seed)
+    return Player(Scene.loads(plan.scene, plan.name), plan.vary, plan.seed, plan.measures, plan.game or None)
 
 
 def _probe(player: Player, shots: int) -> str:
@@ -165,7 +171,9 @@ def plan(
     *,
     seed: int = 1,
     shard: int = 250_000,
-    hashes: str = "digest",
+    hashes: Literal["none", "digest", "column"] = "digest",
+    measures: Sequence[str] = (),
+    game: GameName | None = None,
 ) -> Plan:
     """Makes the plan of a sweep; plays only the first few shots.
 
@@ -179,6 +187,7 @@ def plan(
     hashes: "digest" keeps one hash per shard, over the records of every 64th shot, with which the shard can
         be replayed and compared; "column" also keeps `int(record.hash(), 16)` of every shot in a column
         "record_hash", which takes time if shots are short; or "none"
+    measures, game: as for `columns`
 
     Raises ValueError for a number out of range, or a rule that cannot be read or that makes no valid scene,
     and SceneError for the scene.
@@ -190,15 +199,15 @@ def plan(
         raise ValueError(f"shard={shard}: expected at least 1")
     if -(-shots // shard) > _MOST_SHARDS:
         least = -(-shots // _MOST_SHARDS)
-        what = f"these are more than {_MOST_SHARDS} shards; take at least {least} shots for each"
+        what = f"that makes more than {_MOST_SHARDS} shards; use at least {least} shots in each"
         raise ValueError(f"shard={shard}: {what}")
     if hashes not in _HASHES:
         raise ValueError(f"hashes={hashes!r}: expected one of {', '.join(_HASHES)}")
-    player = Player(scene, vary, seed)
+    player = Player(scene, vary, seed, measures, game)
     name = os.path.basename(scene.file)
     probe = _probe(player, shots)
     made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes,
-                _carom.VERSION, probe)
+                _carom.VERSION, probe, tuple(measures), game or "")
     if "record_hash" in player.types():
-        raise ValueError("vary: record_hash is the name of a column of its own")
+        raise ValueError("vary: record_hash names a column that is always there")
     return made

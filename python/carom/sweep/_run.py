@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _WINDOW = 1024
 #: The same if results wait for earlier ones.
 _WINDOW_OF_RESULTS = 64
+_RUN_AGAIN = "; finished shards are kept; run it again"
 
 
 class Progress(NamedTuple):
@@ -118,7 +119,7 @@ class _Tasks:
             future = self.executor.submit(self.work, *self.arguments(shard), **options)
         except (BrokenExecutor, RuntimeError) as error:
             what = f"the executor takes no more work ({error})"
-            raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
+            raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
         self.running[shard] = future
         future.add_done_callback(lambda done: self.ended.put((shard, done)))
 
@@ -131,12 +132,12 @@ class _Tasks:
             try:
                 return shard, future.result()
             except (BrokenExecutor, CancelledError) as error:
-                what = f"its worker or the scheduler is gone ({type(error).__name__})"
-                raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
+                what = f"its worker or the scheduler has gone ({type(error).__name__})"
+                raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
             except Exception as error:
                 if type(error).__name__ in ("CancelledError", "FutureCancelledError"):
-                    what = "the scheduler is gone"
-                    raise SweepError(f"shard {shard}: {what}; what is made is whole: run again") from None
+                    what = "the scheduler has gone"
+                    raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
                 # Dask gives up a task whose workers have died several times, which may be the machines'
                 # fault.
                 if type(error).__name__ != "KilledWorker" or self.left == 0:
@@ -190,7 +191,7 @@ def _workers(executor: Any, threads: int) -> contextlib.AbstractContextManager[A
     if executor == "threads":
         return _Threads(threads)
     if not hasattr(executor, "submit") and not hasattr(executor, "map"):
-        wanted = '"threads", an executor of concurrent.futures, a Dask client, or what has submit or map'
+        wanted = '"threads", a concurrent.futures executor, a Dask client, or an object with submit or map'
         raise ValueError(f"executor={executor!r}: expected {wanted}")
     return contextlib.nullcontext(executor)
 

@@ -115,8 +115,8 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
         said = {key.decode(): value.decode() for key, value in pairs if key.startswith(b"carom.")}
         rows = metadata.num_rows
     except Exception as error:  # pyarrow raises errors of any type for a damaged file
-        what = f"no whole Parquet file ({_first_line(error)})"
-        raise SweepError(f"{path}: {what}; remove it, and it is made again") from None
+        what = f"not a complete Parquet file ({_first_line(error)})"
+        raise SweepError(f"{path}: {what}; remove it to have it made again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
         for name, wanted in about_rows(plan, *plan.range(shard)).items():
@@ -124,12 +124,12 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
                 words = f"plan {said['carom.plan']}"
                 if said["carom.plan"] == plan.id:
                     words = f"shots {said.get('carom.first')} to {said.get('carom.last')}"
-                what = f"a file of {words}, not of shard {shard} of plan {plan.id}"
+                what = f"the file holds {words}, not shard {shard} of plan {plan.id}"
                 raise SweepError(f"{path}: {what}; take another folder, or remove the file")
         if rows == int(said["carom.last"]) - int(said["carom.first"]):
             return said
     what = "its description is damaged, or carom did not write it"
-    raise SweepError(f"{path}: {what}; remove it, and it is made again")
+    raise SweepError(f"{path}: {what}; remove it to have it made again")
 
 
 def _first_line(error: BaseException) -> str:
@@ -275,7 +275,7 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable
         raise SweepError(f"{path}: {_host()}, process {os.getpid()}: {wrong}")
     if not os.path.isdir(folder):
         where = f"there is no such folder on {_host()}"
-        raise SweepError(f"{folder}: {where}; all workers have to see the folder of the sweep")
+        raise SweepError(f"{folder}: {where}; every worker must see the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
     about: dict[str, str] = {}

@@ -39,9 +39,9 @@ def submit(
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
     except FileNotFoundError:
-        raise SweepError("sbatch: there is no such program; this is no machine of a Slurm cluster") from None
+        raise SweepError("sbatch: program not found; run this on a machine of a Slurm cluster") from None
     if done.returncode != 0:
-        raise SweepError(f"sbatch failed with the status {done.returncode}: {done.stderr.strip()}")
+        raise SweepError(f"sbatch failed with status {done.returncode}: {done.stderr.strip()}")
     job = done.stdout.strip().partition(";")[0]
     shards = f"{len(missing)} of {plan.shards} shards"
-    return f"job {job}: --array={array} for {shards}; --status says how far they are"
+    return f"job {job}: --array={array} for {shards}; --status shows how far they are"

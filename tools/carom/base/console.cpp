@@ -131,11 +131,15 @@ std::string counted(std::size_t count, std::string_view what) {
 }
 
 void print(std::string_view text) {
+    print_bytes(harmless(text));
+}
+
+void print_bytes(std::string_view bytes) {
     // If output goes to a file or a pipe, keep the line: the output may be the very work whose progress it
     // shows.
     static const bool on_terminal = ::isatty(1) == 1;
     if (on_terminal) wipe_line();
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) output_failed();
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) output_failed();
 }
 
 void flush_output() {

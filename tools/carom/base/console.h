@@ -41,9 +41,12 @@ std::string shell_word(const std::string& argument);
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Writes results to standard output, after removing a progress line from the terminal.
+/// Writes results to standard output, as harmless() makes them: names of files may hold anything. Removes a
+/// progress line from the terminal first.
 /// @throws OutputClosed, std::runtime_error if writing fails
 void print(std::string_view text);
+/// The same with what is no text.
+void print_bytes(std::string_view bytes);
 void flush_output();
 
 /// Writes one line to standard error, prefixed with the program's name.

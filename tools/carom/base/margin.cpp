@@ -13,6 +13,7 @@
 #include "base/rounds.h"
 #include "base/setup.h"
 #include "base/temporary_folder.h"
+#include "carom/render/sequence.h"
 
 namespace carom::tools {
 namespace {
@@ -72,6 +73,10 @@ void widen(Range& range, double value, bool first) {
 }
 
 }  // namespace
+
+double Margin::time(std::size_t frame) const {
+    return render::frame_time(0.0, static_cast<long>(frame), fps);
+}
 
 const char* name(MarginStage stage) {
     constexpr const char* kNames[kMarginStages] = {"simulate", "detect",   "resolve", "kernel", "cluster",

@@ -99,6 +99,7 @@ struct Margin {
     TimingCost timing;
 
     bool has(std::size_t s) const { return rendered || s <= kCluster; }
+    double time(std::size_t frame) const;  ///< [s] since the start of the shot
     /// The share of the budget that is left [%]; negative for a missed frame.
     double slack(std::size_t frame) const { return 100.0 * (1.0 - total[frame] / budget_ms); }
 };

@@ -19,7 +19,7 @@ using games::Verdict;
 
 std::string foul_text(games::Game game, games::Foul foul) {
     const std::string rule = games::rule_of(game, foul);
-    return name(foul) + (rule.empty() ? "" : " (" + rule + ")");
+    return carom::name(foul) + (rule.empty() ? "" : " (" + rule + ")");
 }
 
 std::string next_text(const State& state) {
@@ -36,13 +36,13 @@ std::string next_text(const State& state) {
 Json verdict_json(const Verdict& verdict, games::Game game) {
     Json fouls = Json::array(), options = Json::array();
     for (const games::Foul foul : verdict.fouls)
-        fouls.push_back({{"foul", name(foul)}, {"rule", games::rule_of(game, foul)}});
+        fouls.push_back({{"foul", carom::name(foul)}, {"rule", games::rule_of(game, foul)}});
     for (const games::Option& option : verdict.options) {
         Json respots = Json::array();
         for (const games::Respot& back : option.respots)
             respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
         options.push_back(
-            {{"decision", name(option.decision)}, {"state", state_json(option.state)}, {"respots", respots}});
+            {{"decision", carom::name(option.decision)}, {"state", state_json(option.state)}, {"respots", respots}});
     }
     return {{"fouls", fouls},
             {"points", verdict.points},

@@ -159,7 +159,7 @@ class Drawing {
     }
     /// On the cushions, beside the diamonds of the rail.
     void draw_diamond_numbers() {
-        const Table& t = record_.table;
+        const carom::Table& t = record_.table;
         if (!(t.width > 0.0 && t.length > 0.0)) return;
         const Vec2 low = t.corner - 0.5 * (t.corner - mesh_.inner_low),
                    far = t.corner + Vec2(t.width, t.length), high = far + 0.5 * (mesh_.inner_high - far);

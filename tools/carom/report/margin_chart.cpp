@@ -6,16 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "carom/render/sequence.h"
-
 namespace carom::tools {
-namespace {
-
-double time_of(const Margin& margin, std::size_t frame) {
-    return render::frame_time(0.0, static_cast<long>(frame), margin.fps);
-}
-
-}  // namespace
 
 Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
     Plot plot;
@@ -28,8 +19,7 @@ Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string&
     plot.y = {"ms", true, {}, {}};
     const auto add = [&](const char* title, const std::vector<double>& values, int colour, bool line = true) {
         Series series{title, {}, line, !line, false, colour};
-        for (std::size_t k = 0; k < values.size(); ++k)
-            series.points.emplace_back(time_of(margin, k), values[k]);
+        for (std::size_t k = 0; k < values.size(); ++k) series.points.emplace_back(margin.time(k), values[k]);
         plot.series.push_back(series);
     };
     if (margin.rendered) {
@@ -54,7 +44,7 @@ nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last,
     nlohmann::ordered_json chart = chart_json(margin_plot(margin, last, scene));
     chart["x"]["unit"] = "s";
     chart["marks"] = {
-        {{"x", time_of(margin, margin.worst)},
+        {{"x", margin.time(margin.worst)},
          {"y", margin.total[margin.worst]},
          {"name", fmt::format("worst frame: {}, {:.3f} ms", margin.worst, margin.total[margin.worst])}}};
     return chart;

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/record.h"
@@ -46,6 +48,13 @@ EventDetails details_of(const Record& record, std::size_t event);
 /// What ball a meets, for people: "left rail, head half", "corner pocket, foot left"; its id if it has no
 /// name, and "" for nothing.
 std::string met_name(const Record& record, const Event& event);
+
+/// The place on the nose line of a rail (head, foot, left or right) at this diamond, counted as in
+/// EventDetails::diamond; nothing for another rail or an endless cloth.
+std::optional<Vec2> diamond_place(const Table& table, std::string_view rail, double number);
+
+/// [-] Diamonds of a long and of a short rail.
+inline constexpr double kLongRail = 8.0, kShortRail = 4.0;
 
 /// The point of the cushion, or the centre of the jaw, of this event that is nearest to a position.
 Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place);

@@ -212,11 +212,12 @@ enum class RackGame : std::uint8_t {
     kThreeCushion,
     kTriangle,
     kLine,
-    kPyramid
+    kPyramid,
+    kScatter
 };
 constexpr auto names_of(RackGame) {
-    return std::array{"eight_ball",    "nine_ball", "ten_ball", "snooker",
-                      "three_cushion", "triangle",  "line",     "pyramid"};
+    return std::array{"eight_ball", "nine_ball", "ten_ball", "snooker", "three_cushion",
+                      "triangle",   "line",      "pyramid",  "scatter"};
 }
 
 /// Balls that a scene does not place one by one.
@@ -237,7 +238,7 @@ inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
     field<&Rack::seed>("seed", at_least(0.0, kAnyInteger), "of the random numbers"),
-    field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line`"),
+    field<&Rack::count>("count", at_least(1.0, kMaxBalls), "balls of a `line` or a `scatter`"),
     field<&Rack::rows>("rows", at_least(1.0, kMaxRackRows), "rows of a `triangle`"),
     field<&Rack::position>("position", kCoordinate, "position of the rack",
                            {.shape = "[x, y]", .standard = "the foot spot"}),

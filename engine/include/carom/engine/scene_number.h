@@ -34,12 +34,16 @@ class SceneNumber {
     /// @throws SceneError if the value is of the wrong kind: a fraction for an integer
     Change put(Scene& scene, double value) const { return put_(scene, value); }
 
+    /// The number in a scene; NaN if the scene does not set it, or if it is an integer.
+    double value(Scene scene) const { return get_(scene); }
+
     /// The row of the key, for its range and whether it is an integer.
     const Key& row() const { return *row_; }
 
   private:
     const Key* row_ = nullptr;
     std::function<Change(Scene&, double)> put_;
+    std::function<double(Scene&)> get_;
 };
 
 /// Validates a scene that was valid before this change of its numbers: checks only the rules that the change

@@ -21,6 +21,9 @@ class VariationError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// [-] The most shots of a sweep: doubles, and programs that read tables as doubles, count this far.
+inline constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
+
 /// The type of a column of values.
 enum class ValueKind : std::uint8_t { kNumber, kWhole, kText };
 
@@ -41,6 +44,10 @@ struct VariedShot {
 ///   normal(sd), normal(mean,sd) without a mean, around the number in the file
 ///   integer(a,b)                a, a + 1, ..., b, equally likely
 ///   list(v,...)                 TOML values, equally likely
+///   grid(a,b,n)                 n values from a to b, evenly spaced, one after another
+///   grid(list(v,...))           these values, one after another
+///
+/// Several grids make a product, of which the last varies fastest. After its last point it begins again.
 ///
 /// Draws come from SplitMix64, seeded by the seed, the number of the shot and the text of the key, and use no
 /// function of the C library. So a shot is the same on every machine, whatever other keys vary and in
@@ -60,6 +67,9 @@ class Variation {
     /// The unit of the rule number `key`: "m/s", "degrees"; "" if it has none or is not a number of the
     /// scene.
     std::string unit(std::size_t key) const;
+
+    /// How many points the product of all grids has; 0 without a grid.
+    std::uint64_t grid() const;
 
     /// The type of that rule's values. It depends on the rule, not on the draws.
     ValueKind kind(std::size_t key) const;

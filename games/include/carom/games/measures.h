@@ -59,6 +59,9 @@ class Measure {
     /// @throws std::invalid_argument for a shot that the game cannot judge (games::judge)
     MeasureValue of(const Record& record) const;
     bool holds(const Record& record) const;
+    /// The same for a row of a table: no value if the shot ended before its balls were at rest and the game
+    /// cannot judge it.
+    MeasureValue in_table(const Record& record) const;
 
     struct Node;
 

@@ -39,6 +39,9 @@ struct Choice {
     double low = 0.0, high = 0.0;
 };
 
+/// Aim, speed and height of the tip.
+std::vector<Choice> default_choices();
+
 struct SolveOptions {
     std::vector<Choice> choices;
     Hand hand;
@@ -51,6 +54,12 @@ struct SolveOptions {
     std::function<void(std::size_t done)> progress;
     std::function<bool()> stop;
 };
+
+/// A share of shots, and its interval: 95 of 100 such intervals hold the true share (Wilson, 1927).
+struct Share {
+    double value, low, high;
+};
+Share share_of(std::size_t part, std::size_t whole);
 
 struct Solution {
     std::vector<double> values;  ///< in the order of the choices

@@ -77,7 +77,7 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
         before = read_state(args.state);
         if (!args.game.empty() && game_of(args.game) != before.game)
             throw UsageError(fmt::format("--game {}: the state in {} is of {}", args.game,
-                                         harmless(args.state), name(before.game)));
+                                         harmless(args.state), carom::name(before.game)));
     } else {
         before = games::new_game(game_of(args.game));
     }
@@ -104,7 +104,7 @@ std::string verdict_text(const Judged& judged) {
     if (verdict.options.size() > 1) text += fmt::format("player {} chooses one of\n", verdict.chooser + 1);
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
         const games::Option& option = verdict.options[i];
-        if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, name(option.decision));
+        if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
         text += next_text(option.state) + "\n";
         for (const games::Respot& back : option.respots)
             text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",

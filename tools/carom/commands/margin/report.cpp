@@ -9,7 +9,6 @@
 
 #include "base/clock.h"
 #include "base/console.h"
-#include "carom/render/sequence.h"
 #include "commands/margin/margin.h"
 #include "report/table.h"
 
@@ -21,10 +20,6 @@ using Json = nlohmann::ordered_json;
 Json spread_json(const std::vector<double>& values) {
     const Spread v = spread(values);
     return {{"p50", v.p50}, {"p95", v.p95}, {"p99", v.p99}, {"max", v.max}};
-}
-
-double time_of(const Margin& margin, std::size_t frame) {
-    return render::frame_time(0.0, static_cast<long>(frame), margin.fps);
 }
 
 std::vector<double> slacks(const Margin& margin) {
@@ -103,8 +98,7 @@ std::string margin_sentences(const Margin& margin, const MarginRun& last) {
                    margin.timing.clock_ns);
     const std::vector<std::size_t>& events = last.frames[margin.worst].events;
     fmt::format_to(line, "worst frame: {} at {:.4f} s, {:.3f} ms, {}\n", margin.worst,
-                   time_of(margin, margin.worst), margin.total[margin.worst],
-                   counted(events.size(), "event"));
+                   margin.time(margin.worst), margin.total[margin.worst], counted(events.size(), "event"));
     for (const std::size_t i : events) {
         const Event& event = last.record.events[i];
         fmt::format_to(line, "  {:.6f} s  {:<21} {} {}\n", event.time, name(event.type),
@@ -120,7 +114,7 @@ Table frames_table(const Margin& margin, const MarginRun& last) {
             table.columns.emplace_back(fmt::format("{}_ms", name(static_cast<MarginStage>(s))));
     for (const char* key : {"total_ms", "slack_percent", "missed"}) table.columns.emplace_back(key);
     for (std::size_t k = 0; k < margin.total.size(); ++k) {
-        std::vector<Cell> cells = {k, time_of(margin, k), last.frames[k].events.size()};
+        std::vector<Cell> cells = {k, margin.time(k), last.frames[k].events.size()};
         for (std::size_t s = 0; s < kMarginStages; ++s)
             if (margin.has(s)) cells.emplace_back(margin.stage[s][k]);
         for (const Cell& cell :
@@ -155,7 +149,7 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
     all["total"] = spread_json(margin.total);
     all["slack_percent"] = {{"least", slack.front()}, {"median", median(slack)}};
     all["worst"] = {{"frame", margin.worst},
-                    {"time", time_of(margin, margin.worst)},
+                    {"time", margin.time(margin.worst)},
                     {"ms", margin.total[margin.worst]},
                     {"events", events}};
     all["runs"] = {{"count", margin.runs},

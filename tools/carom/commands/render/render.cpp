@@ -179,7 +179,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     if (args.raw || args.y4m) {
         if (args.y4m) options.raw_format = render::RawFormat::kY4m;
         options.raw = [](const std::uint8_t* bytes, std::size_t count) {
-            print(std::string_view(reinterpret_cast<const char*>(bytes), count));
+            print_bytes(std::string_view(reinterpret_cast<const char*>(bytes), count));
         };
     }
     options.backend = render::backend_from_name(args.gl);

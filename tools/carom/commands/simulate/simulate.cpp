@@ -13,7 +13,6 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/units.h"
-#include "carom/engine/printable.h"
 #include "carom/engine/verify.h"
 #include "commands/simulate/story.h"
 #include "report/csv.h"
@@ -201,7 +200,7 @@ int run(const SimulateArgs& args) {
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, harmless(args.scene), args));
+        print(summary(record, args.scene, args));
     if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
     if (args.profile) print(profile_report(record));
     return status;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -19,15 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using games::Choice;
-using games::Hand;
 using games::Solution;
-
-std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 std::string pocket_of(const Scene& scene, int pocket) {
     return scene.table.pockets[static_cast<std::size_t>(pocket)].id;
@@ -69,38 +60,6 @@ void add_search(Options& command, SearchArgs& args) {
     command.option("-o,--output", &args.output, "FILE.toml",
                    "Write the best shot as a scene (default: not written)");
     command.flag("--json", args.json, "Print everything as JSON (default: off)");
-}
-
-Hand read_hand(const std::string& text) {
-    Hand hand;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string part = text.substr(begin, end - begin);
-        const std::size_t equals = std::min(part.find('='), part.size());
-        const std::string name = part.substr(0, equals);
-        std::string value = part.substr(std::min(equals + 1, part.size()));
-        const bool percent = value.ends_with('%');
-        if (percent) value.pop_back();
-        const auto read = number(value);
-        if (!read || *read < 0.0 || *read > 100.0 || percent != (name == "speed"))
-            throw UsageError(
-                fmt::format("--hand {}: expected aim=DEGREES,speed=PERCENT%,tip=RADII,elevation=DEGREES, "
-                            "each a standard deviation of at least 0",
-                            harmless(text)));
-        if (name == "aim")
-            hand.aim_deg = *read;
-        else if (name == "speed")
-            hand.speed = *read / 100.0;
-        else if (name == "tip")
-            hand.tip = *read;
-        else if (name == "elevation")
-            hand.elevation_deg = *read;
-        else
-            throw UsageError(fmt::format("--hand {}: there is no {}; expected aim, speed, tip or elevation",
-                                         harmless(text), in_quotes(name)));
-        begin = end + 1;
-    }
-    return hand;
 }
 
 std::vector<Solution> search(const Scene& scene, const std::string& name, const std::string& want,

@@ -5,42 +5,22 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "base/hand.h"
 #include "base/options.h"
-#include "carom/engine/variation.h"
 #include "carom/games/solve.h"
 
 namespace carom::tools {
 
 /// The options of a search.
 struct SearchArgs {
-    std::string hand = "aim=0.2,speed=3%,tip=0.02", output;
+    std::string hand = kHand, output;
     std::uint64_t shots = 400000, seed = 1;
     int jobs = 0, best = 3;
     bool json = false;
 };
 void add_search(Options& command, SearchArgs& args);
-
-/// "aim=0.2,speed=3%,tip=0.02". @throws UsageError
-games::Hand read_hand(const std::string& text);
-
-/// The scene with racks as they come out each time, if it has one. @param make  the variation with these
-/// rules
-template <class Make>
-std::vector<Scene> read_layouts(int count, Make&& make) {
-    std::vector<Scene> layouts;
-    try {
-        const Variation racks = make(std::vector<std::string>{"rack.seed=integer(1,1000000000)"});
-        for (int i = 0; count > 1 && i < count; ++i)
-            if (auto shot = racks.shot(static_cast<std::uint64_t>(i)); shot.scene)
-                layouts.push_back(std::move(*shot.scene));
-    } catch (const VariationError&) {
-        // There is no rack: the balls lie where they are.
-    }
-    return layouts;
-}
 
 /// Searches with a progress bar. @param name  of the scene, for messages  @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Scene& scene, const std::string& name, const std::string& want,

@@ -16,6 +16,7 @@
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "carom/engine/printable.h"
+#include "carom/games/break.h"
 #include "commands/solve/search.h"
 
 namespace carom::tools {
@@ -52,10 +53,6 @@ Choice read_choice(const std::string& text) {
         "--vary {}: expected KEY=uniform(a,b) with a <= b, as in cue.speed=uniform(1,5)", harmless(text)));
 }
 
-std::vector<Choice> default_choices() {
-    return {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}, {"cue.offset.height", -0.4, 0.4}};
-}
-
 std::string joined(const std::vector<std::string>& parts) {
     std::string whole;
     for (const std::string& part : parts) whole += (whole.empty() ? "(" : " and (") + part + ")";
@@ -75,13 +72,12 @@ int run(const SolveArgs& args) {
     const Plan plan = plan_scene(args.scene);
     std::vector<Choice> choices;
     for (const std::string& text : args.vary) choices.push_back(read_choice(text));
-    if (choices.empty()) choices = default_choices();
+    if (choices.empty()) choices = games::default_choices();
     std::optional<games::Game> game;
     if (!args.game.empty()) game = game_of(args.game);
     const std::string want = joined(args.want);
-    const std::vector<Scene> layouts = read_layouts(args.layouts, [&](const std::vector<std::string>& rules) {
-        return Variation(args.scene, rules, args.search.seed);
-    });
+    const std::vector<Scene> layouts =
+        games::racks_of(read_scene_text(args.scene), args.scene, args.layouts, args.search.seed);
     const std::vector<Solution> found =
         search(plan.scene, args.scene, want, game, choices, layouts, args.search);
     if (!args.search.output.empty()) write_best(args.search.output, found[0], want, args.search);

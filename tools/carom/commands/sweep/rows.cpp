@@ -4,7 +4,6 @@
 
 #include <future>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -30,15 +29,11 @@ void append_value(std::string& row, const SweepColumn& column, const ColumnValue
         append_csv(row, std::string_view(values.texts[static_cast<std::size_t>(values.places[shot])]));
 }
 
-/// A shot that ended before its balls were at rest has no value of a measure that judges whole shots.
 games::MeasureValue value_of(const games::Measure& measure, const Record& record) {
     try {
-        return measure.of(record);
+        return measure.in_table(record);
     } catch (const std::invalid_argument& refused) {
-        if (record.stopped == StopReason::kAtRest)
-            throw UsageError(fmt::format("--measure {}: {}", measure.text(), refused.what()));
-        if (measure.is_number()) return std::numeric_limits<double>::quiet_NaN();
-        return std::vector<std::string>();
+        throw UsageError(fmt::format("--measure {}: {}", measure.text(), refused.what()));
     }
 }
 

@@ -35,7 +35,7 @@ namespace {
 struct SweepArgs {
     std::string scene;
     std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
-    std::uint64_t count = 0;
+    std::optional<long> count;      ///< nothing: every point of the grids once
     std::uint64_t seed = 1;
     int jobs = 0;
     std::string shard;  ///< "2/4"; empty: all
@@ -48,8 +48,6 @@ struct SweepArgs {
 
 using Clock = std::chrono::steady_clock;
 
-/// Doubles, and programs that read tables as doubles, count this far.
-constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 constexpr std::uint64_t kMostShards = 1000000;
 /// A block of shots grows until it takes this long, which is how often the progress moves.
 constexpr std::chrono::milliseconds kBlockTime(100);
@@ -158,11 +156,13 @@ Variation read_variation(const SweepArgs& args) {
 }
 
 int run(const SweepArgs& args) {
-    if (args.count < 1 || args.count > kMostShots)
+    if (args.count && (*args.count < 1 || *args.count > static_cast<long>(kMostShots)))
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
-    const ShotRange range = shard_range(args.shard, args.count);
     const kernel::Isa isa = chosen_isa();
     const Variation variation = read_variation(args);
+    const std::uint64_t count = args.count ? static_cast<std::uint64_t>(*args.count) : variation.grid();
+    if (count == 0) throw UsageError("--count is missing; only a grid knows how many shots it has");
+    const ShotRange range = shard_range(args.shard, count);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
     const std::vector<games::Measure> measures = read_measures(args, variation.base());
@@ -226,7 +226,9 @@ void add_sweep(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     Option& vary = command.option("--vary", &args.vary, "KEY=DISTRIBUTION",
                                   "What varies and how, once per key: uniform(a,b), normal(sd) around the "
-                                  "scene's value, normal(mean,sd), integer(a,b) or list(v,...)");
+                                  "scene's value, normal(mean,sd), integer(a,b), list(v,...), or in steps: "
+                                  "grid(a,b,n), n values from a to b, and grid(list(v,...)); several grids "
+                                  "make a product, the last one fastest");
     vary.required = true;
     command.option("--measure", &args.measures, "EXPRESSION",
                    "A column more, and a line of the summary: any measure or expression that carom describe "
@@ -234,7 +236,7 @@ void add_sweep(Options& program) {
     command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
         .one_of(game_names());
     command.flag("--json", args.json, "Print the summary as JSON (default: off)");
-    command.option("--count", &args.count, "N", "Number of shots").required = true;
+    command.option("--count", &args.count, "N", "Number of shots (default: every point of the grids once)");
     command.option("--seed", &args.seed, "S", "Seed of all draws");
     command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
         .in(0, 256);

@@ -1,0 +1,42 @@
+// The derivatives of impacts. The models themselves are computed, at states that differ along the derivatives
+// of the incoming state: by differences of four points, whose step adapts until two sizes of it agree.
+#pragma once
+
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/cushion.h"
+#include "tangent/leg.h"
+
+namespace carom::tangent {
+
+/// What all impacts of a replay share.
+struct Laws {
+    const Plan& plan;
+    const Numbers& numbers;
+    double error = 0.0;  ///< the largest disagreement so far, relative to the largest derivative
+
+    bool flights() const { return plan.in_force(Effect::kAirborne); }
+};
+
+/// Two balls in the plane. `apart`: from the centre of ball 1 to that of ball 2. v_z is not read.
+/// @throws TangentError if the impact has no derivative
+void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State& s2);
+
+/// Two balls as free bodies.
+struct Lies {
+    bool one, two;
+};
+void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
+                  State& s2);
+
+/// A ball on the cloth at a nose; it may hop.
+/// @param normal  into the table
+void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,
+                  const Dual& height, bool hops, State& s);
+
+/// A ball in the air at a nose. `apart`: from the nose to the centre.
+void meet_nose_in_air(Laws& laws, int ball, const CushionModelInfo& model, const Dual3& apart, State& s);
+
+/// A ball that meets the cloth from above.
+void meet_cloth(Laws& laws, int ball, State& s);
+
+}  // namespace carom::tangent

@@ -1,0 +1,176 @@
+// How far the inputs may move before the order of events changes: the room of every event that happens, and
+// of every contact that nearly does.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/tangents.h"
+#include "contact/roots.h"
+#include "tangent/replay.h"
+
+namespace carom::tangent {
+namespace {
+
+// [-] Places on a leg at which a gap is looked at, before the smallest one is refined by as many halvings.
+constexpr int kPlaces = 12, kHalvings = 40;
+// [m] What is nearer touches: its event is in the record.
+constexpr double kTouching = 1e-9;
+
+// [s] Around an event: the gap is smallest at the event only if it is larger before and after it.
+constexpr double kAround = 1e-6;
+
+/// The time of the smallest gap.
+template <class GapAt>
+double nearest_time(const GapAt& gap, double from, double to) {
+    double best = from, least = std::numeric_limits<double>::infinity();
+    const double step = (to - from) / kPlaces;
+    for (int k = 0; k <= kPlaces; ++k) {
+        const double t = k == kPlaces ? to : from + k * step, g = gap(t).x;
+        if (!(g < least)) continue;
+        least = g;
+        best = t;
+    }
+    double low = std::max(from, best - step), high = std::min(to, best + step);
+    for (int k = 0; k < kHalvings; ++k) {
+        const double third = (high - low) / 3.0;
+        if (gap(low + third).x < gap(high - third).x)
+            high -= third;
+        else
+            low += third;
+    }
+    const double t = 0.5 * (low + high);
+    return gap(t).x < least ? t : best;
+}
+
+}  // namespace
+
+// The smallest gap of two bodies between two times, unless they touch there.
+void Replay::add_near(std::vector<Room>& rooms, const Pair& pair, const GapOf& gap, const Dual& from,
+                      const Dual& to, const std::string& what) const {
+    if (!(to.x > from.x)) return;
+    const auto at = [&](const Dual& t) {
+        return gap(pair.leg->at(t), pair.other_leg != nullptr ? pair.other_leg->at(t) : State());
+    };
+    const auto any_time = [&](double t) {
+        return gap(leg_at(pair.ball, t).at(t), pair.other >= 0 ? leg_at(pair.other, t).at(t) : State()).x;
+    };
+    const double t = nearest_time(at, from.x, to.x), close = 1e-9 * (to.x - from.x);
+    const bool first = t - from.x <= close, last = to.x - t <= close;
+    // A gap that is smallest when an event changes the motion moves with the event.
+    const Dual left = at(first ? from : last ? to : Dual(t));
+    if (!(left.x > kTouching)) return;
+    if ((first || last) && ((t > kAround && any_time(t - kAround) < left.x) ||
+                            (t + kAround < until_ && any_time(t + kAround) < left.x)))
+        return;
+    rooms.push_back({left, fmt::format("{} at {:.3f} s", what, t)});
+}
+
+std::vector<Room> Replay::rooms() const {
+    std::vector<Room> rooms = rooms_;
+    const double end = until_;
+    const auto ends = [end](const std::vector<Leg>& legs, std::size_t k) {
+        return k + 1 < legs.size() ? legs[k + 1].start : Dual(end);
+    };
+    const auto moves = [](const Leg& leg) {
+        return leg.from.v[0].x != 0.0 || leg.from.v[1].x != 0.0 || flies(leg.state);
+    };
+    for (std::size_t i = 0; i < balls_.size(); ++i) {
+        const std::vector<Leg>& legs = balls_[i].legs;
+        const int ball = static_cast<int>(i);
+        for (std::size_t k = 0; k < legs.size(); ++k) {
+            const Leg& leg = legs[k];
+            if (is_gone(leg.state)) continue;
+            const Dual to = ends(legs, k);
+            // Its own events change places with the next one.
+            if (k + 1 < legs.size() && to.x > leg.start.x) {
+                const double at = to.x;
+                rooms.push_back({to - leg.start,
+                                 fmt::format("two events of {} change places at {:.3f} s", who(ball), at)});
+                const Dual left = leg.start + leg.duration - to;
+                if (left.x > 1e-9 && left.x < kNever)
+                    rooms.push_back(
+                        {left, fmt::format("{} changes its motion before its next event at {:.3f} s",
+                                           who(ball), at)});
+            }
+            if (is_off_cloth(leg.state)) continue;
+            const Dual& R = leg.R;
+            for (std::size_t j = 0; moves(leg) && j < numbers_.cushions.size(); ++j) {
+                const Numbers::Line& line = numbers_.cushions[j];
+                const auto gap = [&](const State& s, const State&) {
+                    const Dual2 out = planar(s.r) - line.from;
+                    const Dual foot = dot(line.direction, out), side = cross(line.direction, out);
+                    if (foot.x < 0.0 || foot.x > line.length.x) return Dual(kNever);
+                    return (side.x < 0.0 ? -side : side) - (R - line.inset);
+                };
+                add_near(rooms, {ball, &leg}, gap, leg.start, to,
+                         who(ball) + " meets " + plan_.scene.table.cushions[j].id);
+            }
+            const auto round = [&](const Numbers::Round& part, const Dual& reach, const std::string& what) {
+                add_near(
+                    rooms, {ball, &leg},
+                    [&](const State& s, const State&) { return length(planar(s.r) - part.center) - reach; },
+                    leg.start, to, who(ball) + what);
+            };
+            for (std::size_t j = 0; moves(leg) && j < numbers_.noses.size(); ++j) {
+                const Nose& nose = plan_.geometry.noses[j];
+                const Table& table = plan_.scene.table;
+                round(numbers_.noses[j], R + numbers_.noses[j].radius - numbers_.noses[j].inset,
+                      " meets " + (nose.type == EventType::kBallJaw
+                                       ? table.jaws[nose.index].id
+                                       : "the end of " + table.cushions[nose.index].id));
+            }
+            for (std::size_t j = 0; moves(leg) && j < numbers_.pockets.size(); ++j)
+                round(numbers_.pockets[j], numbers_.pockets[j].radius,
+                      " falls into " + plan_.scene.table.pockets[j].id);
+            for (std::size_t j = 0; j < balls_.size(); ++j) {
+                const std::vector<Leg>& others = balls_[j].legs;
+                for (std::size_t l = 0; j != i && l < others.size(); ++l) {
+                    const Leg& other = others[l];
+                    // Two that move are looked at once.
+                    if (!moves(leg) || (moves(other) && j < i) || is_off_cloth(other.state) ||
+                        is_gone(other.state))
+                        continue;
+                    const Dual from = other.start.x > leg.start.x ? other.start : leg.start;
+                    const Dual stop = ends(others, l);
+                    add_near(
+                        rooms, {ball, &leg, static_cast<int>(j), &other},
+                        [&](const State& s, const State& o) {
+                            return length(planar(s.r) - planar(o.r)) - (R + other.R);
+                        },
+                        from, stop.x < to.x ? stop : to, who(ball) + " meets " + who(static_cast<int>(j)));
+                }
+            }
+        }
+    }
+    return rooms;
+}
+
+}  // namespace carom::tangent
+
+namespace carom {
+
+std::vector<Margin> Tangents::margins() const {
+    std::vector<Margin> margins(inputs_.size(), {kNever, kNever, "", ""});
+    for (std::size_t first = 0; first < inputs_.size(); first += tangent::kLanes) {
+        for (const tangent::Room& room : parts_->of(first).rooms()) {
+            for (std::size_t i = first; i < std::min(inputs_.size(), first + tangent::kLanes); ++i) {
+                const double rate = room.left.d[i - first],
+                             move = std::max(0.0, room.left.x) / std::abs(rate);
+                Margin& margin = margins[i];
+                double& bound = rate < 0.0 ? margin.up : margin.down;
+                if (!(move < bound)) continue;
+                bound = move;
+                (rate < 0.0 ? margin.up_why : margin.down_why) = room.what;
+            }
+        }
+    }
+    return margins;
+}
+
+}  // namespace carom

@@ -1,0 +1,295 @@
+#include "carom/games/fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/scene_number.h"
+#include "carom/engine/simulate.h"
+#include "carom/engine/tangents.h"
+
+namespace carom::games {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+// [noise] Residuals beyond this count linearly: 95 % as efficient as least squares if there are no outliers
+// (Huber, 1964). The noise is the median residual times kMedian, as of a normal distribution.
+constexpr double kHuber = 1.345, kMedian = 1.4826;
+// [m] No camera is better; it keeps the loss defined if the model fits exactly.
+constexpr double kLeastNoise = 1e-9;
+// [m] A number whose whole size moves the balls by less moves nothing but rounding.
+constexpr double kUnmoved = 1e-9;
+// [noise] An outlier.
+constexpr double kOutlier = 3.0;
+// Damping: at first, and its factors after a step that helps and one that does not.
+constexpr double kDamping = 1e-4, kLess = 0.1, kMoreDamped = 10.0, kMostDamping = 1e12;
+// [-] A step is the last if it lowers the loss by less than this share, or moves all by less than this many
+// standard deviations.
+constexpr double kDone = 1e-9, kStill = 1e-4;
+// [-] Correlation at which two numbers are told to look alike; share of the largest eigenvalue below which a
+// direction is not determined at all.
+constexpr double kAlike = 0.98, kNothing = 1e-12;
+
+double median(std::vector<double> list) {
+    if (list.empty()) return 0.0;
+    const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+    std::nth_element(list.begin(), middle, list.end());
+    return *middle;
+}
+
+/// A shot, and how far it is from the tracks.
+struct Trial {
+    std::vector<double> values;
+    Scene scene;
+    Plan plan;
+    Record record;
+    VectorXd residuals;         ///< two per point; 0 if the point does not count
+    std::vector<bool> counted;  ///< per point
+};
+
+class Fitter {
+  public:
+    Fitter(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,
+           kernel::Isa isa)
+        : scene_(scene), points_(points), options_(options), isa_(isa) {
+        if (points.empty()) throw std::invalid_argument("there are no tracked places");
+        if (options.vary.empty()) throw std::invalid_argument("there is nothing to vary; name a number");
+        if (2 * points.size() < options.vary.size())
+            throw std::invalid_argument("there are more numbers to vary than tracked coordinates");
+        for (const std::string& key : options.vary) numbers_.emplace_back(scene, key);
+        for (const TrackPoint& point : points) last_ = std::max(last_, point.time);
+    }
+
+    Fit run() {
+        Fit result;
+        std::vector<double> values;
+        for (const SceneNumber& number : numbers_) values.push_back(number.value(scene_));
+        result.start = values;
+        Trial now = *simulate_at(values, true);
+        MatrixXd slopes = slopes_of(now);
+        double damping = kDamping;
+        while (shots_ < options_.most_shots && !result.converged) {
+            const double noise = noise_of(now);
+            const VectorXd weights = weights_of(now, noise);
+            const MatrixXd normal = slopes.transpose() * weights.asDiagonal() * slopes;
+            const VectorXd pull = slopes.transpose() * weights.asDiagonal() * now.residuals;
+            const VectorXd step = damped_step(normal, pull, damping);
+            std::vector<double> moved = now.values;
+            for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += step[static_cast<Eigen::Index>(k)];
+            const double loss = loss_of(now, noise);
+            std::optional<Trial> trial = simulate_at(moved, false);
+            const double after = trial ? loss_of(*trial, noise) : std::numeric_limits<double>::infinity();
+            const bool still = std::sqrt(step.dot(normal * step)) < kStill * noise;
+            if (after <= loss) {
+                try {
+                    slopes = slopes_of(*trial);
+                } catch (const TangentError& error) {
+                    result.trouble = error.what();
+                    break;
+                }
+                result.converged = still || loss - after <= kDone * loss || after < kDone;
+                now = std::move(*trial);
+                damping *= kLess;
+            } else {
+                // No shorter step helps: rounding, or a change in the order of events, decides.
+                if (still || damping > kMostDamping) result.converged = still;
+                if (still || damping > kMostDamping) break;
+                damping *= kMoreDamped;
+            }
+        }
+        if (!result.converged && result.trouble.empty())
+            result.trouble = shots_ >= options_.most_shots
+                                 ? fmt::format("no end after {} shots", shots_)
+                                 : "no step brings it closer: the order of events may be another one";
+        finish(now, slopes, result);
+        return result;
+    }
+
+  private:
+    /// Nothing if the values are out of their ranges or make no valid scene, unless they must.
+    std::optional<Trial> simulate_at(const std::vector<double>& values, bool must) {
+        Scene scene = scene_;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            if (!must && !contains(numbers_[k].row().range, values[k])) return std::nullopt;
+            numbers_[k].put(scene, values[k]);
+        }
+        try {
+            validate(scene);
+            ++shots_;
+            Plan plan = make_plan(scene, isa_);
+            Record record = simulate(plan, {.until = last_ + 1e-6});
+            Trial trial{values, scene, std::move(plan), std::move(record), {}, {}};
+            compare(trial);
+            return trial;
+        } catch (const SceneError&) {
+            if (must) throw;
+            return std::nullopt;
+        }
+    }
+
+    void compare(Trial& trial) const {
+        trial.residuals = VectorXd::Zero(static_cast<Eigen::Index>(2 * points_.size()));
+        trial.counted.assign(points_.size(), false);
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const BallState state = trial.record.state_at(points_[i].ball, points_[i].time);
+            trial.counted[i] = !is_gone(state.state);
+            if (trial.counted[i])
+                trial.residuals.segment<2>(static_cast<Eigen::Index>(2 * i)) =
+                    planar(state.position) - points_[i].place;
+        }
+    }
+
+    MatrixXd slopes_of(const Trial& trial) const {
+        const Tangents tangents(trial.plan, trial.record, options_.vary);
+        MatrixXd slopes = MatrixXd::Zero(trial.residuals.size(), static_cast<Eigen::Index>(numbers_.size()));
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            for (std::size_t k = 0; trial.counted[i] && k < numbers_.size(); ++k)
+                slopes.block<2, 1>(static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(k)) =
+                    planar(tangents.state_at(points_[i].ball, points_[i].time, k).position);
+        return slopes;
+    }
+
+    static double noise_of(const Trial& trial) {
+        std::vector<double> sizes;
+        for (Eigen::Index i = 0; i < trial.residuals.size(); ++i)
+            if (trial.counted[static_cast<std::size_t>(i / 2)]) sizes.push_back(std::abs(trial.residuals[i]));
+        return std::max(kLeastNoise, kMedian * median(std::move(sizes)));
+    }
+
+    static VectorXd weights_of(const Trial& trial, double noise) {
+        return trial.residuals.unaryExpr([noise](double r) {
+            const double size = std::abs(r);
+            return size <= kHuber * noise ? 1.0 : kHuber * noise / size;
+        });
+    }
+
+    /// Mean over what counts, so that a ball in a pocket is not a better fit than one that is seen.
+    static double loss_of(const Trial& trial, double noise) {
+        double sum = 0.0;
+        std::size_t count = 0;
+        for (Eigen::Index i = 0; i < trial.residuals.size(); ++i) {
+            if (!trial.counted[static_cast<std::size_t>(i / 2)]) continue;
+            const double r = std::abs(trial.residuals[i]) / noise;
+            sum += r <= kHuber ? 0.5 * r * r : kHuber * (r - 0.5 * kHuber);
+            ++count;
+        }
+        return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::infinity();
+    }
+
+    /// Units of the numbers that make the diagonal of the normal matrix 1, or 0 if nothing depends on one.
+    VectorXd units_of(const MatrixXd& normal) const {
+        VectorXd units = VectorXd::Zero(normal.rows());
+        for (std::size_t k = 0; k < numbers_.size(); ++k) {
+            const double value = std::abs(numbers_[k].value(scene_)), size = value > 0.0 ? value : 1.0;
+            const auto i = static_cast<Eigen::Index>(k);
+            const double slope = std::sqrt(normal(i, i));
+            if (slope * size > kUnmoved) units[i] = 1.0 / slope;
+        }
+        return units;
+    }
+
+    VectorXd damped_step(const MatrixXd& normal, const VectorXd& pull, double damping) const {
+        const VectorXd units = units_of(normal);
+        MatrixXd scaled = units.asDiagonal() * normal * units.asDiagonal();
+        scaled.diagonal().array() += damping + (units.array() == 0.0).cast<double>();
+        return -(units.asDiagonal() * scaled.ldlt().solve(units.asDiagonal() * pull));
+    }
+
+    void finish(const Trial& now, const MatrixXd& slopes, Fit& result) const {
+        result.values = now.values;
+        result.scene = now.scene;
+        result.shots = shots_;
+        result.noise = noise_of(now);
+        std::size_t within = 0, coordinates = 0;
+        double squares = 0.0, pulls = 0.0;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            const Vec2 r = now.residuals.segment<2>(static_cast<Eigen::Index>(2 * i));
+            result.residuals.push_back(r);
+            if (!now.counted[i]) continue;
+            ++result.points;
+            for (const double x : r) {
+                ++coordinates;
+                squares += x * x;
+                const double pulled = std::min(std::abs(x), kHuber * result.noise);
+                pulls += pulled * pulled;
+                within += std::abs(x) <= kHuber * result.noise ? 1 : 0;
+                result.outliers += std::abs(x) > kOutlier * result.noise ? 1 : 0;
+            }
+        }
+        result.rms = coordinates > 0 ? std::sqrt(squares / static_cast<double>(coordinates)) : 0.0;
+        // Huber's covariance: (sum of squared pulls / (n - k)) / (share within)^2 times the inverse.
+        const double n = static_cast<double>(coordinates), k = static_cast<double>(numbers_.size());
+        const double share = static_cast<double>(within) / std::max(1.0, n);
+        const double variance = pulls / std::max(1.0, n - k) / (share * share);
+        covariance_of(slopes, variance, result);
+    }
+
+    void covariance_of(const MatrixXd& slopes, double variance, Fit& result) const {
+        const MatrixXd normal = slopes.transpose() * slopes;
+        const VectorXd units = units_of(normal);
+        const MatrixXd scaled = units.asDiagonal() * normal * units.asDiagonal();
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(scaled);
+        const Eigen::Index count = normal.rows();
+        MatrixXd inverse = MatrixXd::Zero(count, count);
+        Eigen::ArrayXd lost = (units.array() == 0.0).cast<double>();
+        for (Eigen::Index m = 0; m < count; ++m) {
+            const VectorXd mode = modes.eigenvectors().col(m);
+            if (modes.eigenvalues()[m] > kNothing * static_cast<double>(count))
+                inverse += mode * mode.transpose() / modes.eigenvalues()[m];
+            else
+                lost += mode.array().square();
+        }
+        result.covariance = variance * (units.asDiagonal() * inverse * units.asDiagonal());
+        const std::vector<std::string>& keys = options_.vary;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            if (units[i] == 0.0)
+                result.warnings.push_back(fmt::format("{} moves nothing that was tracked", keys[i]));
+            for (Eigen::Index j = 0; j < i; ++j) {
+                const double correlation =
+                    inverse(i, j) / std::sqrt(std::max(1e-300, inverse(i, i) * inverse(j, j)));
+                const bool both_lost = lost[i] > 1e-6 && lost[j] > 1e-6 && units[i] > 0.0 && units[j] > 0.0;
+                if (std::abs(correlation) > kAlike || both_lost)
+                    result.warnings.push_back(fmt::format(
+                        "the tracks hardly tell {} from {} (correlation {:.4f}); vary only one of "
+                        "them, or track another shot",
+                        keys[j], keys[i], both_lost ? 1.0 : correlation));
+            }
+        }
+        for (Eigen::Index i = 0; i < count; ++i) {
+            if (!(lost[i] > 1e-6)) continue;
+            result.covariance.row(i).setConstant(std::numeric_limits<double>::infinity());
+            result.covariance.col(i).setConstant(std::numeric_limits<double>::infinity());
+        }
+    }
+
+    const Scene& scene_;
+    const std::vector<TrackPoint>& points_;
+    const FitOptions& options_;
+    kernel::Isa isa_;
+    std::vector<SceneNumber> numbers_;
+    double last_ = 0.0;
+    int shots_ = 0;
+};
+
+}  // namespace
+
+double Fit::deviation(std::size_t k) const {
+    const auto i = static_cast<Eigen::Index>(k);
+    return std::sqrt(covariance(i, i));
+}
+
+Fit fit(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,
+        kernel::Isa isa) {
+    return Fitter(scene, points, options, isa).run();
+}
+
+}  // namespace carom::games

@@ -1,0 +1,183 @@
+"""Measures of shots, and the search for a shot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NamedTuple
+
+from carom import _carom
+from carom._arguments import checked
+from carom._names import GameName, RackName, TableName
+from carom._scene import Scene, SceneLike, as_scene
+
+
+class Measure(NamedTuple):
+    """A measure that expressions may use: its name, arguments ("BALL", "GAME", ...), unit, and meaning.
+
+    unit: "m", "s", ...; "truth" for 0 or 1, "text", "list"
+    """
+
+    name: str
+    arguments: str
+    unit: str
+    what: str
+
+
+def measures() -> list[Measure]:
+    """The measures of a shot, those of `carom describe measures`. Expressions combine them: `Record.measure`,
+    `carom.sweep.columns(measures=...)` and `carom.solve` take `'"9" in pocketed and not scratch'`."""
+    return [Measure(*row) for row in _carom.measures()]
+
+
+class Hand(NamedTuple):
+    """Standard deviations of a player's errors.
+
+    aim_deg: of the aim [degrees]
+    speed: of the cue's speed, as a part of it
+    tip: of the tip, sideways and up [ball radii]
+    elevation_deg: of the elevation [degrees]
+    """
+
+    aim_deg: float = _carom.standard_hand()[0]
+    speed: float = _carom.standard_hand()[1]
+    tip: float = _carom.standard_hand()[2]
+    elevation_deg: float = _carom.standard_hand()[3]
+
+
+class Fall(NamedTuple):
+    """How often a ball fell into a pocket, per shot."""
+
+    ball: str
+    pocket: str
+    share: float
+
+
+class Cost(NamedTuple):
+    """The share of successes if an input is off by `by` [unit]: less, and more."""
+
+    input: str
+    by: float
+    unit: str
+    less: float
+    more: float
+
+
+class Solution(NamedTuple):
+    """A shot that does what is wanted, and how surely.
+
+    success: share of successes of a hand with errors, in shots that the search has not seen
+    interval: 95 of 100 such intervals hold the true share
+    shots: how many shots that is
+    values: by key, what the search chose
+    falls: which ball falls where, the most frequent first
+    costs: what errors of one input cost
+    scene: the shot as it is meant
+    """
+
+    success: float
+    interval: tuple[float, float]
+    shots: int
+    values: dict[str, float]
+    falls: list[Fall]
+    costs: list[Cost]
+    scene: Scene
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{key} {value:.4g}" for key, value in self.values.items())
+        low, high = self.interval
+        success = f"{self.success:.3f} ({low:.3f} to {high:.3f}) of {self.shots} shots"
+        return f"<carom.Solution: success {success}; {values}>"
+
+
+def _solutions(keys: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> list[Solution]:
+    return [
+        Solution(success, interval, shots, dict(zip(keys, values)), [Fall(*fall) for fall in falls],
+                 [Cost(*cost) for cost in costs], Scene._of(scene))
+        for success, interval, shots, values, falls, costs, scene in rows]
+
+
+def _limits(shots: int, best: int, seed: int, threads: int) -> None:
+    for name, value, low, high in (("shots", shots, 1000, 10**10), ("best", best, 1, 20),
+                                   ("seed", seed, 0, 2**64 - 1), ("threads", threads, 0, 256)):
+        if not low <= value <= high:
+            raise ValueError(f"{name}={value}: expected {low} to {high}")
+
+
+def _checked_hand(hand: Hand) -> tuple[float, float, float, float]:
+    if not all(0 <= error <= 100 for error in hand):
+        raise ValueError(f"hand={hand}: expected standard deviations from 0 to 100")
+    return hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg
+
+
+@checked
+def solve(
+    scene: SceneLike,
+    want: str,
+    vary: Mapping[str, Sequence[float]] | None = None,
+    *,
+    hand: Hand = Hand(),
+    game: GameName | None = None,
+    layouts: int = 64,
+    shots: int = 400_000,
+    best: int = 3,
+    seed: int = 1,
+    threads: int = 0,
+) -> list[Solution]:
+    """Finds the shots that most surely do what is wanted, under the errors of a hand: `carom solve`.
+
+    want: an expression over `measures()`: '"1" in pocketed and not scratch'
+    vary: what the search may choose, by key: the smallest and the largest value. "hit.1" aims at ball 1: 0 is
+        full, 1 and -1 its edges. The default is aim, speed and height of the tip
+    hand: the errors
+    game: the rules for measures such as "foul"
+    layouts: racks that the shot must cope with, if the scene has a rack
+    shots: how many the search plays
+    best: how many shots of different kinds are returned, the surest first
+    threads: 0 uses one thread per core; the result does not depend on it
+
+    Raises ValueError for an expression, key or range that cannot be used.
+    """
+    _limits(shots, best, seed, threads)
+    if not 1 <= layouts <= 100000:
+        raise ValueError(f"layouts={layouts}: expected 1 to 100000")
+    choices = _carom.default_choices() if vary is None else []
+    for key, ends in (vary or {}).items():
+        if len(ends) != 2:
+            raise ValueError(f"vary: {key}: expected the smallest and the largest value")
+        choices.append((key, float(ends[0]), float(ends[1])))
+    rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
+                        shots, best, seed, threads)
+    return _solutions([key for key, _, _ in choices], rows)
+
+
+@checked
+def best_break(
+    game: RackName = "nine_ball",
+    *,
+    table: TableName = "nine_foot",
+    rack: Literal["template", "triangle"] | float = "template",
+    speed_max: float = 10.0,
+    box: bool = False,
+    hand: Hand = Hand(),
+    shots: int = 400_000,
+    best: int = 3,
+    seed: int = 1,
+    threads: int = 0,
+) -> list[Solution]:
+    """Recommends a break: where from, how full, how hard, and how sure it is: `carom break`.
+
+    rack: how it was made, or the gap between its balls [m]
+    speed_max: the hardest that the player hits: speed of the cue ball [m/s]
+    box: the cue ball at least a diamond from either long rail
+    hand, shots, best, seed, threads: as for `solve`
+
+    Raises ValueError for a game without a break or a number out of range.
+    """
+    _limits(shots, best, seed, threads)
+    gaps = dict(zip(("template", "triangle"), _carom.rack_gaps()))
+    if isinstance(rack, str) and rack not in gaps:
+        raise ValueError(f"rack={rack!r}: expected template, triangle or a gap in m")
+    gap = gaps[rack] if isinstance(rack, str) else float(rack)
+    keys, _, _, rows = _carom.best_break(game, table, gap, float(speed_max), box, _checked_hand(hand),
+                                         shots, best, seed, threads)
+    return _solutions(keys, rows)

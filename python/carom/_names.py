@@ -1,0 +1,20 @@
+"""Names that arguments take, for editors and type checkers. A test holds them to the engine's lists."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+from carom._arguments import may_be
+
+GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three"]
+RackName: TypeAlias = Literal["nine_ball", "ten_ball", "eight_ball"]
+TableName: TypeAlias = Literal["seven_foot", "seven_foot_bar", "eight_foot", "nine_foot", "snooker",
+                               "english_pool", "carom", "carom_ten_foot"]
+CameraName: TypeAlias = Literal["scene", "top", "rail", "player", "follow"]
+OverlayName: TypeAlias = Literal["trails", "events", "spin", "ghost", "clock"]
+BallBallModel: TypeAlias = Literal["mathavan", "inelastic", "elastic"]
+CushionModel: TypeAlias = Literal["han_2005", "mathavan_2010", "stronge", "impulse", "smooth"]
+
+for _name in ("GameName", "RackName", "TableName", "CameraName", "OverlayName", "BallBallModel",
+              "CushionModel"):
+    may_be(_name, "str")

@@ -1,0 +1,202 @@
+// Measures of shots, what events tell, and searches for a shot.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/batch.h"
+#include "carom/engine/event_details.h"
+#include "carom/games/break.h"
+#include "carom/games/measures.h"
+#include "carom/games/solve.h"
+#include "measures.h"
+#include "native.h"
+
+namespace carom::python {
+
+std::optional<games::Game> game_or_none(const std::optional<std::string>& game) {
+    return game ? std::optional(value_of<games::Game>("game", *game)) : std::nullopt;
+}
+
+games::Measure measure_of(const std::string& text, const Scene& scene,
+                          const std::optional<std::string>& game) {
+    try {
+        return {text, scene, game_or_none(game)};
+    } catch (const games::MeasureError& error) {
+        throw nb::value_error(error.what());
+    }
+}
+
+namespace {
+
+using Rows = std::vector<std::tuple<std::string, std::string, std::string>>;
+
+Rows event_columns_rows() {
+    Rows rows;
+    for (const EventColumn& column : event_columns())
+        rows.emplace_back(column.name, column.unit, column.what);
+    return rows;
+}
+
+/// The numbers of event_columns() for every event, event after event.
+void event_details(const NativeRecord& r, const Flat<double>& out) {
+    const std::size_t columns = event_columns().size(), events = r.record->events.size();
+    if (out.size() != columns * events) throw nb::value_error("expected one row for each event");
+    double* const to = out.data();
+    const nb::gil_scoped_release no_gil;
+    for (std::size_t i = 0; i < events; ++i) event_row(*r.record, i, std::span(to + i * columns, columns));
+}
+
+std::vector<std::string> met_names(const NativeRecord& r) {
+    std::vector<std::string> names;
+    for (const Event& event : r.record->events) names.push_back(met_name(*r.record, event));
+    return names;
+}
+
+std::vector<std::tuple<std::string, std::string, std::string, std::string>> measure_rows() {
+    std::vector<std::tuple<std::string, std::string, std::string, std::string>> rows;
+    for (const games::MeasureInfo& m : games::measures())
+        rows.emplace_back(m.name, m.arguments, m.unit, m.what);
+    return rows;
+}
+
+/// The value, and whether it is 0 or 1.
+std::pair<games::MeasureValue, bool> measured(const NativeRecord& r, const NativeScene* other,
+                                              const std::string& text,
+                                              const std::optional<std::string>& game) {
+    const games::Measure measure = measure_of(text, scene_of(r, other), game);
+    try {
+        return {measure.of(*r.record), measure.is_truth()};
+    } catch (const std::invalid_argument& error) {
+        throw nb::value_error(error.what());
+    }
+}
+
+using ChoiceRow = std::tuple<std::string, double, double>;
+/// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
+/// unit, less, more), scene.
+using SolutionRow =
+    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
+               std::vector<std::tuple<std::string, std::string, double>>,
+               std::vector<std::tuple<std::string, double, std::string, double, double>>, NativeScene>;
+
+/// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
+using HandRow = std::tuple<double, double, double, double>;
+
+HandRow standard_hand() {
+    const games::Hand hand;
+    return {hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg};
+}
+
+games::SolveOptions options_of(const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,
+                               int threads) {
+    games::SolveOptions options;
+    std::tie(options.hand.aim_deg, options.hand.speed, options.hand.tip, options.hand.elevation_deg) = hand;
+    options.shots = shots;
+    options.best = best;
+    options.seed = seed;
+    options.threads = threads;
+    return options;
+}
+
+std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, kernel::Isa isa,
+                               games::SolveOptions options) {
+    SignalWatch watch;
+    options.stop = [&watch] { return watch.stopped(); };
+    std::vector<games::Solution> solutions;
+    try {
+        const nb::gil_scoped_release no_gil;
+        solutions = games::solve(scene, want, isa, options);
+    } catch (const BatchStopped&) {
+        throw nb::python_error();
+    } catch (const std::invalid_argument& error) {
+        throw nb::value_error(error.what());
+    }
+    std::vector<SolutionRow> rows;
+    for (games::Solution& solution : solutions) {
+        std::vector<std::tuple<std::string, std::string, double>> falls;
+        for (const games::Solution::Fall& fall : solution.falls)
+            falls.emplace_back(scene.ball[static_cast<std::size_t>(fall.ball)].id,
+                               scene.table.pockets[static_cast<std::size_t>(fall.pocket)].id, fall.share);
+        std::vector<std::tuple<std::string, double, std::string, double, double>> costs;
+        for (const games::Solution::Cost& cost : solution.costs)
+            costs.emplace_back(cost.input, cost.by, cost.unit, cost.less, cost.more);
+        const std::string text = scene_text(solution.scene);
+        const games::Share share = games::share_of(solution.successes, solution.shots);
+        rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,
+                          falls, costs,
+                          NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text});
+    }
+    return rows;
+}
+
+std::vector<SolutionRow> solve(const NativeScene& native, const std::string& want,
+                               const std::optional<std::string>& game, const std::vector<ChoiceRow>& choices,
+                               const HandRow& hand, int layouts, std::size_t shots, std::size_t best,
+                               std::uint64_t seed, int threads) {
+    games::SolveOptions options = options_of(hand, shots, best, seed, threads);
+    for (const auto& [key, low, high] : choices) options.choices.push_back({key, low, high});
+    options.layouts = games::racks_of(native.source, native.scene->file, layouts, seed);
+    return found(*native.scene, measure_of(want, *native.scene, game), chosen_isa(), std::move(options));
+}
+
+/// The keys that were chosen, what was wanted, the speed of the ball for each m/s of the cue, the solutions.
+std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
+    const std::string& game, const std::string& table, double gap, double speed_max, bool box,
+    const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed, int threads) {
+    games::BreakOptions wanted{game, table, gap, speed_max, box, seed};
+    games::BreakSearch search;
+    try {
+        search = games::break_search(wanted, chosen_isa());
+    } catch (const std::invalid_argument& error) {
+        throw nb::value_error(error.what());
+    }
+    games::SolveOptions options = options_of(hand, shots, best, seed, threads);
+    options.choices = search.choices;
+    options.layouts = search.layouts;
+    std::vector<std::string> keys;
+    for (const games::Choice& choice : search.choices) keys.push_back(choice.key);
+    const games::Measure want(search.want, search.scene, search.game);
+    return {keys, search.want, search.ball_speed,
+            found(search.scene, want, chosen_isa(), std::move(options))};
+}
+
+}  // namespace
+
+void add_measures(nb::module_& m) {
+    m.def("event_columns", event_columns_rows);
+    m.def("event_details", event_details, nb::arg("record"), nb::arg("out").noconvert());
+    m.def("met_names", met_names);
+    m.def("measures", measure_rows);
+    m.def("measured", measured, nb::arg("record"), nb::arg("scene").none(), nb::arg("text"),
+          nb::arg("game").none());
+    m.def("solve", solve, nb::arg("scene"), nb::arg("want"), nb::arg("game").none(), nb::arg("choices"),
+          nb::arg("hand"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
+          nb::arg("threads"));
+    m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("gap"), nb::arg("speed_max"),
+          nb::arg("box"), nb::arg("hand"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
+          nb::arg("threads"));
+    m.def("standard_hand", standard_hand);
+    m.def("default_choices", [] {
+        std::vector<ChoiceRow> rows;
+        for (const games::Choice& c : games::default_choices()) rows.emplace_back(c.key, c.low, c.high);
+        return rows;
+    });
+    m.def("break_games",
+          [] { return std::vector<std::string>(games::kBreakGames.begin(), games::kBreakGames.end()); });
+    m.def("rack_gaps", [] { return std::pair(games::kTemplateGap, games::kTriangleGap); });
+}
+
+}  // namespace carom::python

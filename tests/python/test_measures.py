@@ -1,0 +1,206 @@
+"""What events tell, measures, and the search for a shot: the program's numbers, and closed forms."""
+
+from __future__ import annotations
+
+import json
+import math
+import typing
+
+import carom
+import numpy as np
+import pytest
+from carom import _names, sweep
+from conftest import SOURCE, carom_program, refused, rows_of
+
+R = 0.028575
+CUT = math.asin(0.75)
+
+
+def quarter_ball():
+    """The cue ball slides without friction along y and meets ball 1 a quarter full: sin(cut) = 0.75."""
+    far = [0.0, 10 * R]
+    return carom.Scene(
+        table={"cushion": []},
+        balls={"mu_b": 0.0, "e_b": 1.0, "mu_s": 0.0, "mu_r": 0.0, "mu_sp": 0.0},
+        physics={"ball_ball": "elastic"},
+        ball=[{"id": "cue", "position": [0, 0], "velocity": [0, 2.0]},
+              {"id": "1", "position": [far[0] + 2 * R * math.sin(CUT), far[1]]}],
+        stop={"time": 0.4},
+    )
+
+
+def test_an_event_tells_its_place_and_its_numbers_in_closed_form():
+    record = carom.simulate(quarter_ball())
+    hit = list(record.events["type"]).index(record.EVENT_TYPES.index("ball_ball"))
+    told = record.event_details[hit]
+    mass = record.masses[0]
+    assert told["cut_deg"] == pytest.approx(math.degrees(CUT), abs=1e-9)
+    assert told["closing"] == pytest.approx(2.0 * math.cos(CUT), rel=1e-12)
+    assert told["impulse"] == pytest.approx(mass * 2.0 * math.cos(CUT), rel=1e-12)
+    assert told["lost"] == pytest.approx(0.0, abs=1e-15)
+    assert told["point_x"] == pytest.approx(R * math.sin(CUT), rel=1e-12)
+    assert told["b_vy"] == pytest.approx(2.0 * math.cos(CUT) ** 2, rel=1e-12)
+    assert record.met[hit] == "1"
+    assert len(record.event_details) == len(record.events)
+
+
+def test_details_are_those_of_the_program(draw_scene, tmp_path):
+    carom_program("simulate", SOURCE / "scenes/draw.toml", "--events", tmp_path / "e.csv")
+    header, *rows = rows_of(tmp_path / "e.csv")
+    record = carom.simulate(draw_scene)
+    details = record.event_details
+    assert [column.name for column in carom.event_columns()] == list(details.dtype.names)
+    for name in details.dtype.names:
+        at = header.index(name)
+        wanted = [float(row[at]) if row[at] else math.nan for row in rows]
+        np.testing.assert_array_equal(details[name], wanted)
+    frame = record.to_pandas()
+    assert frame["closing"].tolist()[:0] == [] and list(frame["met"]) == record.met
+
+
+def test_measures_are_those_of_the_program():
+    text = carom_program("describe", "measures")
+    listed = carom.measures()
+    assert len(listed) > 20
+    assert all(f"{measure.name}" in text and measure.what in text for measure in listed)
+
+
+def test_a_measure_of_a_record(draw_scene):
+    record = carom.simulate(draw_scene)
+    assert record.measure('"1" in pocketed and not scratch') is True
+    assert record.measure("pocketed") == ["1"]
+    states = record.states(np.linspace(0, record.duration, 20001))[:, 0, 0, :2]
+    path = np.linalg.norm(np.diff(states, axis=0), axis=1).sum()
+    assert record.measure("travel(cue)") == pytest.approx(path, rel=1e-6)
+    broken = carom.simulate(carom.scenes.load("nine_ball_break"))
+    judged = carom.games.judge(carom.games.new_game("nine_ball"), broken)
+    assert broken.measure("foul", game="nine_ball") == [foul.name for foul in judged.fouls]
+    with pytest.raises(ValueError, match="nine_ball needs it"):
+        record.measure("foul", game="nine_ball")
+    refused(ValueError, record.measure, ("potted", "potted"), ("foul", "foul"),
+            ({"measure": "foul", "game": "chess"}, 'no game "chess"; expected one of eight_ball'))
+
+
+def test_measures_are_columns_of_sweeps(draw_scene, tmp_path):
+    rules, measures = ["cue.aim_deg=normal(1)"], ['"1" in pocketed', "travel(cue)", "first_hit"]
+    words = [word for m in measures for word in ("--measure", m)]
+    carom_program("sweep", SOURCE / "scenes/draw.toml", "--vary", rules[0], "--count", 50, *words, "-o",
+                  tmp_path / "s.csv")
+    header, *rows = rows_of(tmp_path / "s.csv")
+    columns = sweep.columns(draw_scene, rules, 50, measures=measures)
+    assert list(columns) == header
+    for name in measures:
+        at = header.index(name)
+        wanted = [row[at] for row in rows]
+        got = columns[name]
+        assert wanted == got if isinstance(got, list) else [float(text) for text in wanted] == got.tolist()
+    assert 0 < columns['"1" in pocketed'].mean() < 1
+    refused(ValueError, None, (lambda: sweep.columns(draw_scene, rules, 5, measures=["foul"]), "foul"),
+            (lambda: sweep.columns(draw_scene, rules, 5, measures=["no"]), "no"))
+
+
+def test_a_plan_keeps_its_measures(draw_scene, tmp_path):
+    pytest.importorskip("pyarrow")
+    plan = sweep.plan(draw_scene, ["cue.aim_deg=normal(1)"], 40, shard=20, measures=["travel(cue)"])
+    plan.save(tmp_path / "p.json")
+    assert sweep.Plan.load(tmp_path / "p.json") == plan
+    plain = sweep.plan(draw_scene, ["cue.aim_deg=normal(1)"], 40, shard=20)
+    assert "measures" not in json.loads(plain.text()) and plain.id != plan.id
+    sweep.run(plan, tmp_path / "s")
+    whole = sweep.columns(draw_scene, ["cue.aim_deg=normal(1)"], 40, measures=["travel(cue)"])
+    rows = sweep.open(tmp_path / "s").to_table()
+    assert rows.column("travel(cue)").to_pylist() == whole["travel(cue)"].tolist()
+
+
+def test_solve_finds_the_pot(draw_scene):
+    vary = {"cue.aim_deg": (120, 150), "cue.speed": (2, 2.5)}
+    best, *_ = carom.solve(draw_scene, '"1" in pocketed and not scratch', vary, shots=3000)
+    assert best.values["cue.aim_deg"] == pytest.approx(135, abs=2)
+    assert best.interval[0] <= best.success <= best.interval[1] and best.success > 0.5
+    assert best.falls[0].ball == "1"
+    assert carom.simulate(best.scene).measure('"1" in pocketed') is True
+    rules = ["--vary", "cue.aim_deg=uniform(120,150)", "--vary", "cue.speed=uniform(2,2.5)"]
+    told = json.loads(carom_program("solve", SOURCE / "scenes/draw.toml", "--want",
+                                    '"1" in pocketed and not scratch', *rules, "--shots", 3000, "--json"))
+    assert told["solutions"][0]["values"] == best.values
+    assert told["solutions"][0]["interval"] == list(best.interval)
+    assert len(repr(best).splitlines()) <= 10
+    refused(ValueError, lambda **more: carom.solve(draw_scene, "scratch", **more),
+            ({"vary": {"cue.speed": [1]}}, "vary: cue.speed: expected the smallest"),
+            ({"vary": {"cue.speed": (2, 1)}}, "expected a range from a to b"),
+            ({"vary": {"cue.sped": (1, 2)}}, "cue.sped"),
+            ({"shots": 10}, "shots=10: expected 1000 to"),
+            ({"hand": carom.Hand(aim_deg=-1)}, "expected standard deviations"))
+
+
+def test_a_break():
+    best, *_ = carom.best_break("ten_ball", shots=1000, best=1)
+    told = json.loads(carom_program("break", "ten_ball", "--shots", 1000, "--best", 1, "--json"))
+    assert told["solutions"][0]["values"] == best.values
+    refused(ValueError, lambda **more: carom.best_break(**more), ({"game": "chess"}, 'no break of "chess"'),
+            ({"speed_max": 50.0}, "1 to 20 m/s"), ({"rack": 0.1}, "the gap in a rack"),
+            ({"rack": "wood"}, "expected template, triangle"))
+
+
+def test_names_are_those_of_the_engine():
+    pages = carom_program("describe", "scene-format")
+    for table in typing.get_args(_names.TableName):
+        assert f"`{table}`" in pages
+        carom.Scene(table=table, ball=[{"id": "cue", "position": [0.5, 0.5]}])
+    assert typing.get_args(_names.RackName) == tuple(carom._carom.break_games())
+    for game in typing.get_args(_names.GameName):
+        carom.games.new_game(game)
+    with pytest.raises(ValueError, match=", ".join(typing.get_args(_names.GameName))):
+        carom.games.new_game("chess")
+
+
+def test_paths_are_those_of_the_records(draw_scene):
+    times = np.array([0.0, 0.2, 1.0, 99.0])
+    cue = np.array([[2.25, 135, 0, 0, -0.4], [3.0, 134, 0, 0.1, 0]])
+    shots = carom.simulate_many(draw_scene, cue=cue, times=times)
+    assert shots.paths.shape == (2, 4, 2, 3)
+    one = carom.simulate(draw_scene)
+    np.testing.assert_array_equal(shots.paths[0], one.states(times)[:, :, 0])
+    xy = np.broadcast_to(draw_scene.positions, (2, 2, 2)).copy()
+    xy[1, 1] = np.nan
+    fewer = carom.simulate_many(draw_scene, cue=cue, xy=xy, times=times, threads=2)
+    assert np.isnan(fewer.paths[1, :, 1]).all() and np.isfinite(fewer.paths[1, :, 0]).all()
+    np.testing.assert_array_equal(fewer.paths[0], shots.paths[0])
+    bad = carom.simulate_many(draw_scene, params={"cue.speed": [-1.0]}, times=times)
+    assert np.isnan(bad.paths).all()
+    again = carom.simulate_many(draw_scene, cue=cue, times=times, out=shots)
+    assert again.paths is shots.paths
+    refused(ValueError, lambda **more: carom.simulate_many(draw_scene, cue=cue, **more),
+            ({"times": [[0.0]]}, r"times: expected the shape \(t,\)"),
+            ({"times": [math.nan]}, "leave NaN out"),
+            ({"times": [0.0], "out": shots}, "out.paths: expected"))
+
+
+def test_shots_are_tables(draw_scene):
+    shots = carom.simulate_many(draw_scene, params={"cue.speed": [2.25, -1.0]}, hashes=True)
+    for make, rows in (("to_pandas", "to_dict"), ("to_arrow", "to_pylist"), ("to_polars", "to_dicts")):
+        try:
+            table = getattr(shots, make)()
+        except ImportError as error:
+            assert "pip install" in str(error)
+            continue
+        one, two = table.to_dict("records") if rows == "to_dict" else getattr(table, rows)()
+        assert one["status"] == "at_rest" and one["first_hit"] == "1" and one["1.pocket"] == 2
+        assert one["cue.x"] == shots.xy[0, 0, 0] and one["hash"] == shots.hash[0] and one["message"] == ""
+        assert two["status"] == "invalid" and "cue.speed" in two["message"] and two["first_hit"] != "1"
+
+
+def test_a_repr_is_short_and_says_shapes_and_units(break_scene):
+    shots = carom.simulate_many(break_scene, shots=1000, max_events=2, hashes=True, times=[0.0])
+    record = carom.simulate(break_scene)
+    for thing, words in ((shots, ("1000 shots of 16 balls", "(1000, 16, 2) m", "duration [s]")),
+                         (record, ("16 balls (", "events", " s, at_rest")),
+                         (break_scene, ("1.270 x 2.540 m", "16 balls ("))):
+        assert len(repr(thing).splitlines()) <= 10 and all(word in repr(thing) for word in words), repr(thing)
+
+
+def test_scenes_travel_with_the_package():
+    assert carom.scenes.names() == sorted(path.stem for path in (SOURCE / "scenes").glob("*.toml"))
+    assert carom.scenes.load("draw") == carom.Scene.load(SOURCE / "scenes/draw.toml")
+    assert carom.simulate(carom.scenes.path("draw")).stopped == "at_rest"
+    refused(ValueError, carom.scenes.load, ("pot", "expected one of bar_break, "))

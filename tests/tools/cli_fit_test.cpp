@@ -1,0 +1,82 @@
+// carom fit: what it finds, prints and refuses.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/scene.h"
+#include "carom/engine/simulate.h"
+#include "cli.h"
+
+namespace carom::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class CliFit : public ::testing::Test {
+  protected:
+    /// Places of both balls of the draw shot, 50 times a second, to the bit.
+    std::string tracks() {
+        const Record record = simulate(make_plan(read_scene(draw_), kernel::Isa::kScalar));
+        std::string text = "x, y, ball, t\n";
+        for (int k = 0; k < 75; ++k)
+            for (int ball = 0; ball < 2; ++ball) {
+                const BallState state = record.state_at(ball, k / 50.0);
+                if (is_gone(state.state)) continue;
+                text += fmt::format("{}, {}, {}, {}\n", state.position.x(), state.position.y(),
+                                    record.tracks[static_cast<std::size_t>(ball)].id, k / 50.0);
+            }
+        return folder_.write("tracks.csv", text + "\n# a gap\n,,cue,1.6\n");
+    }
+    std::string guess() {
+        Scene scene = read_scene(draw_);
+        scene.balls.mu_s = 0.204;
+        scene.cue->speed = 2.24;
+        return folder_.write("guess.toml", scene_text(scene));
+    }
+    std::string refusal(const std::string& text) {
+        return carom({"fit", draw_, folder_.write("bad.csv", text), "--vary", "balls.mu_s"}).err;
+    }
+    TemporaryFolder folder_;
+    const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
+};
+
+TEST_F(CliFit, FindsWhatMadeTheTracks) {
+    const std::string file = folder_.file("fitted.toml"), rows = folder_.file("residuals.csv");
+    const ProcessResult result = carom(
+        {"fit", guess(), tracks(), "--vary", "balls.mu_s,cue.speed", "--json", "-o", file, "--csv", rows});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Json json = Json::parse(result.out);
+    EXPECT_TRUE(json.at("converged").get<bool>());
+    EXPECT_NEAR(json.at("values").at(0).at("value").get<double>(), 0.2, 1e-7);
+    EXPECT_NEAR(json.at("values").at(1).at("value").get<double>(), 2.25, 1e-7);
+    EXPECT_LT(json.at("rms_m").get<double>(), 1e-8);
+    EXPECT_EQ(json.at("covariance").size(), 2u);
+    EXPECT_NEAR(read_scene(file).balls.mu_s, 0.2, 1e-7);
+    EXPECT_TRUE(contains(read_file(rows), "t,ball,x,y,dx,dy\n0,cue,0.6,1.94,"));
+}
+
+TEST_F(CliFit, WarnsOfWhatTheTracksCannotTell) {
+    const ProcessResult result =
+        carom({"fit", guess(), tracks(), "--vary", "balls.mu_s", "--vary", "balls.e_c"});
+    EXPECT_TRUE(contains(result.err, "balls.e_c moves nothing that was tracked")) << result.err;
+}
+
+TEST_F(CliFit, Refuses) {
+    EXPECT_TRUE(contains(refusal("t,ball,x\n"), "bad.csv:1:1: there is no column y; "));
+    EXPECT_TRUE(contains(refusal("t,ball,x,y\n0.1,9,1,1\n"), "bad.csv:2:5: the scene has no ball \"9\"; "));
+    EXPECT_TRUE(contains(refusal("t,ball,x,y\n0.1,cue,1,one\n"), "bad.csv:2:11: \"one\" is no coordinate; "));
+    EXPECT_TRUE(contains(refusal("t,ball,x,y\n-1,cue,1,1\n"), "bad.csv:2:1: \"-1\" is no time "));
+    EXPECT_TRUE(
+        contains(refusal("t,ball,x,y\n0.1,cue\n"), "bad.csv:2:8: the line ends before its x; add it"));
+    EXPECT_TRUE(contains(refusal(""), "bad.csv:1:1: there are no places; "));
+    EXPECT_EQ(carom({"fit", draw_, folder_.file("none.csv"), "--vary", "balls.mu_s"}).status, 2);
+    EXPECT_EQ(carom({"fit", draw_, tracks(), "--vary", "balls.mu"}).status, 2);
+}
+
+}  // namespace
+}  // namespace carom::test

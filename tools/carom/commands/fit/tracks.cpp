@@ -1,0 +1,119 @@
+#include "commands/fit/tracks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "base/console.h"
+#include "carom/engine/printable.h"
+#include "carom/engine/tolerances.h"
+
+namespace carom::tools {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"t", "ball", "x", "y"};
+
+/// A value of a line, and the column of text at which it begins.
+struct Word {
+    std::string_view text;
+    std::size_t column;
+};
+
+std::vector<Word> words_of(std::string_view line) {
+    std::vector<Word> words;
+    for (std::size_t begin = 0; begin <= line.size();) {
+        const std::size_t end = std::min(line.find(',', begin), line.size());
+        std::size_t first = begin, last = end;
+        while (first < last && (line[first] == ' ' || line[first] == '"')) ++first;
+        while (last > first && (line[last - 1] == ' ' || line[last - 1] == '"')) --last;
+        words.push_back({line.substr(first, last - first), first + 1});
+        begin = end + 1;
+    }
+    return words;
+}
+
+std::string text_of(const std::string& path) {
+    std::error_code error;
+    std::ifstream in(path, std::ios::binary);
+    const auto size = std::filesystem::file_size(path, error);
+    if (!in || error)
+        throw UsageError(harmless(path) + ": it cannot be read; check the path and its permissions");
+    if (size > kMaxRecordSize) throw UsageError(harmless(path) + ": it is too large; split it by shots");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene& scene) {
+    const std::string text = text_of(path);
+    std::vector<games::TrackPoint> points;
+    std::optional<std::array<std::size_t, kNames.size()>> places;
+    std::size_t line_number = 0;
+    const auto fail = [&](std::size_t column, const std::string& what) {
+        throw UsageError(fmt::format("{}:{}:{}: {}", harmless(path), line_number, column, what));
+    };
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t end = std::min(rest.find('\n'), rest.size());
+        std::string_view line = rest.substr(0, end);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        ++line_number;
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        if (line.empty() || line.front() == '#') continue;
+        const std::vector<Word> words = words_of(line);
+        if (!places) {
+            places.emplace();
+            for (std::size_t k = 0; k < kNames.size(); ++k) {
+                const auto found = std::find_if(words.begin(), words.end(),
+                                                [&](const Word& word) { return word.text == kNames[k]; });
+                if (found == words.end())
+                    fail(1, fmt::format("there is no column {}; the first line names the columns t,ball,x,y",
+                                        kNames[k]));
+                (*places)[k] = static_cast<std::size_t>(found - words.begin());
+            }
+            continue;
+        }
+        const auto word = [&](std::size_t k) {
+            if ((*places)[k] >= words.size())
+                fail(line.size() + 1, fmt::format("the line ends before its {}; add it", kNames[k]));
+            return words[(*places)[k]];
+        };
+        const auto number = [&](std::size_t k) {
+            const Word at = word(k);
+            double value = std::nan("");
+            if (at.text.empty() && k >= 2) return value;
+            const auto [stop, error] =
+                std::from_chars(at.text.data(), at.text.data() + at.text.size(), value);
+            if (error != std::errc() || stop != at.text.data() + at.text.size() || (k < 2 && !(value >= 0.0)))
+                fail(at.column,
+                     fmt::format("{} is no {}; write a number in {}", in_quotes(std::string(at.text)),
+                                 k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m"));
+            if (std::isinf(value))
+                fail(at.column, "a place must be finite; leave it empty if it was not seen");
+            return value;
+        };
+        const double t = number(0), x = number(2), y = number(3);
+        const Word id = word(1);
+        const auto ball = std::find_if(scene.ball.begin(), scene.ball.end(),
+                                       [&](const BallStart& b) { return b.id == id.text; });
+        if (ball == scene.ball.end())
+            fail(id.column, fmt::format("the scene has no ball {}; name the tracks as the scene does",
+                                        in_quotes(std::string(id.text))));
+        if (std::isnan(x) || std::isnan(y)) continue;
+        points.push_back({t, static_cast<int>(ball - scene.ball.begin()), Vec2(x, y)});
+    }
+    line_number = std::max<std::size_t>(line_number, 1);
+    if (points.empty()) fail(1, "there are no places; add lines such as 0.05,cue,0.61,1.95 below t,ball,x,y");
+    return points;
+}
+
+}  // namespace carom::tools

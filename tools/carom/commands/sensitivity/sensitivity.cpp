@@ -1,0 +1,323 @@
+// carom sensitivity: what small errors of a shot do to it.
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/console.h"
+#include "base/hand.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "base/statistics.h"
+#include "carom/engine/printable.h"
+#include "carom/engine/tangents.h"
+#include "carom/games/noise.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
+constexpr double kAimStep = 0.02, kAimMost = 10.0;
+constexpr int kHalvings = 20;
+
+struct SensitivityArgs {
+    std::string scene, hand = kHand;
+    int shots = 1000;
+    std::uint64_t seed = 1;
+    bool json = false;
+};
+
+/// A small change of an input, and the standard deviation that a hand has of it.
+struct Nudge {
+    std::string key, words;
+    double size, hand;  ///< in the unit of the input
+    std::string unit;   ///< of `scale`, for the margin
+    double scale;       ///< of the input's unit to that one
+};
+
+std::vector<Nudge> nudges_of(const Scene& scene, int ball, const games::Hand& hand) {
+    const Cue& cue = *scene.cue;
+    const double R = scene.size_of(scene.ball[static_cast<std::size_t>(ball)]).R;
+    const auto place = [&](const char* axis) { return "ball." + cue.ball + ".position." + axis; };
+    std::vector<Nudge> nudges = {
+        {"cue.aim_deg", "aim 0.1 degrees to the left", 0.1, hand.aim_deg, "degrees", 1.0},
+        {"cue.speed", "1 % faster", 0.01 * cue.speed, hand.speed * cue.speed, "%", 100.0 / cue.speed},
+        {"cue.offset.side", "tip 1 mm to the left", 1e-3 / R, hand.tip, "mm", 1e3 * R},
+        {"cue.offset.height", "tip 1 mm higher", 1e-3 / R, hand.tip, "mm", 1e3 * R},
+        {place("x"), cue.ball + " 1 mm along x", 1e-3, 0.0, "mm", 1e3},
+        {place("y"), cue.ball + " 1 mm along y", 1e-3, 0.0, "mm", 1e3}};
+    if (cue.elevation_deg > 0.0)
+        nudges.push_back(
+            {"cue.elevation_deg", "butt 1 degree higher", 1.0, hand.elevation_deg, "degrees", 1.0});
+    return nudges;
+}
+
+/// Half axes of one standard deviation [m], and the direction of the longer one [degrees].
+struct Ellipse {
+    double along, across, direction_deg;
+};
+Ellipse ellipse_of(const Eigen::Matrix2d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
+    const Vec2 longer = axes.eigenvectors().col(1);
+    const double angle = std::atan2(longer.y(), longer.x()) * 180.0 / 3.141592653589793;
+    const auto half = [&axes](int k) { return std::sqrt(std::max(0.0, axes.eigenvalues()[k])); };
+    return {half(1), half(0), angle < 0.0 ? angle + 180.0 : angle};
+}
+
+/// One ball: where it ends, or where it falls.
+struct BallResult {
+    int ball;
+    std::optional<std::size_t> fall;                  ///< the event at which it is over its pocket
+    std::vector<Vec2> moves;                          ///< [m] for each nudge
+    Ellipse expected;                                 ///< to first order
+    std::optional<Ellipse> played;                    ///< by a sweep; nothing if it stays too rarely
+    std::optional<std::pair<double, double>> window;  ///< [degrees] of the aim, in which it still falls
+    std::size_t fell = 0;                             ///< of the sweep, into the same pocket
+};
+
+/// The first event of a ball with the pocket that takes it.
+std::optional<std::size_t> fall_of(const Record& record, int ball) {
+    std::optional<std::size_t> found;
+    for (std::size_t e = 0; e < record.events.size(); ++e) {
+        const Event& event = record.events[e];
+        if (event.a != ball || kind(event.type).partner != Partner::kPocket) continue;
+        if (event.type == EventType::kBallEdge || !found) found = e;
+    }
+    return record.tracks[static_cast<std::size_t>(ball)].pocket >= 0 ? found : std::nullopt;
+}
+
+/// The last aim on this side, going outwards, at which the ball falls into the same pocket.
+double window_end(const Plan& plan, const BallResult& result, int pocket, double way) {
+    Planner planner(plan.scene, plan.isa);
+    RunBuffers buffers;
+    Outcome outcome;
+    const double aim = plan.scene.cue->aim_deg;
+    const auto falls = [&](double by) {
+        planner.scene().cue->aim_deg = aim + by;
+        simulate(planner.plan(true), buffers, outcome, interruptible());
+        return outcome.balls[static_cast<std::size_t>(result.ball)].pocket == pocket;
+    };
+    double inside = 0.0, outside = way * kAimStep;
+    while (falls(outside)) {
+        inside = outside;
+        outside += way * kAimStep;
+        if (std::abs(outside) > kAimMost) return inside;
+    }
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (inside + outside);
+        (falls(middle) ? inside : outside) = middle;
+    }
+    return inside;
+}
+
+struct Sensitivity {
+    std::vector<Nudge> nudges;
+    std::vector<Margin> margins;
+    std::vector<BallResult> balls;
+    std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
+};
+
+/// What of a shot tells whether its events are the same: each ball's cushions and pocket, and all events.
+bool same_kind(const Outcome& one, const Outcome& two) {
+    if (one.events != two.events) return false;
+    for (std::size_t i = 0; i < one.balls.size(); ++i)
+        if (one.balls[i].pocket != two.balls[i].pocket || one.balls[i].cushions != two.balls[i].cushions)
+            return false;
+    return true;
+}
+
+/// Plays the shot with the errors of the hand.
+void play(const Plan& plan, const Record& record, const games::Hand& hand, const SensitivityArgs& args,
+          Sensitivity& result) {
+    Planner planner(plan.scene, plan.isa);
+    RunBuffers buffers;
+    Outcome meant, outcome;
+    simulate(plan, buffers, meant, interruptible());
+    const Cue cue = *plan.scene.cue;
+    const games::Noise noise{hand.speed * cue.speed, hand.aim_deg, hand.elevation_deg, hand.tip, hand.tip};
+    std::vector<std::vector<Vec2>> ends(result.balls.size());
+    for (result.shots = 0; result.shots < static_cast<std::size_t>(args.shots); ++result.shots) {
+        planner.scene().cue = games::with_noise(cue, noise, args.seed, result.shots);
+        simulate(planner.plan(true), buffers, outcome, interruptible());
+        result.same += same_kind(meant, outcome) ? 1 : 0;
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const BallOutcome& end = outcome.balls[static_cast<std::size_t>(result.balls[i].ball)];
+            if (end.pocket == -1) ends[i].push_back(planar(end.position));
+            if (result.balls[i].fall)
+                result.balls[i].fell +=
+                    end.pocket == record.tracks[static_cast<std::size_t>(result.balls[i].ball)].pocket ? 1
+                                                                                                       : 0;
+        }
+    }
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (result.balls[i].fall || ends[i].size() < 10) continue;
+        Vec2 mean = Vec2::Zero();
+        for (const Vec2& end : ends[i]) mean += end / static_cast<double>(ends[i].size());
+        Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+        for (const Vec2& end : ends[i])
+            covariance += (end - mean) * (end - mean).transpose() / static_cast<double>(ends[i].size());
+        result.balls[i].played = ellipse_of(covariance);
+    }
+}
+
+Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArgs& args) {
+    const games::Hand hand = read_hand(args.hand);
+    Sensitivity result;
+    result.nudges = nudges_of(plan.scene, struck_ball(plan.scene), hand);
+    std::vector<std::string> inputs;
+    for (const Nudge& nudge : result.nudges) inputs.push_back(nudge.key);
+    const Tangents tangents(plan, record, inputs);
+    result.margins = tangents.margins();
+    for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
+        const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
+        if (track.segments.size() == 1 || track.segments.back().state == MotionState::kOut) continue;
+        BallResult& row = result.balls.emplace_back();
+        row.ball = ball;
+        row.fall = fall_of(record, ball);
+        Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+        for (std::size_t k = 0; k < inputs.size(); ++k) {
+            const Vec2 d =
+                row.fall ? tangents.event_place(*row.fall, k) : planar(tangents.at_end(ball, k).position);
+            row.moves.push_back(d * result.nudges[k].size);
+            covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
+        }
+        row.expected = ellipse_of(covariance);
+        if (row.fall)
+            row.window = {window_end(plan, row, track.pocket, -1.0),
+                          window_end(plan, row, track.pocket, 1.0)};
+    }
+    play(plan, record, hand, args, result);
+    return result;
+}
+
+std::string bound_text(double bound) {
+    return std::isfinite(bound) ? fmt::format("{:.3g}", bound) : "any";
+}
+
+std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record, const std::string& hand) {
+    Table table(Column("", "", "<28"));
+    for (const BallResult& ball : s.balls) {
+        const std::string& id = record.tracks[static_cast<std::size_t>(ball.ball)].id;
+        table.columns.emplace_back("", (ball.fall ? id + " at its pocket" : id) + ", mm", ">22");
+    }
+    table.columns.emplace_back("", "holds between", ">28");
+    for (std::size_t k = 0; k < s.nudges.size(); ++k) {
+        const Nudge& nudge = s.nudges[k];
+        std::vector<Cell> cells{nudge.words};
+        for (const BallResult& ball : s.balls)
+            cells.push_back(fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
+        cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k].down * nudge.scale),
+                                    bound_text(s.margins[k].up * nudge.scale), nudge.unit));
+        table.add(cells);
+    }
+    std::string text = table_text(table);
+    const auto nearest = [&](std::size_t k) {
+        const Margin& m = s.margins[k];
+        return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
+    };
+    text += "\nx and y, to first order. The events change first if\n";
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto [by, why] = nearest(k);
+        if (std::isfinite(by))
+            text += fmt::format("  {} changes by {:+.3g} {}: {}\n", s.nudges[k].key, by * s.nudges[k].scale,
+                                s.nudges[k].unit, why);
+    }
+    text += fmt::format("\nwith the hand {} (standard deviations)\n", harmless(hand));
+    for (const BallResult& ball : s.balls) {
+        const BallTrack& track = record.tracks[static_cast<std::size_t>(ball.ball)];
+        if (ball.fall) {
+            text += fmt::format("  {} falls into {} in {}", track.id,
+                                plan.scene.table.pockets[static_cast<std::size_t>(track.pocket)].id,
+                                share_text(share_of(ball.fell, s.shots)));
+            text += fmt::format("; it falls for aims from {:+.3f} to {:+.3f} degrees\n", ball.window->first,
+                                ball.window->second);
+            continue;
+        }
+        const auto axes = [](const Ellipse& e) {
+            return fmt::format("{:.0f} x {:.0f} mm, the longer at {:.0f} degrees", 1e3 * e.along,
+                               1e3 * e.across, e.direction_deg);
+        };
+        text += fmt::format("  {} ends within {} to first order", track.id, axes(ball.expected));
+        if (ball.played) text += fmt::format("; played, {}", axes(*ball.played));
+        text += '\n';
+    }
+    text += fmt::format("  {} of {} have the same events as the shot; the first order speaks of these only\n",
+                        counted(s.same, "shot"), s.shots);
+    return text;
+}
+
+Json number_json(double x) {
+    return std::isfinite(x) ? Json(x) : Json();
+}
+Json ellipse_json(const Ellipse& e) {
+    return {{"along_m", e.along}, {"across_m", e.across}, {"direction_deg", e.direction_deg}};
+}
+
+Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
+    Json inputs = Json::array(), balls = Json::array();
+    for (std::size_t k = 0; k < s.nudges.size(); ++k) {
+        const Margin& m = s.margins[k];
+        inputs.push_back({{"input", s.nudges[k].key},
+                          {"nudge", s.nudges[k].size},
+                          {"down", number_json(m.down)},
+                          {"down_why", m.down_why},
+                          {"up", number_json(m.up)},
+                          {"up_why", m.up_why}});
+    }
+    for (const BallResult& ball : s.balls) {
+        Json moves = Json::array();
+        for (std::size_t k = 0; k < s.nudges.size(); ++k)
+            moves.push_back({ball.moves[k].x() / s.nudges[k].size, ball.moves[k].y() / s.nudges[k].size});
+        Json row{{"ball", record.tracks[static_cast<std::size_t>(ball.ball)].id},
+                 {"falls", ball.fall.has_value()},
+                 {"derivatives", moves},
+                 {"ellipse", ellipse_json(ball.expected)}};
+        if (ball.played) row["played"] = ellipse_json(*ball.played);
+        if (ball.window) {
+            row["aim_window_deg"] = {ball.window->first, ball.window->second};
+            row["fell"] = ball.fell;
+        }
+        balls.push_back(row);
+    }
+    return {
+        {"hand", hand}, {"inputs", inputs}, {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+}
+
+int run(const SensitivityArgs& args) {
+    const Plan plan = plan_scene(args.scene);
+    if (!plan.scene.cue)
+        throw SceneError(args.scene, {}, "no ball is struck; add a [cue], whose errors are what is measured");
+    const Record record = simulate_plan(plan, interruptible());
+    const Sensitivity result = measure(plan, record, args);
+    print(args.json ? json_of(result, record, args.hand).dump() + "\n"
+                    : text_of(result, plan, record, args.hand));
+    return kOk;
+}
+
+}  // namespace
+
+void add_sensitivity(Options& program) {
+    auto [command, args] = program.command<SensitivityArgs>(
+        "sensitivity", "See what small errors of aim, speed, tip and place do to a shot", run);
+    command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command.option("--hand", &args.hand, "ERRORS",
+                   "Standard deviations: aim in degrees, speed in percent, tip in ball radii, elevation in "
+                   "degrees");
+    command.option("--shots", &args.shots, "N", "Shots that are played with these errors").in(1, 1e7);
+    command.option("--seed", &args.seed, "S", "Seed of the errors");
+    command.flag("--json", args.json, "Print everything as JSON (default: off)");
+}
+
+}  // namespace carom::tools
