@@ -88,6 +88,11 @@ Json profiled_break() {
     Record record = record_of(scene, true);
     record.tracks.front().own = BallSize{0.03, 0.2};
     record.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);
+    record.table.measures = {.cushion_height = 0.036,
+                             .rail_width = 0.05,
+                             .corner_pockets = {.mouth = 0.11},
+                             .side_pockets = {.mouth = 0.13},
+                             .size = Vec2(1.27, 2.54)};
     record.events.front().slow = true;
     // Whether a ball hits the end of a cushion depends on the break.
     const auto met = std::find_if(record.events.begin(), record.events.end(),
@@ -104,7 +109,17 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     each_kind(good, "", "", kinds);
     EXPECT_GE(kinds.size(), 90u);
     // A key without which the record is still valid.
-    const std::set<std::string> free = {"/events/#/balls", "/events/#/nose", "/events/#/slow", "/table/bed"};
+    const std::set<std::string> free = {"/events/#/balls",
+                                        "/events/#/nose",
+                                        "/events/#/slow",
+                                        "/table/bed",
+                                        "/table/size",
+                                        "/table/cushion_height",
+                                        "/table/rail_width",
+                                        "/table/corner_pockets",
+                                        "/table/corner_pockets/mouth",
+                                        "/table/side_pockets",
+                                        "/table/side_pockets/mouth"};
     for (const auto& [kind, at] : kinds) {
         const Json::json_pointer place(at);
         Json bad = good;
