@@ -95,6 +95,9 @@ TEST_F(CliSolve, MistakesSayWhatIsExpected) {
     EXPECT_EQ(carom({"break", "chess"}).status, 2);
     EXPECT_EQ(carom({"break", "--rack", "gap=1"}).status, 2);
     EXPECT_EQ(carom({"break", "--speed-max", "0"}).status, 2);
+    EXPECT_EQ(carom({"break", "--radius-sd", "1"}).status, 2);
+    EXPECT_TRUE(contains(carom({"break", "--rack", "wood"}).err,
+                         "the rack \"wood\" is not known; use template, triangle or gap=METRES"));
     EXPECT_EQ(carom({"break", "--table", "snook"}).status, 2);
 }
 

@@ -243,7 +243,7 @@ struct Rack {
 };
 inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::game>("game", "arrangement of the balls"),
-    field<&Rack::method>("method", "how they are put there: see below"),
+    field<&Rack::method>("method", "as `gap` and `jitter` say, pressed together, or in a wooden triangle"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
