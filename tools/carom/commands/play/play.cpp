@@ -15,6 +15,7 @@
 #include "base/setup.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/printable.h"
+#include "carom/engine/table.h"
 #include "page/page.h"
 #include "report/table.h"
 
@@ -94,6 +95,7 @@ int run(const PlayArgs& args) {
     Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
+    page["tables"] = kTablePresets;
     page["keys"] = keys_to_set();
     page["scene"] = "";
     if (!args.scene.empty()) {

@@ -117,7 +117,8 @@
       onchange: (e) => { contactsOnly = !e.target.checked; listEvents(); }}), " all")), list);
 
   // ---- Table, balls, scene.
-  const tableBox = select("Table", TABLES, "nine_foot", (name) => begin(startOf("", name)));
+  const tables = page.tables.map((name) => [name, name.replaceAll("_", " ")]);
+  const tableBox = select("Table", tables, "nine_foot", (name) => begin(startOf("", name)));
   const clothBox = select("Cloth", CLOTHS, "", (name) => setOrDrop("table.cloth", name));
   const cushionBox = select("Cushion model", CUSHIONS, "", (name) => setOrDrop("physics.cushion", name));
   const MATERIAL = [["mu_s", "sliding friction", 0.01], ["mu_r", "rolling friction", 0.001],
