@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <optional>
 #include <algorithm>
 #include <charconv>
 #include <cstddef>

@@ -78,12 +78,20 @@ class Solver {
                 keys_.push_back(choice.key);
         chosen_ = keys_.size();
         if (!options.layouts.empty()) {
-            for (const BallStart& ball : scene.ball) {
-                for (const char* axis : {".position.x", ".position.y"}) {
-                    const std::string key = "ball." + ball.id + axis;
+            for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+                const BallStart& ball = scene.ball[i];
+                const bool same_size = ball.own == options.layouts.front().ball.at(i).own;
+                for (const char* what : {"position.x", "position.y", "radius", "mass"}) {
+                    if (same_size && *what != 'p') continue;
+                    const std::string key = "ball." + ball.id + "." + what;
                     if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
                 }
             }
+        }
+        for (const Scene& layout : options.layouts) {
+            std::vector<double>& values = layouts_.emplace_back();
+            for (std::size_t k = chosen_; k < keys_.size(); ++k)
+                values.push_back(SceneNumber(layout, keys_[k]).value(layout));
         }
     }
 
@@ -203,7 +211,8 @@ class Solver {
                 columns[3].push_back(cue.height);
                 columns[4].push_back(cue.elevation_deg);
                 for (std::size_t k = 5; k < chosen_; ++k) columns[k].push_back(row[k]);
-                for (std::size_t k = chosen_; k < keys_.size(); ++k) columns[k].push_back(place(k, d.layout));
+                for (std::size_t k = chosen_; k < keys_.size(); ++k)
+                    columns[k].push_back(layouts_[d.layout][k - chosen_]);
             }
         }
         std::vector<BatchColumn> batch;
@@ -224,16 +233,6 @@ class Solver {
         for (Candidate& candidate : candidates) candidate.shots = std::max(candidate.shots, shots);
         played_ += rows;
         if (options_.progress) options_.progress(std::min(played_, options_.shots));
-    }
-
-    /// Of key k, which is ball.ID.position.x or .y, in a layout.
-    double place(std::size_t k, std::size_t layout) const {
-        const std::string& key = keys_[k];
-        const std::string id = key.substr(5, key.size() - 5 - 11);
-        const std::vector<BallStart>& balls = options_.layouts[layout].ball;
-        for (const BallStart& ball : balls)
-            if (ball.id == id) return key.back() == 'x' ? ball.position.x() : ball.position.y();
-        throw std::invalid_argument("a layout has no ball " + in_quotes(id));
     }
 
     /// Shots from which one figure beside the success is taken.
@@ -382,6 +381,8 @@ class Solver {
     std::size_t struck_ = 0;
     int hit_ = -1;
     std::vector<std::string> keys_;
+    // The values of the keys after those that are chosen, in each layout.
+    std::vector<std::vector<double>> layouts_;
     std::size_t chosen_ = 0, played_ = 0;
     std::uint64_t generation_ = 0;
     bool fresh_ = false;

@@ -1,5 +1,6 @@
 // The search for a shot: it finds what is there, its figures are fair, and threads change nothing.
 #include "carom/games/solve.h"
+#include "carom/games/break.h"
 
 #include <gtest/gtest.h>
 
@@ -61,6 +62,20 @@ TEST(Solve, HitAimsAtItsBall) {
             games::solve(scene, Measure("first_hit == \"1\"", scene), kernel::best_isa(), options).at(0);
         EXPECT_EQ(edge.successes > 0, std::abs(hit) < 1.0) << hit;
     }
+}
+
+// Each layout brings its balls' sizes along: otherwise the balls of most would overlap.
+TEST(Solve, LayoutsOfUnlikeBalls) {
+    games::BreakOptions wanted;
+    wanted.radius_sd = 1e-4;
+    const games::BreakSearch asked = games::break_search(wanted, kernel::best_isa());
+    SolveOptions options = small();
+    options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
+    options.hand = {0.0, 0.0, 0.0, 0.0};
+    options.layouts = asked.layouts;
+    const Measure want("first_hit == \"1\"", asked.scene);
+    const Solution full = games::solve(asked.scene, want, kernel::best_isa(), options).at(0);
+    EXPECT_EQ(full.successes, full.shots);
 }
 
 TEST(Solve, ThreadsAndTheOrderOfPlayChangeNothing) {

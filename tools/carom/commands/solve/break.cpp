@@ -1,6 +1,7 @@
 // carom break: the break that a player with this hand should play.
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
