@@ -102,7 +102,7 @@ void read_ball_list(const Section& top, Scene& scene) {
 }
 
 std::optional<Section> read_rack_keys(const Section& top, Rack& rack) {
-    const auto s = top.read("rack", kRackFields, rack);
+    auto s = top.read("rack", kRackFields, rack);
     if (!s && top.has("balls", "radius_sd"))
         top.fail(
             top.where("balls", "radius_sd"),
