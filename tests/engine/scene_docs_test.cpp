@@ -160,7 +160,8 @@ TEST(SceneDocs, BallPresetsAreThoseOfTheDocument) {
             ++checked;
         }
     }
-    EXPECT_EQ(checked, 33);  // eleven keys and a friction between balls, for three presets
+    // Twelve keys, for three presets, one of them the friction between balls in either form.
+    EXPECT_EQ(checked, 36);
 }
 
 TEST(SceneDocs, EffectsNameKeysThatExist) {

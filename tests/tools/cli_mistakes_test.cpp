@@ -42,7 +42,7 @@ class Mistakes : public testing::Test {
 TEST_F(Mistakes, AMistypedCommandNamesTheNearest) {
     refused("unknown command \"simulat\"; did you mean simulate?", {"simulat", scene_});
     refused("unknown command \"rendr\"; did you mean render?", {"rendr"});
-    refused("unknown command \"fly-away\"; expected simulate, render, view", {"fly-away"});
+    refused("unknown command \"fly-away\"; expected simulate, play, next", {"fly-away"});
     refused(": no command before the file; try carom simulate " + scene_, {scene_});
 }
 

@@ -35,7 +35,7 @@ TEST(Formats, ThePageOfSceneFilesIsWhatTheProgramPrints) {
         << "docs/reference/scene_format.md" << kStale;
     const std::regex block("<!-- begin (\\w+) -->\n\\|[^]*?\\|\n<!-- end \\1 -->");
     const auto blocks = std::distance(std::sregex_iterator(printed.begin(), printed.end(), block), {});
-    EXPECT_EQ(blocks, 10);
+    EXPECT_EQ(blocks, 11);
     EXPECT_EQ(printed.rfind("# Scene format\n", 0), 0u);
 }
 

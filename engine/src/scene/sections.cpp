@@ -103,14 +103,13 @@ void read_ball_list(const Section& top, Scene& scene) {
 
 std::optional<Section> read_rack_keys(const Section& top, Rack& rack) {
     auto s = top.read("rack", kRackFields, rack);
-    if (!s && top.has("balls", "radius_sd"))
+    if (const auto balls = balls_section(top)) balls->read(kRackedBallFields, rack);
+    if (!s && rack.radius_sd > 0.0)
         top.fail(
             top.where("balls", "radius_sd"),
             "balls.radius_sd is of racked balls, and there is no [rack]; leave it out, or give a ball its "
             "own radius");
-    if (!s) return s;
-    apply_method(*s, rack);
-    if (const auto balls = balls_section(top)) balls->read(kRackedBallFields, rack);
+    if (s) apply_method(*s, rack);
     return s;
 }
 
