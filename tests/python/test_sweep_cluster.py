@@ -171,7 +171,7 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
         small = draw_plan(2000, 90)
         moments = sweep.reduce(small, count, dask)
         assert moments == sweep.reduce(small, count, threads=1)
-        with pytest.raises(sweep.SweepError, match="there is another plan already"):
+        with pytest.raises(sweep.SweepError, match="another plan is already there"):
             sweep.run(small, tmp_path / "a", dask)
         # A worker whose bits differ refuses, and says where it runs.
         with pytest.raises(

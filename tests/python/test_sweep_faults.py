@@ -48,7 +48,7 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
     before = stamps(tmp_path)
     assert sweep.run(plan, tmp_path).played == 20
     assert before.items() <= stamps(tmp_path).items()  # complete files are not made again
-    with pytest.raises(sweep.SweepError, match="plan.json: there is another plan already"):
+    with pytest.raises(sweep.SweepError, match="plan.json: another plan is already there"):
         sweep.run(draw_plan(41, 10), tmp_path)
     shutil.copy(tmp_path / "shard-0.parquet", tmp_path / "shard-00.parquet")
     assert list(sweep.check(tmp_path).faults) == ["shard-00.parquet"]
@@ -62,8 +62,8 @@ def test_a_file_of_another_plan_or_place_is_named_by_everyone(tmp_path):
     sweep.run(plan, tmp_path / "a")
     sweep.run(other, tmp_path / "b")
     for source, words in (
-        ("b/shard-1.parquet", f"a file of plan {other.id}, not of shard 1 of plan {plan.id}"),
-        ("a/shard-0.parquet", "a file of shots 0 to 10"),
+        ("b/shard-1.parquet", f"the file holds plan {other.id}, not shard 1 of plan {plan.id}"),
+        ("a/shard-0.parquet", "the file holds shots 0 to 10"),
     ):
         shutil.copy(tmp_path / source, tmp_path / "a/shard-1.parquet")
         assert words in sweep.check(tmp_path / "a").faults["shard-1.parquet"]

@@ -180,7 +180,7 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
         7,
         carom.__version__,
     )
-    with pytest.raises(sweep.SweepError, match="p.json: there is another plan already"):
+    with pytest.raises(sweep.SweepError, match="p.json: another plan is already there"):
         draw_plan(61).save(path)
     with pytest.raises(sweep.SweepError, match="nowhere/p.json: cannot write it: No such file"):
         plan.save(tmp_path / "nowhere/p.json")
@@ -208,7 +208,7 @@ def test_what_cannot_be_planned_is_said():
         ({"shots": 0}, r"shots=0: expected 1 to 2\*\*53"),
         ({"shots": 2**53 + 1}, r"expected 1 to 2\*\*53"),
         ({"shard": 0}, "shard=0: expected at least 1"),
-        ({"shots": 2**53}, "more than 10000000 shards; take at least 900719926 shots for each"),
+        ({"shots": 2**53}, "more than 10000000 shards; use at least 900719926 shots in each"),
         ({"hashes": "all"}, "hashes='all': expected one of none, digest, column"),
         ({"seed": -1}, "seed=-1"),
         ({"vary": "cue.speed=uniform(1,2)"}, "vary: expected a mapping or a list"),
