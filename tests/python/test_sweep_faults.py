@@ -53,7 +53,7 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
     shutil.copy(tmp_path / "shard-0.parquet", tmp_path / "shard-00.parquet")
     assert list(sweep.check(tmp_path).faults) == ["shard-00.parquet"]
     for verify in True, False:
-        with pytest.raises(sweep.SweepError, match="shard-00.parquet: a file that is none of this plan's"):
+        with pytest.raises(sweep.SweepError, match="shard-00.parquet: this file does not belong to the plan"):
             sweep.open(tmp_path, verify=verify)
 
 

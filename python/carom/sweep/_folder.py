@@ -129,7 +129,7 @@ def check(folder: str | os.PathLike[str], *, threads: int = 0) -> Check:
     name = os.fspath(folder)
     found = status(name)
     shards = those_there(found, range(found.plan.shards))
-    foreign = "a file that is none of this plan's"
+    foreign = "this file does not belong to the plan"
     faults = {stranger: f"{os.path.join(name, stranger)}: {foreign}" for stranger in found.strangers}
     outcomes: collections.Counter[str] = collections.Counter()
 
