@@ -191,8 +191,8 @@ test("a locked page lets only the rest be moved", {skip: missing || withoutProgr
     for (const name of ["Speed", "Table", "Game"]) assert.ok(await disabled(name), name);
     assert.equal(await disabled("Aim"), false);
     await press("All values …");
-    const open = `[...document.querySelectorAll(".key input, .key select")].filter((i) => !i.disabled)`;
-    assert.equal(await value(`${open}.length`), 0);
+    const enabled = `[...document.querySelectorAll(".key input, .key select")].filter((i) => !i.disabled)`;
+    assert.equal(await value(`${enabled}.length`), 0);
   } finally {
     url = kept;
   }
