@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <optional>
 #include <algorithm>
 #include <charconv>
 #include <cstddef>

@@ -44,7 +44,8 @@ def _is_numbers(value: Any) -> bool:
     try:
         array = np.asarray(value)
         return (array.astype(np.float64) if array.dtype.kind == "O" else array).dtype.kind in "biuf"
-    except (TypeError, ValueError, OverflowError):  # lists of different lengths, no numbers, or integers that are too large
+    # Lists of different lengths, no numbers, or integers that are too large.
+    except (TypeError, ValueError, OverflowError):
         return False
 
 

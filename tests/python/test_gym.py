@@ -498,7 +498,8 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
     ]
     for make in (carom.gym.make_env, carom.gym.make_vector_env):
         refused(ValueError, functools.partial(make, "Pot"), *wrong)
-        refused(ValueError, make, ("pot", "game: expected Pot, Position, ThreeCushion, SumToThree, NineBallRun, EightBallRun, not 'pot'"))
+        games = "Pot, Position, ThreeCushion, SumToThree, NineBallRun, EightBallRun"
+        refused(ValueError, make, ("pot", f"game: expected {games}, not 'pot'"))
     with pytest.raises(ValueError, match="expected the shape"):
         many.step(np.zeros((2, 5), np.float32))
     with pytest.raises(ValueError, match="reset_mask"):

@@ -84,7 +84,8 @@ def test_a_truncated_file_is_named_by_everyone(tmp_path):
     whole = path.read_bytes()
     for length in 0, 3, 100, len(whole) // 2, len(whole) - 8, len(whole) - 1:
         path.write_bytes(whole[:length])
-        assert "shard-1.parquet: not a complete Parquet file" in sweep.check(tmp_path).faults["shard-1.parquet"]
+        fault = sweep.check(tmp_path).faults["shard-1.parquet"]
+        assert "shard-1.parquet: not a complete Parquet file" in fault
         for call in (lambda: sweep.open(tmp_path, verify=False), lambda: sweep.run(plan, tmp_path)):
             again = "shard-1.parquet: not a complete Parquet file.*remove it to have it made again"
             with pytest.raises(sweep.SweepError, match=again):

@@ -10,8 +10,8 @@
 namespace carom {
 
 // [1] Share of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
-// the rounding of a coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference make up
-// to four roundings.
+// the rounding of a coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference make
+// up to four roundings.
 inline constexpr double kTouchRounding = 0x1p-51;
 
 /// [m] The largest overlap that still counts as touching, at this distance from the origin.

@@ -175,7 +175,8 @@ def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tup
 def _check_whole(name: str, value: int) -> None:
     # The extension module takes 32 bits, and has the narrower ranges.
     if not -(2**31) <= value < 2**31:
-        raise ValueError(f"{name} = {value} is out of range; it must be {'0 or 1' if name in ('first', 'turn', 'winner') else '0 to 1000000000'}")
+        wanted = "0 or 1" if name in ("first", "turn", "winner") else "0 to 1000000000"
+        raise ValueError(f"{name} = {value} is out of range; it must be {wanted}")
 
 
 def _fitting(state: State) -> State:

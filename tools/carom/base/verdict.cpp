@@ -41,8 +41,9 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
         Json respots = Json::array();
         for (const games::Respot& back : option.respots)
             respots.push_back({{"ball", back.ball}, {"place", {back.place.x(), back.place.y()}}});
-        options.push_back(
-            {{"decision", carom::name(option.decision)}, {"state", state_json(option.state)}, {"respots", respots}});
+        options.push_back({{"decision", carom::name(option.decision)},
+                           {"state", state_json(option.state)},
+                           {"respots", respots}});
     }
     return {{"fouls", fouls},
             {"points", verdict.points},

@@ -104,7 +104,8 @@ std::string verdict_text(const Judged& judged) {
     if (verdict.options.size() > 1) text += fmt::format("player {} chooses one of\n", verdict.chooser + 1);
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
         const games::Option& option = verdict.options[i];
-        if (verdict.options.size() > 1) text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
+        if (verdict.options.size() > 1)
+            text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
         text += next_text(option.state) + "\n";
         for (const games::Respot& back : option.respots)
             text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",

@@ -1,7 +1,6 @@
 // carom break: the break that a player with this hand should play.
 #include <fmt/format.h>
 
-#include <stdexcept>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
