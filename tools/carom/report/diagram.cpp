@@ -191,7 +191,6 @@ class Drawing {
     void draw_path(int ball) {
         const std::vector<Segment>& segments = record_.tracks[ball].segments;
         const double contact = first_contact(ball);
-        double length = 0.0;
         for (const bool dashed : {false, true}) {
             bool begun = false;
             Vec2 last, direction = Vec2::Zero();
@@ -208,7 +207,6 @@ class Drawing {
                 const Vec2 middle = from + 0.5 * time * v;
                 const Vec2 c1 = from + 2.0 / 3.0 * (middle - from), c2 = to + 2.0 / 3.0 * (middle - to);
                 cairo_curve_to(cr_, px(c1), py(c1), px(c2), py(c2), px(to), py(to));
-                length += (to - from).norm();
                 direction = to - from;
                 last = to;
             }

@@ -9,6 +9,9 @@ endif()
 file(WRITE ${OUTPUT} "// Made by tools/carom/commands/play/embed_wasm.cmake.
 #include \"commands/play/play_wasm.h\"
 
+// The standard asks for 65536 characters only.
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"
+
 namespace carom::tools {
 
 const char* const kPlayWasm = \"${text}\";
