@@ -29,7 +29,7 @@ struct Shot {
     carom_record* record = nullptr;
 };
 
-constexpr double kR = 0.028575;
+constexpr double kRadius = 0.028575;
 
 /// A straight shot at the left rail, without anything that turns it.
 const char* const kBank =
@@ -51,7 +51,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     ASSERT_EQ(carom_scene_part(shot.scene, CAROM_CUSHION, 0, &part), CAROM_OK);
     EXPECT_STREQ(part.id, "c1");
     EXPECT_EQ(part.radius, 0.0);
-    EXPECT_GT(part.height, kR);
+    EXPECT_GT(part.height, kRadius);
     ASSERT_EQ(carom_scene_part(shot.scene, CAROM_POCKET, 2, &part), CAROM_OK);
     EXPECT_STREQ(part.id, "p3");
     EXPECT_STRNE(part.name, "");
@@ -78,7 +78,7 @@ TEST(CApiTable, AnEventTellsItsNumbers) {
     EXPECT_EQ(d.type, CAROM_BALL_CUSHION);
     EXPECT_EQ(d.partner, CAROM_CUSHION);
     EXPECT_EQ(d.a, 0);
-    EXPECT_NEAR(d.time, 0.635 - kR, 1e-12);
+    EXPECT_NEAR(d.time, 0.635 - kRadius, 1e-12);
     EXPECT_NEAR(d.diamond, 3.0, 1e-12);
     EXPECT_NEAR(d.closing, 1.0, 1e-12);
     EXPECT_NEAR(d.cut_deg, 0.0, 1e-9);
@@ -108,7 +108,7 @@ TEST(CApiTable, TheSceneGivesBackWhatItHolds) {
     ASSERT_EQ(carom_scene_ball(shot.scene, 1, &id, rvw, &radius), CAROM_OK);
     EXPECT_STREQ(id, "1");
     EXPECT_EQ(rvw[1], 2.24);
-    EXPECT_EQ(radius, kR);
+    EXPECT_EQ(radius, kRadius);
     ASSERT_EQ(carom_scene_set(shot.scene, "physics.gravity", "1.62"), CAROM_OK) << carom_last_error();
     ASSERT_EQ(carom_scene_set(shot.scene, "physics.ball_ball", "\"two_step\""), CAROM_OK);
     EXPECT_EQ(carom_scene_set(shot.scene, "physics.gravity", "-1"), CAROM_BAD_SCENE);
@@ -160,7 +160,7 @@ TEST(CApiTable, AimsPotTheBall) {
     ASSERT_EQ(carom_pocket_lines(shot.scene, "1", "cue", lines), CAROM_OK) << carom_last_error();
     EXPECT_GT(lines[2].width_deg, 0.0);
     EXPECT_STREQ(lines[2].in_the_way, "");
-    EXPECT_NEAR(std::hypot(lines[2].ghost[0] - 0.30, lines[2].ghost[1] - 2.24), 2 * kR, 1e-12);
+    EXPECT_NEAR(std::hypot(lines[2].ghost[0] - 0.30, lines[2].ghost[1] - 2.24), 2 * kRadius, 1e-12);
     carom_cue how;
     carom_cue_init(&how);
     how.speed = 2.0;
