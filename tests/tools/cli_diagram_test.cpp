@@ -1,4 +1,4 @@
-// carom diagram: files that other programs open, and what it refuses.
+// carom diagram and plots of sweeps: files that other programs open, and what is refused.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,6 +27,7 @@ class CliDiagram : public ::testing::Test {
 
     TemporaryFolder folder_;
     std::string scene_ = folder_.write("shot.toml", kSmallScene);
+    const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
 };
 
 TEST_F(CliDiagram, WritesTheFormatOfItsName) {
@@ -76,6 +77,35 @@ TEST_F(CliDiagram, RefusesOtherEndingsAndWritesNothing) {
     EXPECT_TRUE(contains(result.err, ".svg, .pdf or .png")) << result.err;
     EXPECT_EQ(carom({"diagram", folder_.file("none.toml"), "-o", folder_.file("x.svg")}).status, 2);
     EXPECT_FALSE(std::filesystem::exists(folder_.file("x.svg")));
+}
+
+TEST_F(CliDiagram, ASweepDrawsItsFirstMeasure) {
+    const auto sweep = [&](const std::string& plot, std::vector<std::string> more) {
+        more.insert(more.begin(),
+                    {"sweep", draw_, "-o", folder_.file("p.csv"), "--plot", folder_.file(plot)});
+        return carom(more);
+    };
+    const std::vector<std::string> grid = {"--vary",    "cue.aim_deg=grid(134,136,5)",
+                                           "--vary",    "cue.speed=grid(2,3,3)",
+                                           "--measure", "\"1\" in pocketed"};
+    const ProcessResult map = sweep("map.svg", grid);
+    ASSERT_EQ(map.status, 0) << map.err;
+    EXPECT_TRUE(contains(map.out, "15 shots")) << map.out;
+    const std::string svg = read_file(folder_.file("map.svg"));
+    EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    ASSERT_EQ(sweep("one.png", {"--vary", "cue.speed=uniform(2,3)", "--count", "50", "--measure", "duration"})
+                  .status,
+              0);
+    EXPECT_TRUE(read_file(folder_.file("one.png")).starts_with("\x89PNG\r\n"));
+    const std::vector<std::string> vary = {"--vary", "cue.speed=uniform(2,3)", "--count", "5"};
+    EXPECT_TRUE(contains(sweep("a.svg", vary).err, "--plot draws the first --measure"));
+    std::vector<std::string> text = vary;
+    text.insert(text.end(), {"--measure", "first_hit"});
+    EXPECT_TRUE(contains(sweep("a.svg", text).err, "has to be a number"));
+    EXPECT_TRUE(contains(sweep("a.txt", grid).err, "expected a name that ends with"));
+    EXPECT_TRUE(contains(carom({"sweep", draw_, "-o", "/dev/null", "--vary", "cue.speed=uniform(2,3)"}).err,
+                         "--count is missing"));
 }
 
 }  // namespace
