@@ -62,7 +62,7 @@ Vec2 free_place(const Record& record, const games::Option& option) {
         const int places = std::max(1, 6 * ring);
         for (int k = 0; k < places; ++k) {
             const double angle = 2.0 * std::numbers::pi * k / places - 0.5 * std::numbers::pi;
-            const Vec2 place = from + step * ring * Vec2(std::cos(angle), std::sin(angle));
+            Vec2 place = from + step * ring * Vec2(std::cos(angle), std::sin(angle));
             if (games::may_place(record, option, place)) return place;
         }
     }
