@@ -20,7 +20,6 @@ namespace carom::games {
 namespace {
 
 using detail::cross;
-using detail::kDegrees;
 
 /// [-] Directions tried across the width of a pocket, before the ends of the widest run are refined.
 constexpr int kDirections = 144;
@@ -134,16 +133,7 @@ double edge(double in, double out, const Enters& enters_at) {
 }  // namespace
 
 double direction_deg(const Vec2& direction) {
-    const double size = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
-    if (!(size > 0.0)) return size;
-    // The smaller one of cosine and sine determines the angle: there the arc cosine is as exact as its
-    // argument. Below 1e-154 squares lose digits, and a quotient may exceed 1.
-    const double cosine = std::clamp(direction.x() / size, -1.0, 1.0),
-                 sine = std::clamp(direction.y() / size, -1.0, 1.0);
-    if (std::abs(direction.x()) <= std::abs(direction.y()))
-        return std::copysign(arc_cos(cosine) * kDegrees, direction.y());
-    const double off = 90.0 - arc_cos(sine) * kDegrees;
-    return direction.x() > 0.0 ? off : std::copysign(180.0, direction.y()) - off;
+    return carom::direction_deg(direction.x(), direction.y());
 }
 
 Vec2 ghost_ball(const Vec2& object, const Vec2& towards, double both) {

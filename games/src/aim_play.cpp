@@ -21,7 +21,6 @@ namespace carom::games {
 namespace {
 
 using detail::cross;
-using detail::kDegrees;
 
 /// [-] Doubling steps that bracket the wanted aim, and steps that then narrow it down.
 constexpr int kBrackets = 14, kNarrow = 40;

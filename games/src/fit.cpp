@@ -126,7 +126,9 @@ class Fitter {
             validate(scene);
             ++shots_;
             Plan plan = make_plan(scene, isa_);
-            Record record = simulate(plan, {.until = last_ + 1e-6});
+            SimulateOptions options;
+            options.until = last_ + 1e-6;
+            Record record = simulate(plan, options);
             Trial trial{values, scene, std::move(plan), std::move(record), {}, {}};
             compare(trial);
             return trial;

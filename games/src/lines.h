@@ -1,15 +1,11 @@
 // What the two halves of the aiming aid share.
 #pragma once
 
-#include <numbers>
 #include <string_view>
 
 #include "carom/games/aim.h"
 
 namespace carom::games::detail {
-
-/// [degrees] One radian.
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();

@@ -16,14 +16,12 @@
 #include "base/draws.h"
 #include "base/splitmix64.h"
 #include "carom/engine/batch.h"
+#include "carom/engine/math.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/strike.h"
-#include "lines.h"
 
 namespace carom::games {
 namespace {
-
-using detail::kDegrees;
 
 // Shares of the budget: the first look at the whole space, the generations; the rest is for the figures.
 constexpr double kLook = 0.30, kBreed = 0.52, kReport = 0.10;
@@ -169,7 +167,8 @@ class Solver {
         const auto target = static_cast<std::size_t>(hit_);
         const Vec2 way = planar(scene_.ball[target].position) - place;
         const double reach = (radius(struck_) + radius(target)) / std::max(way.norm(), 1e-9);
-        row[0] = (std::atan2(way.y(), way.x()) + std::asin(std::clamp(hit * reach, -1.0, 1.0))) * kDegrees;
+        row[0] =
+            direction_deg(way.x(), way.y()) + 90.0 - arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
         return row;
     }
 

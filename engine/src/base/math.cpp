@@ -1,5 +1,7 @@
 #include "carom/engine/math.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -152,6 +154,17 @@ double arc_cos(double x) {
         y -= (at.sin - s) / at.cos;
     }
     return 2.0 * y;
+}
+
+double direction_deg(double x, double y) {
+    const double size = __builtin_sqrt(x * x + y * y);
+    if (!(size > 0.0)) return size;
+    // The smaller one of cosine and sine determines the angle: there the arc cosine is as exact as its
+    // argument. Below 1e-154 squares lose digits, and a quotient may exceed 1.
+    const double cosine = std::clamp(x / size, -1.0, 1.0), sine = std::clamp(y / size, -1.0, 1.0);
+    if (std::abs(x) <= std::abs(y)) return std::copysign(arc_cos(cosine) * kDegrees, y);
+    const double off = 90.0 - arc_cos(sine) * kDegrees;
+    return x > 0.0 ? off : std::copysign(180.0, y) - off;
 }
 
 double exponential(double x) {

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "carom/engine/math.h"
 #include "physics/motion.h"
 #include "record/verify_between.h"
 
 namespace carom {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 bool has(const Record& record, const Event& event, int ball) {
     if (event.a == ball || (kind(event.type).partner == Partner::kBall && event.b == ball)) return true;

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "carom/engine/event_details.h"
+#include "carom/engine/math.h"
 #include "physics/cue.h"
 
 namespace carom::detail {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 class Aim {
   public:
@@ -44,7 +42,7 @@ class Aim {
         const double reach = (1.0 - std::abs(full)) * (R_ + radius(ball)) / way.norm();
         if (!(reach < 1.0))
             s_.fail("aim_hit", "cue.aim_hit: the ball is too near for this hit; hit it fuller");
-        return angle(way) + (full > 0.0 ? 1.0 : -1.0) * std::asin(reach) * kDegrees;
+        return angle(way) + (full > 0.0 ? 1.0 : -1.0) * (90.0 - arc_cos(reach) * kDegrees);
     }
 
     /// ["1", "p3"]: the ball goes along the line from its centre to the middle of the pocket.
@@ -117,7 +115,7 @@ class Aim {
         if (!id) s_.fail(key, "cue.{}: its first value must be a name in quotes", key);
         return id->get();
     }
-    static double angle(const Vec2& way) { return std::atan2(way.y(), way.x()) * kDegrees; }
+    static double angle(const Vec2& way) { return direction_deg(way.x(), way.y()); }
     double towards(std::string_view key, const Vec2& place) const {
         const Vec2 way = place - from_;
         if (!(way.norm() > 0.0)) s_.fail(key, "cue.{}: the ball is there already; aim at another place", key);

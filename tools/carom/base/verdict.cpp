@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <stdexcept>
 
 #include "base/game_state.h"
+#include "carom/engine/math.h"
 
 namespace carom::tools {
 
@@ -61,8 +61,8 @@ Vec2 free_place(const Record& record, const games::Option& option) {
     for (int ring = 0; ring <= rings; ++ring) {
         const int places = std::max(1, 6 * ring);
         for (int k = 0; k < places; ++k) {
-            const double angle = 2.0 * std::numbers::pi * k / places - 0.5 * std::numbers::pi;
-            Vec2 place = from + step * ring * Vec2(std::cos(angle), std::sin(angle));
+            const auto [sin, cos] = sin_cos_deg(360.0 * k / places - 90.0);
+            Vec2 place = from + step * ring * Vec2(cos, sin);
             if (games::may_place(record, option, place)) return place;
         }
     }
@@ -83,7 +83,7 @@ Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
         const Vec2 way = planar(other.position - struck->position);
         if (way.norm() >= least) continue;
         least = way.norm();
-        cue.aim_deg = std::atan2(way.y(), way.x()) * 180.0 / std::numbers::pi;
+        cue.aim_deg = direction_deg(way.x(), way.y());
     }
     return cue;
 }

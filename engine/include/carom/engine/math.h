@@ -2,7 +2,12 @@
 // bits (the C library picks variants by CPU).
 #pragma once
 
+#include <numbers>
+
 namespace carom {
+
+/// [degrees] One radian.
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct SinCos {
     double sin;
@@ -25,6 +30,9 @@ double tan_deg(double degrees);
 
 /// Arc cosine in [0, pi], within 2 ulp of pi/2; NaN outside [-1, 1].
 double arc_cos(double x);
+
+/// Direction of (x, y) in degrees, -180 to 180, from +x towards +y. Of (0, 0) it is 0, and NaN of NaN.
+double direction_deg(double x, double y);
 
 /// e^x, within 2 ulp where the result is a normal number; 0 below -745.2, infinite above 709.8, NaN for NaN.
 double exponential(double x);

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <vector>
 
 #include "base/console.h"
 #include "carom/engine/event_details.h"
+#include "carom/engine/math.h"
 
 namespace carom::tools {
 namespace {
@@ -22,7 +22,7 @@ constexpr int kStruckContacts = 3;
 /// ", cut 31 deg, 2.1 m/s"
 std::string contact(const EventDetails& d, Units units) {
     if (std::isnan(d.closing)) return "";
-    const double cut = d.cut * 180.0 / std::numbers::pi;
+    const double cut = d.cut * kDegrees;
     if (cut < 0.5) return fmt::format(", full, {}", speed_text(d.closing, units));
     return fmt::format(", cut {:.0f} deg, {}", cut, speed_text(d.closing / std::cos(d.cut), units));
 }

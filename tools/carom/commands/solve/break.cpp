@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +16,7 @@
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "base/units.h"
+#include "carom/engine/math.h"
 #include "carom/engine/simulate.h"
 #include "carom/games/break.h"
 #include "commands/solve/search.h"
@@ -47,7 +47,7 @@ std::string told(const Solution& best, const BreakArgs& args, double per_cue, in
         "   cue ball {:.2f} diamonds from the left rail and {:.2f} from the head rail ({:.3f}, {:.3f} {})\n",
         4.0 * (x - table.corner.x()) / table.width, 8.0 * (y - table.corner.y()) / table.length,
         x * length.factor, y * length.factor, length.name);
-    const double cut = std::asin(std::min(1.0, std::abs(hit))) * 180.0 / std::numbers::pi;
+    const double cut = std::asin(std::min(1.0, std::abs(hit))) * kDegrees;
     text += std::abs(hit) < 0.02
                 ? fmt::format("   full at the {}\n", games::kBreakApex)
                 : fmt::format("   {:.0f} % full at the {}, on its {} side: a cut of {:.0f} degrees\n",
