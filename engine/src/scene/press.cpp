@@ -87,7 +87,8 @@ std::vector<bool> open_pairs(const std::vector<RackPair>& pairs, const Rows& whe
     return open;
 }
 
-/// Solves a x = b for a symmetric positive definite matrix; b becomes x.
+/// Solves a x = b for a symmetric positive definite matrix; b becomes x. Eigen adds up in another order with
+/// other instructions, which would give other bits.
 void solve_positive(Rows& a, std::vector<double>& b) {
     const std::size_t n = b.size();
     for (std::size_t k = 0; k < n; ++k)
