@@ -167,8 +167,8 @@ class Solver {
         const auto target = static_cast<std::size_t>(hit_);
         const Vec2 way = planar(scene_.ball[target].position) - place;
         const double reach = (radius(struck_) + radius(target)) / std::max(way.norm(), 1e-9);
-        row[0] =
-            direction_deg(way.x(), way.y()) + 90.0 - arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
+        row[0] = carom::direction_deg(way.x(), way.y()) + 90.0 -
+                 arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
         return row;
     }
 
