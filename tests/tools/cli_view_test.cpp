@@ -1,5 +1,5 @@
-// carom view: pages. The states that their script computes are the engine's, to the bit; a browser shows
-// them, moves in them by keys and pointer, prints nothing on its console, and loads nothing.
+// carom view and carom play: pages. The states that their script computes are the engine's, to the bit; a
+// browser shows them, moves in them by keys and pointer, prints nothing on its console, and loads nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -244,6 +244,30 @@ TEST(View, RefusesWhatItCannotDoBeforeItBegins) {
     refused({"-o", folder.file("shot.htm5")}, "pages are HTML; give a name that ends in .html");
     refused({folder.file("none.json"), "-o", folder.file("a.html")}, "none.json");
     EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
+}
+
+TEST(Play, RefusesBadInputsAndWritesAPageIfItHasWebAssembly) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write("small.toml", kSmallScene), page = folder.file("play.html");
+    const auto refused = [&](std::vector<std::string> options, const std::string& message) {
+        options.insert(options.begin(), "play");
+        const ProcessResult result = carom(options);
+        EXPECT_EQ(result.status, 2) << message;
+        EXPECT_TRUE(contains(result.err, message)) << result.err;
+    };
+    refused({"-o", folder.file("play.htm5")}, "pages are HTML; give a name that ends in .html");
+    refused({"--lock", "cue.speed,colour", "-o", page}, "--lock cue.speed,colour: expected keys of [cue], ");
+    refused({folder.write("bad.toml", "[table]\nlength = 3\n"), "-o", page}, "bad.toml:2:");
+    refused({folder.write("record.json", "{}"), "-o", page}, "expected a scene file (TOML), not a record");
+    EXPECT_FALSE(std::filesystem::exists(page));
+    const ProcessResult made = carom({"play", scene, "--lock", "cue.speed,ball", "-o", page});
+    if (made.status == 2) {
+        EXPECT_TRUE(contains(made.err, "built without WebAssembly; run tools/web")) << made.err;
+        return;
+    }
+    const std::string html = read_file(page);
+    EXPECT_TRUE(contains(html, "\"lock\":[\"cue.speed\",\"ball\"]"));
+    EXPECT_TRUE(contains(html, "nine_foot_tight"));
 }
 
 }  // namespace

@@ -88,10 +88,9 @@ Json keys_to_set() {
     return keys;
 }
 
-int run(const PlayArgs& args) {
-    if (*kPlayWasm == '\0')
-        throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
-    check_page_path("-o", args.output);
+/// What the page's script reads: the scene, what is locked, and what there is to choose from. @throws
+/// UsageError
+Json start_of(const PlayArgs& args) {
     Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
@@ -106,6 +105,14 @@ int run(const PlayArgs& args) {
         page["scene"] = read_scene_text(args.scene);
         page["lead"] = harmless(args.scene);
     }
+    return page;
+}
+
+int run(const PlayArgs& args) {
+    check_page_path("-o", args.output);
+    const Json page = start_of(args);
+    if (*kPlayWasm == '\0')
+        throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
     static const bool added = [] {
         add_page_files(play_files());
         return true;
