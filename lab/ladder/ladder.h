@@ -13,7 +13,7 @@ namespace carom::kernel {
 using BatchFunction = void (*)(const ImpactBatch& batch, int n, const ImpactBatchResult& result) noexcept;
 
 /// One variant of the march for one instruction set. Exactly one of `march` and `batch` is set.
-struct Rung {
+struct Variant {
     const char* name;
     const char* section;  ///< of the paper, or "past it"
     Isa isa;
@@ -29,6 +29,6 @@ struct Rung {
 
 /// All variants, the baseline first, in the order of the paper; each with all instruction sets, including
 /// those that this processor lacks.
-std::span<const Rung> ladder() noexcept;
+std::span<const Variant> ladder() noexcept;
 
 }  // namespace carom::kernel

@@ -136,26 +136,26 @@ void report(const char* name, March march) {
     std::printf("}");
 }
 
-template <class Rung>
-void rung(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) {
-    drive<Rung>(a, b, p, n, out);
+template <class Variant>
+void variant(const Ball& a, const Ball& b, const ImpactParams& p, int n, ImpactResult& out) {
+    drive<Variant>(a, b, p, n, out);
 }
 
 }  // namespace
 
 int main() {
     std::printf("{\"per_step\": [\n ");
-    report("baseline", rung<PublishedMarch>);
-    report("fewer square roots", rung<FewerRoots>);
-    report("rsqrt", rung<RsqrtRaw>);
-    report("rsqrt newton", rung<RsqrtNewton>);
-    report("branch hints", rung<BranchHints>);
-    report("branch order", rung<BranchOrder>);
-    report("unconditional roots", rung<UnconditionalRoots>);
-    report("two stages", rung<TwoStage>);
-    report("precomputed", rung<Precomputed>);
-    report("fma", rung<ExplicitFma>);
-    report("combined", rung<Combined>);
-    report("reduced state", rung<ReducedState>);
+    report("baseline", variant<PublishedMarch>);
+    report("fewer square roots", variant<FewerRoots>);
+    report("rsqrt", variant<RsqrtRaw>);
+    report("rsqrt newton", variant<RsqrtNewton>);
+    report("branch hints", variant<BranchHints>);
+    report("branch order", variant<BranchOrder>);
+    report("unconditional roots", variant<UnconditionalRoots>);
+    report("two stages", variant<TwoStage>);
+    report("precomputed", variant<Precomputed>);
+    report("fma", variant<ExplicitFma>);
+    report("combined", variant<Combined>);
+    report("reduced state", variant<ReducedState>);
     std::printf("]}\n");
 }

@@ -3,7 +3,7 @@
 
     carom-lab bench kernel --json > bench.json
     lab/measure/mca_kernel.py --cxx g++ clang++ --json mca.json
-    lab/measure/cachegrind_kernel.py --one-rung .../carom_one_rung --json cachegrind.json
+    lab/measure/cachegrind_kernel.py --one-variant .../carom_one_variant --json cachegrind.json
     lab/measure/compilers_kernel.py gcc=... clang=... --json compilers.json
     carom_count_operations > counts.json
     lab/measure/kernel_figures.py DIRECTORY_WITH_THE_FIVE lab/notes/images

@@ -30,11 +30,12 @@ std::multiset<Form> forms(const std::vector<std::string>& only) {
     return all;
 }
 
-TEST_F(BenchKernel, TimesEveryRungAndEveryTolerance) {
+TEST_F(BenchKernel, TimesEveryVariantAndEveryTolerance) {
     std::multiset<Form> expected;
-    for (const kernel::Rung& rung : kernel::ladder())
-        if (kernel::available(rung.isa))
-            expected.insert({std::string("march ") + rung.name, rung.march ? "single" : "batch", rung.isa});
+    for (const kernel::Variant& variant : kernel::ladder())
+        if (kernel::available(variant.isa))
+            expected.insert(
+                {std::string("march ") + variant.name, variant.march ? "single" : "batch", variant.isa});
     for (const kernel::Isa isa : {kernel::Isa::kScalar, kernel::Isa::kV3, kernel::Isa::kV4})
         for (const char* name : {"tolerance 1e-3", "tolerance 1e-6", "tolerance 1e-10"})
             for (const char* kind : {"single", "batch"})

@@ -1,4 +1,5 @@
-// H22 to H31, and everything else that broke the published code, through every rung on every instruction set.
+// H22 to H31, and everything else that broke the published code, through every variant on every instruction
+// set.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,23 +9,24 @@
 
 #include "ladder/ladder.h"
 #include "reference/random_impacts.h"
-#include "rung_runner.h"
 #include "support/hard_impacts.h"
 #include "support/impact_cases.h"
+#include "variant_runner.h"
 
 namespace carom::test {
 namespace {
 
 using namespace kernel;
 
-class HardRung : public testing::TestWithParam<Rung> {
+class HardVariant : public testing::TestWithParam<Variant> {
   protected:
     void SetUp() override {
         if (!available(GetParam().isa)) GTEST_SKIP() << name(GetParam().isa) << " is not available here";
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Ladder, HardRung, testing::ValuesIn(ladder().begin(), ladder().end()), rung_name);
+INSTANTIATE_TEST_SUITE_P(Ladder, HardVariant, testing::ValuesIn(ladder().begin(), ladder().end()),
+                         variant_name);
 
 bool same_value(double a, double b) {
     return a == b || (std::isnan(a) && std::isnan(b));
@@ -48,7 +50,8 @@ void check(const HardImpact& hard, const ImpactResult& out, const ImpactResult& 
             const double before = energy(in.ball1.v, in.ball1.w, in.ball2.v, in.ball2.w, in.params.R);
             const double after = energy(out.v1, out.w1, out.v2, out.w2, in.params.R);
             EXPECT_TRUE(std::isfinite(after));
-            // H24: by construction a march gains energy at small N, x4.7 at N = 1; 1e-6 for the lossy rung.
+            // H24: by construction a march gains energy at small N, x4.7 at N = 1; 1e-6 for the lossy
+            // variant.
             EXPECT_LE(after, before * (1.0 + 5.0 / hard.n + 1e-6));
             break;
         }
@@ -67,15 +70,15 @@ void check(const HardImpact& hard, const ImpactResult& out, const ImpactResult& 
     }
 }
 
-TEST_P(HardRung, SurvivesEveryHardInput) {
+TEST_P(HardVariant, SurvivesEveryHardInput) {
     std::map<int, std::vector<HardImpact>> by_n;
     for (const HardImpact& hard : hard_impacts()) by_n[hard.n].push_back(hard);
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         for (const auto& [n, list] : by_n) {
             std::vector<Impact> impacts;
             for (const HardImpact& hard : list) impacts.push_back({hard.ball1, hard.ball2, hard.params});
-            const auto baseline = run_rung(baseline_rung(), impacts, n, slip);
-            const auto got = run_rung(GetParam(), impacts, n, slip);
+            const auto baseline = run_variant(baseline_variant(), impacts, n, slip);
+            const auto got = run_variant(GetParam(), impacts, n, slip);
             for (std::size_t i = 0; i < list.size(); ++i) check(list[i], got[i], baseline[i]);
         }
     }
@@ -92,11 +95,11 @@ Impact held_together(double mu_s) {
 }
 
 // A long impact outlasts what a batch does in step; one that never ends is stopped by the limit of steps.
-TEST_P(HardRung, ImpactsThatFrictionProlongsEndOrAreStopped) {
+TEST_P(HardVariant, ImpactsThatFrictionProlongsEndOrAreStopped) {
     const std::vector<Impact> impacts = {held_together(0.4), held_together(0.6)};
     constexpr int kN = 100;
-    const auto expected = run_rung(baseline_rung(), impacts, kN, ClothSlip::kConsistent);
-    const auto got = run_rung(GetParam(), impacts, kN, ClothSlip::kConsistent);
+    const auto expected = run_variant(baseline_variant(), impacts, kN, ClothSlip::kConsistent);
+    const auto got = run_variant(GetParam(), impacts, kN, ClothSlip::kConsistent);
     EXPECT_EQ(got[0].status, ImpactStatus::kOk);
     EXPECT_GT(got[0].steps, 3 * kN);
     EXPECT_LE(std::labs(got[0].steps - expected[0].steps), 2);
@@ -105,8 +108,8 @@ TEST_P(HardRung, ImpactsThatFrictionProlongsEndOrAreStopped) {
     EXPECT_TRUE(is_input(impacts[1], got[1]));
 }
 
-// H29: multiplying all speeds by a power of two changes only exponents. (The rsqrt rungs round by range.)
-TEST_P(HardRung, PowersOfTwoScale) {
+// H29: multiplying all speeds by a power of two changes only exponents. (The rsqrt variants round by range.)
+TEST_P(HardVariant, PowersOfTwoScale) {
     if (std::string(GetParam().name).find("rsqrt") != std::string::npos ||
         std::string(GetParam().name) == "combined")
         return;
@@ -115,8 +118,8 @@ TEST_P(HardRung, PowersOfTwoScale) {
         for (int k = 0; k < 3; ++k)
             for (double* x : {&impact.ball1.v[k], &impact.ball1.w[k], &impact.ball2.v[k], &impact.ball2.w[k]})
                 *x *= 0x1p7;
-    const auto one = run_rung(GetParam(), impacts, 1000, ClothSlip::kConsistent);
-    const auto many = run_rung(GetParam(), scaled, 1000, ClothSlip::kConsistent);
+    const auto one = run_variant(GetParam(), impacts, 1000, ClothSlip::kConsistent);
+    const auto many = run_variant(GetParam(), scaled, 1000, ClothSlip::kConsistent);
     int same = 0;
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         EXPECT_EQ(one[i].steps, many[i].steps);
@@ -131,7 +134,7 @@ TEST_P(HardRung, PowersOfTwoScale) {
 }
 
 // A lane that cannot be computed is flagged and does not affect the others.
-TEST_P(HardRung, BadLanesHoldUpNobody) {
+TEST_P(HardVariant, BadLanesHoldUpNobody) {
     if (GetParam().batch == nullptr) return;
     const std::vector<Impact> good = reference::random_impacts(8, 40);
     std::vector<Impact> mixed;
@@ -154,8 +157,8 @@ TEST_P(HardRung, BadLanesHoldUpNobody) {
         }
         mixed.push_back(bad);
     }
-    const auto alone = run_rung(GetParam(), good, 300, ClothSlip::kConsistent);
-    const auto got = run_rung(GetParam(), mixed, 300, ClothSlip::kConsistent);
+    const auto alone = run_variant(GetParam(), good, 300, ClothSlip::kConsistent);
+    const auto got = run_variant(GetParam(), mixed, 300, ClothSlip::kConsistent);
     for (std::size_t i = 0; i < good.size(); ++i) {
         EXPECT_TRUE(same_bits(got[2 * i], alone[i])) << "impact " << i;
         EXPECT_NE(got[2 * i + 1].status, ImpactStatus::kOk);

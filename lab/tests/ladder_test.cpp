@@ -1,4 +1,4 @@
-// Every rung of the ladder against the baseline.
+// Every variant of the ladder against the baseline.
 #include "ladder/ladder.h"
 
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "ladder/rungs.h"
+#include "ladder/variants.h"
 #include "reference/random_impacts.h"
-#include "rung_runner.h"
 #include "support/impact_cases.h"
+#include "variant_runner.h"
 
 namespace carom::test {
 using reference::BatchArrays;
@@ -25,25 +25,27 @@ namespace {
 
 using namespace kernel;
 
-class EveryRung : public testing::TestWithParam<Rung> {
+class EveryVariant : public testing::TestWithParam<Variant> {
   protected:
     void SetUp() override {
         if (!available(GetParam().isa)) GTEST_SKIP() << name(GetParam().isa) << " is not available here";
     }
 };
 
-class PortableRung : public EveryRung {};
-class BatchRung : public EveryRung {};
+class PortableVariant : public EveryVariant {};
+class BatchVariant : public EveryVariant {};
 
-INSTANTIATE_TEST_SUITE_P(Ladder, EveryRung, testing::ValuesIn(ladder().begin(), ladder().end()), rung_name);
-INSTANTIATE_TEST_SUITE_P(Ladder, PortableRung, testing::ValuesIn(rungs_where([](const Rung& rung) {
-                             return rung.portable_bits && rung.isa != Isa::kScalar;
+INSTANTIATE_TEST_SUITE_P(Ladder, EveryVariant, testing::ValuesIn(ladder().begin(), ladder().end()),
+                         variant_name);
+INSTANTIATE_TEST_SUITE_P(Ladder, PortableVariant,
+                         testing::ValuesIn(variants_where([](const Variant& variant) {
+                             return variant.portable_bits && variant.isa != Isa::kScalar;
                          })),
-                         rung_name);
-INSTANTIATE_TEST_SUITE_P(Ladder, BatchRung, testing::ValuesIn(rungs_where([](const Rung& rung) {
-                             return rung.batch != nullptr;
+                         variant_name);
+INSTANTIATE_TEST_SUITE_P(Ladder, BatchVariant, testing::ValuesIn(variants_where([](const Variant& variant) {
+                             return variant.batch != nullptr;
                          })),
-                         rung_name);
+                         variant_name);
 
 std::vector<Impact> five_states() {
     std::vector<Impact> impacts;
@@ -52,11 +54,11 @@ std::vector<Impact> five_states() {
     return impacts;
 }
 
-TEST_P(EveryRung, DoesTheBaselinesStepsOnTheFiveStates) {
+TEST_P(EveryVariant, DoesTheBaselinesStepsOnTheFiveStates) {
     const std::vector<Impact> impacts = five_states();
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
-        const auto expected = run_rung(baseline_rung(), impacts, 1000, slip);
-        const auto got = run_rung(GetParam(), impacts, 1000, slip);
+        const auto expected = run_variant(baseline_variant(), impacts, 1000, slip);
+        const auto got = run_variant(GetParam(), impacts, 1000, slip);
         for (std::size_t i = 0; i < impacts.size(); ++i) {
             EXPECT_EQ(got[i].steps, expected[i].steps) << "state " << i;
             EXPECT_LE(difference(got[i], expected[i], impacts[i].params.R),
@@ -66,11 +68,11 @@ TEST_P(EveryRung, DoesTheBaselinesStepsOnTheFiveStates) {
     }
 }
 
-TEST_P(EveryRung, DoesTheBaselinesStepsOnRandomImpacts) {
+TEST_P(EveryVariant, DoesTheBaselinesStepsOnRandomImpacts) {
     const std::vector<Impact> impacts = random_impacts(1, 2000);
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
-        const auto expected = run_rung(baseline_rung(), impacts, 1000, slip);
-        const auto got = run_rung(GetParam(), impacts, 1000, slip);
+        const auto expected = run_variant(baseline_variant(), impacts, 1000, slip);
+        const auto got = run_variant(GetParam(), impacts, 1000, slip);
         int same = 0;
         for (std::size_t i = 0; i < impacts.size(); ++i) {
             ASSERT_EQ(got[i].status, ImpactStatus::kOk);
@@ -85,11 +87,11 @@ TEST_P(EveryRung, DoesTheBaselinesStepsOnRandomImpacts) {
     }
 }
 
-TEST_P(EveryRung, FollowsTheBaselineAtOtherN) {
+TEST_P(EveryVariant, FollowsTheBaselineAtOtherN) {
     const std::vector<Impact> impacts = random_impacts(2, 60);
     for (int n : {1, 2, 7, 40, 100, 333, 5000}) {
-        const auto expected = run_rung(baseline_rung(), impacts, n, ClothSlip::kConsistent);
-        const auto got = run_rung(GetParam(), impacts, n, ClothSlip::kConsistent);
+        const auto expected = run_variant(baseline_variant(), impacts, n, ClothSlip::kConsistent);
+        const auto got = run_variant(GetParam(), impacts, n, ClothSlip::kConsistent);
         int same = 0;
         for (std::size_t i = 0; i < impacts.size(); ++i) {
             ASSERT_EQ(got[i].status, expected[i].status) << "impact " << i << ", N = " << n;
@@ -105,30 +107,30 @@ TEST_P(EveryRung, FollowsTheBaselineAtOtherN) {
     }
 }
 
-TEST_P(PortableRung, GivesTheSameBitsAsScalar) {
-    const Rung* scalar = nullptr;
-    for (const Rung& rung : ladder())
-        if (std::string(rung.name) == GetParam().name && rung.isa == Isa::kScalar) scalar = &rung;
+TEST_P(PortableVariant, GivesTheSameBitsAsScalar) {
+    const Variant* scalar = nullptr;
+    for (const Variant& variant : ladder())
+        if (std::string(variant.name) == GetParam().name && variant.isa == Isa::kScalar) scalar = &variant;
     ASSERT_NE(scalar, nullptr);
     const std::vector<Impact> impacts = random_impacts(3, 500);
-    const auto expected = run_rung(*scalar, impacts, 1000, ClothSlip::kConsistent);
-    const auto got = run_rung(GetParam(), impacts, 1000, ClothSlip::kConsistent);
+    const auto expected = run_variant(*scalar, impacts, 1000, ClothSlip::kConsistent);
+    const auto got = run_variant(GetParam(), impacts, 1000, ClothSlip::kConsistent);
     for (std::size_t i = 0; i < impacts.size(); ++i)
         EXPECT_TRUE(same_bits(got[i], expected[i])) << "impact " << i;
 }
 
 // Batches of any length, and an impact's result does not depend on its neighbours.
-TEST_P(BatchRung, BatchesOfAnyLength) {
+TEST_P(BatchVariant, BatchesOfAnyLength) {
     const std::vector<Impact> impacts = random_impacts(4, 67);
-    const auto whole = run_rung(GetParam(), impacts, 200, ClothSlip::kConsistent);
+    const auto whole = run_variant(GetParam(), impacts, 200, ClothSlip::kConsistent);
     for (std::size_t length : {0u, 1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 15u, 16u, 17u, 31u, 33u, 66u}) {
         const std::vector<Impact> part(impacts.begin(), impacts.begin() + static_cast<long>(length));
-        const auto got = run_rung(GetParam(), part, 200, ClothSlip::kConsistent);
+        const auto got = run_variant(GetParam(), part, 200, ClothSlip::kConsistent);
         for (std::size_t i = 0; i < length; ++i)
             EXPECT_TRUE(same_bits(got[i], whole[i])) << "impact " << i << " of " << length;
     }
     std::vector<Impact> reversed(impacts.rbegin(), impacts.rend());
-    const auto got = run_rung(GetParam(), reversed, 200, ClothSlip::kConsistent);
+    const auto got = run_variant(GetParam(), reversed, 200, ClothSlip::kConsistent);
     for (std::size_t i = 0; i < impacts.size(); ++i)
         EXPECT_TRUE(same_bits(got[impacts.size() - 1 - i], whole[i])) << "impact " << i;
 }
@@ -151,15 +153,15 @@ TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
     for (std::size_t i = 0; i < impacts.size(); i += 2)
         make_glancing(impacts[i], std::pow(10.0, rng.uniform(-6.0, -1.0)));
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
-        for (const Rung& rung : ladder()) {
-            if (std::string(rung.name) != "summed batch" || !available(rung.isa)) continue;
-            const auto got = run_rung(rung, impacts, 1000, slip);
+        for (const Variant& variant : ladder()) {
+            if (std::string(variant.name) != "summed batch" || !available(variant.isa)) continue;
+            const auto got = run_variant(variant, impacts, 1000, slip);
             for (std::size_t i = 0; i < impacts.size(); ++i) {
                 kernel::ImpactParams params = impacts[i].params;
                 params.cloth_slip = slip;
                 ImpactResult alone;
-                summed_march_function(rung.isa)(impacts[i].ball1, impacts[i].ball2, params, 1000, alone);
-                EXPECT_TRUE(same_bits(got[i], alone)) << "impact " << i << " on " << name(rung.isa);
+                summed_march_function(variant.isa)(impacts[i].ball1, impacts[i].ball2, params, 1000, alone);
+                EXPECT_TRUE(same_bits(got[i], alone)) << "impact " << i << " on " << name(variant.isa);
             }
         }
     }
@@ -170,11 +172,12 @@ TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
 TEST(Ladder, TheTableIsWhole) {
     std::set<std::pair<std::string, Isa>> seen;
     std::map<std::string, std::string> sections;
-    for (const Rung& rung : ladder()) {
-        EXPECT_TRUE(seen.insert({rung.name, rung.isa}).second) << rung.name << " twice";
-        EXPECT_NE(rung.march == nullptr, rung.batch == nullptr) << rung.name;
-        EXPECT_NE(std::string(rung.idea), "");
-        EXPECT_EQ(sections.emplace(rung.name, rung.section).first->second, rung.section) << rung.name;
+    for (const Variant& variant : ladder()) {
+        EXPECT_TRUE(seen.insert({variant.name, variant.isa}).second) << variant.name << " twice";
+        EXPECT_NE(variant.march == nullptr, variant.batch == nullptr) << variant.name;
+        EXPECT_NE(std::string(variant.idea), "");
+        EXPECT_EQ(sections.emplace(variant.name, variant.section).first->second, variant.section)
+            << variant.name;
     }
     for (const char* needed :
          {"baseline",     "fewer square roots",  "rsqrt",          "rsqrt newton",     "branch hints",
@@ -185,18 +188,18 @@ TEST(Ladder, TheTableIsWhole) {
           "2x4 lanes"})
         EXPECT_TRUE(seen.count({needed, Isa::kV3})) << needed;
     for (const char* needed : {"8 lanes", "2x8 lanes"}) EXPECT_TRUE(seen.count({needed, Isa::kV4})) << needed;
-    EXPECT_STREQ(baseline_rung().name, "baseline");
-    EXPECT_EQ(ladder().size(), scalar::kRungs.size() + v3::kRungs.size() + v4::kRungs.size());
+    EXPECT_STREQ(baseline_variant().name, "baseline");
+    EXPECT_EQ(ladder().size(), scalar::kVariants.size() + v3::kVariants.size() + v4::kVariants.size());
 }
 #endif
 
-// The one lossy rung states its loss: the difference exists, and is within the bound of the table.
+// The one lossy variant states its loss: the difference exists, and is within the bound of the table.
 TEST(Ladder, RawRsqrtIsLossy) {
-    for (const Rung& rung : ladder()) {
-        if (std::string(rung.name) != "rsqrt" || !available(rung.isa)) continue;
+    for (const Variant& variant : ladder()) {
+        if (std::string(variant.name) != "rsqrt" || !available(variant.isa)) continue;
         const std::vector<Impact> impacts = five_states();
-        const auto expected = run_rung(baseline_rung(), impacts, 1000, ClothSlip::kAsPublished);
-        const auto got = run_rung(rung, impacts, 1000, ClothSlip::kAsPublished);
+        const auto expected = run_variant(baseline_variant(), impacts, 1000, ClothSlip::kAsPublished);
+        const auto got = run_variant(variant, impacts, 1000, ClothSlip::kAsPublished);
         double most = 0.0;
         for (std::size_t i = 0; i < impacts.size(); ++i)
             most = std::max(most, difference(got[i], expected[i], impacts[i].params.R));

@@ -76,7 +76,7 @@ TEST(Detector, FindsTheContactOfTwoBalls) {
     add_gliding(scene, "a", 0.0, 0.0, 0.0, 2.0);
     add_gliding(scene, "b", 0.0, 1.0, 0.0, 0.0);
     Parts parts(scene);
-    const Candidate next = parts.detector.next();
+    const PredictedEvent next = parts.detector.next();
     EXPECT_NEAR(next.time, (1.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
     EXPECT_EQ(next.contact, (Contact{0, With::kBall, 1}));
     // Asked again without an event, it gives the same answer.
@@ -92,7 +92,7 @@ TEST(Detector, LooksAgainWhereAPartnerHasTurned) {
     EXPECT_EQ(parts.detector.next().contact.other, 1);
     parts.balls.advance_to(0.1);
     parts.turn(1, {1.0, 0.0, 0.0}, Vec3::Zero());  // b leaves the line of a
-    const Candidate next = parts.detector.next();
+    const PredictedEvent next = parts.detector.next();
     EXPECT_EQ(next.contact, (Contact{0, With::kBall, 2}));
     EXPECT_NEAR(next.time, (3.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
 }
@@ -111,7 +111,7 @@ TEST(Detector, OrderAtOneInstant) {
     add_gliding(scene, "p", 0.0, 0.9375 - 0.25, 0.0, 1.0);
     Parts parts(scene);
     for (const With with : {With::kPocket, With::kBall, With::kCushion}) {
-        const Candidate next = parts.detector.next();
+        const PredictedEvent next = parts.detector.next();
         EXPECT_EQ(next.time, 0.25);
         EXPECT_EQ(next.contact.with, with);
         parts.balls.advance_to(next.time);
@@ -121,8 +121,8 @@ TEST(Detector, OrderAtOneInstant) {
 }
 
 /// The first contact or transition by the closed forms alone: every ball with every other and every part.
-Candidate by_hand(const Parts& parts) {
-    Candidate first;
+PredictedEvent by_hand(const Parts& parts) {
+    PredictedEvent first;
     const auto offer = [&](double time, const Contact& contact) {
         if (time < first.time) first = {time, contact};
     };
@@ -168,7 +168,7 @@ TEST(Detector, AgreesWithEveryPairTakenByHand) {
         const Scene scene = RandomScene(seed).make();
         for (const Search search : {Search::kDirect, Search::kTree}) {
             Parts parts(scene, search);
-            const Candidate next = parts.detector.next(), expected = by_hand(parts);
+            const PredictedEvent next = parts.detector.next(), expected = by_hand(parts);
             ASSERT_EQ(next.time, expected.time) << "seed " << seed;
             if (next.time == kNever) continue;
             ++moving;
@@ -187,7 +187,7 @@ TEST(Detector, LeavesOutRestingContacts) {
     add_ball(scene, "b", {0.0, 2.0 * R, R}, {0.0, 0.1, 0.0}, {-0.1 / R, 0.0, 0.0});
     Parts parts(scene);
     const Contact contact{0, With::kBall, 1};
-    Approach approach = approach_of(parts.balls, 0, 1);
+    ContactKinematics approach = kinematics_of(parts.balls, 0, 1);
     approach.a_c = 1.0;  // pressed together, and not closing: no bounce
     EXPECT_FALSE(parts.resting.has(contact));
     ASSERT_TRUE(parts.resting.try_hold(approach, scene.balls.e_b));

@@ -9,8 +9,8 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/vec.h"
 #include "contact/contact.h"
-#include "loop/approach.h"
 #include "loop/balls.h"
+#include "loop/contact_kinematics.h"
 #include "loop/detector.h"
 #include "loop/resting_contacts.h"
 
@@ -18,10 +18,10 @@ namespace carom {
 
 /// A cushion or a nose that a ball touches.
 struct TableTouch {
-    Approach approach;     ///< its a_c is that before the impact
-    Vec2 normal;           ///< unit, from the part into the table
-    double height = 0.0;   ///< [m] of the nose above the cloth
-    double curving = 0.0;  ///< [m/s^2] separating acceleration of a ball that moves around the nose
+    ContactKinematics approach;  ///< its a_c is that before the impact
+    Vec2 normal;                 ///< unit, from the part into the table
+    double height = 0.0;         ///< [m] of the nose above the cloth
+    double curving = 0.0;        ///< [m/s^2] separating acceleration of a ball that moves around the nose
     const CushionModelInfo* model = nullptr;
 
     /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.

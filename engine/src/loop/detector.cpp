@@ -34,7 +34,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
 }
 
 // Measures the closing speed of a contact at its time: of simultaneous contacts, the fastest comes first.
-double Detector::closing(const Candidate& c) const {
+double Detector::closing(const PredictedEvent& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
     if (flights_ && balls_.in_space(c.contact.ball, c.contact.other)) {
@@ -47,7 +47,7 @@ double Detector::closing(const Candidate& c) const {
     return -(r.x() * v.x() + r.y() * v.y());
 }
 
-Vec2 Detector::place(const Candidate& c) const {
+Vec2 Detector::place(const PredictedEvent& c) const {
     const Segment& s = balls_.segment(c.contact.ball);
     Vec2 here = planar(position_at(s, c.time - s.start));
     const int other = c.contact.other;
@@ -71,8 +71,9 @@ Vec2 Detector::place(const Candidate& c) const {
     return here;
 }
 
-// Order of simultaneous candidates: kind, then greater closing(), then position (x, then y); never an id.
-bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
+// Order of simultaneous predicted events: kind, then greater closing(), then position (x, then y); never an
+// id.
+bool Detector::before_at_once(const PredictedEvent& x, const PredictedEvent& y) const {
     const int rank_x = rank(x.contact.with), rank_y = rank(y.contact.with);
     if (rank_x != rank_y) return rank_x < rank_y;
     const double closing_x = closing(x), closing_y = closing(y);
@@ -82,23 +83,23 @@ bool Detector::before_at_once(const Candidate& x, const Candidate& y) const {
     return place_x.y() < place_y.y();
 }
 
-// Call whenever a candidate of the ball or the expiry of its box has changed.
+// Call whenever a predicted event of the ball or the expiry of its box has changed.
 void Detector::requeue(int ball) {
     const Mover& mover = mover_[ball];
     queue_.set(ball,
                std::min(std::min(mover.own, mover.table.time), std::min(mover.pair.time, mover.refresh)));
 }
 
-Candidate Detector::first_of(int ball) const {
+PredictedEvent Detector::first_of(int ball) const {
     const Mover& mover = mover_[ball];
-    Candidate first{mover.own, {ball, With::kNothing, -1}};
+    PredictedEvent first{mover.own, {ball, With::kNothing, -1}};
     take_first(mover.table, first);
     take_first(mover.pair, first);
     return first;
 }
 
 bool Detector::must_search_again(int ball) const {
-    const Candidate c = first_of(ball);
+    const PredictedEvent c = first_of(ball);
     if (mover_[ball].refresh <= c.time) return true;
     if (c.contact.with != With::kBall) return false;
     const int partner = c.contact.ball == ball ? c.contact.other : c.contact.ball;
@@ -107,7 +108,7 @@ bool Detector::must_search_again(int ball) const {
 
 // Searches again for the contacts of balls whose box has expired or whose partner has changed its motion.
 // Then chooses among simultaneous events, using the present motions.
-Candidate Detector::next() {
+PredictedEvent Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
         const double time = queue_.first();
@@ -121,7 +122,7 @@ Candidate Detector::next() {
             again = true;
         }
         if (again) continue;
-        Candidate first;
+        PredictedEvent first;
         for (const int ball : tied_) take_first(first_of(ball), first);
         return first;
     }

@@ -1,6 +1,6 @@
-// Finds the next contact or state transition. Every ball has three candidates: its state transition, its
-// first contact with the table and its first contact with another ball. Boxes exclude all that a ball cannot
-// reach before its own next event (broad phase), closed forms give the times of the other contacts
+// Finds the next contact or state transition. Every ball has three predicted events: its state transition,
+// its first contact with the table and its first contact with another ball. Boxes exclude all that a ball
+// cannot reach before its own next event (broad phase), closed forms give the times of the other contacts
 // (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in detector.cpp (the
 // order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
@@ -24,7 +24,7 @@
 namespace carom {
 
 /// An event that will happen unless an earlier one prevents it.
-struct Candidate {
+struct PredictedEvent {
     double time = kNever;
     Contact contact;          ///< With::kNothing: the state transition of the ball
     std::uint32_t stamp = 0;  ///< for a pair: Mover::stamp of the partner when this was found
@@ -37,10 +37,10 @@ struct alignas(64) Mover {
     double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
     std::uint32_t stamp = 0;  ///< incremented with every new segment
     std::uint32_t round = 0;  ///< last search in which this ball's motion was new
-    /// First contact with another ball. It is kept until it is the next candidate, even if the partner's
+    /// First contact with another ball. It is kept until it is the next event, even if the partner's
     /// motion has changed; then it is no later than the true first contact.
-    Candidate pair;
-    Candidate table;  ///< first contact with the table
+    PredictedEvent pair;
+    PredictedEvent table;  ///< first contact with the table
     /// When the box expires; kNever if an event of the ball itself comes first
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
@@ -50,7 +50,7 @@ struct alignas(64) Mover {
 struct DetectorMemory {
     std::vector<Mover> mover_;
     std::vector<int> tied_;  // balls whose next event is at the same instant
-    EventQueue queue_;       // of the balls: the time of the first candidate, or of the expiry of the box
+    EventQueue queue_;  // of the balls: the time of the first predicted event, or of the expiry of the box
     // boxes of balls until their own next event, and boxes of the parts of the table
     BoxSearch ball_boxes_, table_boxes_;
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
@@ -68,8 +68,8 @@ class Detector : private Borrowed<DetectorMemory> {
     /// Searches the contacts of the balls whose motion has changed, and clears the list. The first call must
     /// list all balls.
     void update(std::vector<int>& touched);
-    /// The next candidate; its time is kNever if there is none.
-    Candidate next();
+    /// The next predicted event; its time is kNever if there is none.
+    PredictedEvent next();
 
     /// Calls found(ball) for every ball whose box overlaps this box; a ball is always inside its box.
     template <class Found>
@@ -87,16 +87,16 @@ class Detector : private Borrowed<DetectorMemory> {
 
   private:
     // detector.cpp
-    bool before(const Candidate& x, const Candidate& y) const {
+    bool before(const PredictedEvent& x, const PredictedEvent& y) const {
         return x.time != y.time ? x.time < y.time : x.time != kNever && before_at_once(x, y);
     }
-    void take_first(const Candidate& c, Candidate& first) const {
+    void take_first(const PredictedEvent& c, PredictedEvent& first) const {
         if (before(c, first)) first = c;
     }
-    bool before_at_once(const Candidate& x, const Candidate& y) const;
-    double closing(const Candidate& c) const;
-    Vec2 place(const Candidate& c) const;
-    Candidate first_of(int ball) const;
+    bool before_at_once(const PredictedEvent& x, const PredictedEvent& y) const;
+    double closing(const PredictedEvent& c) const;
+    Vec2 place(const PredictedEvent& c) const;
+    PredictedEvent first_of(int ball) const;
     bool must_search_again(int ball) const;
     void requeue(int ball);
     void renew(int ball);
@@ -107,8 +107,8 @@ class Detector : private Borrowed<DetectorMemory> {
     void bound(int ball, double from, const RoundedBox* whole = nullptr);
     void bound_speed(const Segment& segment);
     void search_pairs(int ball);
-    Candidate pair(int a, const Path& mine, int b, double latest) const;
-    void offer(int ball, int partner, Candidate c);
+    PredictedEvent pair(int a, const Path& mine, int b, double latest) const;
+    void offer(int ball, int partner, PredictedEvent c);
     void search_again(int ball);
 
     // table_search.cpp

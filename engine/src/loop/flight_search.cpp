@@ -61,7 +61,7 @@ bool Detector::over_pocket(const Vec2& here) const {
 // side. Landing is its own transition. Cloth may lie behind a cushion's line, if the table has a bed; there
 // is none inside a jaw.
 void Detector::search_table_in_air(int ball) {
-    Candidate& first = mover_[ball].table;
+    PredictedEvent& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);
     const Flight f = flight(ball, start);
     const Path p = path(ball, start);

@@ -71,7 +71,7 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 // First contact of two balls. May return none if it is later than `latest`, or than the next own event of one
 // of them, after which its contacts are searched again. `mine` is the path of ball a from the start of its
 // segment.
-Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
+PredictedEvent Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
     const bool in_air = flights_ && balls_.in_space(a, b);
     const double from = std::max(s.start, q.start);
@@ -89,8 +89,8 @@ Candidate Detector::pair(int a, const Path& mine, int b, double latest) const {
     return {from + time_to_ball(from == s.start ? mine : path(a, from), path(b, from), reach), contact};
 }
 
-void Detector::offer(int ball, int partner, Candidate c) {
-    Candidate& mine = mover_[ball].pair;
+void Detector::offer(int ball, int partner, PredictedEvent c) {
+    PredictedEvent& mine = mover_[ball].pair;
     if (!before(c, mine)) return;
     mine = c;
     mine.stamp = mover_[partner].stamp;
@@ -106,7 +106,7 @@ void Detector::search_pairs(int ball) {
         if (mover_[other].round == round_ && other < ball) return;
         if (resting_.has({ball, With::kBall, other})) return;
         const double latest = std::max(mover_[ball].pair.time, mover_[other].pair.time);
-        const Candidate c = pair(ball, mine, other, latest);
+        const PredictedEvent c = pair(ball, mine, other, latest);
         if (c.time == kNever) return;
         offer(ball, other, c);
         offer(other, ball, c);

@@ -1,4 +1,4 @@
-// The effect of a candidate on the balls: impacts and state transitions.
+// The effect of an event on the balls: impacts and state transitions.
 #pragma once
 
 #include <cstdint>

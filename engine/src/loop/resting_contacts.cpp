@@ -118,7 +118,7 @@ bool RestingContacts::find(const Contact& contact) const {
 //   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or if an impact goes back and
 //     forth through balls that rest on each other between two rails. The limit is again the resting contact.
 //     Elastic bounces count only if the closing speed has in fact fallen.
-bool RestingContacts::try_begin(const Approach& a, double restitution) {
+bool RestingContacts::try_begin(const ContactKinematics& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
     if (is_gone(balls_.segment(c.ball).state)) return false;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/resting.h"
-#include "loop/approach.h"
 #include "loop/balls.h"
+#include "loop/contact_kinematics.h"
 #include "loop/log.h"
 #include "loop/memory.h"
 
@@ -44,14 +44,14 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// Begins a resting contact instead of a bounce if the conditions hold (tests/README.md, H5 and H7).
     /// @param restitution  of the bounce
     /// @return whether it is a resting contact now
-    bool try_hold(const Approach& approach, double restitution) {
+    bool try_hold(const ContactKinematics& approach, double restitution) {
         if (!try_begin(approach, restitution)) return false;
         start(approach.contact.ball);
         return true;
     }
     /// try_hold() in two parts, for contacts of one ball that begin together: call start() after the last
     /// one.
-    bool try_begin(const Approach& approach, double restitution);
+    bool try_begin(const ContactKinematics& approach, double restitution);
     void start(int ball);
     /// Ends all resting contacts of a ball before another event
     /// changes its motion; its partners continue without it.

@@ -67,7 +67,7 @@ StopReason Run::run(const Record* so_far) {
     log_.end_set_up(set_up_ns);
     while (!is_full()) {
         log_.begin_round();
-        const Candidate next = detector_.next();
+        const PredictedEvent next = detector_.next();
         if (next.time > stop_ || next.time == kNever) return stop(next.time);
         if (next.time > kDigitsAreMany) check_creeping(next.time);
         if (next.time > kDigitsAreMany && next.contact.with != With::kNothing) {

@@ -72,7 +72,7 @@ void Detector::find_parts(const RoundedBox& box) {
 
 // `whole`: the box of the ball during its segment.
 void Detector::search_table(int ball, const RoundedBox& whole) {
-    Candidate& first = mover_[ball].table;
+    PredictedEvent& first = mover_[ball].table;
     first = {};
     const Segment& s = balls_.segment(ball);
     if (is_gone(s.state) || (parts_.empty() && !plan_.scene.table.bed)) return;

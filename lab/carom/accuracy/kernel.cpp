@@ -93,20 +93,20 @@ Subject march(KernelCall call, const std::string& name, long n) {
     return s;
 }
 
-/// The fastest batch rung here at N = 1000.
-const Rung& fastest_batch(Isa isa, const std::vector<Impact>& impacts) {
-    const Rung* best = nullptr;
+/// The fastest batch variant here at N = 1000.
+const Variant& fastest_batch(Isa isa, const std::vector<Impact>& impacts) {
+    const Variant* best = nullptr;
     double least = INFINITY;
-    for (const Rung& rung : ladder()) {
-        const bool meant = isa == Isa::kFastest ? available(rung.isa) : rung.isa == isa;
-        if (!meant || rung.batch == nullptr) continue;
-        Subject s = march(call_of(rung), rung.name, 1000);
+    for (const Variant& variant : ladder()) {
+        const bool meant = isa == Isa::kFastest ? available(variant.isa) : variant.isa == isa;
+        if (!meant || variant.batch == nullptr) continue;
+        Subject s = march(call_of(variant), variant.name, 1000);
         s.prepare(impacts);
         double ns = INFINITY;
         for (int i = 0; i < 3; ++i) ns = std::min(ns, s.once(impacts));
         if (ns < least) {
             least = ns;
-            best = &rung;
+            best = &variant;
         }
     }
     if (best == nullptr) throw std::runtime_error("the ladder has no batches for this instruction set");
@@ -118,7 +118,7 @@ KernelCall call_of_march(MarchFunction f) {
 }
 
 void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vector<Impact>& impacts) {
-    const Rung& lanes = fastest_batch(isa, impacts);
+    const Variant& lanes = fastest_batch(isa, impacts);
     for (const long n : {10L, 30L, 100L, 300L, 1000L, 3000L, 10000L, 30000L, 100000L}) {
         if (n > most) break;
         list.push_back(march(call_of_march(summed_march_function(isa)), "march", n));

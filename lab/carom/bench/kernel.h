@@ -1,4 +1,4 @@
-// carom-lab bench kernel: every rung of the ladder and every tolerance, side by side in one run.
+// carom-lab bench kernel: every variant of the ladder and every tolerance, side by side in one run.
 #pragma once
 
 #include <cstdint>

@@ -16,10 +16,11 @@ using namespace kernel;
 
 std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     std::vector<TimedKernel> list;
-    for (const Rung& rung : ladder()) {
-        if (std::find(isas.begin(), isas.end(), rung.isa) == isas.end()) continue;
-        TimedKernel& s = list.emplace_back(call_of(rung));
-        s.row = {std::string("march ") + rung.name, rung.section, s.kind(), rung.isa, rung.portable_bits};
+    for (const Variant& variant : ladder()) {
+        if (std::find(isas.begin(), isas.end(), variant.isa) == isas.end()) continue;
+        TimedKernel& s = list.emplace_back(call_of(variant));
+        s.row = {std::string("march ") + variant.name, variant.section, s.kind(), variant.isa,
+                 variant.portable_bits};
     }
     const std::pair<const char*, double> asked[] = {
         {"tolerance 1e-3", 1e-3}, {"tolerance 1e-6", 1e-6}, {"tolerance 1e-10", 1e-10}};
@@ -83,10 +84,10 @@ std::vector<Isa> chosen_isas() {
 
 }  // namespace
 
-KernelCall call_of(const Rung& rung) {
-    if (rung.march == nullptr)
-        return {{}, [f = rung.batch](const BatchArrays& a, int n) { f(a.batch, n, a.result); }};
-    return {[f = rung.march](const Impact& i, int n, ImpactResult& out) {
+KernelCall call_of(const Variant& variant) {
+    if (variant.march == nullptr)
+        return {{}, [f = variant.batch](const BatchArrays& a, int n) { f(a.batch, n, a.result); }};
+    return {[f = variant.march](const Impact& i, int n, ImpactResult& out) {
                 f(i.ball1, i.ball2, i.params, n, out);
             },
             {}};

@@ -1,4 +1,4 @@
-// What carom-lab bench kernel times: every rung of the ladder
+// What carom-lab bench kernel times: every variant of the ladder
 // and every tolerance, on single impacts or on batches.
 #pragma once
 
@@ -42,10 +42,10 @@ struct KernelCall {
     std::function<void(const BatchArrays&, int n)> many;
     const char* kind() const { return one ? "single" : "batch"; }
 };
-KernelCall call_of(const kernel::Rung& rung);
+KernelCall call_of(const kernel::Variant& variant);
 KernelCall tolerance_call(kernel::Isa isa, double tolerance, bool batch);
 
-/// One thing to measure: a rung, or a tolerance.
+/// One thing to measure: a variant, or a tolerance.
 struct TimedKernel : KernelCall {
     explicit TimedKernel(KernelCall call) : KernelCall(std::move(call)) {}
 

@@ -1,6 +1,6 @@
 // The list of kernel variants for one instruction set, in
 // the order of the paper. Built once per instruction set.
-#include "ladder/rungs.h"
+#include "ladder/variants.h"
 
 #include "kernel_set.h"
 #include "ladder/branch_hints.h"
@@ -37,18 +37,18 @@ void one(const Ball& ball1, const Ball& ball2, const ImpactParams& p, int n, Imp
     kImpact(ball1, ball2, p, n, result);
 }
 
-constexpr Rung single(const char* name, const char* section, MarchFunction march, bool portable_bits,
-                      double bound_five, double bound_random, const char* idea) {
+constexpr Variant single(const char* name, const char* section, MarchFunction march, bool portable_bits,
+                         double bound_five, double bound_random, const char* idea) {
     return {name, section, kIsa, march, nullptr, portable_bits, bound_five, bound_random, idea};
 }
 
-constexpr Rung batch(const char* name, const char* section, BatchFunction batch, bool portable_bits,
-                     double bound_five, double bound_random, const char* idea) {
+constexpr Variant batch(const char* name, const char* section, BatchFunction batch, bool portable_bits,
+                        double bound_five, double bound_random, const char* idea) {
     return {name, section, kIsa, nullptr, batch, portable_bits, bound_five, bound_random, idea};
 }
 
 // clang-format off
-constexpr Rung kList[] = {
+constexpr Variant kList[] = {
     single("baseline", "3.1", march, true, 0.0, 0.0, "the published march in double, equation by equation"),
     single("fewer square roots", "3.2", one<drive<FewerRoots>>, true, 1e-14, 1e-09,
            "cutoffs tested on squares, no root where its friction is zero"),
@@ -134,6 +134,6 @@ constexpr Rung kList[] = {
 
 }  // namespace
 
-constinit const std::span<const Rung> kRungs = kList;
+constinit const std::span<const Variant> kVariants = kList;
 
 }  // namespace carom::kernel::CAROM_ISA_NAMESPACE

@@ -7,15 +7,15 @@
 namespace carom {
 
 /// A ball at a contact, with its closing speed and closing acceleration.
-struct Approach {
+struct ContactKinematics {
     Contact contact;
     Vec2 n;            ///< unit, from the ball to the other one or into the table's part
     double v_n = 0.0;  ///< [m/s] closing speed
     double a_c = 0.0;  ///< [m/s^2] closing acceleration
 };
 
-/// The approach of two balls that touch.
-Approach approach_of(const Balls& balls, int one, int two);
+/// The kinematics of two balls that touch.
+ContactKinematics kinematics_of(const Balls& balls, int one, int two);
 
 /// [m/s^2] Acceleration at which the gap between two balls closes during these motions. Pass the motions
 /// after an impact to see whether the bounce ends: before it, slow rolling balls decelerate and seem to

@@ -1,8 +1,8 @@
-#include "loop/approach.h"
+#include "loop/contact_kinematics.h"
 
 namespace carom {
 
-Approach approach_of(const Balls& balls, int one, int two) {
+ContactKinematics kinematics_of(const Balls& balls, int one, int two) {
     const Vec3 r = balls.position(two) - balls.position(one), v = balls.velocity(one) - balls.velocity(two);
     const Vec2 apart(r.x(), r.y());
     const Vec2 n = apart / length(apart);
