@@ -219,6 +219,8 @@ TEST(View, WithMarginThePageHasEveryFrame) {
     const std::string html = read_file(page), before = "id=\"page\">";
     const std::size_t from = html.find(before) + before.size();
     const Json data = Json::parse(html.substr(from, html.find("</script>", from) - from));
+    // Three diamonds between two pockets, on each of six rails.
+    EXPECT_EQ(data.at("shape").at("numbers").size(), 18u);
     const Json& margin = data.at("margin");
     EXPECT_EQ(margin.at("series").at(0).at("name"), "whole frame");
     EXPECT_EQ(margin.at("levels").at(0).at("y"), 1000.0 / 60.0);

@@ -1,6 +1,6 @@
 // The npm package: its functions, its errors, the example of its README, its types.
 import assert from "node:assert/strict";
-import {readFileSync, writeFileSync, mkdtempSync, rmSync} from "node:fs";
+import {existsSync, readFileSync, writeFileSync, mkdtempSync, rmSync} from "node:fs";
 import {execFileSync} from "node:child_process";
 import {tmpdir} from "node:os";
 import * as path from "node:path";
@@ -86,6 +86,13 @@ test("a shot has events, states, an outcome and a record", () => {
   assert.throws(() => shot.states(0), /freed/);
 });
 
+test("a look has outlines, and the numbers of the diamonds", () => {
+  const {shape} = draw().look();
+  assert.ok(shape.cloth.length > 0);
+  assert.deepEqual(shape.numbers.map(({number}) => number).sort(),
+    [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 5, 5, 6, 6, 7, 7]);
+});
+
 test("until and seconds end a shot", () => {
   const scene = Scene.parse(sceneText("snooker_break.toml"));
   assert.equal(simulate(scene, {until: 0.5}).duration, 0.5);
@@ -153,5 +160,18 @@ test("the example of the README runs", () => {
 test("every exported name has a type", () => {
   const types = readFileSync(path.join(PACKAGE, "index.d.ts"), "utf8");
   for (const name of Object.keys(carom))
-    if (name !== "start") assert.match(types, new RegExp(`export (function|class|const) ${name}\\b`), name);
+    assert.match(types, new RegExp(`export (function|class|const) ${name}\\b`), name);
+});
+
+test("a machine without SIMD gets the plain module, and the same bits", {
+  skip: existsSync(path.join(PACKAGE, "carom-plain.wasm")) ? false : "tools/web --test builds carom-plain.wasm",
+}, () => {
+  const program = `
+    WebAssembly.validate = () => false;
+    const {init, Scene, simulate} = await import(${JSON.stringify(path.join(PACKAGE, "index.js"))});
+    await init();
+    console.log(simulate(Scene.parse(${JSON.stringify(sceneText("eight_ball_break.toml"))})).hash);`;
+  const traced = ["--input-type=module", "-e", program];
+  const plain = execFileSync(process.execPath, traced, {encoding: "utf8"}).trim();
+  assert.equal(plain, simulate(Scene.parse(sceneText("eight_ball_break.toml"))).hash);
 });

@@ -162,14 +162,19 @@ export class Scene extends Held {
 
 /** A simulated shot. */
 export class Shot extends Held {
+  #hash = null;
+  #outcome = null;
   #recordText = null;
   #record = null;
   #events = null;
-  constructor(summary, scene) {
+  constructor(brief, scene) {
     super("carom_free_shot");
-    const {hash, duration, events, balls, outcome} = JSON.parse(summary);
-    Object.assign(this, {scene, hash, duration, eventCount: events, balls, outcome});
+    const [duration, eventCount] = JSON.parse(brief);
+    Object.assign(this, {scene, duration, eventCount});
   }
+  get hash() { return this.#hash ??= call("carom_shot_hash", this.handle); }
+  get outcome() { return this.#outcome ??= JSON.parse(call("carom_shot_outcome", this.handle)); }
+  get balls() { return this.outcome.balls.map((ball) => ball.id); }
   get recordJson() { return this.#recordText ??= call("carom_shot_record", this.handle); }
   get record() { return this.#record ??= JSON.parse(this.recordJson); }
   get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }

@@ -133,7 +133,8 @@ Json look(const Scene& scene) {
     }
     const render::TableMesh mesh =
         render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
-    return {{"shape", tools::table_shape(mesh)}, {"styles", tools::ball_styles(ids, scene.table.preset)}};
+    return {{"shape", tools::table_shape(scene.table, mesh)},
+            {"styles", tools::ball_styles(ids, scene.table.preset)}};
 }
 
 std::string dumped(const Json& json) {

@@ -54,16 +54,6 @@ Json outcome_json(const Record& record, const Outcome& outcome) {
             {"balls", balls}};
 }
 
-Json shot_json(const WebShot& shot) {
-    Json ids = Json::array();
-    for (const BallTrack& track : shot.record.tracks) ids.push_back(track.id);
-    return {{"hash", shot.record.hash()},
-            {"duration", shot.record.duration},
-            {"events", shot.record.events.size()},
-            {"balls", ids},
-            {"outcome", outcome_json(shot.record, shot.outcome)}};
-}
-
 Json events_json(const Record& record) {
     Json list = Json::array();
     for (std::size_t i = 0; i < record.events.size(); ++i) {
@@ -142,8 +132,17 @@ CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds
         carom::RunBuffers buffers;
         const carom::Plan plan = carom::make_plan(shot->scene, carom::web::kIsa);
         carom::simulate(plan, buffers, shot->outcome, shot->record, options);
-        std::string text = carom::web::dumped(carom::web::shot_json(*shot));
-        carom::web::give(shot.release(), std::move(text));
+        // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
+        const carom::web::Json brief = {shot->record.duration, shot->record.events.size()};
+        carom::web::give(shot.release(), brief.dump());
+    });
+}
+CAROM_WEB int carom_shot_hash(const WebShot* shot) {
+    return guarded([&] { carom::web::give(nullptr, shot->record.hash()); });
+}
+CAROM_WEB int carom_shot_outcome(const WebShot* shot) {
+    return guarded([&] {
+        carom::web::give(nullptr, carom::web::dumped(carom::web::outcome_json(shot->record, shot->outcome)));
     });
 }
 CAROM_WEB void carom_free_shot(WebShot* shot) {

@@ -50,7 +50,8 @@
     button(icon(ICONS.back), "Previous event (arrow up)", () => jump(-1)), play,
     button(icon(ICONS.next), "Next event (arrow down)", () => jump(1)),
     clock, make("span", {class: "room"}), speeds, trailBox, modes);
-  const keys = "Space: play or pause. ← →: one frame. ↑ ↓: one event. Home, End. + −: speed. T: trails.";
+  const keys = "Space: play or pause. ← →: one frame. ↑ ↓: one event. Home, End. + −: speed. T: trails. " +
+    "D: numbers of the diamonds.";
   const stage = make("section", {class: "stage card", "aria-label": "The shot"}, tables,
     make("div", {class: "scrubbing"}, scrub, ticks), bar, make("p", {class: "keys"}, keys), spoken);
 
@@ -252,6 +253,7 @@
     ArrowRight: () => pick(now + FRAME), ArrowUp: () => jump(-1), ArrowDown: () => jump(1),
     Home: () => pick(0), End: () => pick(end), "+": () => setSpeed(1), "-": () => setSpeed(-1),
     Escape: () => mark(-1),
+    d: () => { view.numbered = !view.numbered; show(now); },
     t: () => { trailBox.selectedIndex = (trailBox.selectedIndex + 1) % 3; trailBox.onchange(); }};
   document.addEventListener("keydown", (event) => {
     const on = event.target, action = actions[event.key] || actions[event.key.toLowerCase()];

@@ -23,7 +23,8 @@ Json shot_json(const Record& record) {
     const render::Stage stage(record, {});
     std::vector<std::string> ids;
     for (const BallTrack& track : record.tracks) ids.push_back(track.id);
-    return {{"shape", table_shape(*stage.table())}, {"styles", ball_styles(ids, record.table.preset)}};
+    return {{"shape", table_shape(record.table, *stage.table())},
+            {"styles", ball_styles(ids, record.table.preset)}};
 }
 
 std::string counted(std::size_t count, const char* what) {

@@ -11,7 +11,7 @@ const isGone = (state) => state === "pocketed" || state === "out";
 class TableView {
   /** `shape` and `styles`: the table's outlines, and {color, pattern, number} for each ball. */
   constructor(record, shape, styles, label) {
-    Object.assign(this, {record, shape, styles, width: 0});
+    Object.assign(this, {record, shape, styles, width: 0, numbered: false});
     this.under = make("canvas", {"aria-hidden": "true"});
     this.over = make("canvas", {role: "img", "aria-label": label});
     this.element = make("div", {class: "table"}, this.under, this.over);
@@ -81,6 +81,7 @@ class TableView {
     const context = this.over.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, this.over.width, this.over.height);
+    if (this.numbered) this.numbers(context);
     if (ghost !== null && trails !== "off") this.trails(context, ghost, t, trails, true);
     if (trails !== "off") this.trails(context, this.record, until, trails, false, only);
     this.seen = this.balls(this.record, t);
@@ -101,6 +102,15 @@ class TableView {
       context.arc(ball.x, ball.y, ball.r + 4 * this.dense, 0, 7);
       context.stroke();
     }
+  }
+
+  /** The diamonds' numbers, upright on the cushions. */
+  numbers(context) {
+    context.save();
+    context.font = `${Math.max(10 * this.dense, 0.03 * this.projection.scale)}px sans-serif`;
+    Object.assign(context, {fillStyle: "#f5f2e8", textAlign: "center", textBaseline: "middle"});
+    for (const {at, number} of this.shape.numbers) context.fillText(number, ...this.projection.at(...at));
+    context.restore();
   }
 
   shadows(context) {

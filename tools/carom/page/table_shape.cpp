@@ -212,13 +212,16 @@ std::vector<std::array<MeshVertex, 3>> table_marks(const TableMesh& mesh) {
     return within_marks(seen_from_above(mesh.blended, Material::kChalk));
 }
 
-Json table_shape(const TableMesh& mesh) {
+Json table_shape(const Table& table, const TableMesh& mesh) {
     const auto loops = [&mesh](Material material) {
         return loops_json(mesh, seen_from_above(mesh.solid, material));
     };
     Json holes = Json::array();
     for (const render::Hole& hole : mesh.holes)
         holes.push_back({{"center", place(hole.center)}, {"radius", metres(hole.radius)}});
+    Json numbers = Json::array();
+    for (const auto& [at, number] : render::diamond_numbers(table, mesh))
+        numbers.push_back({{"at", place(at)}, {"number", number}});
     const Vec3& lamp = mesh.lamp.center;
     return {{"bounds", {{"low", place(mesh.bounds.low)}, {"high", place(mesh.bounds.high)}}},
             {"inner", {{"low", place(mesh.inner_low)}, {"high", place(mesh.inner_high)}}},
@@ -233,7 +236,8 @@ Json table_shape(const TableMesh& mesh) {
             {"inlay", loops(Material::kInlay)},
             {"chalk", loops_json(mesh, table_marks(mesh))},
             {"wood", boards_json(mesh)},
-            {"holes", holes}};
+            {"holes", holes},
+            {"numbers", numbers}};
 }
 
 }  // namespace carom::tools

@@ -21,6 +21,8 @@ std::vector<std::array<render::MeshVertex, 3>> table_marks(const render::TableMe
 /// - wood: a list of boards {loops, grain}; the six numbers of grain give u = g0 x + g1 y + g2 along the
 ///   board and v = g3 x + g4 y + g5 across it
 /// - holes: a list of {center, radius}
-nlohmann::ordered_json table_shape(const render::TableMesh& mesh);
+/// - numbers: a list of {at, number}: the diamonds' numbers, on the cushions
+/// @param mesh of this table
+nlohmann::ordered_json table_shape(const Table& table, const render::TableMesh& mesh);
 
 }  // namespace carom::tools

@@ -131,7 +131,7 @@ class Drawing {
         stroke(kBlack, 0.8);
     }
     void draw_table() {
-        const Json shape = table_shape(mesh_);
+        const Json shape = table_shape(record_.table, mesh_);
         const bool colored = style_.color;
         // Light colours, because a page is read on paper.
         for (const Json& board : shape.at("wood"))

@@ -136,9 +136,13 @@
   const placeUnit = make("span", {});
   const unitBox = select("Units", [["metric", "metric"], ["inch", "inches, mph"]], units,
     (x) => { units = x; tell(); listEvents(); showPlace(); });
+  const numbers = make("input", {type: "checkbox", onchange: () => {
+    view.numbered = numbers.checked;
+    show(now);
+  }});
   const setup = make("details", {class: "card setup"}, make("summary", {}, "Table, balls, units"),
     field("Table", tableBox), field("Cloth", clothBox), field("Cushions", cushionBox),
-    field("Units", unitBox),
+    field("Units", unitBox), make("label", {}, numbers, " number the diamonds"),
     make("fieldset", {}, make("legend", {}, "Place a ball ", placeUnit), whichBall, placeX, placeY),
     make("fieldset", {class: "materials"}, make("legend", {}, "Balls"), ...materials.map((m) => m.element)));
   for (const box of [tableBox, gameBox]) box.disabled = fixed || locked("table");
@@ -218,6 +222,7 @@
   function redraw() {
     look = scene.look();
     view = new TableView(shot.record, look.shape, look.styles, "The table from above");
+    view.numbered = numbers.checked;
     view.over.onpointerdown = press;
     view.over.onpointermove = move;
     view.over.onpointerup = view.over.onpointercancel = release;
