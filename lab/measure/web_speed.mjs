@@ -1,13 +1,17 @@
 #!/usr/bin/env node
 // How much longer shots take in WebAssembly than in the native engine: batches of the same shots on one
-// thread, in turn, in node and in the Python module, which calls the engine once per batch. The fewest
-// seconds of CPU time per shot, and the median of the ratios.
+// thread, in turn, in the Python module, which calls the engine once per batch, in node, and in headless
+// Chromium. The fewest microseconds of the thread's CPU time per shot, and ratios.
 //
-//   lab/measure/web_speed.mjs [ROUNDS=15]     needs tools/web, and build/release/python
+//   lab/measure/web_speed.mjs [ROUNDS=15]     needs tools/web, build/release/python, chromium
 import {spawn} from "node:child_process";
+import {mkdtempSync, rmSync} from "node:fs";
+import {tmpdir} from "node:os";
 import * as path from "node:path";
 import * as readline from "node:readline";
-import {SOURCE, carom, sceneText} from "../../tests/web/support.mjs";
+import {pathToFileURL} from "node:url";
+import {Browser} from "../../tests/tools/view/chromium.mjs";
+import {SOURCE, carom, native as program, sceneText} from "../../tests/web/support.mjs";
 
 const ROUNDS = Number(process.argv[2] || 15);
 // Two balls, the default models; breaks.
@@ -35,26 +39,51 @@ async function native(name, text, aims) {
   return Number((await answers.next()).value);
 }
 
+const folder = mkdtempSync(path.join(tmpdir(), "carom-speed-")), page = path.join(folder, "play.html");
+program(["play", "-o", page]);
+const browser = new Browser({profile: path.join(folder, "profile")});
+await browser.open();
+await browser.send("Page.navigate", {url: pathToFileURL(page).href});
+await browser.until(`document.body?.dataset.ready === "true"`);
+await browser.send("Performance.enable", {timeDomain: "threadTicks"});
+async function busy() {
+  const {metrics} = await browser.send("Performance.getMetrics");
+  return metrics.find(({name}) => name === "TaskDuration").value;
+}
+async function inChromium(text, shots) {
+  await browser.value(`(() => {
+    const scene = carom.Scene.parse(${JSON.stringify(text)}), shots = ${shots}, aim = scene.cue.aim_deg;
+    window.batch = [scene, {"cue.aim_deg": Float64Array.from({length: shots},
+      (_, i) => aim + (i / shots - 0.5))}];
+  })()`);
+  const before = await busy();
+  await browser.value("carom.simulateMany(...batch).shots");
+  return await busy() - before;
+}
+
 await carom.init();
 const median = (list) => list.sort((a, b) => a - b)[Math.floor(list.length / 2)];
-console.log("scene                     native us  wasm us   ratio of least   median ratio");
+const least = (list) => Math.min(...list);
+console.log(`${"scene".padEnd(24)}native us  node us  Chromium us   ratios of the least   median ratios`);
 for (const [name, shots] of CASES) {
   const text = sceneText(name), scene = carom.Scene.parse(text, name), aim = scene.cue.aim_deg;
   const aims = Float64Array.from({length: shots}, (_, i) => aim + (i / shots - 0.5));
-  const times = {native: [], wasm: []}, ratios = [];
+  const times = [[], [], []];
   for (let round = 0; round < ROUNDS + 2; ++round) {
-    const one = await native(name, text, aims);
+    const here = await native(name, text, aims);
     const before = process.cpuUsage();
     carom.simulateMany(scene, {"cue.aim_deg": aims});
-    const used = process.cpuUsage(before), two = (used.user + used.system) / 1e6;
-    if (round < 2) continue;  // both are warm by then
-    times.native.push(one);
-    times.wasm.push(two);
-    ratios.push(two / one);
+    const {user, system} = process.cpuUsage(before), there = await inChromium(text, shots);
+    if (round < 2) continue;  // all are warm by then
+    [here, (user + system) / 1e6, there].forEach((seconds, k) => times[k].push(seconds));
   }
-  const [a, b] = [Math.min(...times.native), Math.min(...times.wasm)];
-  console.log(`${name.padEnd(24)}${(1e6 * a / shots).toFixed(2).padStart(11)}` +
-    `${(1e6 * b / shots).toFixed(2).padStart(9)}${(b / a).toFixed(2).padStart(17)}` +
-    `${median(ratios).toFixed(2).padStart(15)}`);
+  const us = times.map((list) => (1e6 * least(list) / shots).toFixed(2));
+  const ratio = (k) => (least(times[k]) / least(times[0])).toFixed(2);
+  const middle = (k) => median(times[k].map((t, i) => t / times[0][i])).toFixed(2);
+  console.log(`${name.padEnd(24)}${us[0].padStart(9)}${us[1].padStart(9)}${us[2].padStart(13)}` +
+    `${ratio(1).padStart(15)}${ratio(2).padStart(7)}${middle(1).padStart(10)}${middle(2).padStart(6)}`);
 }
 worker.stdin.end();
+browser.process.kill();
+await new Promise((resolve) => browser.process.once("exit", resolve));
+rmSync(folder, {recursive: true, force: true, maxRetries: 5});
