@@ -18,6 +18,7 @@
 #include "carom/engine/frozen.h"
 #include "carom/games/judge_many.h"
 #include "carom/games/shot.h"
+#include "carom/games/spots.h"
 
 namespace carom::games {
 namespace {
@@ -206,6 +207,18 @@ const Row kRows[] = {
      [](const PlayedShot& p, const Arguments&) -> MeasureValue {
          const std::vector<int> balls = p.shot().driven_after(p.shot().first_time);
          return double(balls.size()) - double(std::count(balls.begin(), balls.end(), p.struck()));
+     }},
+    {{"past_head_string", "", "",
+      "number of balls that fell or crossed the head string, except the struck ball"},
+     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
+         const Record& record = p.record;
+         const double back = -head_string(record.table);
+         double balls = 0.0;
+         for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i)
+             if (i != p.struck() && (record.tracks[static_cast<std::size_t>(i)].pocket >= 0 ||
+                                     farthest(record, i, Vec2(0.0, -1.0), record.duration) > back))
+                 ++balls;
+         return balls;
      }},
     {{"legal_break", "GAME", "truth", "whether the shot is a fair break of the game"},
      [](const PlayedShot& p, const Arguments& of) -> MeasureValue {

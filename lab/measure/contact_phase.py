@@ -33,7 +33,7 @@ PROBE = r"""
 using namespace carom;
 namespace isa = kernel::CAROM_ISA_NAMESPACE;
 constexpr double kV = 8.0, kR = 0.028575;
-const double kL = std::pow(kV * kV / 3.094e9, 0.4);  // kContactStiffness of the engine
+const double kL = std::pow(kV * kV / 4.736e9, 0.4);  // kContactStiffness of the engine
 struct Rack {
     std::vector<double> motion;
     std::vector<kernel::HertzContact> contacts;

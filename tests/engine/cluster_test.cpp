@@ -349,6 +349,16 @@ TEST(Cluster, AContactHasALengthAtEverySpeed) {
     EXPECT_EQ(contact_length(0.0), 0.0);
 }
 
+// Alciatore, TP B.29: 2270 N at a compression of 0.1995 mm, and 284 us at 2.06 m/s. By Hertz (Landau and
+// Lifshitz, section 9), a contact lasts 2.943 times the largest compression over the speed.
+TEST(Cluster, AContactLastsAsLongAsPublished) {
+    const double m = 0.170097, speed = 2.06;
+    EXPECT_NEAR(kContactStiffness * m * std::pow(0.1995e-3, 1.5), 2270.0, 1.0);
+    const double compression = std::pow(0.625 * speed * speed / kContactStiffness, 0.4);
+    EXPECT_NEAR(compression, 0.1995e-3, 1e-6);
+    EXPECT_NEAR(2.943 * compression / speed, 284e-6, 2e-6);
+}
+
 // Every shipped model reads both e_b and mu_b, or neither.
 TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
     Scene scene = empty_scene();

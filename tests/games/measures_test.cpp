@@ -106,6 +106,21 @@ TEST(Measures, BreaksAreJudgedByTheirGame) {
     EXPECT_THROW(asked("foul", two, simulate(plan_of(two))), std::invalid_argument);
 }
 
+// The head string of this table is at y = 0.635. Ball 1 is driven across it, ball 2 falls, ball 3 stays, and
+// the struck ball does not count.
+TEST(Measures, BallsThatFellOrCrossedTheHeadString) {
+    const Scene scene = parse_scene(
+        "[table]\npreset = \"nine_foot\"\n[[ball]]\nposition = [0.635, 0.3]\n[cue]\nspeed = 0.2\naim_deg = "
+        "180\n"
+        "[[ball]]\nid = \"1\"\nposition = [0.3, 1.2]\nvelocity = [0, -2]\n"
+        "[[ball]]\nid = \"2\"\nposition = [1.2, 2.47]\nvelocity = [1, 1]\n"
+        "[[ball]]\nid = \"3\"\nposition = [0.9, 1.0]\nvelocity = [0, -0.1]\n",
+        "h.toml");
+    const Record record = simulate(plan_of(scene));
+    EXPECT_EQ(asked("pocketed", scene, record), "2");
+    EXPECT_EQ(asked("past_head_string", scene, record), "2");
+}
+
 TEST(Measures, MistakesAreToldWhereTheyAre) {
     const Scene scene = scene_named("draw");
     const auto refused = [&](const std::string& text, const std::string& why) {

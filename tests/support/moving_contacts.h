@@ -17,7 +17,7 @@ struct MovingBall {
 };
 
 struct MovingLaw {
-    double R = 0.028575, stiffness = 3.094e9;  ///< [m], k/m [m^-0.5 s^-2]
+    double R = 0.028575, stiffness = 4.736e9;  ///< [m], k/m [m^-0.5 s^-2]
     double mu_b = 0.05, mu_s = 0.2, e_b = 0.95;
     double mu_b_more = 0.0, mu_b_fall = 0.0;  ///< friction mu_b + more exp(-fall |slip|), slip in m/s
     double slip = 1e-4;                       ///< [V] regularisation of the friction

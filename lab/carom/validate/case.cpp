@@ -108,12 +108,12 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     std::vector<const char*> names;
     for (const QuantityInfo& quantity : kQuantities) names.push_back(quantity.name);
     const Reader in(table, file,
-                    {"quantity", "when", "after", "ball", "value", "uncertainty", "place", "balls", "pockets",
-                     "cue_stays", "note"});
+                    {"quantity", "when", "after", "ball", "value", "uncertainty", "place", "name", "of",
+                     "among", "note"});
     Measured m;
     m.quantity = in.one_of<Quantity>("quantity", names);
-    const bool share = m.quantity == Quantity::kShare, place = m.quantity == Quantity::kPlace;
-    if (!share) m.when = in.one_of<Instant>("when", kInstants);
+    const bool many = is_of_many(m.quantity), place = m.quantity == Quantity::kPlace;
+    if (!many) m.when = in.one_of<Instant>("when", kInstants);
     m.after = in.value("after", 0.0);
     m.ball = in.value("ball", std::string("cue"));
     m.uncertainty = in.value<double>("uncertainty");
@@ -125,9 +125,9 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     } else {
         m.value = in.value<double>("value");
     }
-    m.balls = in.texts("balls");
-    m.pockets = in.texts("pockets");
-    m.cue_stays = in.value("cue_stays", false);
+    m.name = in.value("name", std::string());
+    if (many) m.of = in.value<std::string>("of");
+    m.among = in.value("among", std::string());
     m.note = in.value("note", std::string());
     return m;
 }
@@ -167,16 +167,17 @@ Variant read_variant(const toml::table& table, const std::string& file) {
     return variant;
 }
 
-/// Every number has a claim; the claim of a share is a value.
+/// Every number has a claim; that of a share or a mean is a value.
 void check_claims(const ValidationCase& c, const Variant& variant, const SourceLocation& where) {
     std::size_t at = 0;
     for (const ValidationShot& shot : c.shots)
         for (const Measured& m : shot.measured) {
-            if ((m.quantity == Quantity::kShare) != c.sweep.has_value())
+            if (is_of_many(m.quantity) != c.sweep.has_value())
                 throw SceneError(c.file, where,
-                                 "a share needs [sweep], and other quantities are of one shot");
-            if (at < variant.claims.size() && m.quantity == Quantity::kShare && !variant.claims[at])
-                throw SceneError(c.file, where, "the claim of a share is the value that is computed");
+                                 "a share or a mean needs [sweep], and other quantities are of one shot");
+            if (at < variant.claims.size() && c.sweep && !variant.claims[at])
+                throw SceneError(c.file, where,
+                                 "the claim of a share or a mean is the value that is computed");
             ++at;
         }
     if (at != variant.claims.size())

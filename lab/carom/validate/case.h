@@ -14,7 +14,7 @@
 
 namespace carom::tools {
 
-/// What is measured: of one ball, or, for a share, of many shots.
+/// What is measured: of one ball, or, for a share and a mean, of many shots.
 enum class Quantity : std::uint8_t {
     kSpeed,
     kSpeedRatio,
@@ -25,7 +25,8 @@ enum class Quantity : std::uint8_t {
     kPlace,
     kWay,
     kTime,
-    kShare
+    kShare,
+    kMean
 };
 struct QuantityInfo {
     const char* name;  ///< in case files
@@ -43,9 +44,13 @@ inline constexpr QuantityInfo kQuantities[] = {
     {"way", "m", "distance from the start"},
     {"time", "s", "time since the start"},
     {"share", "", "share of the shots"},
+    {"mean", "", "mean over the shots"},
 };
 inline const QuantityInfo& info(Quantity quantity) {
     return kQuantities[static_cast<std::size_t>(quantity)];
+}
+inline bool is_of_many(Quantity quantity) {
+    return quantity == Quantity::kShare || quantity == Quantity::kMean;
 }
 
 /// When it is measured.
@@ -64,10 +69,9 @@ struct Measured {
     /// in the same unit; how well the number is known, including the unknowns of the shot
     double uncertainty = 0.0;
     Vec2 place = Vec2::Zero();
-    // For a share: a shot counts if one of these balls (empty: any but the cue ball) falls into one of these
-    // pockets (empty: any) and, if required, the cue ball into none.
-    std::vector<std::string> balls, pockets;
-    bool cue_stays = false;
+    std::string name;   ///< in reports; empty: the quantity
+    std::string of;     ///< of many shots: a truth or a number of each (carom/games/measures.h)
+    std::string among;  ///< the same: only shots for which this holds; empty: all
     std::string note;
 };
 

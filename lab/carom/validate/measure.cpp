@@ -81,10 +81,6 @@ double deceleration(const Record& record, int ball, double time) {
     return a.norm();
 }
 
-bool contains(const std::vector<std::string>& list, const std::string& id) {
-    return std::find(list.begin(), list.end(), id) != list.end();
-}
-
 }  // namespace
 
 double measure(const Record& record, const Measured& what) {
@@ -118,21 +114,10 @@ double measure(const Record& record, const Measured& what) {
         case Quantity::kTime:
             return time;
         case Quantity::kShare:
+        case Quantity::kMean:
             break;
     }
     return std::numeric_limits<double>::quiet_NaN();
-}
-
-bool counts(const Record& record, const Measured& share) {
-    bool found = false;
-    for (const Event& e : record.events) {
-        if (e.type != EventType::kBallPocket) continue;
-        const std::string& id = record.tracks[e.a].id;
-        if (share.cue_stays && id == "cue") return false;
-        const bool ball = share.balls.empty() ? id != "cue" : contains(share.balls, id);
-        found = found || (ball && (share.pockets.empty() || contains(share.pockets, record.partner_id(e))));
-    }
-    return found;
 }
 
 }  // namespace carom::tools

@@ -6,11 +6,8 @@
 
 namespace carom::tools {
 
-/// The measured number of one shot, in the unit of its quantity; not for shares.
+/// The measured number of one shot, in the unit of its quantity; not for many shots.
 /// @throws std::runtime_error if the shot has no such instant, such as that of a cushion that is not hit
 double measure(const Record& record, const Measured& what);
-
-/// Whether a shot counts towards a share.
-bool counts(const Record& record, const Measured& share);
 
 }  // namespace carom::tools

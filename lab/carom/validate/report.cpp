@@ -21,7 +21,7 @@ std::string claim_text(const ValidationRow& row) {
     if (!row.claim) return "within";
     const double measured = row.measured->value, off = *row.claim - measured;
     const char* unit = info(row.measured->quantity).unit;
-    if (row.measured->quantity == Quantity::kShare) return fmt::format("{:.2f}", *row.claim);
+    if (is_of_many(row.measured->quantity)) return fmt::format("{:.2f}", *row.claim);
     const bool part = measured != 0.0 && row.measured->quantity != Quantity::kDirection;
     const double size = part ? 100.0 * std::abs(off / measured) : std::abs(off);
     return fmt::format("{:.2g} {} {}", size, part ? "%" : unit,
@@ -32,8 +32,9 @@ std::string claim_text(const ValidationRow& row) {
 
 /// "speed (rolled), ball 1"
 std::string quantity_text(const Measured& m) {
+    if (!m.name.empty()) return m.name;
     std::string text = info(m.quantity).name;
-    if (m.quantity == Quantity::kShare) return text;
+    if (is_of_many(m.quantity)) return text;
     const char* when = kInstants[static_cast<std::size_t>(m.when)];
     text += m.after == 0.0              ? fmt::format(" ({})", when)
             : m.when == Instant::kStart ? fmt::format(" ({:g} s)", m.after)
@@ -160,7 +161,7 @@ Plot overview(const std::vector<ValidationRow>& rows) {
     const Series points{"", {}, false, true, false, -1, {}};
     plot.series = {points, points, points};
     plot.series[0].name = "other keys and models";
-    plot.series[1].name = "classic presets";
+    plot.series[1].name = "former presets";
     plot.series[2].name = "presets";
     const auto column_of = [one](const ValidationRow& row) -> const void* {
         if (one) return row.measured;
@@ -172,9 +173,9 @@ Plot overview(const std::vector<ValidationRow>& rows) {
             from, rows.end(), [&](const ValidationRow& row) { return column_of(row) != column_of(*from); });
         plot.x.marks.emplace_back(column + 0.5, one ? fmt::format("{}", column + 1.0) : from->of->id);
         for (auto row = from; row != to; ++row) {
-            const std::size_t series = !row->variant->own_keys().empty()            ? 0
-                                       : row->variant->preset.ends_with("_classic") ? 1
-                                                                                    : 2;
+            const std::string& preset = row->variant->preset;
+            const bool former = preset.ends_with("_classic") || preset.ends_with("_2026_11");
+            const std::size_t series = !row->variant->own_keys().empty() ? 0 : former ? 1 : 2;
             const double part = (static_cast<double>(row - from) + 0.5) / static_cast<double>(to - from);
             plot.series[series].points.emplace_back(column + 0.1 + 0.8 * part,
                                                     std::clamp(row->deviation(), -kFarthest, kFarthest));
@@ -190,7 +191,7 @@ Plot overview(const std::vector<ValidationRow>& rows) {
 Table validation_table(const std::vector<ValidationRow>& rows) {
     using Row = ValidationRow;
     const auto shot_only = [](const Row& r, const Cell& value) {
-        return r.measured->quantity == Quantity::kShare ? Cell() : value;
+        return is_of_many(r.measured->quantity) ? Cell() : value;
     };
     const std::pair<const char*, std::function<Cell(const Row&)>> columns[] = {
         {"case", [](const Row& r) { return Cell(r.of->id); }},

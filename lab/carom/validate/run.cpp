@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/console.h"
@@ -19,19 +20,16 @@
 #include "carom/engine/record.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/variation.h"
+#include "carom/games/measures.h"
 #include "validate/measure.h"
 
 namespace carom::tools {
 namespace {
 
 constexpr double kClaimBand = 0.25;  ///< of the uncertainty
-constexpr double kShareBand = 3.0;   ///< standard deviations
+constexpr double kManyBand = 3.0;    ///< standard deviations
 /// standard deviations to each side that contain 95 % of a normal distribution
 constexpr double kNinetyFive = 1.96;
-
-double share_deviation(double share, int count) {
-    return std::sqrt(share * (1.0 - share) / count);
-}
 
 std::string model_of(const ValidationCase& of, const Scene& scene) {
     switch (of.about) {
@@ -48,17 +46,30 @@ std::string model_of(const ValidationCase& of, const Scene& scene) {
     return kAbout[static_cast<std::size_t>(of.about)];
 }
 
-/// The model and the computed numbers of one shot under one variant.
+/// The model and the computed numbers of one shot under one variant, with their standard deviations.
 struct Computed {
     std::string model;
-    std::vector<double> numbers;
+    std::vector<double> numbers, sampled;
+};
+
+/// Mean of what was seen, and its standard deviation.
+struct Mean {
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    void add(double x) {
+        sum += x;
+        squares += x * x;
+        ++count;
+    }
+    double value() const { return sum / count; }
+    double deviation() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / count); }
 };
 
 Computed play(const ValidationCase& of, const ValidationShot& shot, const std::string& text,
               kernel::Isa isa) {
     const Plan plan = make_plan(parse_scene(text, of.file), isa);
     const Record record = simulate(plan, interruptible());
-    Computed out{model_of(of, plan.scene), {}};
+    Computed out{model_of(of, plan.scene), {}, std::vector<double>(shot.measured.size(), 0.0)};
     for (const Measured& m : shot.measured) out.numbers.push_back(measure(record, m));
     return out;
 }
@@ -68,14 +79,27 @@ Computed play_sweep(const ValidationCase& of, const ValidationShot& shot, const 
     std::vector<std::string> rules;
     for (const std::string& rule : of.sweep->vary) rules.push_back(filled_in(of, shot, variant, rule));
     const Variation variation = Variation::from_text(text, of.file, rules, of.sweep->seed);
-    Computed out{model_of(of, variation.base()), std::vector<double>(shot.measured.size(), 0.0)};
+    std::vector<games::Measure> wanted, among;
+    for (const Measured& m : shot.measured) {
+        wanted.emplace_back(m.of, variation.base());
+        among.emplace_back(m.among.empty() ? "1" : m.among, variation.base());
+    }
+    std::vector<Mean> means(shot.measured.size());
     for (int i = 0; i < of.sweep->count; ++i) {
         const VariedShot varied = variation.shot(static_cast<std::uint64_t>(i));
         if (!varied.scene) throw std::runtime_error(fmt::format("shot {} of the sweep: {}", i, varied.error));
         const Record record = simulate(make_plan(*varied.scene, isa), interruptible());
-        for (std::size_t k = 0; k < shot.measured.size(); ++k)
-            out.numbers[k] += counts(record, shot.measured[k]) ? 1.0 / of.sweep->count : 0.0;
+        for (std::size_t k = 0; k < means.size(); ++k)
+            if (among[k].holds(record))
+                means[k].add(shot.measured[k].quantity == Quantity::kShare
+                                 ? double(wanted[k].holds(record))
+                                 : std::get<double>(wanted[k].of(record)));
         progress();
+    }
+    Computed out{model_of(of, variation.base()), {}, {}};
+    for (const Mean& mean : means) {
+        out.numbers.push_back(mean.value());
+        out.sampled.push_back(mean.deviation());
     }
     return out;
 }
@@ -109,10 +133,7 @@ bool ValidationRow::within() const {
 bool ValidationRow::as_claimed() const {
     if (!claim) return within();
     const double off = std::abs(computed - *claim);
-    if (measured->quantity == Quantity::kShare) {
-        const int count = of->sweep->count;
-        return off <= kShareBand * share_deviation(*claim, count) + 1.0 / count;
-    }
+    if (of->sweep) return off <= kManyBand * sampled + 1.0 / of->sweep->count;
     return !within() && off <= kClaimBand * uncertainty;
 }
 
@@ -135,11 +156,10 @@ std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
         for (std::size_t k = 0; k < shot.measured.size(); ++k)
             for (std::size_t v = 0; v < of.variants.size(); ++v) {
                 const Measured& m = shot.measured[k];
-                const double value = all[v].numbers[k];
-                const double sampled = of.sweep ? kNinetyFive * share_deviation(value, of.sweep->count) : 0.0;
+                const double sampled = all[v].sampled[k];
                 rows.push_back({&of, &shot, &of.variants[v], &m, all[v].model,
-                                of.variants[v].claims.at(first + k), value,
-                                std::hypot(m.uncertainty, sampled)});
+                                of.variants[v].claims.at(first + k), all[v].numbers[k], sampled,
+                                std::hypot(m.uncertainty, kNinetyFive * sampled)});
             }
         first += shot.measured.size();
     }

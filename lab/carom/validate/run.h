@@ -19,15 +19,15 @@ struct ValidationRow {
     std::string model;  ///< that the case is about, as in the plan
     Claim claim;
     double computed;
-    /// That of the measured number; for a share, including 1.96 standard deviations of the shots that were
-    /// played.
+    double sampled;  ///< standard deviation of `computed` for the number of shots that were played
+    /// That of the measured number, and 1.96 times `sampled`.
     double uncertainty;
 
     /// computed - measured, in units of the uncertainty
     double deviation() const;
     bool within() const;
     /// Whether the claim holds: within; or outside, and within a quarter of the uncertainty of the claimed
-    /// value; or a share within three standard deviations of the claimed one.
+    /// value; or, of many shots, within three standard deviations of the claimed value.
     bool as_claimed() const;
 };
 

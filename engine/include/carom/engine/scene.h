@@ -499,8 +499,8 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 inline constexpr const char* kBallPresets[] = {
-    "pool",         "snooker", "carom",        "bar_box_oversized", "bar_box_heavy",
-    "english_pool", "pyramid", "pool_classic", "snooker_classic",   "carom_classic"};
+    "pool",    "snooker",         "carom",         "bar_box_oversized", "bar_box_heavy",   "english_pool",
+    "pyramid", "snooker_2026_11", "carom_2026_11", "pool_classic",      "snooker_classic", "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
     field<&Scene::ball_preset>("preset", "ball properties, and the cushion model, to start from",
