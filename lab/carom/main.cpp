@@ -13,6 +13,7 @@ namespace carom::tools {
 const std::vector<PageFile>& lab_page_files();
 
 // Each command is a folder, and adds itself to the table of options.
+void add_bench_discs(Options& bench);
 void add_bench_kernel(Options& bench);
 void add_bench_render(Options& bench);
 void add_bench_shot(Options& bench);
@@ -33,6 +34,7 @@ int run(int argc, char** argv) {
         "each kernel).\n"
         "Exit status: 0 success, 1 failed while running, 2 bad usage or bad scene, 130 or 143 interrupted.";
     Options& bench = program.command("bench", "Ratios measured side by side in one run");
+    add_bench_discs(bench);
     add_bench_kernel(bench);
     add_bench_render(bench);
     add_bench_shot(bench);

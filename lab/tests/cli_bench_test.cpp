@@ -128,7 +128,7 @@ TEST(CliBenchRender, GivesItsRows) {
     EXPECT_LT(json.at("rows")[3].at("encoded_share"), 0.5);
     for (const auto& row : json.at("rows")) {
         for (const char* figure : {"draw_ms", "readback_ms", "draw_readback_p95_ms", "encode_ms",
-                                   "encoded_share", "write_ms", "setup_ms", "fps"})
+                                   "encoded_share", "write_ms", "setup_ms", "cpu_ms", "fps"})
             EXPECT_GT(row.at(figure).get<double>(), 0.0) << figure;
     }
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
 #include "support/scene_errors.h"
@@ -93,15 +94,16 @@ TEST(Scenes, EveryFileOfTheRepositoryParses) {
     }
 }
 
+std::string message(const std::string& path) {
+    try {
+        carom::read_scene(path);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "";
+}
+
 TEST(Scenes, FilesThatCannotBeRead) {
-    const auto message = [](const std::string& path) -> std::string {
-        try {
-            carom::read_scene(path);
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "";
-    };
     EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
     const std::string folder = CAROM_TEST_DATA;
     EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
@@ -120,6 +122,21 @@ TEST(Scenes, TooLargeFile) {
     const std::string large = "#" + std::string(carom::kMaxFileSize, 'x');
     EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; check that it is a scene file");
     EXPECT_EQ(error_of(kBall + "#" + std::string(carom::kMaxFileSize - kBall.size() - 1, 'x')), "");
+}
+
+// A file is read in pieces, and no farther than tells that it is too large.
+TEST(Scenes, FilesAreReadAsAWhole) {
+    const carom::TemporaryFolder folder;
+    const std::string path = folder.file("s.toml");
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1} << 14U, (std::size_t{1} << 15U) + 7,
+                                   carom::kMaxFileSize, carom::kMaxFileSize + 1}) {
+        std::string text(size, 'x');
+        for (std::size_t i = 0; i < size; i += 1000) text[i] = static_cast<char>('a' + i / 1000 % 26);
+        std::ofstream(path) << text;
+        EXPECT_TRUE(carom::read_scene_text(path) == text) << size;
+    }
+    std::ofstream(path) << "#" + std::string(2 * carom::kMaxFileSize, 'x');
+    EXPECT_EQ(message(path), path + ": is larger than 4 MiB; check that it is a scene file");
 }
 
 TEST(Scenes, TooManyPartsOfATable) {

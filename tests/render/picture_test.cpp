@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -302,6 +304,51 @@ TEST(Picture, TheSameListGivesTheSamePixels) {
         other.read(image);
         return image;
     }()));
+}
+
+// The largest difference between neighbours in the green of a picture straight down at the cloth.
+int contrast_of_cloth(double pixel) {
+    constexpr FrameSize kSize{480, 270};
+    DrawList list = list_of(render_test::rectangle_record(), kSize);
+    const double height = 0.5 * pixel * kSize.height / std::tan(20.0 * std::numbers::pi / 180.0);
+    list.camera = Camera();
+    list.camera.eye = Vec3(0.5, 1.0, height);
+    list.camera.target = Vec3(0.5, 1.0001, 0.0);
+    list.camera.size = kSize;
+    EXPECT_NEAR(1.0 / list.camera.scale({0.5, 1.0, 0.0}), pixel, 0.02 * pixel);
+    Renderer renderer(Backend::kOsmesa);
+    Image image;
+    renderer.draw(list);
+    renderer.read(image);
+    int most = 0;
+    for (int y = 1; y < kSize.height; ++y) {
+        for (int x = 1; x < kSize.width; ++x)
+            most = std::max(most, std::abs(image.pixel(x, y)[1] - image.pixel(x - 1, y)[1]));
+    }
+    return most;
+}
+
+// A thread is 1.3 mm wide. At 2160p the whole table has pixels of 0.75 mm.
+TEST(Picture, TheWeaveShowsOnlyIfAThreadIsWiderThanTwoPixels) {
+    EXPECT_LE(contrast_of_cloth(0.75e-3), 1);
+    EXPECT_LE(contrast_of_cloth(0.65e-3), 1);
+    EXPECT_GE(contrast_of_cloth(0.25e-3), 6);
+}
+
+TEST(Picture, LargerPicturesHaveAsManySamplesOfTheTableInAll) {
+    const Record record = render_test::rectangle_record();
+    const auto samples = [&](FrameSize size, int wanted) {
+        StageOptions options;
+        options.size = size;
+        options.table_samples = wanted;
+        return Stage(record, options).at(0.0).table_samples;
+    };
+    EXPECT_EQ(samples({640, 360}, 16), 16);
+    EXPECT_EQ(samples({1920, 1080}, 16), 16);
+    EXPECT_EQ(samples({2560, 1440}, 16), 9);
+    EXPECT_EQ(samples({3840, 2160}, 16), 4);
+    EXPECT_EQ(samples({7680, 4320}, 16), 4) << "edges need some";
+    EXPECT_EQ(samples({3840, 2160}, 2), 2);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ void BoxSearch::set_up(int count, Search kind) {
     index_.assign(size, -1);
     sorted_.resize(boxes);
     proxy_.assign(size / kBlock, -1);
+    around_.resize(size / kBlock);
     for (std::size_t i = 0; i < boxes; ++i) slot_[i] = index_[i] = static_cast<int>(i);
     until_rebuild_ = 0;
 }
@@ -77,9 +78,19 @@ void BoxSearch::set(std::size_t slot, const Rounded& box) {
     row.high_y[k] = box.high_y;
 }
 
+void BoxSearch::surround(std::size_t slot, const Rounded& box) {
+    Around& around = around_[slot / kBlock];
+    const std::size_t k = slot % kBlock / kRow;
+    around.low_x[k] = std::min(around.low_x[k], box.low_x);
+    around.low_y[k] = std::min(around.low_y[k], box.low_y);
+    around.high_x[k] = std::max(around.high_x[k], box.high_x);
+    around.high_y[k] = std::max(around.high_y[k], box.high_y);
+}
+
 void BoxSearch::place(int index, const RoundedBox& rounded) {
     const std::size_t s = slot(index);
     set(s, rounded);
+    if (tree_) surround(s, rounded);
     if (!tree_ || proxy_[s / kBlock] < 0) return;  // there are no blocks before the first build
     if (!tree_->GetFatAABB(proxy_[s / kBlock]).Contains(aabb_of(rounded))) update_block(s / kBlock);
 }
@@ -91,8 +102,11 @@ void BoxSearch::remove(int index) {
 // Gives the tree the present box of a block, with a margin for motion.
 void BoxSearch::update_block(std::size_t block) {
     Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
+    for (auto* low : {&around_[block].low_x, &around_[block].low_y}) low->fill(kNowhere);
+    for (auto* high : {&around_[block].high_x, &around_[block].high_y}) high->fill(-kNowhere);
     for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) {
         const Rounded box = at(i);
+        surround(i, box);
         around.low_x = std::min(around.low_x, box.low_x);
         around.low_y = std::min(around.low_y, box.low_y);
         around.high_x = std::max(around.high_x, box.high_x);

@@ -72,6 +72,10 @@ class BoxSearch {
     struct alignas(64) Row {
         Bounds low_x, low_y, high_x, high_y;
     };
+    // A box around each row of a block: it only grows until the block's own box is renewed.
+    struct alignas(64) Around {
+        std::array<float, kBlock / kRow> low_x, low_y, high_x, high_y;
+    };
     static b2AABB aabb_of(const Rounded& box);
     std::size_t slot(int index) const {
         const auto i = static_cast<std::size_t>(index);
@@ -83,6 +87,7 @@ class BoxSearch {
         return {row.low_x[k], row.low_y[k], row.high_x[k], row.high_y[k]};
     }
     void set(std::size_t slot, const Rounded& box);
+    void surround(std::size_t slot, const Rounded& box);
     void rebuild();
     void update_block(std::size_t block);
 
@@ -90,7 +95,17 @@ class BoxSearch {
     void search(const Rounded& box, Found found) const;
     template <class Found>
     void scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const;
+    template <class Found>
+    void scan_row(std::size_t row, const Rounded& box, Found& found) const;
+#if defined(__SSE2__)
+    template <class Boxes>
+    static __m128 four(const Boxes& boxes, std::size_t k, const Rounded& box);
     static unsigned overlaps(const Row& row, const Rounded& box);
+    static unsigned overlaps(const Around& around, const Rounded& box);
+#else
+    template <class Boxes>
+    static unsigned overlaps(const Boxes& boxes, const Rounded& box);
+#endif
 
     template <class Found>
     struct BlockVisitor {
@@ -105,6 +120,7 @@ class BoxSearch {
     // With the tree: the slot of each box, the box in each slot, and the proxy of each block of slots.
     std::unique_ptr<b2DynamicTree> tree_;
     std::vector<int> slot_, index_, proxy_;
+    std::vector<Around> around_;  // of each block
     std::vector<Rounded> sorted_;
     std::int64_t until_rebuild_ = 0;
 };
@@ -113,7 +129,8 @@ template <class Found>
 bool BoxSearch::BlockVisitor<Found>::QueryCallback(int proxy) {
     const auto block = reinterpret_cast<std::uintptr_t>(boxes.tree_->GetUserData(proxy));
     auto by_slot = [this](int slot) { found(boxes.index_[slot]); };
-    boxes.scan(block * (kBlock / kRow), (block + 1) * (kBlock / kRow), box, by_slot);
+    for (unsigned mask = overlaps(boxes.around_[block], box); mask != 0; mask &= mask - 1)
+        boxes.scan_row(block * (kBlock / kRow) + static_cast<unsigned>(__builtin_ctz(mask)), box, by_slot);
     return true;
 }
 
@@ -129,34 +146,47 @@ void BoxSearch::search(const Rounded& box, Found found) const {
 
 template <class Found>
 void BoxSearch::scan(std::size_t begin, std::size_t end, const Rounded& box, Found& found) const {
-    for (std::size_t row = begin; row < end; ++row)
-        for (unsigned mask = overlaps(rows_[row], box); mask != 0; mask &= mask - 1)
-            found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
+    for (std::size_t row = begin; row < end; ++row) scan_row(row, box, found);
 }
 
-// A bit for every box of the row that overlaps this one. Compares all without a branch, because the number of
-// overlaps cannot be predicted.
-inline unsigned BoxSearch::overlaps(const Row& row, const Rounded& box) {
+template <class Found>
+void BoxSearch::scan_row(std::size_t row, const Rounded& box, Found& found) const {
+    for (unsigned mask = overlaps(rows_[row], box); mask != 0; mask &= mask - 1)
+        found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
+}
+
+// A bit for every box of the rows that overlaps this one. Compares all without a branch, because the number
+// of overlaps cannot be predicted.
 #if defined(__SSE2__)
-    const __m128 lx = _mm_set1_ps(box.low_x), ly = _mm_set1_ps(box.low_y);
-    const __m128 hx = _mm_set1_ps(box.high_x), hy = _mm_set1_ps(box.high_y);
-    const auto four = [&](std::size_t k) {
-        const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&row.low_x[k]), hx),
-                                       _mm_cmple_ps(lx, _mm_load_ps(&row.high_x[k])));
-        const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&row.low_y[k]), hy),
-                                       _mm_cmple_ps(ly, _mm_load_ps(&row.high_y[k])));
-        return _mm_castps_si128(_mm_and_ps(in_x, in_y));
+template <class Boxes>
+__m128 BoxSearch::four(const Boxes& boxes, std::size_t k, const Rounded& box) {
+    const __m128 in_x = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&boxes.low_x[k]), _mm_set1_ps(box.high_x)),
+                                   _mm_cmple_ps(_mm_set1_ps(box.low_x), _mm_load_ps(&boxes.high_x[k])));
+    const __m128 in_y = _mm_and_ps(_mm_cmple_ps(_mm_load_ps(&boxes.low_y[k]), _mm_set1_ps(box.high_y)),
+                                   _mm_cmple_ps(_mm_set1_ps(box.low_y), _mm_load_ps(&boxes.high_y[k])));
+    return _mm_and_ps(in_x, in_y);
+}
+
+inline unsigned BoxSearch::overlaps(const Row& row, const Rounded& box) {
+    const auto pair = [&](std::size_t k) {
+        return _mm_packs_epi32(_mm_castps_si128(four(row, k, box)), _mm_castps_si128(four(row, k + 4, box)));
     };
-    const __m128i first = _mm_packs_epi32(four(0), four(4)), second = _mm_packs_epi32(four(8), four(12));
-    return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(first, second)));
+    return static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(pair(0), pair(8))));
+}
+
+inline unsigned BoxSearch::overlaps(const Around& around, const Rounded& box) {
+    return static_cast<unsigned>(_mm_movemask_ps(four(around, 0, box)));
+}
 #else
+template <class Boxes>
+unsigned BoxSearch::overlaps(const Boxes& boxes, const Rounded& box) {
     unsigned mask = 0;
-    for (std::size_t k = 0; k < kRow; ++k)
-        mask |= static_cast<unsigned>(row.low_x[k] <= box.high_x && box.low_x <= row.high_x[k] &&
-                                      row.low_y[k] <= box.high_y && box.low_y <= row.high_y[k])
+    for (std::size_t k = 0; k < boxes.low_x.size(); ++k)
+        mask |= static_cast<unsigned>(boxes.low_x[k] <= box.high_x && box.low_x <= boxes.high_x[k] &&
+                                      boxes.low_y[k] <= box.high_y && box.low_y <= boxes.high_y[k])
                 << k;
     return mask;
-#endif
 }
+#endif
 
 }  // namespace carom

@@ -145,7 +145,11 @@ void Detector::renew(int ball) {
     mover.pair = {};
     if (plan_.clusters == ClusterModel::kCompliant && translates(s.state)) bound_speed(s);
     const RoundedBox whole = BoxSearch::outward(swept(ball, s.start, s.duration));
-    search_table(ball, whole);
+    mover.asks_table = mover.travel < kNever && may_wait(ball);
+    if (mover.asks_table)
+        mover.table = {};
+    else
+        search_table(ball, whole);
     if (plan_.pairs) {
         if (!is_gone(s.state))
             bound(ball, s.start, &whole);

@@ -45,6 +45,7 @@ struct alignas(64) Mover {
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
     bool straight = false;
+    bool asks_table = false;  ///< the table has not been searched: no box so far has reached a part of it
 };
 
 struct DetectorMemory {
@@ -105,6 +106,7 @@ class Detector : private Borrowed<DetectorMemory> {
     Box swept(int ball, double from, double duration) const;
     Path path(int ball, double from) const;
     void bound(int ball, double from, const RoundedBox* whole = nullptr);
+    bool may_wait(int ball) const;
     void bound_speed(const Segment& segment);
     void search_pairs(int ball);
     PredictedEvent pair(int a, const Path& mine, int b, double latest) const;

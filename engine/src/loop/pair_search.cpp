@@ -47,6 +47,13 @@ Box Detector::swept(int ball, double from, double duration) const {
     return box;
 }
 
+// Whether a ball whose boxes cover short ways waits for one that reaches a part of the table before it
+// searches the table: most balls of many are far from it.
+bool Detector::may_wait(int ball) const {
+    const Segment& s = balls_.segment(ball);
+    return plan_.pairs && !flights_ && translates(s.state) && s.state != MotionState::kFalling;
+}
+
 // Places the box of a ball. It is valid from `from` until the ball's state transition, its contact with the
 // table, or until it may have moved by Mover::travel. `whole`: the box of its whole segment, if known.
 void Detector::bound(int ball, double from, const RoundedBox* whole) {
@@ -62,10 +69,19 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
             2.0 * mover.travel / (speed + std::sqrt(speed * speed + 2.0 * pull * mover.travel));
         if (end < mover.until) mover.until = mover.refresh = end;
     }
-    if (whole != nullptr && mover.until == mover.own)
+    if (whole != nullptr && mover.until == mover.own && !mover.asks_table) {
         ball_boxes_.place(ball, *whole);
-    else
-        ball_boxes_.place(ball, swept(ball, from, mover.until - from));
+        return;
+    }
+    const RoundedBox box = BoxSearch::outward(swept(ball, from, mover.until - from));
+    if (mover.asks_table) find_parts(box);
+    if (mover.asks_table && !near_.empty()) {
+        mover.asks_table = false;
+        search_table(ball, BoxSearch::outward(swept(ball, s.start, s.duration)));
+        bound(ball, from, whole);
+        return;
+    }
+    ball_boxes_.place(ball, box);
 }
 
 // First contact of two balls. May return none if it is later than `latest`, or than the next own event of one

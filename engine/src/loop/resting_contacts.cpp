@@ -154,7 +154,6 @@ bool RestingContacts::chatters(const Contact& contact, double v_n) const {
     // Bounces that lose nothing go on. Only those that take no time have to come to an end.
     const double since = lossless_ ? balls_.now() : balls_.now() - kChatterSpan;
     const double restitution = contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c;
-    const int most = most_bounces(restitution);
     int bounces = 0;
     const std::vector<Event>& events = log_.events();
     for (std::size_t k = events.size(); k-- > 0;) {
@@ -164,7 +163,8 @@ bool RestingContacts::chatters(const Contact& contact, double v_n) const {
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
         bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? kManyAtOnce : 1;
-        if (bounces >= most)
+        // Most impacts have none before them, so the limit is counted only from the least of all limits on.
+        if (bounces >= kFewestBounces && bounces >= most_bounces(restitution))
             return restitution < 1.0 || e.time == balls_.now() || has_fallen(e, contact, v_n);
     }
     return false;

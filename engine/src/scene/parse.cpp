@@ -1,6 +1,7 @@
 // From text to a validated scene.
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -37,10 +38,14 @@ std::string read_scene_text(const std::string& path) {
         cannot_read(path, "it is a directory; name a scene file in it");
     std::ifstream in(path, std::ios::binary);
     if (!in) cannot_read(path, "it cannot be opened; check its permissions");
-    std::string text(kMaxFileSize + 1, '\0');
-    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    // In pieces: a buffer for the largest file would take longer to clear than a shot to play.
+    std::string text;
+    std::array<char, 1U << 14U> piece;
+    while (in && text.size() <= kMaxFileSize) {
+        in.read(piece.data(), piece.size());
+        text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    }
     if (in.bad()) cannot_read(path, "reading it failed");
-    text.resize(static_cast<std::size_t>(in.gcount()));
     return text;
 }
 

@@ -23,6 +23,8 @@ struct RenderBenchRow {
     double setup_ms = 0.0;
     /// frames per second from the first to the last, written to files, with a thread per core
     double fps = 0.0;
+    /// CPU time of the process per frame of these, the driver and the system included
+    double cpu_ms = 0.0;
 };
 
 /// Draws `frames` frames spread over the shot for every row; files go to a temporary folder. SIGINT ends it.

@@ -62,6 +62,15 @@ bool is_covered(const Record& record, std::size_t ball, double t) {
     return false;
 }
 
+// Smaller pixels need fewer samples: from 1920x1080 on their number in the whole picture stays the same.
+int samples_of(const StageOptions& options) {
+    constexpr double kFull = 1920.0 * 1080.0;
+    constexpr int kLeast = 4;
+    const double share = std::min(1.0, kFull / (double(options.size.width) * options.size.height));
+    const int scaled = static_cast<int>(std::lround(share * options.table_samples));
+    return std::clamp(scaled, std::min(kLeast, options.table_samples), options.table_samples);
+}
+
 }  // namespace
 
 Stage::Stage(const Record& record, const StageOptions& options)
@@ -80,7 +89,7 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     DrawList list;
     list.table = table_;
     list.camera = camera_.at(t);
-    list.table_samples = options_.table_samples;
+    list.table_samples = samples_of(options_);
     list.camera_moves = camera_.moves();
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);

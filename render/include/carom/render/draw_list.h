@@ -92,6 +92,8 @@ struct StageOptions {
     FreeCamera view;
     Overlay overlay;
     FrameSize size;
+    /// Samples per pixel of the table up to 1920x1080. A larger picture has as many samples in all, but at
+    /// least four per pixel, if this allows them
     int table_samples = 16;
 };
 

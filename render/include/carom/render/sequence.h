@@ -45,7 +45,8 @@ struct SequenceOptions {
     std::function<double(long k)> simulate_ms;
     /// If set, the bar shows this time for frame k instead [ms].
     std::function<double(long k)> frame_cost_ms;
-    /// Samples per pixel of the table, which is drawn once per camera; not used if the camera moves
+    /// Samples per pixel of the table, which is drawn once per camera, as in StageOptions; not used if the
+    /// camera moves
     int table_samples = 16;
     /// Encode every frame as a whole with libpng. Default: only what changed is encoded (kept_png.h)
     bool libpng = false;
