@@ -72,9 +72,12 @@ TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
 }
 
 TEST(CliSensitivity, Refuses) {
-    const ProcessResult broken = carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml"});
+    const ProcessResult broken = carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/snooker_break.toml"});
     EXPECT_EQ(broken.status, 1);
-    EXPECT_TRUE(contains(broken.err, "more than two balls touch at once")) << broken.err;
+    EXPECT_TRUE(contains(broken.err, "it is a resting contact")) << broken.err;
+    const ProcessResult rough =
+        carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml", "--shots", "1"});
+    EXPECT_TRUE(contains(rough.out, "Balls that touch make this right to 0.0")) << rough.out << rough.err;
     TemporaryFolder folder;
     const std::string scene = folder.write("still.toml", "[[ball]]\nid = \"1\"\nposition = [0.5, 0.5]\n");
     const ProcessResult still = carom({"sensitivity", scene});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "carom/engine/airborne.h"
+#include "carom/engine/simulate.h"
 #include "carom/engine/tangents.h"
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
@@ -22,9 +23,13 @@ namespace {
 
 // [-] Sizes of steps, relative to the speeds of the impact and to each coefficient. Larger ones may cross a
 // corner of a model (a nose that sticks or slides), smaller ones lose digits.
-constexpr double kSteps[] = {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6};
+constexpr double kSteps[] = {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8};
 // [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
+// [-] The same of a cluster: its contacts open and close between two steps of its integration.
+constexpr double kClusterDisagree = 1e-3;
+// [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
+constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] A derivative below this is known no better than this.
 constexpr double kRounding = 1e-3;
 // [-] Most impacts at one nose in one bounce; loop/bounce.cpp has the reason.
@@ -82,7 +87,8 @@ List difference(const Arguments& in, int lane, double size, double h, const Map&
     return sum;
 }
 
-std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map) {
+std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
+                                double disagree = kDisagree) {
     List x;
     for (const Dual& value : in.values()) x.push_back(value.x);
     const List y = map(x.data());
@@ -111,7 +117,7 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map)
             }
             last = now;
         }
-        if (!(best < kDisagree)) throw TangentError("it lies at a corner of its model, between two laws");
+        if (!(best < disagree)) throw TangentError("it lies at a corner of its model, between two laws");
         laws.error = std::max(laws.error, best);
     }
     return out;
@@ -268,6 +274,59 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
         });
     put(s1, out.data());
     put(s2, out.data() + 6);
+}
+
+// The loop resolves the cluster again, in a scene that contains nothing else.
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met,
+                     std::vector<State>& states) {
+    const auto member = [&](int ball) {
+        return static_cast<std::size_t>(std::find(balls.begin(), balls.end(), ball) - balls.begin());
+    };
+    const std::size_t one = member(hit), two = member(met);
+    const double speed = std::abs(closing_speed(states[two].r - states[one].r, states[one], states[two]));
+    Arguments in(laws.numbers);
+    for (std::size_t k = 0; k < balls.size(); ++k) {
+        const Numbers::Ball& ball = laws.numbers.balls[balls[k]];
+        in.add(ball);
+        in.add(states[k].r, kClusterReach * ball.R.x);
+        in.add(states[k], ball.R, speed);
+    }
+    Scene scene = laws.plan.scene;
+    scene.table = Table();
+    scene.cue.reset();
+    scene.ball.clear();
+    for (const int ball : balls) scene.ball.push_back(laws.plan.scene.ball[ball]);
+    if (laws.flights()) scene.effects.push_back({"airborne", true, {}});
+    scene.stop.events = 1;
+    // The one that moves is put in touch, so that what touches at rest still does, to the last bit.
+    const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
+    const Map resolve = [&](const double* list) {
+        Reader read(list);
+        scene.balls = read.balls;
+        scene.physics.gravity = read.gravity;
+        for (BallStart& ball : scene.ball) {
+            ball.own = read.size();
+            ball.position = read.vec();
+            const Velocities at = read.velocities(ball.own->R);
+            ball.velocity = Vec3(at.v.x(), at.v.y(), 0.0);
+            ball.spin = at.w;
+        }
+        BallStart& moving = scene.ball[moves];
+        const BallStart& other = scene.ball[one + two - moves];
+        const Vec2 apart = planar(moving.position - other.position);
+        moving.position.head<2>() =
+            planar(other.position) + apart * contact_distance(moving.own->R, other.own->R) / length(apart);
+        const Record record = simulate(make_plan(scene, laws.plan.isa));
+        if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
+            record.clusters[0].size() != balls.size())
+            throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
+        List after;
+        for (const BallTrack& track : record.tracks)
+            add(after, {track.segments.back().v, track.segments.back().w});
+        return after;
+    };
+    const std::vector<Dual> out = differentiate(laws, in, resolve, kClusterDisagree);
+    for (std::size_t k = 0; k < balls.size(); ++k) put(states[k], out.data() + 6 * k);
 }
 
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,

@@ -39,7 +39,16 @@ class Replay {
         bool on_cloth = false;    ///< the coming ball_cloth event is already part of the last leg
     };
     void replay(const Event& event);
+    /// Two balls that meet: when, from which to which, and how they move.
+    struct Meeting {
+        bool space;
+        Dual time;
+        Dual3 apart;
+        State s1, s2;
+    };
+    Meeting meet(const Event& event);
     Dual ball_ball(const Event& event);
+    Dual cluster(const Event& event);
     Dual cushion(const Event& event);
     Dual pocket(const Event& event);
     Dual transition(const Event& event);

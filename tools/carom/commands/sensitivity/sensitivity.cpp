@@ -34,6 +34,8 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
+// [-] An error of the derivatives that is told.
+constexpr double kTold = 1e-5;
 
 struct SensitivityArgs {
     std::string scene, hand = kHand, plot;
@@ -130,6 +132,7 @@ struct Sensitivity {
     std::vector<Nudge> nudges;
     std::vector<carom::Margin> margins;
     std::vector<BallResult> balls;
+    double impact_error = 0.0;        ///< as in Tangents
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
@@ -181,6 +184,7 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     for (const Nudge& nudge : result.nudges) inputs.push_back(nudge.key);
     const Tangents tangents(plan, record, inputs);
     result.margins = tangents.margins();
+    result.impact_error = tangents.impact_error();
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
         const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
         if (track.segments.size() == 1 || track.segments.back().state == MotionState::kOut) continue;
@@ -228,7 +232,10 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const carom::Margin& m = s.margins[k];
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
-    text += "\nx and y, to first order. The events change first if\n";
+    text += "\nx and y, to first order. ";
+    if (s.impact_error > kTold)
+        text += fmt::format("Balls that touch make this right to {:.1g} only. ", s.impact_error);
+    text += "The events change first if\n";
     for (std::size_t k = 0; k < 2; ++k) {
         const auto [by, why] = nearest(k);
         if (std::isfinite(by))
@@ -292,8 +299,8 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
         }
         balls.push_back(row);
     }
-    return {
-        {"hand", hand}, {"inputs", inputs}, {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+    return {{"hand", hand},   {"inputs", inputs}, {"impact_error", s.impact_error},
+            {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
 }
 
 /// The shot, with the ellipse and the played ends of each ball.
