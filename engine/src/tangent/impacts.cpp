@@ -298,7 +298,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     for (const int ball : balls) scene.ball.push_back(laws.plan.scene.ball[ball]);
     if (laws.flights()) scene.effects.push_back({"airborne", true, {}});
     scene.stop.events = 1;
-    // The one that moves is put in touch, so that what touches at rest still does, to the last bit.
+    // The one that moves is put to touch, so that what touches at rest still does, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
     const Map resolve = [&](const double* list) {
         Reader read(list);
