@@ -23,7 +23,7 @@ namespace {
 
 // [-] Sizes of steps, relative to the speeds of the impact and to each coefficient. Larger ones may cross a
 // corner of a model (a nose that sticks or slides), smaller ones lose digits.
-constexpr double kSteps[] = {1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8};
+constexpr double kFirstStep = 1e-3, kLastStep = 2e-8;
 // [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
 // [-] The same of a cluster: its contacts open and close between two steps of its integration.
@@ -42,6 +42,8 @@ using Map = std::function<List(const double*)>;
 class Arguments {
   public:
     explicit Arguments(const Numbers& numbers) {
+        values_.reserve(kMany);
+        units_.reserve(kMany);
         for (const Dual& param : numbers.params) add(param, std::abs(param.x));
         add(numbers.gravity, numbers.gravity.x);
     }
@@ -64,6 +66,7 @@ class Arguments {
     const List& units() const { return units_; }
 
   private:
+    static constexpr std::size_t kMany = kParams + 24;
     std::vector<Dual> values_;
     List units_;
 };
@@ -74,48 +77,43 @@ double largest(const List& list) {
     return most;
 }
 
-/// The derivative of `map` along the lane, by steps of size h.
-List difference(const Arguments& in, int lane, double size, double h, const Map& map) {
-    List x(in.values().size()), sum;
-    for (const auto& [steps, weight] : {std::array{-2.0, 1.0}, {-1.0, -8.0}, {1.0, 8.0}, {2.0, -1.0}}) {
-        for (std::size_t i = 0; i < x.size(); ++i)
-            x[i] = in.values()[i].x + in.values()[i].d[lane] * (steps * h / size);
-        const List y = map(x.data());
-        sum.resize(y.size(), 0.0);
-        for (std::size_t i = 0; i < y.size(); ++i) sum[i] += weight * y[i] / (12.0 * h) * size;
-    }
-    return sum;
-}
-
 std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
                                 double disagree = kDisagree) {
-    List x;
-    for (const Dual& value : in.values()) x.push_back(value.x);
-    const List y = map(x.data());
+    const std::vector<Dual>& values = in.values();
+    List x(values.size());
+    const auto at = [&](int lane, double by) {
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] = values[i].x + values[i].d[lane] * by;
+        return map(x.data());
+    };
+    const List y = at(0, 0.0);
     std::vector<Dual> out(y.begin(), y.end());
+    List now(y.size()), last(y.size());
     for (int lane = 0; lane < kLanes; ++lane) {
         double size = 0.0;
         for (std::size_t i = 0; i < x.size(); ++i)
-            size = std::max(size, std::abs(in.values()[i].d[lane]) / in.units()[i]);
+            size = std::max(size, std::abs(values[i].d[lane]) / in.units()[i]);
         if (size == 0.0) continue;
         double best = std::numeric_limits<double>::infinity();
-        List last;
-        for (const double h : kSteps) {
-            const List now = difference(in, lane, size, h, map);
-            if (!last.empty()) {
-                List apart(now.size());
-                std::transform(now.begin(), now.end(), last.begin(), apart.begin(), std::minus<>());
-                // What is far below the size of the impact itself is rounding.
-                const double scale = std::max({largest(now), largest(last), kRounding * size * largest(y)});
-                const double error = scale > 0.0 ? largest(apart) / scale : 0.0;
-                if (error < best) {
-                    best = error;
-                    // Larger steps round less, as long as they agree with smaller ones.
-                    for (std::size_t i = 0; i < out.size(); ++i) out[i].d[lane] = last[i];
-                }
-                if (best < kAgree) break;
+        List below = at(lane, -2.0 * kFirstStep / size), above = at(lane, 2.0 * kFirstStep / size);
+        for (double h = kFirstStep; h > kLastStep && !(best < kAgree); h *= 0.5) {
+            // Half of the points are those of the last step.
+            List near_below = at(lane, -h / size), near_above = at(lane, h / size);
+            double apart = 0.0;
+            for (std::size_t i = 0; i < y.size(); ++i) {
+                now[i] = (8.0 * (near_above[i] - near_below[i]) - (above[i] - below[i])) / (12.0 * h) * size;
+                apart = std::max(apart, std::abs(now[i] - last[i]));
             }
-            last = now;
+            // What is far below the size of the impact itself is rounding.
+            const double scale = std::max({largest(now), largest(last), kRounding * size * largest(y)});
+            const double error = scale > 0.0 ? apart / scale : 0.0;
+            if (h < kFirstStep && error < best) {
+                best = error;
+                // Larger steps round less, as long as they agree with smaller ones.
+                for (std::size_t i = 0; i < out.size(); ++i) out[i].d[lane] = last[i];
+            }
+            std::swap(last, now);
+            std::swap(below, near_below);
+            std::swap(above, near_above);
         }
         if (!(best < disagree)) throw TangentError("it lies at a corner of its model, between two laws");
         laws.error = std::max(laws.error, best);

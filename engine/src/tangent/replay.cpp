@@ -28,10 +28,11 @@ double speed_of(const Vec3& v, const Vec3& w, double R) {
 
 }  // namespace
 
-Replay::Replay(const Plan& plan, const Record& record, const std::vector<Input>& inputs, double until)
+Replay::Replay(const Plan& plan, const Record& record, Scene& scene, const std::vector<Input>& inputs,
+               double until)
     : plan_(plan),
       record_(record),
-      numbers_(numbers_of(plan, inputs)),
+      numbers_(numbers_of(plan, scene, inputs)),
       laws_{plan, numbers_},
       balls_(record.tracks.size()),
       until_(std::min(until, record.duration)) {
@@ -391,12 +392,13 @@ Tangents::Tangents(const Plan& plan, const Record& record, const std::vector<std
     : inputs_(inputs),
       duration_(std::min(record.duration, until.value_or(kNever))),
       parts_(std::make_unique<Parts>()) {
+    Scene scene = plan.scene;
     for (std::size_t first = 0; first < inputs.size(); first += tangent::kLanes) {
         std::vector<tangent::Input> part;
         for (std::size_t i = first; i < std::min(inputs.size(), first + tangent::kLanes); ++i)
-            part.push_back(tangent::input_of(plan.scene, inputs[i]));
+            part.push_back(tangent::input_of(scene, inputs[i]));
         parts_->replays.push_back(
-            std::make_unique<tangent::Replay>(plan, record, part, until.value_or(kNever)));
+            std::make_unique<tangent::Replay>(plan, record, scene, part, until.value_or(kNever)));
     }
 }
 Tangents::~Tangents() = default;

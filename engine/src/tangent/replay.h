@@ -21,7 +21,9 @@ struct Room {
 /// Derivatives of one record by up to kLanes inputs.
 class Replay {
   public:
-    Replay(const Plan& plan, const Record& record, const std::vector<Input>& inputs, double until);
+    /// @param scene  as in numbers_of()
+    Replay(const Plan& plan, const Record& record, Scene& scene, const std::vector<Input>& inputs,
+           double until);
     Replay(const Replay&) = delete;
 
     const Leg& leg_at(int ball, double time) const;
