@@ -672,4 +672,21 @@ bool Measure::holds(const Record& record) const {
     return truth(of(record));
 }
 
+std::vector<Place> Measure::places() const {
+    std::vector<Place> places;
+    std::vector<const Node*> open{root_.get()};
+    while (!open.empty()) {
+        const Node& node = *open.back();
+        open.pop_back();
+        if (node.kind == Node::Kind::kAnd) open.insert(open.end(), {&node.parts[1], &node.parts[0]});
+        const Node* near = node.kind == Node::Kind::kCompare && node.word == "<=" ? &node.parts[0] : nullptr;
+        if (near == nullptr || near->kind != Node::Kind::kMeasure ||
+            std::string_view(near->row->info.name) != "distance")
+            continue;
+        const Arguments& at = near->arguments;
+        places.push_back({at.ball, {at.numbers[0], at.numbers[1]}});
+    }
+    return places;
+}
+
 }  // namespace carom::games

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
+// [-] Share of the search's shots that tell how sure an exact shot is; [degrees] how far its aim may turn.
+constexpr double kExactShare = 0.1, kTurn = 20.0;
 // Steps, and how often one is halved.
 constexpr int kMostSteps = 30, kMostHalvings = 10;
 // [-] Directions that move the balls by less than this share of the most effective one are left alone.
@@ -149,6 +152,29 @@ class Refiner {
 Refined refine(const Scene& scene, std::span<const Choice> choices, std::span<const Place> places,
                kernel::Isa isa, const std::function<bool(const Record&)>& allowed) {
     return Refiner(scene, choices, places, isa, allowed).run();
+}
+
+Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const SolveOptions& options) {
+    const std::vector<Place> places = want.places();
+    if (places.empty())
+        throw std::invalid_argument("no place is wanted; add one, as in cue near (0.6, 1.2, 0.05)");
+    Exact result{{}, options.choices, {}};
+    for (Choice& choice : result.choices) {
+        const double aim = found.scene.cue->aim_deg;
+        if (choice.key.starts_with("hit.")) choice = {"cue.aim_deg", aim - kTurn, aim + kTurn};
+    }
+    result.refined = refine(found.scene, result.choices, places, isa,
+                            [&want](const Record& record) { return want.holds(record); });
+    if (!result.refined.trouble.empty()) return result;
+    SolveOptions once = options;
+    once.choices = result.choices;
+    for (std::size_t k = 0; k < once.choices.size(); ++k)
+        once.choices[k].low = once.choices[k].high = result.refined.values[k];
+    once.layouts.clear();
+    once.best = 1;
+    once.shots = static_cast<std::size_t>(kExactShare * static_cast<double>(once.shots));
+    result.solution = solve(result.refined.scene, want, isa, once)[0];
+    return result;
 }
 
 }  // namespace carom::games

@@ -72,6 +72,8 @@ class Solution(NamedTuple):
     falls: which ball falls where, the most frequent first
     costs: what errors of one input cost
     scene: the shot as it is meant
+    miss: with exact=True, the largest distance of a ball from its place [m], otherwise NaN
+    trouble: with exact=True, why it is no smaller, or ""
     """
 
     success: float
@@ -81,6 +83,8 @@ class Solution(NamedTuple):
     falls: list[Fall]
     costs: list[Cost]
     scene: Scene
+    miss: float = float("nan")
+    trouble: str = ""
 
     def __repr__(self) -> str:
         values = ", ".join(f"{key} {value:.4g}" for key, value in self.values.items())
@@ -92,8 +96,8 @@ class Solution(NamedTuple):
 def _solutions(keys: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> list[Solution]:
     return [
         Solution(success, interval, shots, dict(zip(keys, values)), [Fall(*fall) for fall in falls],
-                 [Cost(*cost) for cost in costs], Scene._of(scene))
-        for success, interval, shots, values, falls, costs, scene in rows]
+                 [Cost(*cost) for cost in costs], Scene._of(scene), *exact)
+        for success, interval, shots, values, falls, costs, scene, exact in rows]
 
 
 def _limits(shots: int, best: int, seed: int, threads: int) -> None:
@@ -122,6 +126,7 @@ def solve(
     best: int = 3,
     seed: int = 1,
     threads: int = 0,
+    exact: bool = False,
 ) -> list[Solution]:
     """Finds the shots that most surely do what is wanted, under the errors of a hand: `carom solve`.
 
@@ -134,6 +139,8 @@ def solve(
     shots: how many the search plays
     best: how many shots of different kinds are returned, the surest first
     threads: 0 uses one thread per core; the result does not depend on it
+    exact: move each shot until the balls rest at the centre of every "near", within 1e-6 m; where no exact
+        shot is near, `trouble` says so and the shot stays as it was found
 
     Raises ValueError for an expression, key or range that cannot be used.
     """
@@ -146,7 +153,7 @@ def solve(
             raise ValueError(f"vary: {key}: expected the smallest and the largest value")
         choices.append((key, float(ends[0]), float(ends[1])))
     rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
-                        shots, best, seed, threads)
+                        shots, best, seed, threads, exact)
     return _solutions([key for key, _, _ in choices], rows)
 
 

@@ -242,7 +242,7 @@ class Record:
 
         Returns t.shape + (balls, 3, 3, inputs): position, velocity and spin as in `states`, by each input in
         its own unit. A ball that is out of play has zeros. Raises ValueError if an input is no number of the
-        scene, or if an event has no derivative, such as a break or a resting contact.
+        scene, or if an event has no derivative, such as a resting contact.
         """
         times, shape = self._times(self.duration if t is None else t)
         slopes = np.empty((*shape, self._native.balls, 3, 3, len(inputs)))

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@
 #include "carom/engine/event_details.h"
 #include "carom/games/break.h"
 #include "carom/games/measures.h"
+#include "carom/games/refine.h"
 #include "carom/games/solve.h"
 #include "measures.h"
 #include "native.h"
@@ -87,11 +89,11 @@ std::pair<games::MeasureValue, bool> measured(const NativeRecord& r, const Nativ
 
 using ChoiceRow = std::tuple<std::string, double, double>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more), scene.
-using SolutionRow =
-    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
-               std::vector<std::tuple<std::string, std::string, double>>,
-               std::vector<std::tuple<std::string, double, std::string, double, double>>, NativeScene>;
+/// unit, less, more), scene, and of an exact one the miss [m] and why it is no smaller.
+using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
+                               std::vector<std::tuple<std::string, std::string, double>>,
+                               std::vector<std::tuple<std::string, double, std::string, double, double>>,
+                               NativeScene, std::pair<double, std::string>>;
 
 /// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
 using HandRow = std::tuple<double, double, double, double>;
@@ -113,20 +115,30 @@ games::SolveOptions options_of(const HandRow& hand, std::size_t shots, std::size
 }
 
 std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, kernel::Isa isa,
-                               games::SolveOptions options) {
+                               games::SolveOptions options, bool exact = false) {
     SignalWatch watch;
     options.stop = [&watch] { return watch.stopped(); };
     std::vector<games::Solution> solutions;
+    std::vector<games::Refined> refined;
     try {
         const nb::gil_scoped_release no_gil;
+        if (exact && want.places().empty())
+            throw std::invalid_argument(
+                "exact=True: no place is wanted; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
         solutions = games::solve(scene, want, isa, options);
+        for (std::size_t i = 0; exact && i < solutions.size(); ++i) {
+            games::Exact moved = games::exact(solutions[i], want, isa, options);
+            if (moved.solution) solutions[i] = std::move(*moved.solution);
+            refined.push_back(std::move(moved.refined));
+        }
     } catch (const BatchStopped&) {
         throw nb::python_error();
     } catch (const std::invalid_argument& error) {
         throw nb::value_error(error.what());
     }
     std::vector<SolutionRow> rows;
-    for (games::Solution& solution : solutions) {
+    for (std::size_t i = 0; i < solutions.size(); ++i) {
+        games::Solution& solution = solutions[i];
         std::vector<std::tuple<std::string, std::string, double>> falls;
         for (const games::Solution::Fall& fall : solution.falls)
             falls.emplace_back(scene.ball[static_cast<std::size_t>(fall.ball)].id,
@@ -138,7 +150,9 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         const games::Share share = games::share_of(solution.successes, solution.shots);
         rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,
                           falls, costs,
-                          NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text});
+                          NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text},
+                          exact ? std::pair(refined[i].miss, refined[i].trouble)
+                                : std::pair(std::numeric_limits<double>::quiet_NaN(), std::string()));
     }
     return rows;
 }
@@ -146,11 +160,14 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
 std::vector<SolutionRow> solve(const NativeScene& native, const std::string& want,
                                const std::optional<std::string>& game, const std::vector<ChoiceRow>& choices,
                                const HandRow& hand, int layouts, std::size_t shots, std::size_t best,
-                               std::uint64_t seed, int threads) {
+                               std::uint64_t seed, int threads, bool exact) {
     games::SolveOptions options = options_of(hand, shots, best, seed, threads);
     for (const auto& [key, low, high] : choices) options.choices.push_back({key, low, high});
     options.layouts = games::racks_of(native.source, native.scene->file, layouts, seed);
-    return found(*native.scene, measure_of(want, *native.scene, game), chosen_isa(), std::move(options));
+    if (exact && options.layouts.size() > 1)
+        throw nb::value_error("exact=True: the racks differ, so no shot is exact for all; use layouts=1");
+    return found(*native.scene, measure_of(want, *native.scene, game), chosen_isa(), std::move(options),
+                 exact);
 }
 
 /// The keys that were chosen, what was wanted, the speed of the ball for each m/s of the cue, the solutions.
@@ -186,7 +203,7 @@ void add_measures(nb::module_& m) {
           nb::arg("game").none());
     m.def("solve", solve, nb::arg("scene"), nb::arg("want"), nb::arg("game").none(), nb::arg("choices"),
           nb::arg("hand"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
-          nb::arg("threads"));
+          nb::arg("threads"), nb::arg("exact"));
     m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("rack"), nb::arg("radius_sd"),
           nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("shots"), nb::arg("best"),
           nb::arg("seed"), nb::arg("threads"));

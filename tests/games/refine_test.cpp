@@ -53,6 +53,21 @@ TEST(Refine, TwoBallsAtOnce) {
     for (const Place& place : places) EXPECT_LT((end_of(found.scene, place.ball) - place.at).norm(), 1e-6);
 }
 
+TEST(Refine, KnowsThePlacesOfAWant) {
+    const Scene scene = scene_of("draw");
+    const auto places = [&](const char* want) { return Measure(want, scene).places(); };
+    const std::vector<Place> two =
+        places("not scratch and (cue near (0.6, 1.2, 0.05) and 1 near (0.2, 0.3))");
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_EQ(two[0].ball, 0);
+    EXPECT_EQ(two[0].at, Vec2(0.6, 1.2));
+    EXPECT_EQ(two[1].ball, 1);
+    EXPECT_EQ(two[1].at, Vec2(0.2, 0.3));
+    for (const char* want : {"scratch", "not cue near (0.6, 1.2)", "scratch or cue near (0.6, 1.2)",
+                             "distance(cue, 0.6, 1.2) >= 0.1"})
+        EXPECT_TRUE(places(want).empty()) << want;
+}
+
 TEST(Refine, SaysIfItCannot) {
     const Scene scene = scene_of("draw");
     // Behind the rail; and a ball that falls.

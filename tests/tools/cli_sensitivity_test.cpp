@@ -51,10 +51,33 @@ TEST(CliSensitivity, SpeaksToAPlayer) {
         EXPECT_TRUE(contains(result.out, words)) << words << "\n" << result.out;
 }
 
+// A dot for each shot whose ball stays, and two ellipses for each ball.
+TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
+    TemporaryFolder folder;
+    const std::string file = folder.file("errors.svg");
+    const ProcessResult result = carom({"sensitivity", kDraw, "--shots", "60", "--json", "--plot", file});
+    if (contains(result.err, "no diagrams")) GTEST_SKIP() << "this build has no cairo";
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string svg = read_file(file);
+    EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
+    // Versions of cairo write an attribute or a style.
+    std::size_t dots = 0;
+    for (const std::string dot : {"fill-opacity=\"0.35\"", "fill-opacity:0.35;"})
+        for (std::size_t at = svg.find(dot); at != svg.npos; at = svg.find(dot, at + 1)) ++dots;
+    const Json ball = Json::parse(result.out).at("balls").at(1);
+    EXPECT_EQ(dots, 60u + 60u - ball.at("fell").get<std::size_t>());
+    const ProcessResult other = carom({"sensitivity", kDraw, "--plot", folder.file("errors.gif")});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_TRUE(contains(other.err, ".svg, .pdf or .png")) << other.err;
+}
+
 TEST(CliSensitivity, Refuses) {
-    const ProcessResult broken = carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml"});
+    const ProcessResult broken = carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/snooker_break.toml"});
     EXPECT_EQ(broken.status, 1);
-    EXPECT_TRUE(contains(broken.err, "more than two balls touch at once")) << broken.err;
+    EXPECT_TRUE(contains(broken.err, "it is a resting contact")) << broken.err;
+    const ProcessResult rough =
+        carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml", "--shots", "1"});
+    EXPECT_TRUE(contains(rough.out, "Balls that touch make this right to 0.0")) << rough.out << rough.err;
     TemporaryFolder folder;
     const std::string scene = folder.write("still.toml", "[[ball]]\nid = \"1\"\nposition = [0.5, 0.5]\n");
     const ProcessResult still = carom({"sensitivity", scene});

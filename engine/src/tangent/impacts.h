@@ -2,6 +2,8 @@
 // of the incoming state: by differences of four points, whose step adapts until two sizes of it agree.
 #pragma once
 
+#include <vector>
+
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "tangent/leg.h"
@@ -27,6 +29,9 @@ struct Lies {
 };
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2);
+
+/// Balls on the cloth that touch at once, because two of them, `hit` and `met`, meet.
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, std::vector<State>& states);
 
 /// A ball on the cloth at a nose; it may hop.
 /// @param normal  into the table

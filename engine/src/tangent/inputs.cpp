@@ -25,7 +25,7 @@ static_assert(std::is_trivially_copyable_v<BallParams> && sizeof(BallParams) % s
 constexpr double kStep = 1e-3, kAngleStep = 0.1;
 
 Input with_step(const std::string& key, double value, const Interval& range,
-                std::function<void(Scene&, double)> put) {
+                std::function<Change(Scene&, double)> put) {
     const bool degrees = std::string_view(range.unit) == "degrees";
     double step = kStep * std::abs(value);
     if (range.low < 0.0) step = degrees ? kAngleStep : kStep * std::max(1.0, std::abs(value));
@@ -46,28 +46,25 @@ std::optional<Input> in_fit(const Scene& scene, const std::string& key) {
                 auto numbers = std::get<std::vector<double>>(row.get(s.balls));
                 numbers[k] = x;
                 row.set(s.balls, numbers);
+                return Change::kNumbers;
             });
         }
     }
     return std::nullopt;
 }
 
-/// The numbers of a plan in the order in which numbers_of() reads them.
-std::vector<double> list_of(const Plan& plan) {
-    const Scene& scene = plan.scene;
+/// The numbers in the order in which numbers_of() reads them: of the balls and the stroke, and of the table.
+std::vector<double> list_of(const Scene& scene, Vertical vertical) {
     std::vector<double> list(kParams);
     std::memcpy(list.data(), &scene.balls, sizeof(BallParams));
-    const auto add = [&list](const auto&... numbers) { (list.push_back(numbers), ...); };
     const auto add_all = [&list](const auto& v) { list.insert(list.end(), v.data(), v.data() + v.size()); };
-    add(plan.gravity);
-    // Effects that the plan skips are computed: they change nothing here, but they change derivatives.
-    const Vertical vertical = plan.in_force(Effect::kAirborne) ? Vertical::kKeep : Vertical::kDrop;
-    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const BallStart& ball = scene.ball[i];
-        add(plan.sizes[i].R, plan.sizes[i].m);
+    list.push_back(scene.physics.gravity);
+    for (const BallStart& ball : scene.ball) {
+        const BallSize size = scene.size_of(ball);
+        list.insert(list.end(), {size.R, size.m});
         add_all(ball.position);
         if (scene.cue && scene.cue->ball == ball.id) {
-            const StruckBall struck = strike(*scene.cue, plan.sizes[i], true, vertical);
+            const StruckBall struck = strike(*scene.cue, size, true, vertical);
             add_all(struck.v);
             add_all(struck.w);
         } else {
@@ -75,48 +72,41 @@ std::vector<double> list_of(const Plan& plan) {
             add_all(ball.spin);
         }
     }
-    for (const CushionLine& line : plan.geometry.cushions) {
-        add_all(line.from);
-        add_all(line.direction);
-        add(line.length, line.height, line.inset);
-    }
-    for (const Nose& nose : plan.geometry.noses) {
-        add_all(nose.center);
-        add(nose.radius, nose.height, nose.inset);
-    }
-    for (const Pocket& pocket : plan.geometry.pockets) {
-        add_all(pocket.center);
-        add(pocket.radius);
-    }
     return list;
 }
-
-/// The numbers of the plan of a scene whose input is `steps` steps away.
-std::vector<double> moved_list(const Plan& plan, const Input& input, double steps) {
-    Scene scene = plan.scene;
-    scene.effects.clear();
-    input.put(scene, input.value + steps * input.step);
-    try {
-        return list_of(make_plan(scene, plan.isa));
-    } catch (const SceneError& error) {
-        throw TangentError(fmt::format("{}: {}", input.key, error.message()));
+void add_table(const Geometry& table, std::vector<double>& list) {
+    const auto add = [&list](const Vec2& v) { list.insert(list.end(), {v.x(), v.y()}); };
+    for (const CushionLine& line : table.cushions) {
+        add(line.from);
+        add(line.direction);
+        list.insert(list.end(), {line.length, line.height, line.inset});
+    }
+    for (const Nose& nose : table.noses) {
+        add(nose.center);
+        list.insert(list.end(), {nose.radius, nose.height, nose.inset});
+    }
+    for (const Pocket& pocket : table.pockets) {
+        add(pocket.center);
+        list.push_back(pocket.radius);
     }
 }
 
 }  // namespace
 
-Input input_of(const Scene& scene, const std::string& key) {
-    if (auto found = in_fit(scene, key)) return *found;
+Input input_of(Scene& scene, const std::string& key) {
+    if (key.starts_with("balls."))
+        if (auto found = in_fit(scene, key)) return *found;
     const SceneNumber number(scene, key);
     const double value = number.value(scene);
     if (std::isnan(value))
         throw TangentError(fmt::format("{} is no number with a fraction that the scene sets", key));
-    Scene same = scene;
-    number.put(same, value);
-    if (same.balls != scene.balls)
+    const BallParams balls = scene.balls;
+    number.put(scene, value);
+    if (scene.balls != balls)
         throw TangentError(
             fmt::format("{0} replaces a fit of the scene; name a number of the fit instead: {0}_fit.0", key));
-    return with_step(key, value, number.row().range, [number](Scene& s, double x) { number.put(s, x); });
+    return with_step(key, value, number.row().range,
+                     [number](Scene& s, double x) { return number.put(s, x); });
 }
 
 BallParams params_of(const double* list) {
@@ -130,18 +120,31 @@ const Dual& Numbers::param(double BallParams::*member) const {
     return params[static_cast<std::size_t>(&(kAny.*member) - &kAny.R)];
 }
 
-Numbers numbers_of(const Plan& plan, const std::vector<Input>& inputs) {
-    const std::vector<double> base = list_of(plan);
+Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs) {
+    // Effects that the plan skips are computed: they change nothing here, but they change derivatives.
+    const Vertical vertical = plan.in_force(Effect::kAirborne) ? Vertical::kKeep : Vertical::kDrop;
+    std::vector<double> base = list_of(scene, vertical);
+    add_table(plan.geometry, base);
     std::vector<Dual> list(base.begin(), base.end());
     for (std::size_t lane = 0; lane < inputs.size(); ++lane) {
         const Input& input = inputs[lane];
         std::array<std::vector<double>, 4> at;
         for (const auto& [k, steps] : {std::pair{0, -2.0}, {1, -1.0}, {2, 1.0}, {3, 2.0}}) {
-            at[k] = moved_list(plan, input, steps);
+            const Change change = input.put(scene, input.value + steps * input.step);
+            at[k] = list_of(scene, vertical);
+            if (change < Change::kTable) continue;
+            scene.effects.clear();
+            try {
+                add_table(make_plan(scene, plan.isa).geometry, at[k]);
+            } catch (const SceneError& error) {
+                throw TangentError(fmt::format("{}: {}", input.key, error.message()));
+            }
             if (at[k].size() != base.size())
                 throw TangentError(fmt::format("{} changes which parts of the table there are", input.key));
+            scene = plan.scene;
         }
-        for (std::size_t i = 0; i < base.size(); ++i)
+        input.put(scene, input.value);
+        for (std::size_t i = 0; i < at[0].size(); ++i)
             list[i].d[lane] = (8.0 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12.0 * input.step);
     }
     const Dual* next = list.data();

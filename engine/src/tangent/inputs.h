@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "carom/engine/plan.h"
+#include "carom/engine/scene_number.h"
 #include "tangent/dual.h"
 
 namespace carom::tangent {
@@ -16,10 +17,11 @@ struct Input {
     std::string key;
     double value;
     double step;  ///< of the differences that find what depends on it; nearly everything does linearly
-    std::function<void(Scene&, double)> put;
+    std::function<Change(Scene&, double)> put;
 };
+/// @param scene  is changed if it throws
 /// @throws TangentError if the number has no derivative, std::invalid_argument if there is no such number
-Input input_of(const Scene& scene, const std::string& key);
+Input input_of(Scene& scene, const std::string& key);
 
 /// BallParams consists of numbers only: here they are a list.
 inline constexpr std::size_t kParams = sizeof(BallParams) / sizeof(double);
@@ -48,7 +50,8 @@ struct Numbers {
 
     const Dual& param(double BallParams::*member) const;
 };
+/// @param scene  that of the plan; changed and put back
 /// @param inputs  at most kLanes
-Numbers numbers_of(const Plan& plan, const std::vector<Input>& inputs);
+Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs);
 
 }  // namespace carom::tangent

@@ -28,10 +28,11 @@ double speed_of(const Vec3& v, const Vec3& w, double R) {
 
 }  // namespace
 
-Replay::Replay(const Plan& plan, const Record& record, const std::vector<Input>& inputs, double until)
+Replay::Replay(const Plan& plan, const Record& record, Scene& scene, const std::vector<Input>& inputs,
+               double until)
     : plan_(plan),
       record_(record),
-      numbers_(numbers_of(plan, inputs)),
+      numbers_(numbers_of(plan, scene, inputs)),
       laws_{plan, numbers_},
       balls_(record.tracks.size()),
       until_(std::min(until, record.duration)) {
@@ -181,7 +182,8 @@ void Replay::replay(const Event& event) {
             time.d.fill(std::numeric_limits<double>::quiet_NaN());
             break;
         case EventType::kBallCluster:
-            throw TangentError("more than two balls touch at once");
+            time = cluster(event);
+            break;
         default:
             throw TangentError("it is a resting contact");
     }
@@ -214,7 +216,7 @@ bool Replay::in_space(int a, int b) const {
     return flies(state(a)) || flies(state(b)) || over(a, b) || over(b, a);
 }
 
-Dual Replay::ball_ball(const Event& event) {
+Replay::Meeting Replay::meet(const Event& event) {
     const int one = event.a, two = event.b;
     const Leg leg1 = balls_[one].legs.back(), leg2 = balls_[two].legs.back();
     const Numbers::Ball &b1 = numbers_.balls[one], &b2 = numbers_.balls[two];
@@ -238,9 +240,16 @@ Dual Replay::ball_ball(const Event& event) {
     for (int i = 0; i < (space ? 3 : 2); ++i) rate += apart[i].x * (v2.v[i].x - v1.v[i].x);
     rate /= space ? length3(apart).x : length(planar(apart)).x;
     const Dual time = when(gap, rate, b1.R.x);
-    State s1 = leg1.at(time), s2 = leg2.at(time);
-    const Dual3 at = apart_at(time);
-    add_miss(planar(at), planar(s2.v - s1.v), event);
+    const Meeting m{space, time, apart_at(time), leg1.at(time), leg2.at(time)};
+    add_miss(planar(m.apart), planar(m.s2.v - m.s1.v), event);
+    return m;
+}
+
+Dual Replay::ball_ball(const Event& event) {
+    const int one = event.a, two = event.b;
+    const Leg leg1 = balls_[one].legs.back(), leg2 = balls_[two].legs.back();
+    auto [space, time, at, s1, s2] = meet(event);
+    const auto sinks = [](const Leg& leg) { return leg.state == MotionState::kFalling; };
     if (laws_.flights() && (plan_.ball_ball->free || space)) {
         const auto lies = [&](const Leg& leg) { return !flies(leg.state) && !(space && sinks(leg)); };
         if (!space && (sinks(leg1) || sinks(leg2))) s1.v[2] = s2.v[2] = 0.0;
@@ -266,6 +275,19 @@ Dual Replay::ball_ball(const Event& event) {
         begin(one, time, s1);
         begin(two, time, s2);
     }
+    return time;
+}
+
+Dual Replay::cluster(const Event& event) {
+    const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(event.detail)];
+    const auto off_cloth = [this](int ball) { return is_off_cloth(balls_[ball].legs.back().state); };
+    if (std::any_of(members.begin(), members.end(), off_cloth) || (laws_.flights() && plan_.ball_ball->free))
+        throw TangentError("more than two balls touch at once, and not all of them on the cloth");
+    const Dual time = meet(event).time;
+    std::vector<State> states;
+    for (const int ball : members) states.push_back(balls_[ball].legs.back().at(time));
+    collide_cluster(laws_, members, event.a, event.b, states);
+    for (std::size_t k = 0; k < members.size(); ++k) begin(members[k], time, states[k]);
     return time;
 }
 
@@ -370,12 +392,13 @@ Tangents::Tangents(const Plan& plan, const Record& record, const std::vector<std
     : inputs_(inputs),
       duration_(std::min(record.duration, until.value_or(kNever))),
       parts_(std::make_unique<Parts>()) {
+    Scene scene = plan.scene;
     for (std::size_t first = 0; first < inputs.size(); first += tangent::kLanes) {
         std::vector<tangent::Input> part;
         for (std::size_t i = first; i < std::min(inputs.size(), first + tangent::kLanes); ++i)
-            part.push_back(tangent::input_of(plan.scene, inputs[i]));
+            part.push_back(tangent::input_of(scene, inputs[i]));
         parts_->replays.push_back(
-            std::make_unique<tangent::Replay>(plan, record, part, until.value_or(kNever)));
+            std::make_unique<tangent::Replay>(plan, record, scene, part, until.value_or(kNever)));
     }
 }
 Tangents::~Tangents() = default;

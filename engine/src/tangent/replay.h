@@ -21,7 +21,9 @@ struct Room {
 /// Derivatives of one record by up to kLanes inputs.
 class Replay {
   public:
-    Replay(const Plan& plan, const Record& record, const std::vector<Input>& inputs, double until);
+    /// @param scene  as in numbers_of()
+    Replay(const Plan& plan, const Record& record, Scene& scene, const std::vector<Input>& inputs,
+           double until);
     Replay(const Replay&) = delete;
 
     const Leg& leg_at(int ball, double time) const;
@@ -39,7 +41,16 @@ class Replay {
         bool on_cloth = false;    ///< the coming ball_cloth event is already part of the last leg
     };
     void replay(const Event& event);
+    /// Two balls that meet: when, from which to which, and how they move.
+    struct Meeting {
+        bool space;
+        Dual time;
+        Dual3 apart;
+        State s1, s2;
+    };
+    Meeting meet(const Event& event);
     Dual ball_ball(const Event& event);
+    Dual cluster(const Event& event);
     Dual cushion(const Event& event);
     Dual pocket(const Event& event);
     Dual transition(const Event& event);

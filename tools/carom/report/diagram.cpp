@@ -33,6 +33,7 @@ using Color = look::Color;
 constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 74.0;
 constexpr double kTitleSize = 15.0, kTextSize = 8.0;
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGray{0.55, 0.55, 0.55};
+constexpr double kDot = 0.9;
 // [m/s] Slower contacts are drawn without a speed.
 constexpr double kLeastSpeed = 0.05;
 // [m] Below this a path is a dot.
@@ -69,6 +70,7 @@ class Drawing {
         draw_table();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_path(static_cast<int>(i));
         draw_ghost();
+        draw_spreads();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_ball(static_cast<int>(i));
         draw_cue();
         if (style_.speeds) draw_speeds();
@@ -253,6 +255,31 @@ class Drawing {
         cairo_set_dash(cr_, dots, 0, 0.0);
     }
 
+    void draw_spreads() {
+        constexpr int kCorners = 90;
+        cairo_save(cr_);
+        cairo_rectangle(cr_, 0.0, 0.0, kDrawingWidth, scale_ * (high_.x() - low_.x()));
+        cairo_clip(cr_);
+        for (const DiagramSpread& spread : shot_.spreads) {
+            for (const Vec2& end : spread.ends) {
+                circle(end, kDot);
+                color(path_color(spread.ball), 0.35);
+                cairo_fill(cr_);
+            }
+            for (const double deviations : {1.0, 2.0}) {
+                for (int i = 0; i < kCorners; ++i) {
+                    const double angle = 2.0 * std::numbers::pi * i / kCorners;
+                    const Vec2 p = spread.center + deviations * (std::cos(angle) * spread.along +
+                                                                 std::sin(angle) * spread.across);
+                    (i == 0 ? cairo_move_to : cairo_line_to)(cr_, px(p), py(p));
+                }
+                cairo_close_path(cr_);
+                stroke(path_color(spread.ball), 1.0);
+            }
+        }
+        cairo_restore(cr_);
+    }
+
     void draw_ball(int ball) {
         const BallState s = record_.state_at(ball, 0.0);
         if (is_gone(s.state)) return;
@@ -369,6 +396,11 @@ class Drawing {
         text(left, y + 18.0,
              "solid: before the ball meets another, dashed: after it; dotted ring: ghost ball", kTextSize,
              kGray, 0.0);
+        if (!shot_.spreads.empty())
+            text(left, y + 29.0,
+                 "ellipses: one and two standard deviations of the end, to first order; dots: where played "
+                 "shots end",
+                 kTextSize, kGray, 0.0);
     }
     std::string outcome() const {
         std::string words;

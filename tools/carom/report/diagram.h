@@ -11,10 +11,19 @@
 
 namespace carom::tools {
 
+/// Where errors of the hand take a ball.
+struct DiagramSpread {
+    int ball;
+    Vec2 center;
+    Vec2 along, across;      ///< [m] half axes of an ellipse of one standard deviation
+    std::vector<Vec2> ends;  ///< [m] of played shots
+};
+
 struct DiagramShot {
     std::string title;
     Record record;
     std::optional<Cue> cue;  ///< nothing if only the record is known
+    std::vector<DiagramSpread> spreads;
 };
 
 struct DiagramStyle {

@@ -40,8 +40,9 @@ class Tangents {
     /// number of a fit, such as balls.mu_b_fit.0
     /// @param record  of this plan
     /// @param until  [s] replays no event after this time
-    /// @throws TangentError if an event has no derivative here: a cluster, a resting contact, two cushions at
-    /// once, a ball that leaves a pocket, the published march, or an impact at a corner of its model.
+    /// @throws TangentError if an event has no derivative here: a resting contact, three balls that meet in
+    /// the air, two cushions at once, a ball that leaves a pocket, the published march, or an impact at a
+    /// corner of its model.
     Tangents(const Plan& plan, const Record& record, const std::vector<std::string>& inputs,
              std::optional<double> until = std::nullopt);
     ~Tangents();
@@ -60,7 +61,7 @@ class Tangents {
     /// Replayed events: all, unless `until` stopped earlier.
     std::size_t events() const;
     /// [-] The largest difference between two estimates of an impact's derivatives, relative to the largest
-    /// of them. Everything else is exact to rounding.
+    /// of them: at most 1e-5, and 1e-3 if three or more balls touch. Everything else is exact to rounding.
     double impact_error() const;
     /// One per input. Searches the near misses of all balls, so it takes longer than the derivatives.
     std::vector<Margin> margins() const;

@@ -34,6 +34,12 @@ using MeasureValue = std::variant<double, std::vector<std::string>>;
 /// As tables write it: "" if there is no number, semicolons between texts.
 std::string text_of(const MeasureValue& value);
 
+/// Where a ball is to rest.
+struct Place {
+    int ball;
+    Vec2 at;  ///< [m]
+};
+
 /// An expression that cannot be read. what() says where, and what was expected.
 class MeasureError : public std::runtime_error {
   public:
@@ -59,6 +65,8 @@ class Measure {
     /// @throws std::invalid_argument for a shot that the game cannot judge (games::judge)
     MeasureValue of(const Record& record) const;
     bool holds(const Record& record) const;
+    /// The centre of every `near` that has to hold: of the whole expression, or joined by `and`.
+    std::vector<Place> places() const;
     /// The same for a row of a table: no value if the shot ended before its balls were at rest and the game
     /// cannot judge it.
     MeasureValue in_table(const Record& record) const;

@@ -3,21 +3,17 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
+#include "carom/games/measures.h"
 #include "carom/games/solve.h"
 
 namespace carom::games {
-
-/// Where a ball is to rest.
-struct Place {
-    int ball;
-    Vec2 at;  ///< [m]
-};
 
 struct Refined {
     std::vector<double> values;  ///< in the order of the choices
@@ -34,5 +30,15 @@ inline constexpr double kRefined = 1e-6;  ///< [m]
 /// @throws std::invalid_argument for a choice that is no number of the scene
 Refined refine(const Scene& scene, std::span<const Choice> choices, std::span<const Place> places,
                kernel::Isa isa, const std::function<bool(const Record&)>& allowed = {});
+
+/// A shot of a search that was moved until the balls rest at the centre of every `near`, and how sure it is.
+struct Exact {
+    Refined refined;
+    std::vector<Choice> choices;       ///< those of the search, with cue.aim_deg for an aim at a ball
+    std::optional<Solution> solution;  ///< nothing if there is no exact shot near
+};
+/// @param options  those of the search; a tenth of its shots tells how sure the result is
+/// @throws std::invalid_argument if nothing has to be near a place; as solve()
+Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const SolveOptions& options);
 
 }  // namespace carom::games

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,11 +17,13 @@
 #include "base/console.h"
 #include "base/hand.h"
 #include "base/options.h"
+#include "base/output_file.h"
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/tangents.h"
 #include "carom/games/noise.h"
+#include "report/diagram.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -31,9 +34,11 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
+// [-] An error of the derivatives that is told.
+constexpr double kTold = 1e-5;
 
 struct SensitivityArgs {
-    std::string scene, hand = kHand;
+    std::string scene, hand = kHand, plot;
     int shots = 1000;
     std::uint64_t seed = 1;
     bool json = false;
@@ -71,7 +76,7 @@ struct Ellipse {
 Ellipse ellipse_of(const Eigen::Matrix2d& covariance) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
     const Vec2 longer = axes.eigenvectors().col(1);
-    const double angle = std::atan2(longer.y(), longer.x()) * 180.0 / 3.141592653589793;
+    const double angle = std::atan2(longer.y(), longer.x()) * 180.0 / std::numbers::pi;
     const auto half = [&axes](int k) { return std::sqrt(std::max(0.0, axes.eigenvalues()[k])); };
     return {half(1), half(0), angle < 0.0 ? angle + 180.0 : angle};
 }
@@ -82,7 +87,8 @@ struct BallResult {
     std::optional<std::size_t> fall;                  ///< the event at which it is over its pocket
     std::vector<Vec2> moves;                          ///< [m] for each nudge
     Ellipse expected;                                 ///< to first order
-    std::optional<Ellipse> played;                    ///< by a sweep; nothing if it stays too rarely
+    std::vector<Vec2> ends;                           ///< [m] of the sweep, unless it is gone
+    std::optional<Ellipse> played;                    ///< of these; nothing if it stays too rarely
     std::optional<std::pair<double, double>> window;  ///< [degrees] of the aim, in which it still falls
     std::size_t fell = 0;                             ///< of the sweep, into the same pocket
 };
@@ -126,6 +132,7 @@ struct Sensitivity {
     std::vector<Nudge> nudges;
     std::vector<carom::Margin> margins;
     std::vector<BallResult> balls;
+    double impact_error = 0.0;        ///< as in Tangents
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
@@ -147,28 +154,25 @@ void play(const Plan& plan, const Record& record, const games::Hand& hand, const
     simulate(plan, buffers, meant, interruptible());
     const Cue cue = *plan.scene.cue;
     const games::Noise noise{hand.speed * cue.speed, hand.aim_deg, hand.elevation_deg, hand.tip, hand.tip};
-    std::vector<std::vector<Vec2>> ends(result.balls.size());
     for (result.shots = 0; result.shots < static_cast<std::size_t>(args.shots); ++result.shots) {
         planner.scene().cue = games::with_noise(cue, noise, args.seed, result.shots);
         simulate(planner.plan(true), buffers, outcome, interruptible());
         result.same += same_kind(meant, outcome) ? 1 : 0;
-        for (std::size_t i = 0; i < ends.size(); ++i) {
-            const BallOutcome& end = outcome.balls[static_cast<std::size_t>(result.balls[i].ball)];
-            if (end.pocket == -1) ends[i].push_back(planar(end.position));
-            if (result.balls[i].fall)
-                result.balls[i].fell +=
-                    end.pocket == record.tracks[static_cast<std::size_t>(result.balls[i].ball)].pocket ? 1
-                                                                                                       : 0;
+        for (BallResult& row : result.balls) {
+            const auto ball = static_cast<std::size_t>(row.ball);
+            const BallOutcome& end = outcome.balls[ball];
+            if (end.pocket == -1) row.ends.push_back(planar(end.position));
+            if (row.fall) row.fell += end.pocket == record.tracks[ball].pocket ? 1 : 0;
         }
     }
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (result.balls[i].fall || ends[i].size() < 10) continue;
+    for (BallResult& row : result.balls) {
+        if (row.fall || row.ends.size() < 10) continue;
+        const auto count = static_cast<double>(row.ends.size());
         Vec2 mean = Vec2::Zero();
-        for (const Vec2& end : ends[i]) mean += end / static_cast<double>(ends[i].size());
+        for (const Vec2& end : row.ends) mean += end / count;
         Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-        for (const Vec2& end : ends[i])
-            covariance += (end - mean) * (end - mean).transpose() / static_cast<double>(ends[i].size());
-        result.balls[i].played = ellipse_of(covariance);
+        for (const Vec2& end : row.ends) covariance += (end - mean) * (end - mean).transpose() / count;
+        row.played = ellipse_of(covariance);
     }
 }
 
@@ -180,6 +184,7 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     for (const Nudge& nudge : result.nudges) inputs.push_back(nudge.key);
     const Tangents tangents(plan, record, inputs);
     result.margins = tangents.margins();
+    result.impact_error = tangents.impact_error();
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
         const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
         if (track.segments.size() == 1 || track.segments.back().state == MotionState::kOut) continue;
@@ -227,7 +232,10 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const carom::Margin& m = s.margins[k];
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
-    text += "\nx and y, to first order. The events change first if\n";
+    text += "\nx and y, to first order. ";
+    if (s.impact_error > kTold)
+        text += fmt::format("Balls that touch make this right to {:.1g} only. ", s.impact_error);
+    text += "The events change first if\n";
     for (std::size_t k = 0; k < 2; ++k) {
         const auto [by, why] = nearest(k);
         if (std::isfinite(by))
@@ -291,16 +299,36 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
         }
         balls.push_back(row);
     }
-    return {
-        {"hand", hand}, {"inputs", inputs}, {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+    return {{"hand", hand},   {"inputs", inputs}, {"impact_error", s.impact_error},
+            {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+}
+
+/// The shot, with the ellipse and the played ends of each ball.
+DiagramShot drawing_of(const Sensitivity& s, const Plan& plan, const Record& record,
+                       const std::string& hand) {
+    DiagramShot shot{"with the hand " + harmless(hand), record, plan.scene.cue, {}};
+    for (const BallResult& ball : s.balls) {
+        const double time = ball.fall ? record.events[*ball.fall].time : record.duration;
+        const double angle = ball.expected.direction_deg * std::numbers::pi / 180.0;
+        const Vec2 along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+        shot.spreads.push_back({ball.ball, planar(record.state_at(ball.ball, time).position),
+                                ball.expected.along * along, ball.expected.across * across, ball.ends});
+    }
+    return shot;
 }
 
 int run(const SensitivityArgs& args) {
+    const std::string format = args.plot.empty() ? "" : diagram_format(args.plot);
     const Plan plan = plan_scene(args.scene);
     if (!plan.scene.cue)
         throw SceneError(args.scene, {}, "no ball is struck; add a [cue], whose errors are what is measured");
     const Record record = simulate_plan(plan, interruptible());
     const Sensitivity result = measure(plan, record, args);
+    if (!args.plot.empty()) {
+        OutputFile file(args.plot);
+        file.write(draw_diagram({drawing_of(result, plan, record, args.hand)}, {}, format));
+        file.commit();
+    }
     print(args.json ? json_of(result, record, args.hand).dump() + "\n"
                     : text_of(result, plan, record, args.hand));
     return kOk;
@@ -317,6 +345,9 @@ void add_sensitivity(Options& program) {
                    "degrees");
     command.option("--shots", &args.shots, "N", "Shots that are played with these errors").in(1, 1e7);
     command.option("--seed", &args.seed, "S", "Seed of the errors");
+    command.option("--plot", &args.plot, "FILE",
+                   "Draw the shot with the errors of where its balls end: .svg, .pdf or .png (default: not "
+                   "drawn)");
     command.flag("--json", args.json, "Print everything as JSON (default: off)");
 }
 

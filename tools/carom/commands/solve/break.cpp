@@ -85,7 +85,7 @@ int run(const BreakArgs& args) {
             style.units = units_of(args.units);
             OutputFile file(args.diagram);
             file.write(
-                draw_diagram({{title, record, found[0].scene.cue}}, style, diagram_format(args.diagram)));
+                draw_diagram({{title, record, found[0].scene.cue, {}}}, style, diagram_format(args.diagram)));
             file.commit();
         }
         if (!args.page.empty()) {

@@ -64,7 +64,8 @@ void add_search(Options& command, SearchArgs& args) {
 
 std::vector<Solution> search(const Scene& scene, const std::string& name, const std::string& want,
                              std::optional<games::Game> game, std::vector<Choice> choices,
-                             std::vector<Scene> layouts, const SearchArgs& args) {
+                             std::vector<Scene> layouts, const SearchArgs& args,
+                             std::vector<games::Exact>* exact) {
     games::SolveOptions options;
     options.choices = std::move(choices);
     options.layouts = std::move(layouts);
@@ -79,7 +80,14 @@ std::vector<Solution> search(const Scene& scene, const std::string& name, const 
     };
     options.stop = [] { return interrupted(); };
     try {
-        return games::solve(scene, games::Measure(want, scene, game), chosen_isa(), options);
+        const games::Measure wanted(want, scene, game);
+        if (exact != nullptr && wanted.places().empty())
+            throw UsageError(
+                "--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
+        const std::vector<Solution> found = games::solve(scene, wanted, chosen_isa(), options);
+        for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
+            exact->push_back(games::exact(found[i], wanted, chosen_isa(), options));
+        return found;
     } catch (const games::MeasureError& error) {
         throw UsageError(fmt::format("--want {}", error.what()));
     } catch (const BatchStopped&) {

@@ -9,6 +9,7 @@
 
 #include "base/hand.h"
 #include "base/options.h"
+#include "carom/games/refine.h"
 #include "carom/games/solve.h"
 
 namespace carom::tools {
@@ -22,10 +23,12 @@ struct SearchArgs {
 };
 void add_search(Options& command, SearchArgs& args);
 
-/// Searches with a progress bar. @param name  of the scene, for messages  @throws UsageError, Interrupted
+/// Searches with a progress bar; with `exact`, moves what is found to where it should be and puts that there.
+/// @param name  of the scene, for messages  @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Scene& scene, const std::string& name, const std::string& want,
                                     std::optional<games::Game> game, std::vector<games::Choice> choices,
-                                    std::vector<Scene> layouts, const SearchArgs& args);
+                                    std::vector<Scene> layouts, const SearchArgs& args,
+                                    std::vector<games::Exact>* exact = nullptr);
 
 /// "falls 1 into p5 49 %, ..." and what errors cost, a line each.
 std::string falls_text(const games::Solution& solution);

@@ -38,9 +38,6 @@ struct SolveArgs {
     SearchArgs search;
 };
 
-// [-] Share of the search's shots that tell how sure an exact shot is; [degrees] how far its aim may turn.
-constexpr double kExactShare = 0.1, kTurn = 20.0;
-
 std::optional<double> bound(std::string_view text) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -67,55 +64,6 @@ std::string joined(const std::vector<std::string>& parts) {
     return parts.size() == 1 ? parts.front() : whole;
 }
 
-/// The places of all wants such as "cue near (0.6, 1.2, 0.05)". @throws UsageError if there are none
-std::vector<games::Place> places_of(const std::vector<std::string>& wants, const Scene& scene) {
-    std::vector<games::Place> places;
-    for (const std::string& want : wants) {
-        const std::size_t near = want.find(" near "), open = want.find('('), close = want.rfind(')');
-        if (near == want.npos || open == want.npos || close == want.npos || close < open || open < near)
-            continue;
-        std::string id = want.substr(0, near);
-        std::erase_if(id, [](char c) { return c == '"' || c == ' '; });
-        std::string inside = want.substr(open + 1, close - open - 1);
-        std::erase(inside, ' ');
-        const auto numbers = numbers_in<double, 3>(inside, ',');
-        const auto ball = std::find_if(scene.ball.begin(), scene.ball.end(),
-                                       [&id](const BallStart& b) { return b.id == id; });
-        if (numbers && ball != scene.ball.end())
-            places.push_back({static_cast<int>(ball - scene.ball.begin()), {(*numbers)[0], (*numbers)[1]}});
-    }
-    if (places.empty())
-        throw UsageError("--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
-    return places;
-}
-
-/// The shot for which the balls rest at their places, and how sure it is.
-struct Exact {
-    games::Refined refined;
-    std::vector<Choice> choices;
-    std::optional<Solution> solution;  ///< nothing if there is no exact shot near
-};
-Exact exact_of(const Solution& found, const std::vector<Choice>& choices,
-               const std::vector<games::Place>& places, const std::string& want,
-               const std::optional<games::Game>& game, const SolveArgs& args) {
-    Exact exact{{}, choices, {}};
-    for (Choice& choice : exact.choices) {
-        const double aim = found.scene.cue->aim_deg;
-        if (choice.key.starts_with("hit.")) choice = {"cue.aim_deg", aim - kTurn, aim + kTurn};
-    }
-    const games::Measure wanted(want, found.scene, game);
-    exact.refined = games::refine(found.scene, exact.choices, places, chosen_isa(),
-                                  [&wanted](const Record& record) { return wanted.holds(record); });
-    if (!exact.refined.trouble.empty()) return exact;
-    std::vector<Choice> fixed = exact.choices;
-    for (std::size_t k = 0; k < fixed.size(); ++k) fixed[k].low = fixed[k].high = exact.refined.values[k];
-    SearchArgs once = args.search;
-    once.best = 1;
-    once.shots = static_cast<std::uint64_t>(kExactShare * static_cast<double>(once.shots));
-    exact.solution = search(exact.refined.scene, args.scene, want, game, fixed, {}, once)[0];
-    return exact;
-}
-
 std::string told(const Solution& solution, const std::vector<Choice>& choices, int rank) {
     std::string text =
         fmt::format("{}. {}  of {}\n", rank, share_text(share_of(solution.successes, solution.shots)),
@@ -137,15 +85,9 @@ int run(const SolveArgs& args) {
         games::racks_of(read_scene_text(args.scene), args.scene, args.layouts, args.search.seed);
     if (args.exact && layouts.size() > 1)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
-    if (args.exact) places_of(args.want, plan.scene);
-    const std::vector<Solution> found =
-        search(plan.scene, args.scene, want, game, choices, layouts, args.search);
-    std::vector<Exact> exact;
-    if (args.exact) {
-        const std::vector<games::Place> places = places_of(args.want, plan.scene);
-        for (const Solution& solution : found)
-            exact.push_back(exact_of(solution, choices, places, want, game, args));
-    }
+    std::vector<games::Exact> exact;
+    const std::vector<Solution> found = search(plan.scene, args.scene, want, game, choices, layouts,
+                                               args.search, args.exact ? &exact : nullptr);
     const bool is_exact = !exact.empty() && exact[0].solution;
     if (!args.search.output.empty())
         write_best(args.search.output, is_exact ? *exact[0].solution : found[0], want, args.search);
@@ -154,7 +96,7 @@ int run(const SolveArgs& args) {
                  {"hand", args.search.hand},
                  {"seed", args.search.seed},
                  {"solutions", solutions_json(found, choices)}};
-        for (const Exact& e : exact) {
+        for (const games::Exact& e : exact) {
             Json row{{"miss_m", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
                      {"shots", e.refined.shots},
                      {"trouble", e.refined.trouble}};
