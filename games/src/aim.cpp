@@ -56,9 +56,10 @@ double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards
 
 /// The mouth of a pocket, between the two jaws nearest to it; empty if there are none.
 std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& pocket) {
-    if (table.jaws.size() < 2) return std::nullopt;
     std::vector<Vec2> jaws;
-    for (const Jaw& jaw : table.jaws) jaws.push_back(jaw.center);
+    for (const Jaw& jaw : table.jaws)
+        if (!jaw.is_arc()) jaws.push_back(jaw.center);
+    if (jaws.size() < 2) return std::nullopt;
     std::partial_sort(jaws.begin(), jaws.begin() + 2, jaws.end(), [&](const Vec2& a, const Vec2& b) {
         return (a - pocket.center).squaredNorm() < (b - pocket.center).squaredNorm();
     });
@@ -108,7 +109,11 @@ bool enters(const Table& table, const Pocket& pocket, Goal goal, const Vec2& fro
                            return is_facing(table, c) || between_segments(from, end, c.from, c.to) >= least;
                        }) &&
            std::all_of(table.jaws.begin(), table.jaws.end(),
-                       [&](const Jaw& j) { return to_segment(j.center, from, end) >= j.radius + least; }) &&
+                       [&](const Jaw& j) {
+                           // A straight path ends farthest from the centre of a wall around it.
+                           if (j.around()) return length(end - j.center) <= j.radius - least;
+                           return to_segment(j.center, from, end) >= j.radius + least;
+                       }) &&
            std::none_of(table.pockets.begin(), table.pockets.end(), [&](const Pocket& other) {
                return &other != &pocket && way_to_circle(other, from, towards) < way;
            });

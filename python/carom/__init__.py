@@ -16,7 +16,7 @@ from carom._fit import FitResult, fit
 from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin
 from carom._record import Event, EventColumn, Record, TablePlan, event_columns
-from carom._scene import Scene
+from carom._scene import Scene, tables
 from carom._render import render
 from carom._show import picture, shown
 from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
@@ -57,4 +57,5 @@ __all__ = [
     "simulate_many",
     "solve",
     "sweep",
+    "tables",
 ]

@@ -204,3 +204,15 @@ def scene_with_cue(
         return Scene._of(make(_toml.document(tree, "scene")))
     except SceneError as error:
         raise _placeless(error) from None
+
+
+@checked
+def tables() -> dict[str, dict[str, Any]]:
+    """The measures of every table preset, as `carom check` prints them, in m and degrees.
+
+    Each has the `balls` that it is for, its `size`, `cushion_height` and, if it has pockets, `rail_width`,
+    `corner_pockets` and `side_pockets`: the keys of scene files, with every value, and `cut_off_deg`. On a
+    straight path that is farther than this from the pocket's axis, a ball of that game cannot pass both
+    points of the mouth untouched.
+    """
+    return dict(_carom.tables())

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "carom/engine/batch.h"
+#include "carom/engine/event_details.h"
 #include "carom/engine/simulate.h"
 #include "carom/render/draw_list.h"
 #include "native.h"
@@ -96,7 +97,7 @@ std::vector<std::tuple<double, std::string, std::string, std::string>> event_lis
 /// Cushions as (from, to), jaws and pockets as (centre,
 /// radius), with their ids: what a plan of the table draws.
 nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
-    const Table& table = r.record->table;
+    const Table table = without_arcs(r.record->table);
     nb::list cushions, jaws, pockets;
     for (const Cushion& c : table.cushions)
         cushions.append(nb::make_tuple(c.id, c.from.x(), c.from.y(), c.to.x(), c.to.y()));

@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/variation.h"
@@ -43,6 +44,33 @@ void positions(const NativeScene& scene, const Flat<double>& out) {
     for (const BallStart& ball : scene.scene->ball) at = std::copy_n(ball.position.data(), 2, at);
 }
 
+/// The measures of every preset, as `carom check` prints them.
+nb::typed<nb::dict, nb::str, nb::any> tables() {
+    nb::typed<nb::dict, nb::str, nb::any> all;
+    for (const char* preset : kTablePresets) {
+        const Table table = make_table(preset);
+        const Measures of = measures_of(preset);
+        const double R = make_ball_params(balls_for(preset)).R;
+        nb::dict one;
+        one["balls"] = balls_for(preset);
+        one["size"] = std::pair(table.width, table.length);
+        one["cushion_height"] = *of.cushion_height;
+        if (of.rail_width) one["rail_width"] = *of.rail_width;
+        for (const PocketSection& section : kPocketSections) {
+            const PocketMeasures& pockets = of.*section.pockets;
+            if (!pockets.mouth) continue;
+            nb::dict measures;
+            for (const Field<PocketMeasures>& f : kPocketMeasureFields)
+                if (const FieldValue value = f.value(pockets); value.index() != 0)
+                    measures[f.key] = std::get<double>(value);
+            measures["cut_off_deg"] = cut_off_deg(*pockets.mouth, R);
+            one[section.key] = measures;
+        }
+        all[preset] = one;
+    }
+    return all;
+}
+
 }  // namespace
 
 void add_scenes(nb::module_& m) {
@@ -61,6 +89,7 @@ void add_scenes(nb::module_& m) {
         .def("changed", changed);
     m.def("read_scene_text", read_scene_text);
     m.def("parse_scene", parse);
+    m.def("tables", tables);
 }
 
 }  // namespace carom::python

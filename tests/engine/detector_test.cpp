@@ -144,7 +144,7 @@ PredictedEvent by_hand(const Parts& parts) {
         offer(parts.balls.segment(i).duration, {i, With::kNothing, -1});
         for (int j = i + 1; j < parts.balls.count(); ++j)
             if (p.moves || path(j).moves)
-                offer(time_to_ball(p, path(j), contact_distance(R, parts.balls.radius(j))),
+                offer(time_to_ball(p, path(j), contact_distance(R, parts.balls.radius(j), false)),
                       {i, With::kBall, j});
         if (!p.moves) continue;
         for (std::size_t k = 0; k < g.cushions.size(); ++k) {
@@ -187,7 +187,7 @@ TEST(Detector, LeavesOutRestingContacts) {
     add_ball(scene, "b", {0.0, 2.0 * R, R}, {0.0, 0.1, 0.0}, {-0.1 / R, 0.0, 0.0});
     Parts parts(scene);
     const Contact contact{0, With::kBall, 1};
-    ContactKinematics approach = kinematics_of(parts.balls, 0, 1);
+    ContactKinematics approach = kinematics_of(parts.plan, parts.balls, 0, 1);
     approach.a_c = 1.0;  // pressed together, and not closing: no bounce
     EXPECT_FALSE(parts.resting.has(contact));
     ASSERT_TRUE(parts.resting.try_hold(approach, scene.balls.e_b));

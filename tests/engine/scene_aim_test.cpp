@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "carom/engine/event_details.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/variation.h"
 #include "support/engine_cases.h"
+#include "support/scene_errors.h"
 
 namespace carom::test {
 namespace {
@@ -141,6 +143,65 @@ TEST(SceneAim, MistakesAreToldAtTheirPlace) {
     refused("speed = \"0x10 m/s\"\n", "a number with a unit");
     refused("speed = \"\"\n", "a number with a unit");
     refused("restitution = \"0.5\"\n", "must be a number, not a string");
+}
+
+/// A ball frozen to the left rail, struck away from it.
+Scene from_the_rail(const std::string& cue) {
+    return parse_scene("[[ball]]\nposition = [0.028575, 1.0]\n[cue]\naim_deg = 0\nspeed = 3\n" + cue,
+                       "aim.toml");
+}
+
+// The cue's axis runs through the centre, at a height R sin(e) - (h - R) cos(e) above the nose, measured
+// across it: as much as the cue is thick there.
+TEST(CueRoom, ACueClearsTheNoseThatItCrosses) {
+    const Scene scene = from_the_rail("offset = [0, 0]\n");
+    const double R = scene.balls.R, h = scene.table.cushions.front().height;
+    const auto clears = [&](double deg) {
+        const double sin = std::sin(deg * kDegree), cos = std::cos(deg * kDegree);
+        const double thick = 0.0065 + 0.008 / 1.473 * R * (1.0 - cos) / cos;
+        return R * sin - (h - R) * cos >= thick;
+    };
+    const CueRoom room = room_for(scene, *scene.cue);
+    EXPECT_EQ(room.in.substr(0, 8), "cushion ");
+    ASSERT_TRUE(room.clears_deg);
+    EXPECT_TRUE(clears(*room.clears_deg)) << *room.clears_deg;
+    EXPECT_FALSE(clears(*room.clears_deg - 0.1)) << *room.clears_deg;
+    EXPECT_EQ(from_the_rail("offset = [0, 0]\nelevation_deg = \"auto\"\n").cue->elevation_deg,
+              *room.clears_deg);
+    const std::vector<std::string>& said = plan_of(scene).warnings;
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("would be in cushion"), std::string::npos) << said[0];
+    EXPECT_TRUE(plan_of(from_the_rail("offset = [0, 0]\nelevation_deg = 45\n")).warnings.empty());
+}
+
+TEST(CueRoom, ABallBehindIsInTheWay) {
+    const std::string balls =
+        "[table]\ncushion = []\n[[ball]]\nposition = [0, 0]\n[[ball]]\nid = \"7\"\nposition = [-0.1, "
+        "0]\n[cue]\naim_deg = 0\noffset = [0, 0]\n";
+    const Scene scene = parse_scene(balls, "aim.toml");
+    const CueRoom room = room_for(scene, *scene.cue);
+    EXPECT_EQ(room.in, "ball 7");
+    // The axis passes the other centre at R + r.
+    const double R = scene.balls.R;
+    ASSERT_TRUE(room.clears_deg);
+    EXPECT_NEAR(0.1 * std::sin(*room.clears_deg * kDegree), R + 0.0065 + 0.008 / 1.473 * (0.1 - R), 3e-4);
+    // A jaw and a round wall are in the way, too.
+    const std::string wall =
+        "[table]\ncushion = []\n[[table.arc]]\ncenter = [0, 0]\nradius = 0.05\n[[ball]]\nposition = [0, "
+        "0]\n[physics]\nvertical = \"drop\"\n[cue]\n";
+    const Scene round = parse_scene(wall, "aim.toml");
+    EXPECT_EQ(room_for(round, *round.cue).in, "arc a1");
+    const Scene post = parse_scene(
+        "[table]\njaw = [{ center = [-0.1, 0], radius = 0.02 }]\n[[ball]]\nposition = [0, 0]\n[cue]\naim_deg "
+        "= 0\n",
+        "aim.toml");
+    EXPECT_EQ(room_for(post, *post.cue).in, "jaw j1");
+    // Between two high walls there is no room at all.
+    EXPECT_NE(error_of("[table]\njaw = [{ center = [0, -0.0285750001], radius = 0, height = 0.0571 "
+                       "}]\n[[ball]]\nposition = [0, 0]\n[cue]\naim_deg = 90\nelevation_deg = "
+                       "\"auto\"\noffset = [0, -0.5]\n")
+                  .find("no elevation keeps the cue out of"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -322,7 +322,7 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
 /// [m] Between two balls that lie on the cloth.
 double gap_between(const Scene& s, std::size_t i, std::size_t j) {
     return (at(s, i) - at(s, j)).norm() -
-           carom::contact_distance(s.size_of(s.ball[i]).R, s.size_of(s.ball[j]).R);
+           carom::contact_distance(s.size_of(s.ball[i]).R, s.size_of(s.ball[j]).R, false);
 }
 
 std::string unlike(const std::string& sd, const std::string& rack) {

@@ -27,7 +27,7 @@ constexpr bool has_members(std::index_sequence<kFirst...>, std::index_sequence<k
 }
 
 /// Members of an aggregate. Optional Eigen vectors must come last, and their number must be given.
-template <class T, std::size_t kOptional = 0, std::size_t kMost = 20>
+template <class T, std::size_t kOptional = 0, std::size_t kMost = 24>
 constexpr std::size_t members() {
     if constexpr (has_members<T>(std::make_index_sequence<kMost>(), std::make_index_sequence<kOptional>()))
         return kMost + kOptional;

@@ -77,7 +77,7 @@ TEST(UnlikeBalls, OfDifferentRadiusRestOnEachOther) {
         Scene scene = two_that_rest(empty_scene().balls.size());
         const double own = R * scene.balls.R;
         scene.ball[1].own = BallSize{own, scene.balls.m};
-        scene.ball[1].position = {contact_distance(own, scene.balls.R), 0.0, own};
+        scene.ball[1].position = {contact_distance(own, scene.balls.R, false), 0.0, own};
         scene.balls.mu_b = 0.0;
         const Record record = run_verified(scene);
         EXPECT_EQ(record.stopped, StopReason::kAtRest);

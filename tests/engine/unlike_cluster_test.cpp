@@ -34,7 +34,7 @@ ClusterBall ball(double x, double y, double R = kR, double mass = 1.0, const Vec
 
 // A ball that touches another one, in the direction of an angle.
 ClusterBall beside(const ClusterBall& at, double angle, double R, double mass, double gap = 0.0) {
-    const double apart = contact_distance(at.R, R) + gap;
+    const double apart = contact_distance(at.R, R, false) + gap;
     return ball(at.r.x() + apart * std::cos(angle), at.r.y() + apart * std::sin(angle), R, mass);
 }
 
@@ -119,7 +119,7 @@ TEST(UnlikeCluster, TwoBallsAreThePairKernel) {
                 p.mass_ratio = masses;
                 const double R2 = p.R * radii;
                 const Vec2 y = Vec2(i.ball2.r[0] - i.ball1.r[0], i.ball2.r[1] - i.ball1.r[1]).normalized();
-                const double apart = contact_distance(p.R, R2);
+                const double apart = contact_distance(p.R, R2, false);
                 i.ball2.r[0] = i.ball1.r[0] + apart * y.x();
                 i.ball2.r[1] = i.ball1.r[1] + apart * y.y();
                 i.ball1.r[2] = p.R;

@@ -215,3 +215,18 @@ def test_scenes_travel_with_the_package():
     assert carom.scenes.load("draw") == carom.Scene.load(SOURCE / "scenes/draw.toml")
     assert carom.simulate(carom.scenes.path("draw")).stopped == "at_rest"
     refused(ValueError, carom.scenes.load, ("pot", "expected one of bar_break, "))
+
+
+def test_the_measures_of_tables():
+    tables = carom.tables()
+    assert set(tables) >= {"nine_foot", "nine_foot_tight", "snooker", "carom_small"}
+    nine = tables["nine_foot"]
+    assert nine["balls"] == "pool" and nine["size"] == (1.27, 2.54)
+    corner = nine["corner_pockets"]
+    # The mouth as seen from this angle is as wide as the ball.
+    assert corner["mouth"] * np.cos(np.radians(corner["cut_off_deg"])) == pytest.approx(0.05715)
+    assert tables["nine_foot_tight"]["corner_pockets"]["cut_off_deg"] < corner["cut_off_deg"]
+    assert "corner_pockets" not in tables["carom"] and tables["carom"]["balls"] == "carom"
+    assert tables["pyramid"]["corner_pockets"]["mouth"] == pytest.approx(0.0725)
+    assert {table["balls"] for table in tables.values()} == {
+        "pool", "snooker", "carom", "english_pool", "pyramid"}

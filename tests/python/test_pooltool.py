@@ -76,7 +76,7 @@ def test_a_system_that_was_not_simulated_is_the_same_shot(tmp_path):
     ("change", "message"),
     [
         (lambda s: s["balls"]["1"].pop("params"),
-         "balls.1.params is missing; expected a System as pooltool 0.6.0 saves it in .json"),
+         "balls.1.params is missing; expected a System as pooltool 0.6.0 saves it"),
         (lambda s: s["balls"]["1"]["params"].update(R="big"), "balls.1.params.R is not a number"),
         (lambda s: s["balls"]["1"]["params"].update(m=float("nan")), "balls.1.params.m is not a number"),
         (lambda s: s["balls"]["1"]["params"].update(u_s=0.3),
@@ -109,11 +109,16 @@ def test_what_is_no_file_or_no_json_is_named(tmp_path):
     (tmp_path / "a.json").write_text('{"cue": {},\n "balls": }')
     with pytest.raises(carom.SceneError, match=r"a.json:2:11: is not JSON"):
         pooltool.load(tmp_path / "a.json")
-    (tmp_path / "b.msgpack").write_bytes(b"\x85\xa3cue\xff")
+    (tmp_path / "b.json").write_bytes(b"\x85\xa3cue\xff")
     with pytest.raises(
         carom.SceneError, match="not UTF-8; pooltool writes JSON if the name of the file ends in .json"
     ):
+        pooltool.load(tmp_path / "b.json")
+    (tmp_path / "b.msgpack").write_bytes(b"\x85\xa3cue\xff")
+    with pytest.raises(carom.SceneError, match="is not MessagePack as pooltool saves it"):
         pooltool.load(tmp_path / "b.msgpack")
+    with pytest.raises(carom.SceneError, match="none.msgpack: cannot be read: No such file"):
+        pooltool.load(tmp_path / "none.msgpack")
     with pytest.raises(carom.SceneError, match="none.json: cannot be read: No such file"):
         pooltool.load(tmp_path / "none.json")
     (tmp_path / "c.json").write_text("[]")
@@ -188,6 +193,59 @@ def test_a_saved_record_comes_back_with_its_cue_and_table(break_scene, tmp_path)
     with_cue, without = system_of(tmp_path / "s.json"), system_of(tmp_path / "t.json")
     assert without["cue"]["V0"] == 0.0 and with_cue["cue"]["V0"] == pytest.approx(8.0 * 1.73 / 2)
     assert [event["time"] for event in without["events"]] == [event["time"] for event in with_cue["events"]]
+
+
+def as_numpy(tree):
+    """The tree with its arrays and times as msgpack-numpy packs them, as pooltool does."""
+    if isinstance(tree, dict):
+        return {key: as_numpy(part) for key, part in tree.items()}
+    if isinstance(tree, list) and tree and not isinstance(tree[0], (dict, str)):
+        array = np.array(tree)
+        return {b"nd": True, b"type": array.dtype.str, b"kind": b"", b"shape": array.shape,
+                b"data": array.tobytes()}
+    if isinstance(tree, float):
+        return {b"nd": False, b"type": "<f8", b"data": np.float64(tree).tobytes()}
+    return [as_numpy(part) for part in tree] if isinstance(tree, list) else tree
+
+
+@pytest.mark.parametrize("name", ["two_balls", "pot", "jaw"])
+def test_a_system_as_messagepack_is_the_same_scene(name, tmp_path):
+    msgpack = pytest.importorskip("msgpack")
+    path = SYSTEMS / f"{name}.json"
+    (tmp_path / "s.msgpack").write_bytes(msgpack.packb(as_numpy(system_of(path))))
+    assert pooltool.load(tmp_path / "s.msgpack").text() == pooltool.load(path).text()
+
+
+def test_a_table_that_was_saved_comes_back_the_same(break_scene, tmp_path):
+    pooltool.save(carom.simulate(break_scene), tmp_path / "s.json")
+    def heights(scene):
+        return [jaw["height"] for jaw in json.loads(carom.simulate(scene)._native.text())["table"]["jaws"]]
+    np.testing.assert_allclose(
+        heights(pooltool.load(tmp_path / "s.json")), heights(break_scene), rtol=4e-16)
+
+
+def test_a_specification_of_a_table_is_a_table():
+    # pooltool 0.6.0, PocketTableSpecs: its defaults, of a seven-foot Showood table.
+    specs = {
+        "l": 1.9812, "w": 1.9812 / 2, "cushion_width": 2 * 0.0254, "cushion_height": 0.64 * 2 * 0.028575,
+        "corner_pocket_width": 0.118, "corner_pocket_angle": 5.3, "corner_pocket_depth": 0.0398,
+        "corner_pocket_radius": 0.124 / 2, "corner_jaw_radius": 0.0419 / 2, "side_pocket_width": 0.137,
+        "side_pocket_angle": 7.14, "side_pocket_depth": 0.00437, "side_pocket_radius": 0.129 / 2,
+        "side_jaw_radius": 0.0159 / 2}
+    scene = carom.Scene(table=pooltool.table(specs), ball=[{"position": [0.4, 0.5]}])
+    theirs = carom.Scene(table="seven_foot", ball=[{"position": [0.4, 0.5]}])
+    ours, shown = carom.simulate(scene).table, carom.simulate(theirs).table
+    assert (ours.width, ours.length) == (shown.width, shown.length)
+    for one, two in zip(ours.pockets, shown.pockets):
+        np.testing.assert_allclose(one[0], two[0], atol=1e-12)
+    spec = carom.tables()["seven_foot"]["corner_pockets"]
+    made = pooltool.table(specs)["corner_pockets"]
+    assert all(made[key] == pytest.approx(spec[key]) for key in made)
+    del specs["side_jaw_radius"]
+    with pytest.raises(carom.SceneError, match="side_jaw_radius is missing"):
+        pooltool.table(specs)
+    flat = pooltool.table({"l": 2.84, "w": 1.42, "cushion_height": 0.037})
+    assert flat == {"preset": "carom", "size": [1.42, 2.84], "cushion_height": 0.037}
 
 
 def test_what_pooltool_cannot_have_is_refused(draw_scene, tmp_path):

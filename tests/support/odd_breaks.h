@@ -86,7 +86,7 @@ class OddBreak {
             for (int attempt = 0; attempt < 20; ++attempt) {
                 const double angle = uniform(0.0, 2.0 * reference::kDegree * 180.0);
                 const double apart =
-                    contact_distance(before.R, size.R) + (chance(0.7) ? 0.0 : uniform(0.0, 1e-3));
+                    contact_distance(before.R, size.R, false) + (chance(0.7) ? 0.0 : uniform(0.0, 1e-3));
                 const Vec2 here = at + apart * Vec2(std::cos(angle), std::sin(angle));
                 if (!fits(here, size)) continue;
                 place(std::to_string(k), here, size);
@@ -104,7 +104,7 @@ class OddBreak {
             return false;
         return std::none_of(scene_.ball.begin(), scene_.ball.end(), [&](const BallStart& b) {
             const double R = scene_.size_of(b).R;
-            return length(planar(b.position) - at) < contact_distance(R, size.R) - 1e-13;
+            return length(planar(b.position) - at) < contact_distance(R, size.R, false) - 1e-13;
         });
     }
 

@@ -17,6 +17,9 @@ constexpr double kEndUlp = 4.0;
 
 constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
 
+// The functions below find when a distance falls to `reach`, with kSide = 1, or, inside a round wall, when it
+// rises to that, with kSide = -1.
+
 // Relative motion of two centres.
 struct Relative {
     Vec2 r, v, a;
@@ -30,37 +33,40 @@ Vec2 rate(const Relative& m, double t) {
     return {m.v.x() + t * m.a.x(), m.v.y() + t * m.a.y()};
 }
 
-// Closing speed at t [m/s], positive while the distance decreases.
+// Closing speed at t [m/s], positive while the gap decreases.
+template <int kSide>
 double closing_speed(const Relative& m, double t) {
     const Vec2 r = at(m, t);
     const double d = length(r);
-    return d > 0.0 ? -dot(r, rate(m, t)) / d : length(rate(m, t));
+    return d > 0.0 ? kSide * (-dot(r, rate(m, t)) / d) : length(rate(m, t));
 }
 
 // At most one small step back, from a time at which balls overlap to one without penetration.
+template <int kSide>
 double outside(const Relative& m, double reach, double t, double gap, double closing) {
     if (!(gap < 0.0)) return t;
     const double back = closing > m.noise ? t + gap / closing : t;
     const double earlier = std::min(back, t - kEpsilon * t);
     if (!(earlier >= 0.0)) return t;
-    const double earlier_gap = length(at(m, earlier)) - reach;
+    const double earlier_gap = kSide * (length(at(m, earlier)) - reach);
     return earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap ? earlier : t;
 }
 
 // Refines a root of the polynomial with the distance itself, by Newton steps on |r(t)| - reach. A step is
 // accepted only while the gap decreases (at a graze they would diverge).
+template <int kSide>
 double refine(const Relative& m, double reach, double t, double horizon) {
-    double gap = length(at(m, t)) - reach;
+    double gap = kSide * (length(at(m, t)) - reach);
     for (int i = 0; i < 3 && gap != 0.0; ++i) {
-        const double closing = closing_speed(m, t);
+        const double closing = closing_speed<kSide>(m, t);
         if (!(closing > m.noise)) break;
         const double next = std::clamp(t + gap / closing, 0.0, horizon);
-        const double next_gap = length(at(m, next)) - reach;
+        const double next_gap = kSide * (length(at(m, next)) - reach);
         if (!(std::abs(next_gap) < std::abs(gap))) break;
         t = next;
         gap = next_gap;
     }
-    return gap < 0.0 ? outside(m, reach, t, gap, closing_speed(m, t)) : t;
+    return gap < 0.0 ? outside<kSide>(m, reach, t, gap, closing_speed<kSide>(m, t)) : t;
 }
 
 // A contact that is pressed together counts as an impact once its closing speed is above the rounding and
@@ -78,21 +84,24 @@ constexpr double kArrived = 1e-16;
 
 // Straight relative path with the signed acceleration `alpha` along it. Solved in arc length, which is exact
 // at a graze.
+template <int kSide>
 double along_line(const Relative& m, double reach, double speed, double alpha, double horizon) {
     const Vec2 e = m.v / speed;
     const double along = -dot(m.r, e);  // arc length of the closest approach
-    if (!(along > 0.0)) return kNever;
+    if (kSide > 0 && !(along > 0.0)) return kNever;
     const double miss = std::abs(cross(m.r, e));
     if (!(miss < reach)) return kNever;
     const double half_chord = std::sqrt((reach - miss) * (reach + miss));
     // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product, which avoids cancellation near contact.
     const double d = length(m.r);
-    const double s = (d - reach) * (d + reach) / (along + half_chord);
+    // The other end of the chord, from inside.
+    const double s = kSide < 0 && along > 0.0 ? along + half_chord
+                                              : (d - reach) * (d + reach) / (along + kSide * half_chord);
     if (!(s >= 0.0)) return kNever;
     const double end_speed_squared = speed * speed + 2.0 * alpha * s;
     if (!(end_speed_squared >= 0.0)) return kNever;  // stops before the contact
     const double t = 2.0 * s / (speed + std::sqrt(end_speed_squared));
-    return t <= horizon ? refine(m, reach, t, horizon) : kNever;
+    return t <= horizon ? refine<kSide>(m, reach, t, horizon) : kNever;
 }
 
 // Advances from t, before which the gap cannot close, to contact. Returns true once it is reached or cannot
@@ -107,7 +116,7 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
         const Vec2 r = at(m, t), v = rate(m, t);
         const double d = length(r), gap = d - reach, closing = -dot(r, v) / d;
         if (!(gap > 0.0)) {
-            t = outside(m, reach, t, gap, closing);
+            t = outside<1>(m, reach, t, gap, closing);
             return closing > m.noise;
         }
         if (i == kApproaches) return false;
@@ -120,59 +129,63 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
         }
         // The curvature of the distance, at most |v|^2 / d + |a|, leaves no more than this of the gap.
         if ((dot(v, v) + pull * d) * (step * step) <= kArrived * reach * d) {
-            t = outside(m, reach, t, length(at(m, t)) - reach, closing);
+            t = outside<1>(m, reach, t, length(at(m, t)) - reach, closing);
             return closing > m.noise;
         }
     }
 }
 
-// First time within the horizon at which |r| decreases to reach, closing or only touching; c0 = |r|^2 -
-// reach^2 now.
+// First time within the horizon at which |r| comes to reach, closing or only touching; c0 = |r|^2 - reach^2
+// now, or its negative inside.
+template <int kSide>
 double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
     const double speed = length(m.v), pull = length(m.a);
     if (speed == 0.0 && pull == 0.0) return kNever;
     if (c0 > 0.0) {
-        const double gap = length(m.r) - reach;
+        const double gap = kSide * (length(m.r) - reach);
         if (horizon < kNever && gap > horizon * (speed + 0.5 * horizon * pull)) return kNever;  // too far
-        if (pull == 0.0) return along_line(m, reach, speed, 0.0, horizon);
+        if (pull == 0.0) return along_line<kSide>(m, reach, speed, 0.0, horizon);
         if (straight && speed > 0.0) {
             const double alpha = dot(m.a, m.v) / speed;
             // The closed form is valid while the motion does not reverse.
             if (speed + alpha * horizon >= -4.0 * kEpsilon * speed)
-                return along_line(m, reach, speed, alpha, horizon);
+                return along_line<kSide>(m, reach, speed, alpha, horizon);
         }
     } else if (pull == 0.0) {
-        return kNever;  // touching, not closing, no acceleration: never again
+        // Touching, not closing, no acceleration: never again, or on the other side of a round wall.
+        return kSide > 0 ? kNever : along_line<kSide>(m, reach, speed, 0.0, horizon);
     }
     double near = 0.0;
-    if (c0 > 0.0 && approach(m, reach, pull, horizon, near)) return near;
+    if (kSide > 0 && c0 > 0.0 && approach(m, reach, pull, horizon, near)) return near;
     const Vec2 r = near > 0.0 ? at(m, near) : m.r, v = rate(m, near);
     if (near > 0.0) {
         const double d = length(r);
         if (!(d > reach)) return near;  // it closes more slowly than rounding can resolve
         c0 = (d - reach) * (d + reach);
     }
-    const double c[5] = {c0, 2.0 * dot(r, v), dot(v, v) + dot(r, m.a), dot(v, m.a), 0.25 * dot(m.a, m.a)};
+    const double c[5] = {c0, kSide * (2.0 * dot(r, v)), kSide * (dot(v, v) + dot(r, m.a)),
+                         kSide * dot(v, m.a), kSide * (0.25 * dot(m.a, m.a))};
     const double t = first_descent(c, horizon - near);
-    return t == kNever ? kNever : refine(m, reach, std::min(horizon, near + t), horizon);
+    return t == kNever ? kNever : refine<kSide>(m, reach, std::min(horizon, near + t), horizon);
 }
 
 // First contact that closes by more than rounding; slower grazes are skipped. A contact that closes only
 // because it is pressed together begins when its closing speed can be distinguished from 0.
+template <int kSide>
 double time_to_reach(Relative m, double reach, double horizon, bool straight) {
     const double d = length(m.r);
-    double c0 = (d - reach) * (d + reach);
+    double c0 = kSide * (d - reach) * (d + reach);
     double elapsed = 0.0;
-    if (c0 <= 0.0 && closing_speed(m, 0.0) > m.noise) return 0.0;
+    if (c0 <= 0.0 && closing_speed<kSide>(m, 0.0) > m.noise) return 0.0;
     for (int grazes = 0; grazes < 4; ++grazes) {
         const Vec2 v0 = m.v;
-        const double curving = -(dot(v0, v0) + dot(m.r, m.a));
-        const bool pressed_now = c0 <= 0.0 && curving > 0.0 && dot(m.r, m.v) <= 0.0;
-        const double t = pressed_now ? 0.0 : first_touch(m, reach, c0, horizon, straight);
+        const double curving = -kSide * (dot(v0, v0) + dot(m.r, m.a));
+        const bool pressed_now = c0 <= 0.0 && curving > 0.0 && kSide * dot(m.r, m.v) <= 0.0;
+        const double t = pressed_now ? 0.0 : first_touch<kSide>(m, reach, c0, horizon, straight);
         if (t == kNever) return kNever;
-        if (!pressed_now && closing_speed(m, t) > m.noise) return elapsed + t;
+        if (!pressed_now && closing_speed<kSide>(m, t) > m.noise) return elapsed + t;
         const Vec2 r = at(m, t), v = rate(m, t);
-        const double closing_acceleration = -(dot(v, v) + dot(r, m.a)) / length(r);
+        const double closing_acceleration = -kSide * (dot(v, v) + dot(r, m.a)) / length(r);
         if (closing_acceleration > 0.0) {
             const double pressed = t + press_delay(closing_acceleration, m.noise, horizon - t);
             return pressed <= horizon ? elapsed + pressed : kNever;
@@ -194,16 +207,48 @@ double time_to_ball(const Path& b1, const Path& b2, double reach) {
     const Relative m{b2.r - b1.r, b2.v - b1.v, b2.a - b1.a,
                      kNoise * ((length(b1.v) + b1.surface) + (length(b2.v) + b2.surface))};
     const bool straight = (b1.straight && !b2.moves) || (b2.straight && !b1.moves);
-    return time_to_reach(m, reach, std::min(b1.horizon, b2.horizon), straight);
+    return time_to_reach<1>(m, reach, std::min(b1.horizon, b2.horizon), straight);
 }
 
 double time_to_circle(const Path& ball, const Vec2& center, double reach) {
     if (!ball.moves) return kNever;
     const Relative m{ball.r - center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
-    return time_to_reach(m, reach, ball.horizon, ball.straight);
+    return time_to_reach<1>(m, reach, ball.horizon, ball.straight);
 }
 
 namespace {
+
+// The motion from t on.
+Relative after(const Relative& m, double t) {
+    return {at(m, t), rate(m, t), m.a, m.noise};
+}
+
+// First contact with a round wall on its own side, while the ball is in front of the wall in every direction.
+double time_to_wall(Relative m, double radius, double reach, double horizon, bool straight) {
+    const double d = length(m.r);
+    double behind = 0.0;
+    // A ball behind the wall passes through it, and can touch it from then on.
+    if (radius < 0.0 && d > -radius)
+        behind = time_to_reach<1>(m, -reach, horizon, straight);
+    else if (radius > 0.0 && d < radius)
+        behind = time_to_reach<-1>(m, reach, horizon, straight);
+    if (behind == kNever) return kNever;
+    if (behind > 0.0) m = after(m, behind);
+    const double t = radius < 0.0 ? time_to_reach<-1>(m, -reach, horizon - behind, straight)
+                                  : time_to_reach<1>(m, reach, horizon - behind, straight);
+    return behind + t;
+}
+
+// Adds the times within the horizon at which x + v t + a t^2 / 2 is 0.
+int add_roots(double x, double v, double a, double horizon, double* times) {
+    const double D = v * v - 2.0 * a * x;
+    if (!(D >= 0.0)) return 0;
+    const double q = -(v + (v < 0.0 ? -1.0 : 1.0) * std::sqrt(D));
+    int found = 0;
+    for (const double t : {q != 0.0 ? 2.0 * x / q : kNever, a != 0.0 ? q / a : kNever})
+        if (t > 0.0 && t < horizon) times[found++] = t;
+    return found;
+}
 
 // First time at which a foot point outside [0, end] enters this interval.
 double time_to_enter(double foot, double rate, double pull, double end, double horizon) {
@@ -276,6 +321,42 @@ bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, d
     const double sign = height < 0.0 ? -1.0 : 1.0;
     return least(sign * height, sign * dot(normal, ball.v), 0.5 * sign * dot(normal, ball.a), window) >
            R * (1.0 + kApartShare);
+}
+
+double time_to_nose(const Path& ball, const Nose& nose, double R) {
+    const double reach = R + nose.radius - nose.inset;
+    if (!nose.is_arc()) return time_to_circle(ball, nose.center, reach);
+    if (!ball.moves) return kNever;
+    const Relative m{ball.r - nose.center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
+    // The times at which the ball may come in front of the wall, or leave it.
+    // At most five. gcc 12 warns of std::sort in an array of fewer than its 16.
+    double cuts[16] = {0.0};
+    int count = 1;
+    if (!nose.span.whole)
+        for (const Vec2& end : {nose.span.from, nose.span.to})
+            count += add_roots(cross(end, m.r), cross(end, m.v), cross(end, m.a), ball.horizon, cuts + count);
+    std::sort(cuts, cuts + count);
+    for (int i = 0; i < count; ++i) {
+        const double begin = cuts[i], end = i + 1 < count ? cuts[i + 1] : ball.horizon;
+        const double middle = end < kNever ? begin + 0.5 * (end - begin) : 2.0 * begin + 1.0;
+        if (!nose.span.holds(at(m, middle))) continue;
+        const double t =
+            time_to_wall(i > 0 ? after(m, begin) : m, nose.radius, reach, end - begin, ball.straight);
+        if (t < kNever) return begin + t;
+    }
+    return kNever;
+}
+
+double time_to_arc_end(const ArcSpan& span, const Path& ball) {
+    const double slack = end_rounding(ball.r, 0.0);
+    const auto leaves = [&](const Vec2& end, double sign) {
+        const double left = sign * cross(end, ball.r), rate = sign * cross(end, ball.v),
+                     pull = sign * cross(end, ball.a);
+        if (past_end(left, rate, pull, slack)) return 0.0;
+        return first_descent_quadratic(left, rate, pull, kNever);
+    };
+    const double first = leaves(span.from, 1.0), second = leaves(span.to, -1.0);
+    return span.wide ? std::max(first, second) : std::min(first, second);
 }
 
 double time_to_pocket(const Path& ball, const Vec2& center, double radius) {

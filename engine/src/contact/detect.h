@@ -10,6 +10,7 @@
 #include <emmintrin.h>
 #endif
 
+#include "carom/engine/geometry.h"
 #include "carom/engine/vec.h"
 #include "contact/roots.h"
 
@@ -34,6 +35,13 @@ double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
 /// Time until the distance of the centre from a fixed point decreases to `reach` while closing.
 double time_to_circle(const Path& ball, const Vec2& center, double reach);
+
+/// Time until a ball of radius R touches a round nose. An arc acts on its own side only; a ball that comes
+/// from behind passes through it.
+double time_to_nose(const Path& ball, const Nose& nose, double R);
+
+/// Time until a ball has passed an end of a partial arc; `ball.r` is relative to its centre.
+double time_to_arc_end(const ArcSpan& span, const Path& ball);
 
 /// Time until the distance of the centre from a straight segment decreases to R, from either side, with the
 /// foot point between the ends. The ends are separate circles.

@@ -70,18 +70,21 @@ Link link_of(const Group& g, const RestingContact& c) {
         depth = R - link.line->inset - std::abs(cross(link.line->direction, here - link.line->from));
     } else {
         Vec2 center;
+        double sign = 1.0;
         if (c.contact.with == With::kBall) {
             link.j = body_of(c.contact.other);
             const double other = g.bodies[link.j].R;
-            link.distance = contact_distance(R, other);
-            link.tilt = (other - R) / link.distance;
+            link.distance = contact_distance(R, other, g.around.balls.discs());
+            link.tilt = g.around.balls.discs() ? 0.0 : (other - R) / link.distance;
             center = planar(g.group.balls[link.j].r);
         } else {
             const Nose& nose = g.around.geometry.noses[c.contact.other];
             link.distance = R + nose.radius - nose.inset;
             center = nose.center;
+            sign = nose.sign();
+            if (!nose.span.whole) link.arc = &nose;
         }
-        depth = link.distance - length(center - here);
+        depth = link.distance - sign * length(center - here);
     }
     link.gap = -depth;
     link.begins = c.began == g.now;
@@ -240,6 +243,10 @@ void end_transition(RestingBall& member, MotionState state, double R) {
     switch (state) {
         case MotionState::kSliding: {
             const Vec2 u = cloth_slip(member.v, member.w, R);
+            if (!member.motion->rolls) {
+                member.v = Vec3::Zero();
+                break;
+            }
             member.v.x() -= u.x() * (2.0 / 7.0);
             member.v.y() -= u.y() * (2.0 / 7.0);
             member.w.x() = -member.v.y() / R;

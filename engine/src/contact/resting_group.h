@@ -73,9 +73,10 @@ struct Body {
 struct Link {
     int i, j;
     Vec2 n;
-    /// [m] between the centres, as the normal turns; 0: a straight cushion
+    /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
     double distance;
     const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
+    const Nose* arc = nullptr;          ///< the arc, if it is one with ends
     double gap = 0.0;                   ///< [m]; negative: overlap
     bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding

@@ -90,9 +90,9 @@ double turn_of(const Vec2& from, const Vec2& to) {
 // Time at which the slip or the velocity of a ball has gone, if that is within the interval h.
 double gone_within(const Group& g, const Body& b, double h) {
     if (moves(b.u))
-        return b.mode == Mode::kSliding
-                   ? kNever
-                   : time_gone(b.u, (b.push - 2.5 * b.couple) / h, 3.5 * g.motion.slide * b.load);
+        return b.mode == Mode::kSliding ? kNever
+                                        : time_gone(b.u, (b.push - 2.5 * b.couple) / h,
+                                                    (g.motion.rolls ? 3.5 : 1.0) * g.motion.slide * b.load);
     if (b.mode != Mode::kResting || !moves(b.v)) return kNever;
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
 }
@@ -148,6 +148,9 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
         s.a = (b.v_end - b.v) / h;
         interval = time_to_line_end(*link.line, s);
     }
+    if (link.arc != nullptr)
+        interval = time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center, b.v,
+                                                    (b.v_end - b.v) / h, kNever, false, true});
     const double rate = gap_rate(g, link);
     if (!(link.J > 0.0)) {
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
@@ -175,11 +178,12 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
     const Across t = across(g, link, h);
     const double v = std::abs(t.v), a = std::abs(t.a);
     if (t.distance == 0.0) return interval;
-    const double turn = h * (v + 0.5 * h * a) / t.distance;
+    const double turn = h * (v + 0.5 * h * a) / std::abs(t.distance);
     if (turn <= kStraight * h) return interval;
-    return std::min({interval, allowed_interval(h, turn, kNormalTurn, 1),
-                     allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
-                     allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / t.distance, kGapLeft, 3)});
+    return std::min(
+        {interval, allowed_interval(h, turn, kNormalTurn, 1),
+         allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
+         allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / std::abs(t.distance), kGapLeft, 3)});
 }
 
 // The first attempt: until friction alone would have stopped the first ball.
@@ -233,6 +237,25 @@ void guide_friction(Group& g, double h) {
     if (solved) return;
     g.bodies.swap(g.bodies_before);
     g.links.swap(g.links_before);
+}
+
+// A wall around a ball turns it and does no work, but its impulse along the first normal does some: that
+// would add up all along the wall. Only for a ball that touches nothing else.
+void run_along_walls(Group& g) {
+    for (const Link& link : g.links) {
+        if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
+        Body& b = g.bodies[link.i];
+        if (std::count_if(g.links.begin(), g.links.end(),
+                          [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
+            continue;
+        const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
+        const double before = dot(b.v_end, b.v_end),
+                     work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls;
+        if (!(before > work)) continue;
+        const double share = std::sqrt((before - work) / before);
+        b.v_end *= share;
+        if (b.mode == Mode::kRolling) b.s_end *= share;
+    }
 }
 
 void write_segments(Group& g, double h) {
@@ -347,6 +370,7 @@ void solve_interval(Group& g) {
         }
     }
     guide_friction(g, h);
+    run_along_walls(g);
     write_segments(g, h);
 }
 

@@ -95,16 +95,17 @@ double turning_of(const Link& link, const Across& t, double h) {
     if (t.distance == 0.0) return recovery;
     const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
     // A change that rounds to no gap would only stop balls at rest from leaning on each other.
-    if (h * h * (c + h * (std::abs(k) + kk * h)) <= kNoGap) return recovery;
+    if (h * h * (std::abs(c) + h * (std::abs(k) + std::abs(kk) * h)) <= kNoGap) return recovery;
     const double taylor = c + h * (1.5 * k + 0.5 * kk * h);
     // The distance along the first normal is somewhat shorter by then.
     const double level = taylor / std::max(0.5, 1.0 - 0.5 * taylor * h * h / t.distance);
     double least = c;
-    bool free = std::abs(level) * h * h < kLongestTurn * t.distance;
+    bool free = std::abs(level) * h * h < kLongestTurn * std::abs(t.distance);
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
         const double x = share * h, n = -0.5 * level * x * x, across = x * (t.v + 0.5 * x * t.a),
                      D = t.distance;
-        const double change = (n * (2.0 * D + n) + across * across) / (D + length(Vec2(D + n, across)));
+        const double apart = length(Vec2(D + n, across));
+        const double change = (n * (2.0 * D + n) + across * across) / (D + (D < 0.0 ? -apart : apart));
         free = free && (1.0 - kGapUsed) * std::max(0.0, link.gap) + change >= -kOverlapLeft;
         least = std::min(least, c + x * (k + 0.25 * kk * x));
     }

@@ -38,6 +38,27 @@ void slide(Body& b, const Vec2& friction) {
     b.s_end = b.s + 2.5 * (b.couple - friction);
 }
 
+// A puck, which nothing turns: its slip is its velocity.
+void respond_puck(const Group& g, Body& b, double h) {
+    const double grip = g.motion.slide * b.load * h;
+    const Vec2 v = b.v + b.push;
+    const double speed = length(v);
+    b.by_lift = Vec2::Zero();
+    b.by_couple = {};
+    b.s_end = Vec2::Zero();
+    if (h == 0.0 || grip == 0.0 || speed > grip) {
+        const Vec2 d = h == 0.0 || grip == 0.0 ? Vec2(Vec2::Zero()) : b.guided ? b.guide : Vec2(v / speed);
+        b.mode = Mode::kSliding;
+        b.v_end = v - grip * d;
+        b.by_push = identity(1.0);
+        if (!b.guided && speed > 0.0) b.by_push = minus(b.by_push, across_of(grip / speed, d));
+        return;
+    }
+    b.mode = Mode::kResting;
+    b.v_end = Vec2::Zero();
+    b.by_push = identity(kRestCompliance);
+}
+
 // The motion of a ball under the impulses on it, and its derivatives.
 void respond(const Group& g, Body& b, double h, bool stops) {
     const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
@@ -121,7 +142,10 @@ void respond(Group& g, double h, bool friction, bool stops) {
     const double weight = g.around.gravity * h;
     for (Body& b : g.bodies) {
         b.load = friction && weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
-        respond(g, b, h, stops);
+        if (g.motion.rolls)
+            respond(g, b, h, stops);
+        else
+            respond_puck(g, b, h);
         if (b.ease == 1.0) continue;
         b.by_push = times(b.ease, b.by_push);
         b.by_couple = times(b.ease, b.by_couple);

@@ -149,7 +149,7 @@ TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& cont
     if (contact.with == With::kNose) {
         const Nose& nose = plan.geometry.noses[contact.other];
         const Vec2 out = here - nose.center;
-        touch.normal = out / length(out);
+        touch.normal = out / (nose.sign() * length(out));
         touch.height = nose.height;
         const double v_t = cross(touch.normal, v);
         touch.curving = v_t * v_t / (balls.radius(ball) + nose.radius - nose.inset);
@@ -174,7 +174,9 @@ bool touches_now(const Plan& plan, const Balls& balls, const Contact& contact) {
     const double R = balls.radius(contact.ball);
     if (contact.with == With::kNose) {
         const Nose& nose = plan.geometry.noses[contact.other];
-        return length(here - nose.center) - (R + nose.radius - nose.inset) <= kTouchTolerance;
+        const Vec2 out = here - nose.center;
+        return nose.sign() * length(out) - (R + nose.radius - nose.inset) <= kTouchTolerance &&
+               nose.span.holds(out, end_rounding(here, 0.0));
     }
     const CushionLine& line = plan.geometry.cushions[contact.other];
     const Vec2 offset = here - line.from;

@@ -31,12 +31,12 @@ Gap gap_in_space(const ClusterBall& p, const ClusterBall& q) {
 }
 
 // Whatever height the fall of one of them began at.
-Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q) {
+Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q, bool discs) {
     const Vec2 apart = planar(q.r) - planar(p.r), closing = planar(p.v) - planar(q.v);
-    if (p.R == q.R) {
+    if (p.R == q.R || discs) {
         const double distance = length(apart);
         const Vec2 n = apart / distance;
-        return {distance - 2.0 * p.R, dot(n, closing), {n.x(), n.y(), 0.0}};
+        return {distance - contact_distance(p.R, q.R, true), dot(n, closing), {n.x(), n.y(), 0.0}};
     }
     const Vec3 tilted(apart.x(), apart.y(), q.R - p.R);
     const double distance = length3(tilted);
@@ -119,7 +119,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     const double time = plan_.clusters == ClusterModel::kCompliant ? pair_time(a, b, v_n) : 0.0;
     const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
-        Gap near = flights_ ? gap_in_space(p, q) : gap_on_cloth(p, q);
+        Gap near = flights_ ? gap_in_space(p, q) : gap_on_cloth(p, q, plan_.balls.discs());
         // Whether balls touch is decided only here: a gap within
         // the rounding of the positions counts as touching.
         if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;

@@ -2,7 +2,7 @@
 
 namespace carom {
 
-ContactKinematics kinematics_of(const Balls& balls, int one, int two) {
+ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two) {
     const Vec3 r = balls.position(two) - balls.position(one), v = balls.velocity(one) - balls.velocity(two);
     const Vec2 apart(r.x(), r.y());
     const Vec2 n = apart / length(apart);
@@ -11,7 +11,7 @@ ContactKinematics kinematics_of(const Balls& balls, int one, int two) {
             .n = n,
             .v_n = n.x() * v.x() + n.y() * v.y(),
             .a_c = dot(n, balls.segment(one).a - balls.segment(two).a) -
-                   v_t * v_t / contact_distance(balls.radius(one), balls.radius(two))};
+                   v_t * v_t / contact_distance(balls.radius(one), balls.radius(two), plan.balls.discs())};
 }
 
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two) {

@@ -101,7 +101,7 @@ PredictedEvent Detector::pair(int a, const Path& mine, int b, double latest) con
     if (stays_apart(r, v, q.a - s.a, balls_.radius(a) + balls_.radius(b), span(from, until))) return {};
     const Contact contact{std::min(a, b), With::kBall, std::max(a, b)};
     if (in_air) return {from + time_to_flight(a, b, from), contact};
-    const double reach = contact_distance(balls_.radius(a), balls_.radius(b));
+    const double reach = contact_distance(balls_.radius(a), balls_.radius(b), plan_.balls.discs());
     return {from + time_to_ball(from == s.start ? mine : path(a, from), path(b, from), reach), contact};
 }
 

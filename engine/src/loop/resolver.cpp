@@ -97,7 +97,7 @@ void Resolver::ball_ball(int a, int b) {
     const int one = swap ? b : a, two = swap ? a : b;
     const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
 
-    const ContactKinematics approach = kinematics_of(balls_, one, two);
+    const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
     if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
 
@@ -167,7 +167,7 @@ bool Resolver::hold_in_cluster(Pressed when) {
     for (const ClusterContact& c : clusters_.contacts()) {
         const ClusterBall &p = clusters_.balls()[c.i], &q = clusters_.balls()[c.j];
         if (c.gap > 0.0 || resting_.has({p.ball, With::kBall, q.ball})) continue;
-        ContactKinematics approach = kinematics_of(balls_, p.ball, q.ball);
+        ContactKinematics approach = kinematics_of(plan_, balls_, p.ball, q.ball);
         if (when == Pressed::kAfter) approach.a_c = closing_acceleration(approach.n, segment(p), segment(q));
         if (approach.v_n > 0.0 && resting_.try_hold(approach, plan_.balls.e_b)) return true;
     }

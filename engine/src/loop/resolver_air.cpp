@@ -64,7 +64,7 @@ void Resolver::free_balls(int a, int b) {
     };
 
     if (lies(one) && lies(two)) {
-        const ContactKinematics approach = kinematics_of(balls_, one, two);
+        const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};

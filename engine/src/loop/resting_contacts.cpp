@@ -336,12 +336,21 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
 // the clock.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
-               if (c.contact.with != With::kCushion) return false;
+               const bool round = c.contact.with == With::kNose;
+               if (c.contact.with != With::kCushion && !round) return false;
                Segment s;
                s.r = balls_.position(c.contact.ball);
                s.v = balls_.velocity(c.contact.ball);
                s.a = balls_.segment(c.contact.ball).a;
-               const double left = time_to_line_end(plan_.geometry.cushions[c.contact.other], s);
+               double left = kNever;
+               if (round) {
+                   const Nose& nose = plan_.geometry.noses[c.contact.other];
+                   if (nose.span.whole) return false;
+                   left = time_to_arc_end(nose.span,
+                                          {planar(s.r) - nose.center, planar(s.v), s.a, kNever, false, true});
+               } else {
+                   left = time_to_line_end(plan_.geometry.cushions[c.contact.other], s);
+               }
                if (balls_.now() + left > balls_.now()) return false;
                end(c);
                return true;
@@ -366,10 +375,9 @@ void RestingContacts::refresh_normal(RestingContact& c) const {
         if (dot(c.n, here - line.from) > 0.0) c.n = -c.n;
         return;
     }
-    const Vec2 toward = (c.contact.with == With::kBall ? planar(balls_.position(c.contact.other))
-                                                       : plan_.geometry.noses[c.contact.other].center) -
-                        here;
-    c.n = toward / length(toward);
+    const Nose* nose = c.contact.with == With::kNose ? &plan_.geometry.noses[c.contact.other] : nullptr;
+    const Vec2 toward = (nose != nullptr ? nose->center : planar(balls_.position(c.contact.other))) - here;
+    c.n = toward / (nose != nullptr ? nose->sign() * length(toward) : length(toward));
 }
 
 void RestingContacts::restore(const Record& so_far) {
@@ -401,8 +409,12 @@ void RestingContacts::note_again(const Record& so_far, const Event& e, const Con
     Vec2 r, v, other = Vec2::Zero(), other_v = Vec2::Zero();
     before(contact.ball, r, v);
     if (contact.with == With::kBall) before(contact.other, other, other_v);
-    if (contact.with == With::kNose) other = plan_.geometry.noses[contact.other].center;
-    Vec2 n = other - r;
+    double sign = 1.0;
+    if (contact.with == With::kNose) {
+        other = plan_.geometry.noses[contact.other].center;
+        sign = plan_.geometry.noses[contact.other].sign();
+    }
+    Vec2 n = sign * (other - r);
     if (contact.with == With::kCushion) {
         const CushionLine& line = plan_.geometry.cushions[contact.other];
         n = Vec2(-line.direction.y(), line.direction.x());

@@ -1,5 +1,6 @@
 // Search for contacts of balls with the table: straight cushions, round noses, pockets.
 #include <algorithm>
+#include <cmath>
 
 #include "contact/pocket_edge.h"
 #include "loop/detector.h"
@@ -57,7 +58,7 @@ void Detector::set_up_table() {
              std::max(line.from.x(), to.x()), std::max(line.from.y(), to.y())});
     }
     for (std::size_t i = 0; i < g.noses.size(); ++i)
-        add(With::kNose, i, around(g.noses[i].center, g.noses[i].radius));
+        add(With::kNose, i, around(g.noses[i].center, std::abs(g.noses[i].radius)));
     for (std::size_t i = 0; i < g.pockets.size(); ++i)
         add(With::kPocket, i, around(g.pockets[i].center, g.pockets[i].radius));
     table_boxes_.rebuild_if_due();
@@ -119,6 +120,7 @@ double Detector::time_to(const Contact& contact, const Path& p, double window) c
         }
         case With::kNose: {
             const Nose& n = plan_.geometry.noses[contact.other];
+            if (n.is_arc()) return resting_.has(contact) ? kNever : time_to_nose(p, n, R);
             const double reach = R + n.radius - n.inset;
             if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
             return time_to_circle(p, n.center, reach);

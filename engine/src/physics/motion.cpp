@@ -27,7 +27,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R) {
             .slide = balls.mu_s * gravity,
             .roll = balls.mu_r * gravity,
             .spin = 5.0 * balls.mu_sp * gravity / (2.0 * R),
-            .gravity = gravity};
+            .gravity = gravity,
+            .rolls = balls.rolls()};
 }
 
 namespace effects {
@@ -41,6 +42,13 @@ namespace effects {
     s.a = -p.slide * direction;
     s.dw = Vec2(-turn * direction.y(), turn * direction.x());
     s.duration = 2.0 * slip / (7.0 * p.slide);
+}
+
+// A puck: a = -mu_s g v/|v|, until |v|/(mu_s g). Nothing turns it.
+void puck_friction(Segment& s, double speed, const MotionParams& p) {
+    if (p.slide == 0.0) return;
+    s.duration = speed / p.slide;
+    s.a = planar(s.v) * (-p.slide / speed);
 }
 
 // Resistance of a rolling ball: a = -mu_r g v/|v|, until |v|/(mu_r g).
@@ -84,7 +92,13 @@ Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, con
     if (speed < kStill && (speed > 0.0 || w.x() != 0.0 || w.y() != 0.0) &&
         speed + p.R * length(planar(w)) < kStill)
         return start_segment(t, r, Vec3::Zero(), {0.0, 0.0, w.z()}, p);
-    if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
+    if (!p.rolls) {
+        s.w.x() = s.w.y() = 0.0;
+        s.state = speed > 0.0      ? MotionState::kSliding
+                  : s.w.z() != 0.0 ? MotionState::kSpinning
+                                   : MotionState::kStationary;
+        if (speed > 0.0 && p.sliding) effects::puck_friction(s, speed, p);
+    } else if (slip > kRollingUlp * kEpsilon * (speed + p.R * spin)) {
         s.state = MotionState::kSliding;
         if (p.sliding) effects::sliding_friction(s, u, slip, p);
     } else if (speed > 0.0) {
@@ -157,7 +171,7 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
     const Vec3 r = position_at(s, tau);
     Vec3 v = Vec3::Zero(), w(0.0, 0.0, spin_at(s, tau, p.R).z());
     if (s.state == MotionState::kSpinning) w.z() = 0.0;
-    if (s.state == MotionState::kSliding) {
+    if (s.state == MotionState::kSliding && p.rolls) {
         // v_f = v - (2/7) u, and the spin of rolling at v_f.
         const Vec2 u = cloth_slip(s.v, s.w, p.R);
         v = Vec3(s.v.x() - u.x() * (2.0 / 7.0), s.v.y() - u.y() * (2.0 / 7.0), 0.0);
@@ -168,7 +182,9 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
 }
 
 EventType transition_type(const Segment& segment, const Segment& next) {
-    if (segment.state == MotionState::kSliding) return EventType::kSlideRoll;
+    // Friction turns any ball that slides, but no puck.
+    const bool puck = segment.dw.isZero(0.0) && next.state != MotionState::kRolling;
+    if (segment.state == MotionState::kSliding && !puck) return EventType::kSlideRoll;
     if (segment.state == MotionState::kSpinning) return EventType::kSpinStop;
     return next.state == MotionState::kSpinning ? EventType::kRollSpin : EventType::kRollStop;
 }

@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "carom/engine/airborne.h"
+#include "carom/engine/math.h"
 #include "carom/engine/printable.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
@@ -29,8 +31,14 @@ constexpr double kJawJoinShare = 1e-9;
 // An end of a cushion needs its own circle unless a jaw rounds it off.
 bool rounded_by_jaw(const Vec2& end, const std::vector<Jaw>& jaws) {
     return std::any_of(jaws.begin(), jaws.end(), [&](const Jaw& jaw) {
-        return std::abs(length(end - jaw.center) - jaw.radius) <= kJawJoinShare * jaw.radius;
+        return !jaw.is_arc() && std::abs(length(end - jaw.center) - jaw.radius) <= kJawJoinShare * jaw.radius;
     });
+}
+
+bool needs_tip(const Geometry& geometry, const Table& table, const Vec2& end) {
+    return !rounded_by_jaw(end, table.jaws) &&
+           std::none_of(geometry.noses.begin(), geometry.noses.end(),
+                        [&](const Nose& nose) { return nose.radius == 0.0 && nose.center == end; });
 }
 
 Geometry geometry_of(const Scene& scene) {
@@ -44,19 +52,22 @@ Geometry geometry_of(const Scene& scene) {
         const double extent = length(along);
         geometry.cushions.push_back(
             {cushion.from, along / extent, extent, cushion.height, inset(cushion.height)});
-        for (const Vec2& end : {cushion.from, cushion.to}) {
-            bool known = rounded_by_jaw(end, table.jaws);
-            for (const Nose& nose : geometry.noses)
-                known = known || (nose.radius == 0.0 && nose.center == end);
-            if (!known)
+        for (const Vec2& end : {cushion.from, cushion.to})
+            if (needs_tip(geometry, table, end))
                 geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
                                           static_cast<int>(i), inset(cushion.height)});
-        }
     }
     for (std::size_t i = 0; i < table.jaws.size(); ++i) {
         const Jaw& jaw = table.jaws[i];
-        geometry.noses.push_back({jaw.center, jaw.radius, jaw.height, EventType::kBallJaw,
-                                  static_cast<int>(i), inset(jaw.height)});
+        const Nose nose = nose_of(jaw, static_cast<int>(i), inset(jaw.height));
+        geometry.noses.push_back(nose);
+        if (nose.span.whole) continue;
+        for (const Vec2& out : {nose.span.from, nose.span.to}) {
+            const Vec2 end = jaw.center + jaw.radius * out;
+            if (needs_tip(geometry, table, end))
+                geometry.noses.push_back(
+                    {end, 0.0, jaw.height, EventType::kBallJaw, static_cast<int>(i), inset(jaw.height)});
+        }
     }
     geometry.pockets = table.pockets;
     return geometry;
@@ -164,9 +175,25 @@ void warn_of_units(Plan& plan) {
     }
 }
 
+// [degrees] A level cue in a scene stands for one that is raised as little as any rail asks for, by some 2 to
+// 4 degrees.
+constexpr double kLevel = 5.0;
+
+void warn_of_room(Plan& plan) {
+    const Scene& scene = plan.scene;
+    if (!scene.cue || !(scene.cue->speed > 0.0)) return;
+    const CueRoom room = room_for(scene, *scene.cue);
+    if (room.in.empty() || (room.clears_deg && *room.clears_deg <= kLevel)) return;
+    plan.warnings.push_back(fmt::format(
+        "the cue would be in {} at an elevation of {} degrees; {}", room.in, scene.cue->elevation_deg,
+        room.clears_deg ? fmt::format("set cue.elevation_deg = {:.1f}, or \"auto\"", *room.clears_deg)
+                        : "no elevation clears it"));
+}
+
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     warn_of_units(plan);
+    warn_of_room(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
         if (plan.in_force(Effect::kAirborne)) {
@@ -191,6 +218,24 @@ Plan bare_plan(const Scene& scene, kernel::Isa isa) {
 }
 
 }  // namespace
+
+ArcSpan span_of(const Jaw& jaw) {
+    if (!jaw.is_arc()) return {};
+    const auto direction = [](double deg) {
+        const SinCos at = sin_cos_deg(deg);
+        return Vec2(at.cos, at.sin);
+    };
+    const double turn = *jaw.to_deg - *jaw.from_deg;
+    // 360 degrees beyond any angle, rounded.
+    const bool whole = turn > 360.0 - 1e-9;
+    return {direction(*jaw.from_deg), direction(*jaw.to_deg), whole, turn > 180.0};
+}
+
+Nose nose_of(const Jaw& jaw, int index, double inset) {
+    return {
+        jaw.center,  jaw.around() ? -jaw.radius : jaw.radius, jaw.height, EventType::kBallJaw, index, inset,
+        span_of(jaw)};
+}
 
 double nose_inset(CushionTouch touch, double R, double height) {
     return touch == CushionTouch::kRadius ? 0.0 : R - std::sqrt(height * (2.0 * R - height));

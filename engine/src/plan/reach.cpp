@@ -123,7 +123,8 @@ class Bounds {
             for (std::size_t j = 0; j < i; ++j) {
                 if (radius[i] == 0.0 && radius[j] == 0.0) continue;  // both stay, even if they touch
                 if (length(starts_[i].place - starts_[j].place) <=
-                    wide(contact_distance(starts_[i].size.R, starts_[j].size.R)) + radius[i] + radius[j])
+                    wide(contact_distance(starts_[i].size.R, starts_[j].size.R, scene_.balls.discs())) +
+                        radius[i] + radius[j])
                     return true;
             }
         }
@@ -136,7 +137,9 @@ class Bounds {
             for (const Cushion& c : scene_.table.cushions)
                 if (distance_to_segment(starts_[i].place, c.from, c.to) <= near) return true;
             for (const Jaw& j : scene_.table.jaws)
-                if (length(starts_[i].place - j.center) <= near + j.radius) return true;
+                if (const double d = length(starts_[i].place - j.center);
+                    j.around() ? std::abs(d - j.radius) <= near : d <= near + j.radius)
+                    return true;
         }
         return false;
     }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "carom/engine/geometry.h"
 #include "carom/engine/math.h"
 #include "physics/motion.h"
 #include "record/verify_between.h"
@@ -69,7 +70,9 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
             const auto part = static_cast<std::size_t>(event.b);
             const Vec2 center = planar(a.position), nearest = nearest_point(record.table, event, center);
             const Vec2 n = (center - nearest).normalized();
-            const Vec2 point = jaw ? Vec2(nearest + record.table.jaws[part].radius * n) : nearest;
+            const Vec2 point = jaw && !record.table.jaws[part].is_arc()
+                                   ? Vec2(nearest + record.table.jaws[part].radius * n)
+                                   : nearest;
             d.normal = Vec3(n.x(), n.y(), 0.0);
             d.point = Vec3(point.x(), point.y(),
                            jaw ? record.table.jaws[part].height : record.table.cushions[part].height);
@@ -90,6 +93,9 @@ double diamond(const Table& table, const Event& event, const Vec3& point) {
                ? (point.y() - table.corner.y()) / table.length * kLongRail
                : (point.x() - table.corner.x()) / table.width * kShortRail;
 }
+
+// [degrees] Length of one straight piece of a drawn arc.
+constexpr double kDrawnStep = 3.0;
 
 constexpr EventColumn kColumns[] = {
     {"a_x", "m", "centre of ball a"},
@@ -148,10 +154,34 @@ std::string met_name(const Record& record, const Event& event) {
 
 Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
     const auto part = static_cast<std::size_t>(event.b);
-    if (kind(event.type).partner == Partner::kJaw) return table.jaws[part].center;
+    if (kind(event.type).partner == Partner::kJaw) {
+        const Jaw& jaw = table.jaws[part];
+        if (!jaw.is_arc()) return jaw.center;
+        const ArcSpan span = span_of(jaw);
+        const Vec2 out = place - jaw.center;
+        if (span.holds(out)) return jaw.center + jaw.radius / length(out) * out;
+        return jaw.center + jaw.radius * (dot(span.from, out) > dot(span.to, out) ? span.from : span.to);
+    }
     const Cushion& c = table.cushions[part];
     const Vec2 line = c.to - c.from;
     return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
+}
+
+Table without_arcs(const Table& table) {
+    Table drawn = table;
+    std::erase_if(drawn.jaws, [](const Jaw& jaw) { return jaw.is_arc(); });
+    for (const Jaw& arc : table.jaws) {
+        if (!arc.is_arc()) continue;
+        const double turn = *arc.to_deg - *arc.from_deg;
+        const int pieces = std::max(2, static_cast<int>(std::ceil(turn / kDrawnStep)));
+        // Exact at both ends, so that they join what begins there.
+        const auto at = [&](int i) {
+            const SinCos out = sin_cos_deg(i == pieces ? *arc.to_deg : *arc.from_deg + turn * i / pieces);
+            return Vec2(arc.center + arc.radius * Vec2(out.cos, out.sin));
+        };
+        for (int i = 0; i < pieces; ++i) drawn.cushions.push_back({arc.id, at(i), at(i + 1), arc.height});
+    }
+    return drawn;
 }
 
 std::optional<Vec2> diamond_place(const Table& t, std::string_view rail, double number) {

@@ -35,7 +35,8 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
     SeenBall seen{.r = r,
                   .R = record.size(static_cast<int>(ball)).R,
                   .flies = flies(segments[segment].state),
-                  .rounding = rounding};
+                  .rounding = rounding,
+                  .disc = record.balls.discs()};
     if (!flights) return seen;
     const auto falls = [&](std::size_t k) { return segments[k].state == MotionState::kFalling; };
     std::size_t k = segment;
@@ -50,7 +51,7 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
 
 double gap_between(const SeenBall& one, const SeenBall& two) {
     const bool in_space = one.flies || two.flies || one.flew >= two.fell || two.flew >= one.fell;
-    if (!in_space) return length(planar(two.r) - planar(one.r)) - contact_distance(one.R, two.R);
+    if (!in_space) return length(planar(two.r) - planar(one.r)) - contact_distance(one.R, two.R, one.disc);
     return length3(two.r - one.r) - (one.R + two.R);
 }
 
@@ -63,7 +64,10 @@ double gap_to(const CushionLine& line, const SeenBall& ball) {
 }
 
 double gap_to(const Nose& nose, const SeenBall& ball) {
-    const double level = length(planar(ball.r) - nose.center) - nose.radius;
+    const Vec2 out = planar(ball.r) - nose.center;
+    const double level = nose.sign() * length(out) - nose.radius;
+    // Behind an arc with ends a ball may be, and it does not touch it there.
+    if (!nose.span.whole && (level < 0.0 || !nose.span.holds(out))) return kFar;
     if (!ball.flies) return level - (ball.R - nose.inset);
     if (level < 0.0) return kFar;
     return length(Vec2(level, ball.r.z() - nose.height)) - nose_reach(ball.R, nose.height, nose.inset);

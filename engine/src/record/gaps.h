@@ -19,6 +19,7 @@ struct SeenBall {
     double fell = kNever;   ///< [s] when it began to fall into a pocket; kNever if it does not
     double flew = -kNever;  ///< [s] when its last flight ended
     double rounding = 0.0;  ///< [m] rounding_of()
+    bool disc = false;
 };
 
 /// [m] How far a ball with these speeds may have moved too far in t [s]: closing speeds within rounding

@@ -185,7 +185,7 @@ Event read_event(const JsonObject& all, Record& record) {
         record.clusters.push_back(std::move(balls));
     } else if (all.has("nose")) {
         event.detail =
-            index_below(all.at("nose"), 0, 2 * record.table.cushions.size() + record.table.jaws.size());
+            index_below(all.at("nose"), 0, 2 * record.table.cushions.size() + 3 * record.table.jaws.size());
     }
     event.slow = all.has("slow") && all.at("slow").boolean();
     return event;

@@ -65,7 +65,7 @@ class Checker {
             const std::vector<BallState> now = states_at(record_, e.time);
             check_penetration(now, e.time);
             check_rolling(e.time);
-            const double energy = energy_of(record_, now);
+            const double energy = energy_of(record_, now) + chord_energy(record_, e.time);
             if (e.type == EventType::kCueStrike) last_energy = energy;
             const double allowed = 1e-12 * first_energy + rounding + slow_contacts(e.time);
             if (keeps_energy(plan_) && energy > last_energy + allowed)
@@ -219,7 +219,8 @@ class Checker {
             if (!free) n3.z() = 0.0;
             n3.normalize();
             // Two radii on the cloth touch along a tilted line.
-            const double S = free ? 0.0 : (R2 - R1) / (R1 + R2), C = std::sqrt(1.0 - S * S);
+            const double S = free || record_.balls.discs() ? 0.0 : (R2 - R1) / (R1 + R2),
+                         C = std::sqrt(1.0 - S * S);
             const Vec3 line = S == 0.0 ? n3 : Vec3(C * n3.x(), C * n3.y(), S);
             // A slow contact holds a ball that lies on the cloth, and below bounce_end() a ball stays there.
             const bool lies = !flies(after1->state) || !flies(after2->state);

@@ -148,6 +148,8 @@ class Between {
             const bool still = state == MotionState::kStationary || is_gone(state);
             middle += still ? pieces_[i].energy : energy(i, half);
         }
+        start += chord_energy(record_, from);
+        middle += chord_energy(record_, half);
         if (from == times_.front()) first_energy_ = last_energy_ = start;
         // At the start, allow for what slow contacts of balls in the air have added; each of them is checked
         // at its event.
@@ -192,7 +194,8 @@ class Between {
         }
         for (const Nose& nose : plan_.geometry.noses) {
             const Vec2 apart = pieces_[ball].r - nose.center;
-            if (dot(apart, apart) > (near + nose.radius) * (near + nose.radius)) continue;
+            const double far = near + std::abs(nose.radius);
+            if (dot(apart, apart) > far * far) continue;
             for (const double share : kShares) {
                 const double t = from + share * (to - from);
                 const SeenBall there = seen(ball, t);
@@ -244,6 +247,24 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     return size.m / record.balls.m *
            (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
             fallen);
+}
+
+double chord_energy(const Record& record, double t) {
+    double sum = 0.0;
+    const std::vector<Jaw>& jaws = record.table.jaws;
+    if (std::none_of(jaws.begin(), jaws.end(), [](const Jaw& jaw) { return jaw.is_arc(); })) return sum;
+    for (const BallTrack& track : record.tracks) {
+        const auto next = std::upper_bound(track.segments.begin(), track.segments.end(), t,
+                                           [](double time, const Segment& s) { return time < s.start; });
+        if (next == track.segments.begin()) continue;
+        const Segment& s = *(next - 1);
+        const double tau = t - s.start;
+        if (!s.held || !(tau < s.duration)) continue;
+        const double inertia = s.state == MotionState::kRolling ? 1.0 + kInertia : 1.0;
+        sum += track.own.value_or(record.balls.size()).m / record.balls.m * 0.5 * inertia * tau *
+               (s.duration - tau) * s.a.squaredNorm();
+    }
+    return sum;
 }
 
 double height_rounding(const Record& record) {

@@ -17,6 +17,10 @@ double height_rounding(const Record& record);
 /// and so also inside the intervals of resting contacts. Laws "U3" and "U4". A centre that crosses a cushion
 /// is found exactly, at any speed.
 /// @param energy  whether energy must never rise
+/// [J/kg] What ball_energy() misses of balls that run along a round wall, in all: between two moments their
+/// velocity goes straight from one to the other, and in truth it turns.
+double chord_energy(const Record& record, double t);
+
 std::optional<Violation> verify_between(const Record& record, const Plan& plan, bool energy);
 
 }  // namespace carom

@@ -94,7 +94,7 @@ class Skipped {
             if (meets) need("cushions", "meets cushion " + c.id);
         }
         for (const Jaw& j : plan_.scene.table.jaws)
-            if (time_to_circle(path, j.center, R_ + j.radius) < kNever) need("cushions", "meets jaw " + j.id);
+            if (time_to_nose(path, nose_of(j, 0, 0.0), R_) < kNever) need("cushions", "meets jaw " + j.id);
     }
 
     void check_pocket(const Path& path) {
@@ -109,7 +109,8 @@ class Skipped {
     void check_pairs(int ball, const Segment& s, double end) {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;
-            const double reach = contact_distance(R_, record_.size(static_cast<int>(j)).R);
+            const double reach =
+                contact_distance(R_, record_.size(static_cast<int>(j)).R, record_.balls.discs());
             const std::vector<Segment>& others = record_.tracks[j].segments;
             for (std::size_t k = 0; k < others.size(); ++k) {
                 const double from = std::max(s.start, others[k].start), to = std::min(end, end_of(others, k));

@@ -27,6 +27,9 @@ void check_ids(const Section& top, const Scene& scene) {
         top.fail(ball.where, "ball id {} is already used{}; give each ball an id of its own",
                  in_quotes(ball.id), in_file ? fmt::format(" in line {}", first->second.line) : "");
     }
+    for (const Jaw& jaw : scene.table.jaws)
+        if (const auto ball = seen.find(jaw.id); jaw.is_arc() && ball != seen.end())
+            top.fail(ball->second, "the ball id {} is the name of an arc; choose another", in_quotes(jaw.id));
 }
 
 void check_overlaps(const Section& top, const Scene& scene) {
@@ -36,7 +39,7 @@ void check_overlaps(const Section& top, const Scene& scene) {
         for (std::size_t j = 0; j < i; ++j) {
             const double other = scene.size_of(scene.ball[j]).R;
             const bool lie = scene.ball[i].height == 0.0 && scene.ball[j].height == 0.0;
-            const double diameter = lie ? contact_distance(R, other) : R + other;
+            const double diameter = lie ? contact_distance(R, other, scene.balls.discs()) : R + other;
             const double least = diameter - touch_tolerance(p);
             // Compare the axes first, because most pairs are far apart.
             const Vec2 d = p - planar(scene.ball[j].position);
@@ -70,8 +73,28 @@ void check_reach(const Section& top, const Scene& scene) {
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
-            const double depth = depth_at((p - j.center).norm() - j.radius, j.height);
-            if (depth > touch) refuse(ball, "jaw", j.id, depth);
+            const Vec2 out = p - j.center;
+            if (!j.is_arc()) {
+                if (out.norm() < j.radius - R)
+                    top.fail(
+                        ball.where,
+                        "ball {} lies inside jaw {}, which balls touch from outside; move it out, or write "
+                        "[[table.arc]] with side = \"inside\" for a round wall",
+                        in_quotes(ball.id), j.id);
+                const double depth = depth_at(out.norm() - j.radius, j.height);
+                if (depth > touch) refuse(ball, "jaw", j.id, depth);
+                continue;
+            }
+            const Nose nose = nose_of(j, 0, 0.0);
+            const double level = nose.sign() * out.norm() - nose.radius;
+            if (level < 0.0 && nose.span.holds(out))
+                top.fail(ball.where, "ball {} lies behind arc {}, whose side is \"{}\"; move it to that side",
+                         in_quotes(ball.id), j.id, *j.side);
+            double depth = nose.span.holds(out) ? depth_at(level, j.height) : 0.0;
+            if (!nose.span.whole)
+                for (const Vec2& end : {nose.span.from, nose.span.to})
+                    depth = std::max(depth, depth_at((out - j.radius * end).norm(), j.height));
+            if (depth > touch) refuse(ball, "arc", j.id, depth);
         }
     }
 }
@@ -184,6 +207,58 @@ void check_cushion_model(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check(*scene.physics.jaw_model(), "jaw", j.id, j.height);
 }
 
+/// Whether a ball of the scene may ever leave the cloth.
+bool may_fly(const Scene& scene) {
+    const bool impacts = scene.physics.ball_ball->free || scene.balls.e_h > 0.0;
+    return scene.lifts() || (scene.physics.vertical == Vertical::kKeep && impacts);
+}
+
+/// Refuses what discs and pucks have no formulas for.
+void check_discs(const Section& top, const Scene& scene) {
+    const BallParams& p = scene.balls;
+    const BallBallModelInfo& model = *scene.physics.ball_ball;
+    if (p.discs() && !scene.of_one_radius() && (model.reads_tolerance || model.free))
+        top.fail(top.where("balls", "shape"),
+                 "discs of unlike size need a model without spins, not {}; set physics.ball_ball = "
+                 "\"elastic\" or \"inelastic\"",
+                 model.name);
+    if (p.rolls()) return;
+    const auto refuse = [&](const char* key, const char* what) {
+        top.fail(top.has("balls", key) ? top.where("balls", key) : top.where("balls", "rolls"),
+                 "balls.rolls = false slides pucks, {}", what);
+    };
+    if (model.reads_friction && p.ball_friction().any())
+        refuse("mu_b", "for which friction between two is not built; set balls.mu_b = 0");
+    const auto rough = [&](const CushionModelInfo* cushion) {
+        return cushion->reads_friction && p.cushion_friction().any();
+    };
+    if ((!scene.table.cushions.empty() && rough(scene.physics.cushion)) ||
+        (!scene.table.jaws.empty() && rough(scene.physics.jaw_model())))
+        refuse("f_c", "for which friction at a wall is not built; set balls.f_c = 0");
+    if (p.e_h > 0.0) refuse("e_h", "which do not hop; set balls.e_h = 0");
+    if (scene.cue)
+        top.fail("cue",
+                 "a cue turns what it strikes, and balls.rolls = false are pucks; give one a velocity");
+}
+
+/// Refuses arcs where a ball may fly.
+void check_arcs(const Section& top, const Scene& scene) {
+    const auto arc = std::find_if(scene.table.jaws.begin(), scene.table.jaws.end(),
+                                  [](const Jaw& j) { return j.is_arc(); });
+    if (arc == scene.table.jaws.end()) return;
+    if (may_fly(scene))
+        top.fail(
+            top.has("table") ? "table" : "",
+            "a ball of this scene may fly, and arc {} meets balls on the cloth only; set physics.vertical = "
+            "\"drop\"",
+            arc->id);
+    for (const Jaw& j : scene.table.jaws)
+        for (const BallStart& ball : scene.ball)
+            if (const double R = scene.size_of(ball).R; j.around() && !(j.radius > R))
+                top.fail(ball.where, "ball {} has a radius of {} m, and arc {} {} m; no ball fits inside",
+                         in_quotes(ball.id), R, j.id, j.radius);
+}
+
 /// Refuses all that a planar scene cannot do.
 void check_vertical(const Section& top, const Scene& scene) {
     if (scene.physics.vertical == Vertical::kKeep) return;
@@ -246,12 +321,6 @@ void check_rails(const Section& top, const Scene& scene) {
     }
 }
 
-/// Whether a ball of the scene may ever leave the cloth.
-bool may_fly(const Scene& scene) {
-    const bool impacts = scene.physics.ball_ball->free || scene.balls.e_h > 0.0;
-    return scene.lifts() || (scene.physics.vertical == Vertical::kKeep && impacts);
-}
-
 /// Whether impacts with the table can give a ball vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
@@ -307,7 +376,8 @@ void check_rest(const Section& top, const Scene& scene) {
                  "[stop] "
                  "with time or events");
     if (scene.balls.mu_s == 0.0 && m.slip) refuse("balls", "balls.mu_s", "balls slide");
-    if (scene.balls.mu_r == 0.0 && m.travel) refuse("balls", "balls.mu_r", "balls roll");
+    if (scene.balls.mu_r == 0.0 && m.travel && scene.balls.rolls())
+        refuse("balls", "balls.mu_r", "balls roll");
     if (scene.balls.mu_sp == 0.0 && m.twist) refuse("balls", "balls.mu_sp", "balls spin");
 }
 
@@ -319,6 +389,8 @@ void check_numbers(const Section& top, const Scene& scene, Change change) {
     check_noses(top, scene);
     check_sizes(top, scene);
     check_cushion_model(top, scene);
+    check_discs(top, scene);
+    check_arcs(top, scene);
     if (change != Change::kNumbers) {
         check_overlaps(top, scene);
         check_reach(top, scene);
@@ -339,6 +411,8 @@ void check_again(const Section& top, const Scene& scene, Change change) {
     if (scene.cue) check_cue(top, scene, *scene.cue);
     if (change >= Change::kTable)
         for (const Cushion& cushion : scene.table.cushions) check_cushion(top, cushion);
+    if (change >= Change::kTable)
+        for (const Jaw& jaw : scene.table.jaws) check_jaw(Section(scene.file, "table.arc"), jaw);
     check_numbers(top, scene, change);
 }
 

@@ -137,7 +137,7 @@ void press(std::vector<Vec2>& places, std::span<const double> radii, double R, d
         for (std::size_t j = 0; j < i; ++j)
             if ((places[i] - places[j]).norm() < 1.2 * (2.0 * R + gap))
                 pairs.push_back(
-                    {i, j, contact_distance(radii[i], radii[j]) + gap, 0.75 + 0.5 * random.uniform()});
+                    {i, j, contact_distance(radii[i], radii[j], false) + gap, 0.75 + 0.5 * random.uniform()});
     const Rows wheel = wheels(pairs, places.size());
     const Vec2 anchor = places[fixed];
     double step = 2.0 * kSmallStep;

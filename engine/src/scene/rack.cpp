@@ -125,7 +125,7 @@ void add_jitter(std::vector<Vec2>& places, const std::vector<double>& radii, con
     for (std::size_t i = 0; i < slots.size(); ++i) {
         for (std::size_t j = 0; j < slots.size(); ++j) {
             // Opposite corners of two boxes: 2 sqrt(2) jitter.
-            const double reach = contact_distance(radii[i], radii[j]) + 3.0 * rack.jitter;
+            const double reach = contact_distance(radii[i], radii[j], false) + 3.0 * rack.jitter;
             if (i != j && (slots[i] - slots[j]).squaredNorm() < reach * reach) near[i].push_back(j);
         }
     }
@@ -223,7 +223,7 @@ std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R
     const Vec2 place = rack.position.value_or(foot_spot(table));
     Vec2 apex = place;
     if (rack.game == RackGame::kSnooker)
-        apex.y() += contact_distance(radii[0], radii[racked + kPink]) + rack.gap;
+        apex.y() += contact_distance(radii[0], radii[racked + kPink], false) + rack.gap;
     SplitMix64 random(rack.seed);
     const std::vector<int> numbers = numbers_of(rack, random);
     std::vector<Vec2> slots = slots_of(rack, apex, R);

@@ -111,6 +111,10 @@ std::int64_t Section::integer(const toml::node& node, const Key& key) const {
 }
 
 std::string Section::text(const toml::node& node, const Key& key) const {
+    // A switch, whose words are those of TOML.
+    if (node.is_boolean() && key.options.names.size() == 2 &&
+        key.options.names[0] == std::string_view("true"))
+        return *node.value<bool>() ? "true" : "false";
     if (!node.is_string())
         fail(node, "{} must be a string in quotes, not {}", full(key.key), type_name(node));
     std::string got = *node.value<std::string>();

@@ -40,6 +40,7 @@ class Section {
 
     SourceLocation where() const { return where_; }
     const std::string& file() const { return file_; }
+    bool path_is(std::string_view path) const { return path_ == path; }
     bool has(std::string_view key) const { return table_ != nullptr && table_->contains(key); }
     /// Location of a key's value, or of the section if the key is absent.
     SourceLocation where(std::string_view key) const;
@@ -55,9 +56,9 @@ class Section {
 
     /// Reads the values that the section has; the rest of the object stays as it is.
     template <class T, std::size_t kRows>
-    void read(const Field<T> (&fields)[kRows], T& object) const {
+    void read(const Field<T> (&fields)[kRows], T& object, std::string_view except = {}) const {
         for (const Field<T>& f : fields) {
-            if (!f.in(Files::kScene)) continue;
+            if (!f.in(Files::kScene) || f.key == except) continue;
             const FieldValue found = value(f);
             if (found.index() != 0) f.set(object, found);
         }

@@ -179,6 +179,14 @@ Found find_number(const Scene& scene, std::string_view key) {
         if (take(key, "cushion"))
             return find_in_parts(kCushionFields, "table.cushion", "cushion", &Table::cushions, scene, key);
         if (take(key, "jaw")) return find_in_parts(kJawFields, "table.jaw", "jaw", &Table::jaws, scene, key);
+        if (take(key, "arc")) {
+            const auto first = std::find_if(scene.table.jaws.begin(), scene.table.jaws.end(),
+                                            [](const Jaw& jaw) { return jaw.is_arc(); });
+            const std::size_t i = (first - scene.table.jaws.begin()) + take_part(key, "arc");
+            if (i >= scene.table.jaws.size()) fail("the table has no such part");
+            return find(kJawFields, "table.arc", key, Change::kTable,
+                        [i](Scene& s) -> Jaw& { return s.table.jaws[i]; });
+        }
         if (take(key, "pocket"))
             return find_in_parts(kPocketFields, "table.pocket", "pocket", &Table::pockets, scene, key);
         return rebuilding(find(kMeasureFields, "table", key, Change::kAnything,

@@ -12,6 +12,7 @@
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/plan.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "carom/kernel/tolerance.h"
 #include "scene/aim.h"
@@ -172,9 +173,19 @@ void read_cue(const Section& top, Scene& scene) {
     Cue cue;
     const auto s = top.section("cue", joined(keys_of(kCueFields, Files::kScene), kAimKeys));
     if (!s) return;
-    s->read(kCueFields, cue);
+    const bool automatic = top.peek("cue", "elevation_deg") == "auto";
+    s->read(kCueFields, cue, automatic ? "elevation_deg" : "");
     read_aim(*s, scene, cue);
     cue.where = s->where();
+    if (automatic) {
+        const CueRoom room = room_for(scene, cue);
+        if (!room.clears_deg)
+            s->fail("elevation_deg",
+                    "cue.elevation_deg = \"auto\": no elevation keeps the cue out of {}; aim "
+                    "or strike elsewhere",
+                    room.in);
+        cue.elevation_deg = *room.clears_deg;
+    }
     check_cue(*s, scene, cue);
     scene.cue = cue;
 }

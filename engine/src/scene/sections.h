@@ -17,6 +17,8 @@ void read_balls(const Section& top, Scene& scene);
 /// Gives the parts of a table their ids: "c1", "c2", ..., "j1", ..., "p1", ...
 void number_parts(Table& table);
 /// Refuses measures of a preset that do not fit each other or the balls. @param section  [table]
+/// Refuses an arc that is none, and a jaw that is one.
+void check_jaw(const Section& section, const Jaw& jaw);
 void check_measures(const Section& section, const Scene& scene);
 /// Needs scene.balls (default nose height), and sets their rolling friction if the cloth has a name.
 void read_table(const Section& top, Scene& scene);

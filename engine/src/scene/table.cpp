@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "scene/pocket_table.h"
 #include "scene/sections.h"
@@ -36,6 +37,15 @@ void read_parts(const Section& outline, const char* key, const Field<Part> (&fie
     }
 }
 
+/// Directions in which an arc may be farthest out: along an axis, or to its ends.
+std::vector<Vec2> farthest_of(const ArcSpan& span) {
+    std::vector<Vec2> all;
+    for (const Vec2& axis : {Vec2(1.0, 0.0), Vec2(0.0, 1.0), Vec2(-1.0, 0.0), Vec2(0.0, -1.0)})
+        if (span.holds(axis)) all.push_back(axis);
+    if (!span.whole) all.insert(all.end(), {span.from, span.to});
+    return all;
+}
+
 /// Box inside the nose lines: the cushions along x and along y bound it, so that facings do not count. If
 /// they bound nothing, it is the box around the cushions, or around jaws and pockets if there are none.
 void set_surface(Table& table) {
@@ -58,8 +68,12 @@ void set_surface(Table& table) {
         include(c.from, 0.0);
         include(c.to, 0.0);
     }
+    // A round wall bounds it, too, where it is farthest out.
+    for (const Jaw& j : table.jaws)
+        if (j.around())
+            for (const Vec2& out : farthest_of(span_of(j))) include(j.center + j.radius * out, 0.0);
     if (table.cushions.empty()) {
-        for (const Jaw& j : table.jaws) include(j.center, j.radius);
+        for (const Jaw& j : table.jaws) include(j.center, j.is_arc() ? 0.0 : j.radius);
         for (const Pocket& p : table.pockets) include(p.center, p.radius);
     }
     if (!(low.x() <= high.x())) return;  // endless cloth
@@ -75,8 +89,31 @@ void number_parts(Table& table) {
         for (std::size_t i = 0; i < parts.size(); ++i) parts[i].id = fmt::format("{}{}", letter, i + 1);
     };
     number('c', table.cushions);
-    number('j', table.jaws);
+    std::size_t jaws = 0, arcs = 0;
+    for (Jaw& jaw : table.jaws)
+        jaw.id = jaw.is_arc() ? fmt::format("a{}", ++arcs) : fmt::format("j{}", ++jaws);
     number('p', table.pockets);
+}
+
+void check_jaw(const Section& section, const Jaw& jaw) {
+    if (!jaw.is_arc()) {
+        for (const auto& [key, given] :
+             {std::pair{"from_deg", jaw.from_deg.has_value()}, std::pair{"to_deg", jaw.to_deg.has_value()}})
+            if (given) section.fail(key, "a jaw is a full circle; write [[table.arc]] for a part of one");
+        return;
+    }
+    if (!section.path_is("table.arc") && section.has("side"))
+        section.fail("side", "balls touch a jaw from outside; write [[table.arc]] for a round wall");
+    if (jaw.radius == 0.0)
+        section.fail("radius", "an arc has no length if its radius is 0; make it larger, or write a jaw");
+    if (!jaw.from_deg || !jaw.to_deg)
+        section.fail(SourceLocation{}, "an arc needs both from_deg and to_deg; set the two");
+    const double turn = *jaw.to_deg - *jaw.from_deg;
+    if (turn > 0.0 && turn <= 360.0) return;
+    section.fail("to_deg",
+                 "table.arc.to_deg = {} is not up to 360 degrees beyond from_deg = {}; an arc runs "
+                 "counter-clockwise from one to the other",
+                 *jaw.to_deg, *jaw.from_deg);
 }
 
 void check_measures(const Section& section, const Scene& scene) {
@@ -126,10 +163,10 @@ void read_table(const Section& top, Scene& scene) {
                                   of_preset = keys_of(kMeasureFields, Files::kScene);
     for (const PocketSection& pockets : kPocketSections) of_preset.emplace_back(pockets.key);
     keys.insert(keys.end(), of_preset.begin(), of_preset.end());
-    keys.insert(keys.end(), {"cushion", "jaw", "pocket"});
+    keys.insert(keys.end(), {"cushion", "jaw", "arc", "pocket"});
     of_preset.emplace_back("preset");
     const auto s = top.section("table", keys);
-    const bool custom = s && (s->has("cushion") || s->has("jaw") || s->has("pocket"));
+    const bool custom = s && (s->has("cushion") || s->has("jaw") || s->has("arc") || s->has("pocket"));
     for (const std::string_view key : of_preset)
         if (custom && s->has(key))
             s->fail(
@@ -156,7 +193,16 @@ void read_table(const Section& top, Scene& scene) {
     const auto any = [](const Section&, const auto&) {};
     read_parts(*s, "cushion", kCushionFields, Cushion{"", {}, {}, height}, scene.table.cushions,
                check_cushion);
-    read_parts(*s, "jaw", kJawFields, Jaw{"", {}, 0.0, height}, scene.table.jaws, any);
+    const Jaw jaw{"", {}, 0.0, height};
+    read_parts(*s, "jaw", kJawFields, jaw, scene.table.jaws, check_jaw);
+    std::vector<Jaw> arcs;
+    read_parts(*s, "arc", kJawFields, jaw, arcs, [](const Section& section, Jaw& arc) {
+        arc.side = arc.side.value_or(kArcSides[0]);
+        arc.from_deg = arc.from_deg.value_or(0.0);
+        arc.to_deg = arc.to_deg.value_or(*arc.from_deg + 360.0);
+        check_jaw(section, arc);
+    });
+    scene.table.jaws.insert(scene.table.jaws.end(), arcs.begin(), arcs.end());
     read_parts(*s, "pocket", kPocketFields, Pocket{"", {}, 0.0, kPocketDepth}, scene.table.pockets, any);
     number_parts(scene.table);
     set_surface(scene.table);

@@ -77,6 +77,16 @@ PocketMeasures measures(const PocketShape& shape, const Channel& channel, double
 
 }  // namespace
 
+const char* balls_for(std::string_view table_preset) {
+    for (const char* game : {"snooker", "english_pool", "pyramid", "carom"})
+        if (table_preset.substr(0, std::string_view(game).size()) == game) return game;
+    return "pool";
+}
+
+double cut_off_deg(double mouth, double R) {
+    return mouth > 2.0 * R ? arc_cos(2.0 * R / mouth) * kDegrees : 0.0;
+}
+
 PocketTable with_measures(PocketTable t, const Measures& changed) {
     if (changed.size) {
         replace(t.width, changed.size->x());

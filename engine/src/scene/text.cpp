@@ -94,7 +94,8 @@ void write_table(Out out, const Table& table) {
         if (f.key != std::string_view("preset") && is_written(kTableFields, f, table))
             fmt::format_to(out, "{} = {}\n", f.key, text_of(f.value(table)));
     for (const Cushion& c : table.cushions) write_fields(out, "[[table.cushion]]\n", kCushionFields, c);
-    for (const Jaw& j : table.jaws) write_fields(out, "[[table.jaw]]\n", kJawFields, j);
+    for (const Jaw& j : table.jaws)
+        write_fields(out, j.is_arc() ? "[[table.arc]]\n" : "[[table.jaw]]\n", kJawFields, j);
     for (const Pocket& p : table.pockets) write_fields(out, "[[table.pocket]]\n", kPocketFields, p);
 }
 

@@ -48,6 +48,7 @@ void check_parts(const Scene& scene, const char* path, const Field<Part> (&field
     for (const Part& part : parts) {
         section.check(fields, part);
         if constexpr (std::is_same_v<Part, Cushion>) check_cushion(section, part);
+        if constexpr (std::is_same_v<Part, Jaw>) check_jaw(section, part);
     }
 }
 

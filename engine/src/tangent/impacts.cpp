@@ -189,7 +189,7 @@ List collide_at(const Plan& plan, bool equal, const double* list) {
     const BallSize size1 = in.size(), size2 = in.size();
     const BallParams& balls = in.balls;
     Vec2 apart = planar(in.vec());
-    apart *= contact_distance(size1.R, size2.R) / length(apart);
+    apart *= contact_distance(size1.R, size2.R, balls.discs()) / length(apart);
     const Velocities a = in.velocities(size1.R), b = in.velocities(size2.R);
     const Vec2 y = apart / length(apart), x(y.y(), -y.x());
     const Vec3 w = a.w + b.w;

@@ -111,10 +111,15 @@ std::vector<Room> Replay::rooms() const {
                 add_near(rooms, {ball, &leg}, gap, leg.start, to,
                          who(ball) + " meets " + plan_.scene.table.cushions[j].id);
             }
-            const auto round = [&](const Numbers::Round& part, const Dual& reach, const std::string& what) {
+            const auto round = [&](const Numbers::Round& part, const Dual& reach, const std::string& what,
+                                   const Nose* nose = nullptr) {
                 add_near(
                     rooms, {ball, &leg},
-                    [&](const State& s, const State&) { return length(planar(s.r) - part.center) - reach; },
+                    [&](const State& s, const State&) {
+                        const Dual2 out = planar(s.r) - part.center;
+                        if (nose != nullptr && !nose->span.holds({out[0].x, out[1].x})) return Dual(kNever);
+                        return (nose != nullptr ? nose->sign() : 1.0) * length(out) - reach;
+                    },
                     leg.start, to, who(ball) + what);
             };
             for (std::size_t j = 0; moves(leg) && j < numbers_.noses.size(); ++j) {
@@ -123,7 +128,8 @@ std::vector<Room> Replay::rooms() const {
                 round(numbers_.noses[j], R + numbers_.noses[j].radius - numbers_.noses[j].inset,
                       " meets " + (nose.type == EventType::kBallJaw
                                        ? table.jaws[nose.index].id
-                                       : "the end of " + table.cushions[nose.index].id));
+                                       : "the end of " + table.cushions[nose.index].id),
+                      &nose);
             }
             for (std::size_t j = 0; moves(leg) && j < numbers_.pockets.size(); ++j)
                 round(numbers_.pockets[j], numbers_.pockets[j].radius,

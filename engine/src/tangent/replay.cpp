@@ -303,13 +303,16 @@ Dual Replay::cushion(const Event& event) {
     const bool flying = flies(leg.state);
     const Dual& R = numbers_.balls[ball].R;
     Dual height, inset;
-    // From the nose to the centre, level with the cloth; `beyond` is the radius of a round nose.
+    // From the nose to the centre, level with the cloth; `beyond` is the radius of a round nose, and the sign
+    // is negative if it lies around the ball.
     Dual2 out;
     Dual beyond;
+    const Nose* round = event.detail >= 0 ? &plan_.geometry.noses[event.detail] : nullptr;
+    const double sign = round != nullptr ? round->sign() : 1.0;
     const auto look = [&](const State& s) {
         if (event.detail >= 0) {
             const Numbers::Round& nose = numbers_.noses[event.detail];
-            height = nose.height, inset = nose.inset, beyond = nose.radius;
+            height = nose.height, inset = nose.inset, beyond = sign * nose.radius;
             out = planar(s.r) - nose.center;
             return;
         }
@@ -327,14 +330,24 @@ Dual Replay::cushion(const Event& event) {
     const State here = leg.at(now_);
     const Dual3 apart = apart_at(here);
     const Dual up = height - R, level = R - inset;
-    const Dual gap = flying ? length3(apart) - sqrt(level * level + up * up) : length(out) - beyond - level;
+    const Dual gap =
+        flying ? length3(apart) - sqrt(level * level + up * up) : sign * (length(out) - beyond) - level;
     double rate = 0.0;
     for (int i = 0; i < (flying ? 3 : 2); ++i) rate += apart[i].x * here.v[i].x;
     rate /= flying ? length3(apart).x : length(planar(apart)).x;
     const Dual time = when(gap, rate, R.x);
     State s = leg.at(time);
     const Dual3 at = apart_at(s);
-    if (event.detail >= 0) {
+    if (round != nullptr && round->is_arc()) {
+        look(s);
+        for (const Vec2& end : {round->span.from, round->span.to}) {
+            const Dual aside = end.x() * out[1] - end.y() * out[0];
+            if (dot(end, Vec2(out[0].x, out[1].x)) > 0.0)
+                rooms_.push_back({aside.x < 0.0 ? -aside : aside,
+                                  fmt::format("{} passes the end of {} at {:.3f} s", who(ball),
+                                              record_.partner_id(event), now_)});
+        }
+    } else if (event.detail >= 0) {
         add_miss(planar(at), planar(s.v), event);
     } else {
         const Numbers::Line& line = numbers_.cushions[event.b];
@@ -348,7 +361,7 @@ Dual Replay::cushion(const Event& event) {
         meet_nose_in_air(laws_, ball, model, at, s);
         go_on(ball, time, s);
     } else {
-        const Dual distance = length(out);
+        const Dual distance = sign * length(out);
         const bool hops = laws_.flights() && leg.state != MotionState::kFalling;
         meet_cushion(laws_, ball, model, {out[0] / distance, out[1] / distance}, height, hops, s);
         begin(ball, time, s);

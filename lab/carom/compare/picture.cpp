@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/event_details.h"
 #include "carom/engine/vec.h"
 #include "commands/compare/ball_way.h"
 
@@ -87,7 +88,8 @@ void draw_ways(const Record& record, const std::vector<int>& colours, bool dashe
 }
 
 void draw_noses(const carom::Table& table, Paper& paper, Plot& plot) {
-    for (const Cushion& cushion : table.cushions) {
+    const carom::Table drawn = without_arcs(table);
+    for (const Cushion& cushion : drawn.cushions) {
         Series nose;
         nose.points = {paper.point(cushion.from.x(), cushion.from.y()),
                        paper.point(cushion.to.x(), cushion.to.y())};

@@ -79,8 +79,14 @@ class _Writer:
             self.cushion_ids = ["3", "9", "12", "18"] if carom else [part["id"] for part in cushions]
             self.jaw_ids = [part["id"] for part in jaws]
             self.pocket_ids = [part["id"] for part in pockets]
+        ball = float(self.record.radii[0])
+        # pooltool.load() explains this height; this is its inverse.
         circular = {
-            name: {"id": name, "center": [*part["center"], part["height"]], "radius": part["radius"]}
+            name: {
+                "id": name,
+                "center": [*part["center"], ball + (part["height"] - ball) * (ball + part["radius"]) / ball],
+                "radius": part["radius"],
+            }
             for name, part in zip(self.jaw_ids, jaws)
         }
         linear: dict[str, Any] = {}

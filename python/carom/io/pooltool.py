@@ -1,4 +1,4 @@
-"""pooltool's files, both ways: the System of pooltool 0.6.0 as JSON.
+"""pooltool's files, both ways: the System of pooltool 0.6.0 as JSON, and read as MessagePack.
 
 `load` returns the scene that a System plays, with pooltool's models. `save` writes a record so that pooltool
 plays it. Neither needs pooltool. lab/notes/2026-11-pooltool.md measures what agrees and what does not.
@@ -11,6 +11,8 @@ import math
 import os
 from typing import Any, NoReturn
 
+import numpy as np
+
 from carom._arguments import checked
 from carom._errors import SceneError
 from carom._record import Record
@@ -18,11 +20,11 @@ from carom._scene import Scene
 from carom.io import _system
 from carom.io._system import POCKETS, STATES
 
-__all__ = ["load", "save"]
+__all__ = ["load", "save", "table"]
 
 #: The friction between balls in pooltool, a + b exp(-c u). It belongs to pooltool's models, not to its files.
 FRICTION = (0.009951, 0.108, 1.088)
-_SAVE_AS_JSON = "pooltool writes JSON if the name of the file ends in .json"
+_READS = "pooltool writes JSON if the name of the file ends in .json, and MessagePack for .msgpack"
 
 
 class _Tree:
@@ -32,7 +34,7 @@ class _Tree:
         self.file, self.value, self.path = file, value, path
 
     def fail(self, what: str) -> NoReturn:
-        wanted = "expected a System as pooltool 0.6.0 saves it in .json"
+        wanted = "expected a System as pooltool 0.6.0 saves it"
         raise SceneError(f"{self.path or 'the file'} {what}; {wanted}", self.file)
 
     def at(self, key: str) -> _Tree:
@@ -92,22 +94,83 @@ def load(path: str | os.PathLike[str]) -> Scene:
     Raises SceneError if the file is not such a System, or if carom refuses its contents.
     """
     name = os.fspath(path)
-    try:
-        with open(name, encoding="utf-8") as file:
-            root = _Tree(name, json.load(file))
-    except OSError as error:
-        raise SceneError(f"cannot be read: {error.strerror}", name) from None
-    except json.JSONDecodeError as error:
-        what = f"is not JSON: {error.msg}; {_SAVE_AS_JSON}"
-        raise SceneError(what, name, error.lineno, error.colno) from None
-    except UnicodeDecodeError:
-        raise SceneError(f"is not JSON because it is not UTF-8; {_SAVE_AS_JSON}", name) from None
+    root = _Tree(name, _unpacked(name) if name.endswith(".msgpack") else _parsed(name))
     balls = _balls(root)
     tree = {"table": _table(root.at("table"), balls), **balls}
     cue = _cue(root)
     if cue is not None:
         tree["cue"] = cue
     return Scene.from_dict(tree, name)
+
+
+def _parsed(name: str) -> Any:
+    try:
+        with open(name, encoding="utf-8") as file:
+            return json.load(file)
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", name) from None
+    except json.JSONDecodeError as error:
+        what = f"is not JSON: {error.msg}; {_READS}"
+        raise SceneError(what, name, error.lineno, error.colno) from None
+    except UnicodeDecodeError:
+        raise SceneError(f"is not JSON because it is not UTF-8; {_READS}", name) from None
+
+
+def _unpacked(name: str) -> Any:
+    """What msgpack-numpy wrote: arrays and numbers of numpy are maps with their type and bytes."""
+    try:
+        import msgpack
+    except ImportError:
+        what = "is MessagePack, which needs the package msgpack; install it, or save as .json in pooltool"
+        raise SceneError(what, name) from None
+
+    def plain(item: dict[Any, Any]) -> Any:
+        if b"nd" not in item:
+            return item
+        kind = np.dtype(item[b"type"])
+        if kind.kind not in "biuf":
+            raise ValueError(f"an array of type {kind}")
+        array = np.frombuffer(item[b"data"], kind)
+        return array.reshape(item[b"shape"]).tolist() if item[b"nd"] else array[0].item()
+
+    try:
+        with open(name, "rb") as file:
+            return msgpack.unpackb(file.read(), object_hook=plain, strict_map_key=False)
+    except OSError as error:
+        raise SceneError(f"cannot be read: {error.strerror}", name) from None
+    except (ValueError, KeyError, TypeError, IndexError, msgpack.UnpackException) as error:
+        raise SceneError(f"is not MessagePack as pooltool saves it: {error}", name) from None
+
+
+#: Measures of pooltool's table specifications, and where carom has them.
+_SPECS = {"width": "mouth", "angle": "angle_deg", "radius": "radius"}
+
+
+@checked
+def table(specs: dict[str, Any]) -> dict[str, Any]:
+    """The section [table] of a scene for a table specification of pooltool: the attributes of its
+    PocketTableSpecs, SnookerTableSpecs or BilliardTableSpecs as a dict, such as `attrs.asdict(specs)`.
+
+    Raises SceneError if a measure is missing or is not a number.
+    """
+    root = _Tree("specification", specs)
+
+    def measure(key: str) -> float:
+        return root.at(key).number()
+
+    whole: dict[str, Any] = {"size": [measure("w"), measure("l")]}
+    whole["cushion_height"] = measure("cushion_height")
+    if "corner_pocket_width" not in specs:
+        return {"preset": "carom", **whole}
+    for kind, axis, jaws in (("corner", 135.0, "corner_jaw_radius"), ("side", 90.0, "side_jaw_radius")):
+        pockets = {ours: measure(f"{kind}_pocket_{theirs}") for theirs, ours in _SPECS.items()}
+        pockets["angle_deg"] += axis
+        # From the mouth's middle to the hole: at a corner, the mouth is half its width before the corner.
+        front = pockets["mouth"] / 2 if kind == "corner" else 0.0
+        pockets["shelf"] = measure(f"{kind}_pocket_depth") - pockets["radius"] + front
+        pockets["jaw_radius"] = measure(jaws)
+        whole[f"{kind}_pockets"] = pockets
+    return {"preset": "nine_foot", **whole, "rail_width": measure("cushion_width")}
 
 
 def _table(table: _Tree, balls: dict[str, Any]) -> dict[str, Any]:

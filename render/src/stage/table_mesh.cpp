@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carom/engine/event_details.h"
 #include "stage/mesh_builder.h"
 #include "stage/table_marks.h"
 
@@ -315,7 +316,8 @@ class TableMaker {
 }  // namespace
 
 TableMesh make_table_mesh(const Table& table, double R, const std::vector<Vec2>& visited, Edges edges) {
-    return TableMaker(table, R, visited, edges).make();
+    const Table drawn = without_arcs(table);
+    return TableMaker(drawn, R, visited, edges).make();
 }
 
 }  // namespace carom::render

@@ -54,7 +54,8 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel:
                      const kernel::Ball& ball2, const kernel::ImpactParams& params,
                      kernel::ImpactResult& result);
 
-/// Horizontal distance of the centres of two balls that touch while both lie on the cloth: 2 sqrt(R1 R2).
-double contact_distance(double R1, double R2);
+/// Horizontal distance of the centres of two balls that touch while both lie on the cloth: 2 sqrt(R1 R2), and
+/// R1 + R2 for discs.
+double contact_distance(double R1, double R2, bool discs);
 
 }  // namespace carom

@@ -59,6 +59,9 @@ inline constexpr double kLongRail = 8.0, kShortRail = 4.0;
 /// The point of the cushion, or the centre of the jaw, of this event that is nearest to a position.
 Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place);
 
+/// The table with short straight cushions in place of its arcs, for drawing.
+Table without_arcs(const Table& table);
+
 /// A number of an event in tables: `carom simulate --events`, Python's Record.event_details.
 struct EventColumn {
     const char* name;

@@ -297,6 +297,27 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
+/// A row of a number that is 0 or 1, and the first or the second word in files. The first is the default,
+/// which files leave out.
+template <auto kMember, const auto& kWords>
+constexpr Field<detail::ClassOf<kMember>> either(const char* key, const char* meaning) {
+    using T = detail::ClassOf<kMember>;
+    return {{key,
+             Key::Kind::kText,
+             at_least(0.0, 0.0),
+             meaning,
+             {.since = 2, .later = true, .standard = kWords[0], .names = kWords},
+             true,
+             1,
+             nullptr},
+            [](const T& object) {
+                return object.*kMember == 0.0 ? FieldValue() : FieldValue(std::string(kWords[1]));
+            },
+            [](T& object, const FieldValue& value) {
+                object.*kMember = std::get<std::string>(value) == kWords[1] ? 1.0 : 0.0;
+            }};
+}
+
 /// The rows of a coefficient that may be a number or a fit with three. `number` is the first number alone,
 /// and replaces a fit. `fit` is the list of all three, in scene files, if one of the other two is not 0.
 template <auto kFirst, auto... kOthers>

@@ -18,15 +18,34 @@ struct CushionLine {
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R - inset (cushion_touch)
 };
 
-/// A round nose: a jaw, or the end of a cushion that no jaw rounds off (radius 0).
+/// The part of a circle that an arc covers, counter-clockwise from one direction to another.
+struct ArcSpan {
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< unit vectors
+    bool whole = true;                            ///< the full circle
+    bool wide = false;                            ///< more than half of it
+    /// Whether the arc is in this direction from its centre.
+    bool holds(const Vec2& out, double slack = 0.0) const {
+        if (whole) return true;
+        const bool after = cross(from, out) >= -slack, before = cross(out, to) >= -slack;
+        return wide ? after || before : after && before;
+    }
+};
+ArcSpan span_of(const Jaw& jaw);
+
+/// A round nose: a jaw, an arc, or the end of a cushion or an arc that no jaw rounds off (radius 0).
 struct Nose {
     Vec2 center;
-    double radius;
+    double radius;  ///< negative if it lies around the balls: all distances from it then have that sign, too
     double height;
     EventType type;      ///< kBallJaw or kBallCushion
     int index;           ///< of the jaw or cushion in scene.table
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R + radius - inset
+    ArcSpan span{};
+    double sign() const { return radius < 0.0 ? -1.0 : 1.0; }
+    bool is_arc() const { return radius < 0.0 || !span.whole; }
 };
+/// @param index  of the jaw in scene.table
+Nose nose_of(const Jaw& jaw, int index, double inset);
 
 /// [m] How much closer to a nose of this height than its radius the centre of a touching ball is.
 double nose_inset(CushionTouch touch, double R, double height);

@@ -14,5 +14,6 @@ struct MotionParams {
     bool rolling = true;     ///< some ball can roll on a cloth that slows it
     bool spin_decay = true;  ///< some ball can have vertical spin that decays
     double gravity = 0.0;    ///< [m/s^2] of balls that fall
+    bool rolls = true;       ///< a puck slides and never rolls
 };
 }  // namespace carom

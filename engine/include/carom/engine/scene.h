@@ -100,6 +100,11 @@ struct BallParams {
     /// Share of the downward speed after a cushion that throws the ball up again. 0: the published planar
     /// cushions.
     double e_h = 0.0;
+    // BallParams has numbers only (tangents read them as a list): these two are 0 or 1.
+    double disc = 0.0;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
+    double slides = 0.0;  ///< pucks: they never roll
+    bool discs() const { return disc != 0.0; }
+    bool rolls() const { return slides == 0.0; }
     BallSize size() const { return {R, m}; }
     /// Between two balls, as a function of their slip at the contact. Source of the form: D. Alciatore,
     /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the slip
@@ -111,6 +116,8 @@ struct BallParams {
     Falling cloth_restitution() const { return {e_t, e_t_more, e_t_fall}; }
     bool operator==(const BallParams&) const = default;
 };
+inline constexpr const char* kBallShapes[] = {"ball", "disc"};
+inline constexpr const char* kRolls[] = {"true", "false"};
 inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::R>("radius", kBallRadius, "radius", {.record_key = "R"}),
     field<&BallParams::m>("mass", kMass, "mass", {.record_key = "m"}),
@@ -176,6 +183,10 @@ inline constexpr Field<BallParams> kBallFields[] = {
                             "share of the downward speed after a cushion that throws the ball up again (a "
                             "hop); about 0.2 on a real table",
                             {.since = 2, .later = true}),
+    either<&BallParams::disc, kBallShapes>(
+        "shape", "two discs touch at the sum of their radii, and two balls of unlike size a little nearer"),
+    either<&BallParams::slides, kRolls>(
+        "rolls", "`false`: pucks, which slide until they stop; `mu_s` slows them, and nothing turns them"),
 };
 
 /// A ball at the start.
@@ -294,7 +305,8 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::speed>("speed", at_least(0.0, kMaxSpeed, "m/s"), "of the cue"),
     field<&Cue::aim_deg>("aim_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"), "0 is +x, 90 is +y"),
     field<&Cue::elevation_deg>("elevation_deg", {0.0, false, 90.0, true, "degrees"},
-                               "of the butt; more than 0 throws the ball up"),
+                               "of the butt; more than 0 throws the ball up; `\"auto\"`: as little as keeps "
+                               "the cue out of rails and balls"),
     field<&Cue::side, &Cue::height>(
         "offset", at_least(-1.0, 1.0, "ball radii"),
         "left and up positive, together at most 0.5: farther out the tip slips off",
@@ -529,6 +541,11 @@ void validate(const Scene& scene);
 Table make_table(std::string_view preset, const Measures& changed = {});
 /// All the measures of such a table; those of pockets are absent if it has none.
 Measures measures_of(std::string_view preset, const Measures& changed = {});
+/// The balls that such a table is for: "pool", "snooker", ...
+const char* balls_for(std::string_view table_preset);
+/// [degrees] The cut-off angle of a pocket: on a straight path that is farther from the pocket's axis, a ball
+/// cannot pass both ends of the mouth. 0 if it does not fit at all.
+double cut_off_deg(double mouth, double R);
 BallParams make_ball_params(std::string_view preset);
 /// Gives a scene the balls of a preset, and the cushion model that belongs to them.
 void use_balls(Scene& scene, std::string_view preset);

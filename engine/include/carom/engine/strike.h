@@ -1,6 +1,9 @@
 // The strokes that a scene accepts.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "carom/engine/scene.h"
 
 namespace carom {
@@ -15,5 +18,13 @@ inline constexpr double kMiscueOffset = 0.5;
 /// centre, to the rim. The cue's own mass, end mass and restitution stay as they are.
 /// @throws std::invalid_argument for a number that is not finite
 Cue legal_strike(Cue cue);
+
+/// Whether the cue itself has room: one of 1.47 m, 13 mm thick at the tip and 29 mm at the butt.
+struct CueRoom {
+    std::string in;  ///< what it would be in: "cushion c3", "ball 7"; "" if nothing
+    /// [degrees] The least elevation from its own on that clears all of it, up to 89; nothing if none does.
+    std::optional<double> clears_deg;
+};
+CueRoom room_for(const Scene& scene, const Cue& cue);
 
 }  // namespace carom

@@ -37,15 +37,22 @@ inline constexpr Field<Cushion> kCushionFields[] = {
                           {.files = Files::kRecord, .since = 2}),
 };
 
-/// A rounded jaw: a full circle. A ball touches it at centre distance R + radius.
+/// A rounded jaw: a full circle. A ball touches it at centre distance R + radius. Or an arc: a round wall,
+/// which has the last three members, and acts on one side only.
 struct Jaw {
     std::string id;
     Vec2 center;
     double radius;
     double height;
     std::string name{};
+    std::optional<std::string> side = std::nullopt;  ///< of the circle on which the balls are
+    std::optional<double> from_deg = std::nullopt, to_deg = std::nullopt;
+    bool is_arc() const { return side.has_value(); }
+    /// Whether it lies around the balls.
+    bool around() const { return side == "inside"; }
     bool operator==(const Jaw&) const = default;
 };
+inline constexpr const char* kArcSides[] = {"inside", "outside"};
 inline constexpr Field<Jaw> kJawFields[] = {
     field<&Jaw::id>("id", "`j1`, `j2`, ...", {.files = Files::kRecord}),
     field<&Jaw::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
@@ -54,6 +61,14 @@ inline constexpr Field<Jaw> kJawFields[] = {
     field<&Jaw::height>("height", kNoseHeight, "of the nose above the cloth",
                         {.standard = "1.28 x ball radius"}),
     field<&Jaw::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+    field<&Jaw::side>("side", "of an arc's circle, on which the balls are: `inside` for a round table",
+                      {.since = 2, .later = true, .standard = "inside", .names = kArcSides}),
+    field<&Jaw::from_deg>("from_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
+                          "of an arc: direction from the centre to its first end; 0 is +x",
+                          {.since = 2, .later = true, .standard = "0"}),
+    field<&Jaw::to_deg>("to_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
+                        "of an arc: to its other end, counter-clockwise; 360 more is the full circle",
+                        {.since = 2, .later = true, .standard = "`from_deg` + 360"}),
 };
 
 /// A ball whose centre crosses the circle falls (docs/reference/physics.md, "Pockets").
@@ -128,7 +143,8 @@ inline constexpr PocketSection kPocketSections[] = {
     {"corner_pockets", "table.corner_pockets", &Measures::corner_pockets},
     {"side_pockets", "table.side_pockets", &Measures::side_pockets}};
 
-/// Cushions are "c1", "c2", ..., jaws "j1", ..., pockets "p1", ..., in the order of their lists. The presets
+/// Cushions are "c1", "c2", ..., jaws "j1", ..., arcs, which follow the jaws in their list, "a1", ...,
+/// and pockets "p1", ..., in the order of their lists. The presets
 /// list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
 struct Table {
     std::string preset;  ///< "seven_foot", ..., or "" for a custom outline

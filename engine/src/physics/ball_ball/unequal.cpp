@@ -10,7 +10,8 @@ using kernel::Ball;
 using kernel::ImpactParams;
 using kernel::ImpactResult;
 
-double contact_distance(double R1, double R2) {
+double contact_distance(double R1, double R2, bool discs) {
+    if (discs) return R1 + R2;
     return R1 == R2 ? 2.0 * R1 : 2.0 * std::sqrt(R1 * R2);
 }
 

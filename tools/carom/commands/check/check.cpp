@@ -54,8 +54,8 @@ std::string isa_line(const Plan& plan) {
 }
 
 /// What can be measured at a table: its spots, and, of a preset, its noses and pockets.
-std::string measures_lines(const carom::Table& table) {
-    constexpr double kMillimetres = 1000.0;
+std::string measures_lines(const carom::Table& table, double R) {
+    constexpr double kMillimetres = 1000.0, kInches = 1.0 / 0.0254;
     std::string text;
     if (table.length > 0.0) {
         const Vec2 foot = foot_spot(table);
@@ -71,9 +71,13 @@ std::string measures_lines(const carom::Table& table) {
         text += fmt::format(
             "          {}: mouth {:.4g} mm, throat {:.4g} mm, facings at {:.4g} degrees, shelf {:.3g} mm, "
             "points "
-            "rounded by {:.4g} mm\n",
+            "rounded by {:.4g} mm\n"
+            "            for players: mouth {:.4g} in, {:.3g} in more than the throat, shelf {:.3g} in; "
+            "cut-off "
+            "angle {:.3g} degrees\n",
             of.key, *p.mouth * kMillimetres, *p.throat * kMillimetres, *p.angle_deg, *p.shelf * kMillimetres,
-            *p.jaw_radius * kMillimetres);
+            *p.jaw_radius * kMillimetres, *p.mouth * kInches, (*p.mouth - *p.throat) * kInches,
+            *p.shelf * kInches, cut_off_deg(*p.mouth, R));
     }
     return text;
 }
@@ -95,7 +99,7 @@ std::string report(const Plan& plan) {
     fmt::format_to(line, "scene     {}: valid\n", scene.file);
     fmt::format_to(line, "table     {}, {} x {} m{}\n", table.preset.empty() ? "custom" : table.preset,
                    table.width, table.length, table.cloth ? ", cloth " + *table.cloth : "");
-    fmt::format_to(line, "{}", measures_lines(table));
+    fmt::format_to(line, "{}", measures_lines(table, p.R));
     fmt::format_to(line, "balls     {}: {}\n", scene.ball.size(), ids(scene.ball));
     fmt::format_to(
         line,

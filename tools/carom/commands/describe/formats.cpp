@@ -78,6 +78,7 @@ Json value_schema(const Key& key, Files files) {
                 {"maxItems", key.count()}};
     if (key.kind != Key::Kind::kText) return number_schema(key, files);
     if (files == Files::kRecord) return {{"type", "string"}, {"maxLength", kLongestText}};
+    if (!key.names().empty() && key.names()[0] == std::string_view("true")) return {{"type", "boolean"}};
     if (!key.names().empty()) return {{"type", "string"}, {"enum", key.names()}};
     if (key.range.high == 0.0) return {{"type", "string"}};
     return {{"type", "string"}, {"minLength", key.range.low}, {"maxLength", key.range.high}};
@@ -242,6 +243,7 @@ std::string scene_schema() {
     Json table = object_of(kTableFields, make_table(kStandardTable), kScene);
     table["properties"]["cushion"] = list_of(object_of(kCushionFields, {}, kScene), kMaxTableParts);
     table["properties"]["jaw"] = list_of(object_of(kJawFields, {}, kScene), kMaxTableParts);
+    table["properties"]["arc"] = list_of(object_of(kJawFields, {}, kScene), kMaxTableParts);
     table["properties"]["pocket"] = list_of(object_of(kPocketFields, {}, kScene), kMaxTableParts);
     add_properties(table, kMeasureFields, Measures{}, kScene);
     for (const PocketSection& of : kPocketSections)
@@ -323,7 +325,7 @@ std::string scene_format() {
     put_table(page, "measures", kHeader, lines_of(kPocketMeasureFields, PocketMeasures{}));
     put_table(page, "outline", "| list | key | default | values | meaning |",
               lines_of(kCushionFields, {}, "`[[table.cushion]]`") +
-                  lines_of(kJawFields, {}, "`[[table.jaw]]`") +
+                  lines_of(kJawFields, {}, "`[[table.jaw]]`, `[[table.arc]]`") +
                   lines_of(kPocketFields, {}, "`[[table.pocket]]`"));
     put_table(page, "balls", "| key | pool (default) | snooker | carom | values | meaning |", balls_lines());
     put_table(page, "ball", kHeader,

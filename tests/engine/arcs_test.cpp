@@ -1,0 +1,365 @@
+// Round walls, discs and pucks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "contact/detect.h"
+#include "reference/random_impacts.h"
+#include "support/hard_scenes.h"
+#include "support/scene_errors.h"
+
+namespace carom::test {
+namespace {
+
+using Real = long double;  // 11 bits more than double
+constexpr Real kPi = std::numbers::pi_v<Real>;
+
+constexpr double kR = 0.01;
+
+Jaw arc(const Vec2& center, double radius, double from_deg, double to_deg, const char* side = "inside") {
+    return {"a", center, radius, kR, "", side, from_deg, to_deg};
+}
+
+Scene lossless() {
+    Scene scene = frictionless();
+    scene.balls.R = kR;
+    return scene;
+}
+
+double energy_left(const Record& record) {
+    double before = 0.0, after = 0.0;
+    for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+        const double m = record.size(static_cast<int>(i)).m;
+        before += m * record.tracks[i].segments.front().v.squaredNorm();
+        after += m * record.state_at(static_cast<int>(i), record.duration).velocity.squaredNorm();
+    }
+    return after / before;
+}
+
+// In a circle every chord is alike, so the orbit is known for good: 1000 bounces stay within 1e-9 m.
+TEST(Arcs, AThousandBouncesInACircle) {
+    Scene scene = lossless();
+    scene.table.jaws.push_back(arc({0.3, -0.2}, 0.5 + kR, 0.0, 360.0));
+    const Vec2 start(0.5, -0.1), v(0.6, 0.35);
+    add_ball(scene, "1", start.x(), start.y(), v.x(), v.y());
+    scene.stop.events = 1000;
+    const Record record = run_verified(scene);
+    ASSERT_EQ(record.events.size(), 1000u);
+    const Real x = Real(start.x()) - 0.3L, y = Real(start.y()) + 0.2L, speed = std::hypot(Real(v.x()), v.y());
+    const Real miss = (x * v.y() - y * v.x()) / speed, chord = 2.0L * std::sqrt(0.25L - miss * miss);
+    const Real along = -(x * v.x() + y * v.y()) / speed;
+    // The direction of a hit: that of the path, and the angle of the normal to it.
+    const Real first = std::atan2(Real(v.y()), Real(v.x())) - std::asin(miss / 0.5L),
+               turn = kPi - 2.0L * std::asin(std::abs(miss) / 0.5L);
+    for (std::size_t n = 0; n < record.events.size(); ++n) {
+        const Event& e = record.events[n];
+        EXPECT_EQ(e.type, EventType::kBallJaw);
+        const Real time = (along + chord / 2.0L + chord * n) / speed;
+        ASSERT_NEAR(e.time, static_cast<double>(time), 1e-9) << n;
+        const Real angle = first + (miss > 0.0L ? turn : -turn) * n;
+        const Vec3 at = record.state_at(0, e.time).position;
+        ASSERT_NEAR(at.x(), static_cast<double>(0.3L + 0.5L * std::cos(angle)), 1e-9) << n;
+        ASSERT_NEAR(at.y(), static_cast<double>(-0.2L + 0.5L * std::sin(angle)), 1e-9) << n;
+    }
+    EXPECT_NEAR(energy_left(record), 1.0, 1e-12);
+}
+
+/// The next bounce of a point in a stadium: half circles of radius 1/2 about (0, 0) and (1, 0), and the lines
+/// y = -1/2 and 1/2 between them.
+struct Orbit {
+    Real x, y, vx, vy, time = 0.0L;
+    void bounce() {
+        Real best = 1e30L, nx = 0.0L, ny = 0.0L;
+        constexpr Real kLeast = 1e-12L;
+        for (const Real side : {-0.5L, 0.5L}) {
+            const Real t = (side - y) / vy;
+            const Real at = x + t * vx;
+            if (t > kLeast && at >= 0.0L && at <= 1.0L && t < best) best = t, nx = 0.0L, ny = side * 2.0L;
+        }
+        for (const Real center : {0.0L, 1.0L}) {
+            const Real dx = x - center, a = vx * vx + vy * vy, b = dx * vx + y * vy,
+                       c = dx * dx + y * y - 0.25L, D = b * b - a * c;
+            if (D < 0.0L) continue;
+            const Real t = (-b + std::sqrt(D)) / a, at = dx + t * vx;
+            const bool in_front = center == 0.0L ? at <= 0.0L : at >= 0.0L;
+            if (t > kLeast && in_front && t < best) best = t, nx = 2.0L * at, ny = 2.0L * (y + t * vy);
+        }
+        x += best * vx, y += best * vy, time += best;
+        const Real into = vx * nx + vy * ny;
+        vx -= 2.0L * into * nx, vy -= 2.0L * into * ny;
+    }
+};
+
+Scene stadium() {
+    Scene scene = lossless();
+    constexpr double kHalf = 0.5 + kR;
+    scene.table.cushions.push_back({"c1", {0.0, -kHalf}, {1.0, -kHalf}, kR});
+    scene.table.cushions.push_back({"c2", {0.0, kHalf}, {1.0, kHalf}, kR});
+    scene.table.jaws.push_back(arc({0.0, 0.0}, kHalf, 90.0, 270.0));
+    scene.table.jaws.push_back(arc({1.0, 0.0}, kHalf, -90.0, 90.0));
+    return scene;
+}
+
+// A stadium is chaotic: no double keeps a whole orbit. Every bounce of 1000, followed from the one before in
+// 64 bits, is within 1e-9 m (measured: 4e-16), and so a true orbit stays near all of it.
+TEST(Arcs, AThousandBouncesInAStadium) {
+    Scene scene = stadium();
+    add_ball(scene, "1", 0.3, 0.1, 0.7, 0.45);
+    scene.stop.events = 1000;
+    const Record record = run_verified(scene);
+    ASSERT_EQ(record.events.size(), 1000u);
+    EXPECT_EQ(record.stopped, StopReason::kEvents);
+    const std::vector<Segment>& segments = record.tracks[0].segments;
+    int round = 0;
+    for (std::size_t n = 0; n + 1 < segments.size(); ++n) {
+        const Segment& s = segments[n];
+        Orbit orbit{s.r.x(), s.r.y(), s.v.x(), s.v.y(), s.start};
+        orbit.bounce();
+        const Segment& next = segments[n + 1];
+        ASSERT_NEAR(next.start, static_cast<double>(orbit.time), 1e-9) << n;
+        ASSERT_NEAR(next.r.x(), static_cast<double>(orbit.x), 1e-9) << n;
+        ASSERT_NEAR(next.r.y(), static_cast<double>(orbit.y), 1e-9) << n;
+        ASSERT_NEAR(next.v.x(), static_cast<double>(orbit.vx), 1e-9) << n;
+        ASSERT_NEAR(next.v.y(), static_cast<double>(orbit.vy), 1e-9) << n;
+        round += record.events[n].type == EventType::kBallJaw;
+    }
+    EXPECT_GT(round, 400);
+    EXPECT_LT(round, 900);
+    EXPECT_NEAR(energy_left(record), 1.0, 1e-12);
+}
+
+// The whole orbit agrees with the reference as long as chaos lets it: every bounce multiplies an error by two
+// or three, from the 1e-16 of the first one.
+TEST(Arcs, AStadiumKeepsItsOrbitForTwentyBounces) {
+    Scene scene = stadium();
+    add_ball(scene, "1", 0.3, 0.1, 0.7, 0.45);
+    scene.stop.events = 20;
+    const Record record = run_verified(scene);
+    Orbit orbit{0.3, 0.1, 0.7, 0.45};
+    for (const Event& e : record.events) {
+        orbit.bounce();
+        ASSERT_NEAR(e.time, static_cast<double>(orbit.time), 1e-6);
+    }
+}
+
+/// The first time at which a ball touches an arc, by small steps and bisection.
+double stepped(const Path& path, const Nose& nose, double R, double until) {
+    const auto at = [&](double t) { return Vec2(path.r + t * path.v + 0.5 * t * t * path.a - nose.center); };
+    const auto gap = [&](double t) { return nose.sign() * length(at(t)) - nose.radius - R; };
+    const auto in_front = [&](double t) {
+        return nose.span.holds(at(t)) && nose.sign() * length(at(t)) >= nose.radius;
+    };
+    constexpr int kSteps = 20000;
+    for (int k = 0; k < kSteps; ++k) {
+        double low = until * k / kSteps, high = until * (k + 1) / kSteps;
+        if (!(gap(low) > 0.0 && gap(high) <= 0.0)) continue;
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (low + high);
+            (gap(middle) > 0.0 ? low : high) = middle;
+        }
+        if (in_front(high)) return high;
+    }
+    return kNever;
+}
+
+// From any side, on any path, to any part of a circle.
+TEST(Arcs, AreMetFromAllSides) {
+    reference::Generator random(11);
+    const auto draw = [&random](double low, double high) { return random.uniform(low, high); };
+    int met = 0, missed = 0;
+    // One draw after another: the order of arguments is the compiler's.
+    const auto place = [&draw](double most) {
+        const double x = draw(-most, most);
+        return Vec2(x, draw(-most, most));
+    };
+    for (int k = 0; k < 1500; ++k) {
+        const double from = draw(0.0, 360.0), turn = k % 3 == 0 ? 360.0 : draw(20.0, 350.0);
+        const Vec2 center = place(0.4);
+        const Jaw wall = arc(center, draw(0.2, 1.0), from, from + turn, k % 2 == 0 ? "inside" : "outside");
+        const Nose nose = nose_of(wall, 0, 0.0);
+        Path path{place(1.0), Vec2::Zero(), Vec2::Zero(), 3.0, true, true};
+        path.v = place(1.0);
+        if (k % 4 != 0) path.a = place(0.5), path.straight = false;
+        const Vec2 out = path.r - nose.center;
+        // Not already in it, nor behind all of it, where no scene puts a ball.
+        if (std::abs(length(out) - std::abs(nose.radius)) < kR) continue;
+        if (nose.span.whole && nose.sign() * length(out) < nose.radius) continue;
+        const double t = time_to_nose(path, nose, kR), reference = stepped(path, nose, kR, path.horizon);
+        // A short visit between two steps is seen by one of the two only; and so is a ball that comes around
+        // an end, which is what touches it first.
+        if (reference < kNever)
+            EXPECT_NEAR(t, reference, 1e-9)
+                << k << " from " << out.transpose() << ", v " << path.v.transpose() << ", a "
+                << path.a.transpose() << ", radius " << nose.radius;
+        else if (t < kNever && nose.sign() < 0.0)
+            EXPECT_FALSE(nose.span.whole) << k;
+        (t < kNever ? met : missed) += 1;
+    }
+    EXPECT_GT(met, 250);
+    EXPECT_GT(missed, 300);
+}
+
+// A ball that loses speed at a round wall comes to run along it, and leaves it where it ends.
+TEST(Arcs, ABallRunsAlongARoundWall) {
+    Scene scene = lossless();
+    scene.balls.e_c = 0.5;
+    constexpr double kRadius = 0.5 + kR;
+    scene.table.cushions.push_back({"c1", {-1.0, -kRadius}, {0.0, -kRadius}, kR});
+    scene.table.jaws.push_back(arc({0.0, 0.0}, kRadius, -90.0, 90.0));
+    add_ball(scene, "1", -0.5, -0.5, 1.0, 0.0);
+    scene.stop.time = 3.0;
+    const Record record = run_verified(scene);
+    // Half a turn at constant speed, and on along a straight line.
+    const BallState end = record.state_at(0, 3.0);
+    EXPECT_NEAR(end.velocity.x(), -1.0, 1e-4);
+    EXPECT_NEAR(end.velocity.y(), 0.0, 1e-3);
+    EXPECT_NEAR(end.position.y(), 0.5, 1e-3);
+    EXPECT_NEAR(end.position.x(), -(3.0 - 0.5 - 0.5 * std::numbers::pi), 1e-3);
+}
+
+const std::string kHead = "[balls]\nradius = 0.01\n";
+
+TEST(Arcs, AreRefusedWithALine) {
+    const std::string ball = "[[ball]]\nposition = [0.2, 0.1]\nvelocity = [1, 0]\n[stop]\ntime = 1\n";
+    const auto table = [&](const std::string& keys) { return kHead + "[[table.arc]]\n" + keys + ball; };
+    EXPECT_EQ(error_of(table("center = [0, 0]\nradius = 1\n")), "");
+    EXPECT_EQ(error_of(kHead + "[[table.jaw]]\ncenter = [0, 0]\nradius = 1\n" + ball),
+              "s.toml:6:1: ball \"cue\" lies inside jaw j1, which balls touch from outside; move it out, or "
+              "write [[table.arc]] with side = \"inside\" for a round wall");
+    EXPECT_EQ(error_of(table("center = [0, 0]\nradius = 1\nside = \"outside\"\n")),
+              "s.toml:7:1: ball \"cue\" lies behind arc a1, whose side is \"outside\"; move it to that side");
+    EXPECT_EQ(error_of(table("center = [2, 0]\nradius = 1\n")),
+              "s.toml:6:1: ball \"cue\" lies behind arc a1, whose side is \"inside\"; move it to that side");
+    EXPECT_NE(error_of(table("center = [0, 0]\nradius = 1\nfrom_deg = 20\nto_deg = 10\n"))
+                  .find("s.toml:7:10: "
+                        "table.arc.to_deg = 10 is not up to 360 degrees beyond from_deg = 20"),
+              std::string::npos);
+    EXPECT_NE(error_of(kHead + "[[table.jaw]]\ncenter = [0, 0]\nradius = 1\nfrom_deg = 20\n" + ball)
+                  .find("a jaw is a full circle; write [[table.arc]] for a part of one"),
+              std::string::npos);
+    EXPECT_NE(error_of(kHead + "[[table.jaw]]\ncenter = [0, 0]\nradius = 1\nside = \"inside\"\n" + ball)
+                  .find("balls touch a jaw from outside"),
+              std::string::npos);
+    EXPECT_NE(error_of(table("center = [0.2, 0.1]\nradius = 0.01\n")).find("no ball fits inside"),
+              std::string::npos);
+    EXPECT_NE(error_of(table("center = [0, 0]\nradius = 0\n")).find("no length"), std::string::npos);
+    EXPECT_NE(error_of(table("center = [0, 0]\nradius = 0.23\n")).find("into arc a1"), std::string::npos);
+    EXPECT_NE(
+        error_of(kHead +
+                 "[[table.arc]]\ncenter = [0, 0]\nradius = 1\n[[ball]]\nposition = [0, 0]\nheight = 0.2\n")
+            .find("arc a1 meets balls on the cloth only"),
+        std::string::npos);
+    EXPECT_NE(
+        error_of(kHead +
+                 "[[table.arc]]\ncenter = [0, 0]\nradius = 1\n[[ball]]\nid = \"a1\"\nposition = [0, 0]\n")
+            .find("is the name of an arc"),
+        std::string::npos);
+}
+
+TEST(Arcs, AreWrittenAndReadBack) {
+    Scene scene = parse_scene(kHead +
+                                  "[[table.arc]]\ncenter = [0, 0]\nradius = 1\nfrom_deg = 10\n[[ball]]\n"
+                                  "position = [0.2, 0.1]\n",
+                              "s.toml");
+    ASSERT_EQ(scene.table.jaws.size(), 1u);
+    EXPECT_EQ(scene.table.jaws[0].id, "a1");
+    EXPECT_EQ(scene.table.jaws[0].to_deg, 370.0);
+    EXPECT_EQ(scene.table.width, 2.0);
+    EXPECT_EQ(scene.table.length, 2.0);
+    const Scene again = parse_scene(scene_text(scene), "s.toml");
+    EXPECT_TRUE(again.table == scene.table);
+    Scene built = scene;
+    EXPECT_NO_THROW(validate(built));
+    built.table.jaws[0].to_deg = 5.0;
+    EXPECT_THROW(validate(built), SceneError);
+    const Record record = simulate(make_plan(scene, kernel::Isa::kScalar));
+    EXPECT_TRUE(parse_record(record_json(record), "r.json").table == record.table);
+}
+
+// Two discs touch at the sum of their radii, where balls of unlike size are nearer.
+TEST(Discs, TouchAtTheSumOfTheirRadii) {
+    for (const bool discs : {true, false}) {
+        Scene scene = lossless();
+        scene.balls.disc = discs;
+        add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0);
+        add_ball(scene, "2", 0.5, 0.0);
+        scene.ball.back().own = BallSize{0.04, scene.balls.m};
+        scene.ball.back().position.z() = 0.04;
+        scene.stop.time = 1.0;
+        const Record record = run_verified(scene);
+        ASSERT_EQ(record.events.size(), 1u);
+        EXPECT_NEAR(record.events[0].time, 0.5 - (discs ? kR + 0.04 : 2.0 * std::sqrt(kR * 0.04)), 1e-14);
+        // Equal masses change their velocities.
+        EXPECT_NEAR(record.state_at(0, 1.0).velocity.x(), 0.0, 1e-14);
+        EXPECT_NEAR(record.state_at(1, 1.0).velocity.x(), 1.0, 1e-14);
+    }
+}
+
+Scene pucks() {
+    Scene scene = lossless();
+    scene.balls.disc = scene.balls.slides = 1.0;
+    scene.balls.mu_s = 0.15;
+    scene.physics.gravity = 9.81;
+    return scene;
+}
+
+// A puck stops after v^2 / (2 mu g), and never rolls.
+TEST(Pucks, StopWhereFrictionAloneStopsThem) {
+    Scene scene = pucks();
+    add_ball(scene, "1", 0.0, 0.0, 1.2, 0.9);
+    scene.ball[0].spin = {0.0, 0.0, 5.0};
+    scene.balls.mu_sp = 0.02;
+    const Record record = run_verified(scene);
+    const double mu_g = 0.15 * 9.81, way = 1.5 * 1.5 / (2.0 * mu_g);
+    const BallState end = record.state_at(0, record.duration);
+    EXPECT_NEAR(end.position.x(), 0.8 * way, 1e-13);
+    EXPECT_NEAR(end.position.y(), 0.6 * way, 1e-13);
+    EXPECT_TRUE(end.velocity.isZero(0.0));
+    for (const Segment& s : record.tracks[0].segments) EXPECT_NE(s.state, MotionState::kRolling);
+    EXPECT_EQ(record.events[0].type, EventType::kRollStop);
+    EXPECT_NEAR(record.events[0].time, 1.5 / mu_g, 1e-14);
+}
+
+// Two that stay together share the momentum, and stop together.
+TEST(Pucks, ThatStickStopTogether) {
+    Scene scene = pucks();
+    scene.balls.e_b = 0.0;
+    scene.physics.ball_ball = ball_ball_model("inelastic");
+    add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0);
+    add_ball(scene, "2", 0.1, 0.0);
+    const Record record = run_verified(scene);
+    const double mu_g = 0.15 * 9.81, v2 = 1.0 - 2.0 * mu_g * (0.1 - 2.0 * kR), way = 0.25 * v2 / (2.0 * mu_g);
+    EXPECT_NEAR(record.state_at(1, record.duration).position.x(), 0.1 + way, 1e-8);
+    EXPECT_NEAR(record.state_at(0, record.duration).position.x(), 0.1 - 2.0 * kR + way, 1e-8);
+    for (const BallTrack& track : record.tracks)
+        for (const Segment& s : track.segments) EXPECT_TRUE(planar(s.w).isZero(0.0));
+}
+
+TEST(Pucks, AreRefusedWithALine) {
+    const std::string balls = "[balls]\nrolls = false\nmu_b = 0\nf_c = 0\n",
+                      model =
+                          "[physics]\nball_ball = "
+                          "\"elastic\"\ncushion = \"smooth\"\n",
+                      ball = "[[ball]]\nposition = [0.4, 0.5]\nvelocity = [1, 0]\n";
+    EXPECT_EQ(error_of(balls + model + ball), "");
+    EXPECT_NE(error_of("[balls]\nrolls = false\n" + ball).find("friction between two is not built"),
+              std::string::npos);
+    EXPECT_NE(error_of("[balls]\nrolls = false\nmu_b = 0\n" + ball).find("friction at a wall is not built"),
+              std::string::npos);
+    EXPECT_NE(error_of(balls + "e_h = 0.1\n" + model + ball).find("do not hop"), std::string::npos);
+    EXPECT_NE(
+        error_of(balls + model + "[[ball]]\nposition = [0.4, 0.5]\n[cue]\nspeed = 1\n").find("a cue turns"),
+        std::string::npos);
+    EXPECT_NE(error_of("[balls]\nshape = \"disc\"\nmu_b = 0\n" + ball +
+                       "[[ball]]\nid = \"1\"\nposition = [0.4, 0.9]\nradius = 0.02\n")
+                  .find("discs of unlike size need a model without spins"),
+              std::string::npos);
+    const Scene scene = parse_scene(balls + model + ball, "s.toml");
+    EXPECT_FALSE(scene.balls.rolls());
+    EXPECT_TRUE(parse_scene(scene_text(scene), "s.toml").balls == scene.balls);
+}
+
+}  // namespace
+}  // namespace carom::test
