@@ -1,6 +1,7 @@
 // Round walls, discs and pucks.
 #include <gtest/gtest.h>
 
+#include <vector>
 #include <cmath>
 #include <numbers>
 #include <string>
