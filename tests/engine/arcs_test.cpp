@@ -190,12 +190,13 @@ TEST(Arcs, AreMetFromAllSides) {
         const double t = time_to_nose(path, nose, kR), reference = stepped(path, nose, kR, path.horizon);
         // A short visit between two steps is seen by one of the two only; and so is a ball that comes around
         // an end, which is what touches it first.
-        if (reference < kNever)
+        if (reference < kNever) {
             EXPECT_NEAR(t, reference, 1e-9)
                 << k << " from " << out.transpose() << ", v " << path.v.transpose() << ", a "
                 << path.a.transpose() << ", radius " << nose.radius;
-        else if (t < kNever && nose.sign() < 0.0)
+        } else if (t < kNever && nose.sign() < 0.0) {
             EXPECT_FALSE(nose.span.whole) << k;
+        }
         (t < kNever ? met : missed) += 1;
     }
     EXPECT_GT(met, 250);

@@ -75,7 +75,7 @@ TEST(EventDetails, ABankKnowsItsDiamondItsNoseAndWhatItLost) {
 }
 
 TEST(EventDetails, EveryEventOfEverySceneJoinsItsStates) {
-    for (const auto& path : toml_files(std::string(CAROM_SOURCE_DIR) + "/scenes")) {
+    for (const auto& path : toml_files(CAROM_SOURCE_DIR "/scenes")) {
         SCOPED_TRACE(path);
         const Record record = simulate(plan_of(read_scene(path.string())));
         std::vector<double> row(event_columns().size());

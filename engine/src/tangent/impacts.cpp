@@ -314,7 +314,8 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         const BallStart& other = scene.ball[one + two - moves];
         const Vec2 apart = planar(moving.position - other.position);
         moving.position.head<2>() =
-            planar(other.position) + apart * contact_distance(moving.own->R, other.own->R) / length(apart);
+            planar(other.position) +
+            apart * contact_distance(moving.own->R, other.own->R, scene.balls.discs()) / length(apart);
         const Record record = simulate(make_plan(scene, laws.plan.isa));
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
