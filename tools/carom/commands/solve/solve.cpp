@@ -112,7 +112,8 @@ Exact exact_of(const Solution& found, const std::vector<Choice>& choices,
     SearchArgs once = args.search;
     once.best = 1;
     once.shots = static_cast<std::uint64_t>(kExactShare * static_cast<double>(once.shots));
-    exact.solution = search(exact.refined.scene, args.scene, want, game, fixed, {}, once)[0];
+    once.plot.clear();
+    exact.solution = search({exact.refined.scene, args.scene, want, game, fixed, {}}, once)[0];
     return exact;
 }
 
@@ -138,8 +139,8 @@ int run(const SolveArgs& args) {
     if (args.exact && layouts.size() > 1)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
     if (args.exact) places_of(args.want, plan.scene);
-    const std::vector<Solution> found =
-        search(plan.scene, args.scene, want, game, choices, layouts, args.search);
+    const Search asked{plan.scene, args.scene, want, game, choices, layouts};
+    const std::vector<Solution> found = search(asked, args.search);
     std::vector<Exact> exact;
     if (args.exact) {
         const std::vector<games::Place> places = places_of(args.want, plan.scene);
@@ -149,6 +150,7 @@ int run(const SolveArgs& args) {
     const bool is_exact = !exact.empty() && exact[0].solution;
     if (!args.search.output.empty())
         write_best(args.search.output, is_exact ? *exact[0].solution : found[0], want, args.search);
+    plot_best(asked, found[0], harmless(args.scene), args.search);
     if (args.search.json) {
         Json all{{"want", want},
                  {"hand", args.search.hand},
