@@ -34,6 +34,10 @@ constexpr std::size_t kParents = 16;
 constexpr std::size_t kYoung = 24, kGrown = 120;
 // [-] Parts of a range by which two shots must differ in some input to be of two kinds.
 constexpr double kOtherKind = 0.12;
+// A map: cells to a side, its share of the budget, and how far it reaches in distances at which success
+// halves.
+constexpr std::size_t kSide = 24;
+constexpr double kMap = 0.15, kReach = 3.0;
 // Errors whose cost is told.
 constexpr double kAimOff = 0.2, kSpeedOff = 0.05, kTipOff = 0.05, kPlaceOff = 0.01;
 
@@ -114,7 +118,62 @@ class Solver {
         return solutions;
     }
 
+    SuccessMap map(const Solution& around) {
+        if (options_.choices.size() < 2)
+            throw std::invalid_argument("a map needs two inputs to choose; give two ranges");
+        fresh_ = true;
+        const std::size_t each = std::max<std::size_t>(
+            8, static_cast<std::size_t>(kMap * static_cast<double>(options_.shots)) / (kSide * kSide));
+        std::vector<std::pair<double, std::size_t>> order;
+        for (std::size_t k = 0; k < options_.choices.size(); ++k)
+            order.emplace_back(half_width(around, k, each), k);
+        std::sort(order.begin(), order.end());
+        SuccessMap map;
+        std::array<Choice, 2> window;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const auto [part, k] = order[axis];
+            map.choices[axis] = k;
+            const Choice& choice = options_.choices[k];
+            const double reach = std::max(kReach * part * range(k), 1e-9);
+            window[axis].low = std::max(choice.low, around.values[k] - reach);
+            window[axis].high = std::min(choice.high, around.values[k] + reach);
+        }
+        const auto at = [](const Choice& c, std::size_t i) {
+            return c.low + (c.high - c.low) * (static_cast<double>(i) + 0.5) / kSide;
+        };
+        std::vector<Candidate> cells;
+        for (std::size_t row = 0; row < kSide; ++row)
+            for (std::size_t column = 0; column < kSide; ++column) {
+                map.cells.push_back({{at(window[0], column), at(window[1], row)}, 0.0});
+                Candidate& cell = cells.emplace_back(Candidate{around.values});
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    cell.values[map.choices[axis]] = map.cells.back().place[axis];
+            }
+        play(cells, each);
+        for (std::size_t i = 0; i < cells.size(); ++i) map.cells[i].success = cells[i].score();
+        return map;
+    }
+
   private:
+    /// The part of its range by which a choice is off when half of the success is gone, on average of both
+    /// sides; 1 if that never happens.
+    double half_width(const Solution& around, std::size_t k, std::size_t shots) {
+        constexpr std::size_t kHalvings = 12;
+        const double low = options_.choices[k].low, high = options_.choices[k].high;
+        std::vector<Candidate> off(2 * kHalvings + 1, Candidate{around.values});
+        for (std::size_t i = 0; i < 2 * kHalvings; ++i) {
+            const double by = std::ldexp(range(k), -static_cast<int>(i / 2));
+            double& value = off[i].values[k];
+            value = std::clamp(value + (i % 2 == 0 ? -by : by), low, high);
+        }
+        play(off, shots);
+        double part = 1.0;
+        for (std::size_t i = 0; i < kHalvings; ++i)
+            if (off[2 * i].score() + off[2 * i + 1].score() < off.back().score())
+                part = std::ldexp(1.0, -static_cast<int>(i));
+        return part;
+    }
+
     int ball_of(const std::string& id) const {
         for (std::size_t i = 0; i < scene_.ball.size(); ++i)
             if (scene_.ball[i].id == id) return static_cast<int>(i);
@@ -407,6 +466,11 @@ std::vector<Choice> default_choices() {
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
                             const SolveOptions& options) {
     return Solver(scene, want, isa, options).run();
+}
+
+SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
+                       const Solution& around) {
+    return Solver(scene, want, isa, options).map(around);
 }
 
 }  // namespace carom::games

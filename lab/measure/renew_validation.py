@@ -33,11 +33,10 @@ def validate(carom, folder, case):
 def worst(group):
     row = max(group, key=lambda r: abs(r["difference"]))
     off, unit = row["computed"] - row["measured"], row["unit"]
-    by = f"{abs(off):.2g} {unit}"
+    by = f"{off:+.2g} {unit}"
     if row["measured"] and unit != "deg":
-        by = f"{abs(off / row['measured']):.0%}".replace("%", " %")
-    side = "off" if not row["measured"] else "low" if off < 0 else "high"
-    return f"{row['difference']:+.1f} ({by} {side})"
+        by = f"{off / row['measured']:+.0%}".replace("%", " %")
+    return f"{row['difference']:+.1f} ({by})"
 
 
 def summary(all_rows):
@@ -48,8 +47,8 @@ def summary(all_rows):
         groups.setdefault((row["title"], row["variant"]), []).append(row)
         if row["keys"] and row["keys"] != row["variant"]:
             keys[(row["variant"], f"`{row['preset']}` with `{row['keys']}`")] = None
-    lines = ["| case | what | trust | variant | model | free | within | worst |",
-             "|---|---|---|---|---|---|---|---|"]
+    lines = ["| case | what | trust | variant | free | within | worst |",
+             "|---|---|---|---|---|---|---|"]
     last = None
     for (title, variant), group in groups.items():
         ids = [group[0]["case"], group[-1]["case"]]
@@ -59,7 +58,7 @@ def summary(all_rows):
         free = "yes" if all(r["free_of_fit"] for r in group) else "no"
         within = f"{sum(r['within'] for r in group)} of {len(group)}"
         lines.append(
-            "| " + " | ".join([*what, variant, group[0]["model"], free, within, worst(group)]) + " |")
+            "| " + " | ".join([*what, variant, free, within, worst(group)]) + " |")
     return "\n".join(lines) + "\n\n" + "".join(f"* {name}: {what}\n" for name, what in keys)
 
 

@@ -134,7 +134,9 @@ TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
         {"[\"within\"]", "[\"good\"]", "x.toml:13:11: a claim is \"within\" or the value that is computed"},
         {"[\"within\"]", "[1.0, 2.0]", "2 claims for 1 numbers"},
         {"[\"within\"]", "[]", "claims has to be a list that is not empty"},
-        {"quantity = \"speed\", when = \"start\"", "quantity = \"share\"", "a share needs [sweep]"},
+        {"quantity = \"speed\", when = \"start\"", "quantity = \"share\"", "of is missing"},
+        {"quantity = \"speed\", when = \"start\"", "quantity = \"mean\", of = \"scratch\"",
+         "a share or a mean needs [sweep]"},
         {"quantity = \"speed\"", "quantity = \"place\", place = [1.0]", "place is [x, y]"},
         {"title = ", "title ", "x.toml:2:"},
     };

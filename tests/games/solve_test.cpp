@@ -64,6 +64,30 @@ TEST(Solve, HitAimsAtItsBall) {
     }
 }
 
+// Without errors of the hand the ball is hit if the aim is less than its edge away, at any speed.
+TEST(Solve, AMapShowsTheInputThatMustBeMet) {
+    const Scene scene = parse_scene(
+        "[table]\ncushion = []\n[[ball]]\n[[ball]]\nid = \"1\"\nposition = [0.635, 1.5]\n[cue]\nspeed = 2\n",
+        "open.toml");
+    const Measure want("first_hit == \"1\"", scene);
+    SolveOptions options = small();
+    options.shots = 1000;
+    options.choices = {{"cue.offset.height", -0.2, 0.2}, {"cue.speed", 2.0, 3.0}, {"hit.1", -3.0, 3.0}};
+    options.hand = {0.0, 0.0, 0.0, 0.0};
+    Solution around;
+    around.values = {0.0, 2.5, 0.0};
+    const games::SuccessMap map = games::success_map(scene, want, kernel::best_isa(), options, around);
+    EXPECT_EQ(map.choices, (std::array<std::size_t, 2>{2, 0}));
+    ASSERT_EQ(map.cells.size(), 24u * 24u);
+    for (const auto& cell : map.cells) {
+        EXPECT_EQ(cell.success, std::abs(cell.place[0]) < 1.0 ? 1.0 : 0.0) << cell.place[0];
+        EXPECT_LE(std::abs(cell.place[1]), 0.2);
+    }
+    EXPECT_NEAR(map.cells.back().place[0], 3.0 - 0.125, 1e-12);
+    options.choices.resize(1);
+    EXPECT_THROW(games::success_map(scene, want, kernel::best_isa(), options, around), std::invalid_argument);
+}
+
 // Each layout brings its balls' sizes along: otherwise the balls of most would overlap.
 TEST(Solve, LayoutsOfUnlikeBalls) {
     games::BreakOptions wanted;

@@ -63,6 +63,23 @@ TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
     EXPECT_TRUE(contains(nowhere.err, "--exact: no place is wanted; add one")) << nowhere.err;
 }
 
+TEST_F(CliSolve, DrawsTheShotBesideItsMap) {
+    const std::string file = folder_.file("map.svg");
+    const std::vector<std::string> call = {
+        "solve", draw_,    "--want", "\"1\" in pocketed", "--vary", "cue.aim_deg=uniform(120,150)", "--shots",
+        "1000",  "--plot", file};
+    const ProcessResult one = carom(call);
+    EXPECT_EQ(one.status, 2);
+    EXPECT_TRUE(contains(one.err, "--plot: a map needs two inputs to choose; give two --vary")) << one.err;
+    std::vector<std::string> two = call;
+    two.insert(two.end(), {"--vary", "cue.speed=uniform(1,4)"});
+    const ProcessResult result = carom(two);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(read_file(file).substr(0, 5), "<?xml");
+    two[9] = folder_.file("map.gif");
+    EXPECT_TRUE(contains(carom(two).err, "expected a name that ends with .svg, .pdf or .png"));
+}
+
 TEST_F(CliSolve, RecommendsABreak) {
     const std::string scene = folder_.file("b.toml"), page = folder_.file("b.html");
     for (const char* game : {"nine_ball", "ten_ball"}) {

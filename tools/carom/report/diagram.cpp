@@ -425,9 +425,11 @@ class Drawing {
     int struck_ = -1;
 };
 
-/// Draws all shots, in two columns if there are several. @return the size of the page
-std::pair<double, double> draw_page(cairo_t* cr, const std::vector<DiagramShot>& shots,
-                                    const DiagramStyle& style) {
+}  // namespace
+
+// In two columns if there are several shots.
+std::pair<double, double> paint_diagram(cairo_t* cr, const std::vector<DiagramShot>& shots,
+                                        const DiagramStyle& style) {
     const std::size_t columns = shots.size() > 1 ? 2 : 1;
     double y = kMargin;
     for (std::size_t first = 0; first < shots.size(); first += columns) {
@@ -445,8 +447,6 @@ std::pair<double, double> draw_page(cairo_t* cr, const std::vector<DiagramShot>&
     return {kMargin + static_cast<double>(columns) * (kDrawingWidth + kMargin), y};
 }
 
-}  // namespace
-
 std::string diagram_format(const std::string& path) {
     for (const char* format : kDiagramFormats)
         if (path.ends_with(format)) return format;
@@ -455,7 +455,7 @@ std::string diagram_format(const std::string& path) {
 
 std::string draw_diagram(const std::vector<DiagramShot>& shots, const DiagramStyle& style,
                          const std::string& format) {
-    return cairo_page(format, [&](cairo_t* cr) { return draw_page(cr, shots, style); });
+    return cairo_page(format, [&](cairo_t* cr) { return paint_diagram(cr, shots, style); });
 }
 
 }  // namespace carom::tools

@@ -6,6 +6,9 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "report/diagram.h"
 
 namespace carom::tools {
 
@@ -14,5 +17,9 @@ using PaintPage = std::function<std::pair<double, double>(cairo_t* cr)>;
 
 /// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error
 std::string cairo_page(const std::string& format, const PaintPage& paint);
+
+/// What draw_diagram draws. @return its width and height [points]
+std::pair<double, double> paint_diagram(cairo_t* cr, const std::vector<DiagramShot>& shots,
+                                        const DiagramStyle& style);
 
 }  // namespace carom::tools

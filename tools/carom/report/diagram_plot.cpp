@@ -157,8 +157,14 @@ class SweepDrawing {
 
 }  // namespace
 
-std::string draw_plot(const SweepPlot& plot, const std::string& format) {
-    return cairo_page(format, [&](cairo_t* cr) { return SweepDrawing(cr, plot).draw(); });
+std::string draw_plot(const SweepPlot& plot, const std::string& format, const std::vector<DiagramShot>& shots,
+                      const DiagramStyle& style) {
+    return cairo_page(format, [&](cairo_t* cr) {
+        const auto [width, height] = shots.empty() ? std::pair(0.0, 0.0) : paint_diagram(cr, shots, style);
+        cairo_translate(cr, width, 0.0);
+        const auto [more, tall] = SweepDrawing(cr, plot).draw();
+        return std::pair(width + more, std::max(height, tall));
+    });
 }
 
 }  // namespace carom::tools

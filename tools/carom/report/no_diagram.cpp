@@ -17,7 +17,8 @@ std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, c
     throw std::runtime_error("this build cannot draw diagrams");
 }
 
-std::string draw_plot(const SweepPlot&, const std::string&) {
+std::string draw_plot(const SweepPlot&, const std::string&, const std::vector<DiagramShot>&,
+                      const DiagramStyle&) {
     throw std::runtime_error("this build cannot draw plots");
 }
 

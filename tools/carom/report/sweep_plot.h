@@ -1,4 +1,5 @@
-// A measure of a sweep as a picture: a histogram, or a map over two of the values that vary.
+// A measure of a sweep, or the success of a search, as a picture: a histogram, or a map over two of the
+// values that vary.
 #pragma once
 
 #include <array>
@@ -6,6 +7,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "report/diagram.h"
 
 namespace carom::tools {
 
@@ -32,7 +35,9 @@ struct Bins {
 /// and the largest, more of them for more values. @param dimensions 1 for a histogram, 2 for a map
 Bins bins_of(std::span<const double> values, int dimensions);
 
-/// @param format  as for draw_diagram  @return the file's bytes  @throws std::runtime_error
-std::string draw_plot(const SweepPlot& plot, const std::string& format);
+/// @param format  as for draw_diagram  @param shots  drawn to its left  @return the file's bytes
+/// @throws std::runtime_error
+std::string draw_plot(const SweepPlot& plot, const std::string& format,
+                      const std::vector<DiagramShot>& shots = {}, const DiagramStyle& style = {});
 
 }  // namespace carom::tools

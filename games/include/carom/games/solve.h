@@ -7,6 +7,7 @@
 // The figures that are reported come from shots that the search has not seen.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -80,6 +81,21 @@ struct Solution {
     };
     std::vector<Cost> costs;
 };
+
+/// Success around a solution, over the two choices that must be met most exactly.
+struct SuccessMap {
+    std::array<std::size_t, 2> choices{};
+    struct Cell {
+        std::array<double, 2> place;  ///< the values of the two choices
+        double success;
+    };
+    std::vector<Cell> cells;  ///< an even grid
+};
+
+/// A choice must be met the more exactly, the smaller the part of its range by which success halves.
+/// @throws std::invalid_argument as solve, and if there are not two choices
+SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
+                       const Solution& around);
 
 /// The best shots that differ in kind, the surest first.
 /// @throws std::invalid_argument for a key that names no number, a range that is none, or a want that the

@@ -73,9 +73,10 @@ games::BreakSearch read_break(const BreakArgs& args) {
 int run(const BreakArgs& args) {
     const std::string& game = args.wanted.game;
     const games::BreakSearch asked = read_break(args);
-    const std::vector<Solution> found = search(asked.scene, "break of " + game, asked.want, asked.game,
-                                               asked.choices, asked.layouts, args.search);
+    const Search what{asked.scene, "break of " + game, asked.want, asked.game, asked.choices, asked.layouts};
+    const std::vector<Solution> found = search(what, args.search);
     const std::string title = fmt::format("{} break, {} rack", game, args.wanted.rack);
+    plot_best(what, found[0], title, args.search);
     if (!args.search.output.empty()) write_best(args.search.output, found[0], asked.want, args.search);
     if (!args.diagram.empty() || !args.page.empty()) {
         const Record record = simulate(make_plan(found[0].scene, chosen_isa()));

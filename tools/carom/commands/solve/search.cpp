@@ -11,7 +11,10 @@
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "carom/engine/batch.h"
+#include "carom/engine/plan.h"
 #include "carom/engine/printable.h"
+#include "carom/engine/simulate.h"
+#include "report/sweep_plot.h"
 
 namespace carom::tools {
 namespace {
@@ -59,42 +62,76 @@ void add_search(Options& command, SearchArgs& args) {
         .in(0, 256);
     command.option("-o,--output", &args.output, "FILE.toml",
                    "Write the best shot as a scene (default: not written)");
+    command.option("--plot", &args.plot, "FILE",
+                   "Draw the best shot, and success over its two strongest inputs: .svg, .pdf or .png "
+                   "(default: not drawn)");
     command.flag("--json", args.json, "Print everything as JSON (default: off)");
 }
 
-std::vector<Solution> search(const Scene& scene, const std::string& name, const std::string& want,
-                             std::optional<games::Game> game, std::vector<Choice> choices,
-                             std::vector<Scene> layouts, const SearchArgs& args,
-                             std::vector<games::Exact>* exact) {
+namespace {
+
+/// Plays with a progress bar: `play` gets what games::solve takes.
+template <class Play>
+auto played(const Search& what, const SearchArgs& args, const char* title, Play&& play) {
     games::SolveOptions options;
-    options.choices = std::move(choices);
-    options.layouts = std::move(layouts);
+    options.choices = what.choices;
+    options.layouts = what.layouts;
     options.hand = read_hand(args.hand);
     options.seed = args.seed;
     options.shots = static_cast<std::size_t>(args.shots);
     options.threads = args.jobs;
     options.best = static_cast<std::size_t>(args.best);
-    ProgressLine line("search");
+    ProgressLine line(title);
     options.progress = [&](std::size_t done) {
         line.show_bar(static_cast<long>(done), static_cast<long>(options.shots));
     };
     options.stop = [] { return interrupted(); };
     try {
-        const games::Measure wanted(want, scene, game);
-        if (exact != nullptr && wanted.places().empty())
-            throw UsageError(
-                "--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
-        const std::vector<Solution> found = games::solve(scene, wanted, chosen_isa(), options);
-        for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
-            exact->push_back(games::exact(found[i], wanted, chosen_isa(), options));
-        return found;
+        return play(games::Measure(what.want, what.scene, what.game), options);
     } catch (const games::MeasureError& error) {
         throw UsageError(fmt::format("--want {}", error.what()));
     } catch (const BatchStopped&) {
         throw Interrupted();
     } catch (const std::invalid_argument& error) {
-        throw UsageError(fmt::format("{}: {}", harmless(name), error.what()));
+        throw UsageError(fmt::format("{}: {}", harmless(what.name), error.what()));
     }
+}
+
+}  // namespace
+
+std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Exact>* exact) {
+    if (!args.plot.empty()) {
+        diagram_format(args.plot);
+        if (what.choices.size() < 2)
+            throw UsageError("--plot: a map needs two inputs to choose; give two --vary");
+    }
+    return played(what, args, "search", [&](const games::Measure& want, const games::SolveOptions& options) {
+        if (exact != nullptr && want.places().empty())
+            throw UsageError(
+                "--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
+        std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options);
+        for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
+            exact->push_back(games::exact(found[i], want, chosen_isa(), options));
+        return found;
+    });
+}
+
+void plot_best(const Search& what, const Solution& best, const std::string& title, const SearchArgs& args) {
+    if (args.plot.empty()) return;
+    const games::SuccessMap map =
+        played(what, args, "map", [&](const games::Measure& want, const games::SolveOptions& options) {
+            return games::success_map(what.scene, want, chosen_isa(), options, best);
+        });
+    SweepPlot plot;
+    plot.measure = "success: " + what.want;
+    for (const std::size_t choice : map.choices) plot.axes.push_back(what.choices[choice].key);
+    for (const games::SuccessMap::Cell& cell : map.cells) plot.shots.push_back({cell.place, cell.success});
+    DiagramStyle style;
+    style.diamond_numbers = true;
+    const DiagramShot shot{title, simulate(make_plan(best.scene, chosen_isa())), best.scene.cue};
+    OutputFile file(args.plot);
+    file.write(draw_plot(plot, diagram_format(args.plot), {shot}, style));
+    file.commit();
 }
 
 std::string falls_text(const Solution& solution) {

@@ -16,19 +16,30 @@ namespace carom::tools {
 
 /// The options of a search.
 struct SearchArgs {
-    std::string hand = kHand, output;
+    std::string hand = kHand, output, plot;
     std::uint64_t shots = 400000, seed = 1;
     int jobs = 0, best = 3;
     bool json = false;
 };
 void add_search(Options& command, SearchArgs& args);
 
+/// What is searched.
+struct Search {
+    const Scene& scene;
+    std::string name;  ///< of the scene, for messages
+    std::string want;
+    std::optional<games::Game> game;
+    std::vector<games::Choice> choices;
+    std::vector<Scene> layouts;
+};
 /// Searches with a progress bar; with `exact`, moves what is found to where it should be and puts that there.
-/// @param name  of the scene, for messages  @throws UsageError, Interrupted
-std::vector<games::Solution> search(const Scene& scene, const std::string& name, const std::string& want,
-                                    std::optional<games::Game> game, std::vector<games::Choice> choices,
-                                    std::vector<Scene> layouts, const SearchArgs& args,
+/// @throws UsageError, Interrupted
+std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
                                     std::vector<games::Exact>* exact = nullptr);
+
+/// Writes the picture that args.plot asks for: the shot, and success over its two strongest inputs.
+void plot_best(const Search& what, const games::Solution& best, const std::string& title,
+               const SearchArgs& args);
 
 /// "falls 1 into p5 49 %, ..." and what errors cost, a line each.
 std::string falls_text(const games::Solution& solution);

@@ -86,11 +86,12 @@ int run(const SolveArgs& args) {
     if (args.exact && layouts.size() > 1)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
     std::vector<games::Exact> exact;
-    const std::vector<Solution> found = search(plan.scene, args.scene, want, game, choices, layouts,
-                                               args.search, args.exact ? &exact : nullptr);
+    const Search asked{plan.scene, args.scene, want, game, choices, layouts};
+    const std::vector<Solution> found = search(asked, args.search, args.exact ? &exact : nullptr);
     const bool is_exact = !exact.empty() && exact[0].solution;
     if (!args.search.output.empty())
         write_best(args.search.output, is_exact ? *exact[0].solution : found[0], want, args.search);
+    plot_best(asked, found[0], harmless(args.scene), args.search);
     if (args.search.json) {
         Json all{{"want", want},
                  {"hand", args.search.hand},
