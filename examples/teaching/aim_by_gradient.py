@@ -18,7 +18,7 @@ from carom import plot
 INPUTS = ["cue.aim_deg", "cue.speed", "cue.offset.height"]
 UNITS = np.array([1.0, 0.2, 0.05])  # degrees, m/s, ball radii
 START = np.array([135.0, 2.25, -0.4])
-WANTED = np.array([0.94, 1.58])
+WANTED = np.array([0.95, 1.65])
 SCENE = carom.Scene(
     table="nine_foot",
     ball=[{"id": "cue", "position": [0.6, 1.94]}, {"id": "1", "position": [0.3, 2.24]}],
