@@ -41,7 +41,7 @@ class Shot:
 
 def pulled(slopes: Array, pull: Array) -> Array:
     """Backwards: derivatives of a number by the inputs, from those by the places."""
-    return np.einsum("bak,ba->k", slopes, pull)
+    return np.asarray(np.einsum("bak,ba->k", slopes, pull))
 
 
 def pushed(slopes: Array, push: Array) -> Array:
@@ -76,7 +76,7 @@ def for_jax(shot: Shot) -> Callable[[Any], Any]:
     shapes = (jax.ShapeDtypeStruct((balls, 2), jnp.float64),
               jax.ShapeDtypeStruct((balls, 2, inputs), jnp.float64))
 
-    @jax.custom_jvp
+    @jax.custom_jvp  # type: ignore[untyped-decorator, unused-ignore]
     def play(x: Any) -> Any:
         return jax.pure_callback(shot, shapes[0], x)
 

@@ -10,6 +10,8 @@
 #   right digits doubles with each shot (quadratic convergence), as the picture is exact near the end.
 
 # %%
+from collections.abc import Callable
+
 import carom
 import matplotlib.pyplot as plt
 import numpy as np
@@ -48,10 +50,11 @@ for k, e in enumerate(np.eye(3)):
 # Now both methods, from the same shot.
 
 # %%
+Step = Callable[[np.ndarray, np.ndarray], np.ndarray]
 RATE = 0.1 / np.linalg.norm(slopes, 2)**2
 
 
-def learn(step, shots: int) -> tuple[list[float], list[np.ndarray], carom.Record]:
+def learn(step: Step, shots: int) -> tuple[list[float], list[np.ndarray], carom.Record]:
     x, distances, places = START.copy(), [], []
     for _ in range(shots):
         record, off, slopes = play(x)

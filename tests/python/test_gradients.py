@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
+import runpy
+import types
 
 import carom
 import numpy as np
@@ -14,10 +15,7 @@ X = np.array([2.25, 135.0, -0.4])
 
 @pytest.fixture(scope="module")
 def gradients():
-    spec = importlib.util.spec_from_file_location("gradients", SOURCE / "examples/learning/gradients.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return types.SimpleNamespace(**runpy.run_path(str(SOURCE / "examples/learning/gradients.py")))
 
 
 @pytest.fixture(scope="module")
