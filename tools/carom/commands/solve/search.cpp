@@ -84,7 +84,7 @@ std::vector<Solution> search(const Scene& scene, const std::string& name, const 
         if (exact != nullptr && wanted.places().empty())
             throw UsageError(
                 "--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
-        const std::vector<Solution> found = games::solve(scene, wanted, chosen_isa(), options);
+        std::vector<Solution> found = games::solve(scene, wanted, chosen_isa(), options);
         for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
             exact->push_back(games::exact(found[i], wanted, chosen_isa(), options));
         return found;
