@@ -89,19 +89,24 @@ class Fitter {
             std::optional<Trial> trial = simulate_at(moved, false);
             const double after = trial ? loss_of(*trial, noise) : std::numeric_limits<double>::infinity();
             const bool still = std::sqrt(step.dot(normal * step)) < kStill * noise;
-            if (after <= loss) {
+            bool helps = after <= loss;
+            if (helps) {
                 try {
                     slopes = slopes_of(*trial);
                 } catch (const TangentError& error) {
+                    // Such as at the end of a range: a shorter step may do.
                     result.trouble = error.what();
-                    break;
+                    helps = false;
                 }
+            }
+            if (helps) {
+                result.trouble.clear();
                 result.converged = still || loss - after <= kDone * loss || after < kDone;
                 now = std::move(*trial);
                 damping *= kLess;
             } else {
                 // No shorter step helps: rounding, or a change in the order of events, decides.
-                if (still || damping > kMostDamping) result.converged = still;
+                if (still && result.trouble.empty()) result.converged = true;
                 if (still || damping > kMostDamping) break;
                 damping *= kMoreDamped;
             }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Two ways to aim a pot: that of carom.games.aim_pot, which plays aims between two that bracket the right one,
-and Newton's method with the derivative of the shot. The table of lab/notes/2026-11-tangents.md.
+"""Two ways to aim a pot: that of carom.games.aim_pot, which plays aims between two that bracket the right
+one, and Newton's method with the derivative of the shot. The table of lab/notes/2026-11-tangents.md.
 
 Random places of two balls, speeds and tips; every pocket that is open within 70 degrees of cut is a pot.
 Newton begins at the ghost ball, like aim_pot, and stops at the same distance from the middle of the paths. A
@@ -81,7 +81,8 @@ def middle_of_window(base, aim, pocket):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pots", type=int, default=200)
     parser.add_argument("--noisy", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)

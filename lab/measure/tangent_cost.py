@@ -36,14 +36,16 @@ def count(probe, scene, what, keys, functions=0):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--functions", type=int, default=0, help="list the dearest functions of draw")
     args = parser.parse_args()
     subprocess.run(["cmake", "--build", args.build, "--target", "carom_tangent_probe"], check=True,
                    capture_output=True)
     probe = args.build / "lab/measure/carom_tangent_probe"
-    print(f"{'scene':18}{'shot':>10}{'plan':>10}  {'inputs':>6}{'tangents':>12}{'in shots':>10}{'with plans':>12}")
+    print(f"{'scene':18}{'shot':>10}{'plan':>10}  {'inputs':>6}{'tangents':>12}{'in shots':>10}"
+          f"{'with plans':>12}")
     for scene, counts in SCENES.items():
         shot, plan = (count(probe, scene, what, ["cue.speed"]) for what in ("shot", "plan"))
         for inputs in counts:

@@ -154,7 +154,12 @@ def solve(
         choices.append((key, float(ends[0]), float(ends[1])))
     rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
                         shots, best, seed, threads, exact)
-    return _solutions([key for key, _, _ in choices], rows)
+    found = _solutions([key for key, _, _ in choices], rows)
+    # An exact shot has an aim of its own instead of a hit.
+    return [
+        s if not exact or s.trouble else s._replace(
+            values={"cue.aim_deg" if key.startswith("hit.") else key: x for key, x in s.values.items()})
+        for s in found]
 
 
 @checked

@@ -200,14 +200,14 @@ void compare(Scene scene, const std::vector<std::string>& inputs, const std::str
 
 TEST(Tangents, ScenesAgainstDifferences) {
     std::vector<std::string> inputs = kStroke;
-    for (const char* key : {"balls.mu_s", "balls.mu_r", "balls.e_b", "balls.radius", "physics.gravity",
-                            "ball.cue.position.x", "ball.1.position.y"})
+    for (const char* key : {"balls.mu_s", "balls.mu_r", "table.pocket.p3.radius", "balls.e_b", "balls.radius",
+                            "physics.gravity", "ball.cue.position.x", "ball.1.position.y"})
         inputs.push_back(key);
     compare(scene_of("draw"), inputs, "draw");
     std::vector<std::string> carom = kStroke;
     for (const char* key :
-         {"balls.mu_s", "balls.mu_r", "balls.mu_sp", "balls.e_b", "balls.e_c", "balls.f_c", "balls.radius",
-          "physics.gravity", "ball.white.position.x", "ball.red.position.y"})
+         {"balls.mu_s", "balls.mu_r", "balls.mu_sp", "balls.e_b", "table.cushion.c1.height", "balls.e_c",
+          "balls.f_c", "balls.radius", "physics.gravity", "ball.white.position.x", "ball.red.position.y"})
         carom.push_back(key);
     compare(scene_of("three_cushion"), carom, "three_cushion");
 }
@@ -499,6 +499,11 @@ TEST(Tangents, WhatHasNoDerivative) {
     const Scene draw = scene_of("draw");
     EXPECT_NE(why_not(scene_of("snooker_break"), {"cue.speed"}).find("it is a resting contact"),
               std::string::npos);
+    Scene jump = scene_of("eight_ball_break");
+    jump.physics.ball_ball = ball_ball_model("two_step");
+    jump.cue->elevation_deg = 5.0;
+    EXPECT_NE(why_not(jump, {"cue.speed"}).find("not all of them on the cloth"), std::string::npos)
+        << why_not(jump, {"cue.speed"});
     Scene march = draw;
     march.physics.substeps = 1000;
     EXPECT_NE(why_not(march, {"cue.speed"}).find("substeps makes it a step function"), std::string::npos);
@@ -519,6 +524,7 @@ TEST(Tangents, WhatHasNoDerivative) {
     EXPECT_EQ(why_not(elastic, {"balls.e_b"}),
               "balls.e_b = 1 is at the end of its range, where it has no derivative; move it inwards");
     EXPECT_THROW(Shot(draw, {"cue.spede"}), std::invalid_argument);
+    EXPECT_THROW(Shot(draw, {"table.size.0"}), std::invalid_argument);
     // Until an event that has none.
     const Plan plan = plan_of(scene_of("snooker_break"));
     const Record record = simulate(plan);

@@ -32,7 +32,8 @@ def blocks(page):
 
 def test_there_are_pages():
     assert [page.name for page in PAGES] == [
-        "README.md", "classroom.md", "clusters.md", "games.md", "learning.md", "python.md", "search.md"]
+        "README.md", "classroom.md", "clusters.md", "fit.md", "games.md", "learning.md", "python.md",
+        "search.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)

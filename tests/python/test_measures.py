@@ -135,9 +135,10 @@ def test_solve_finds_the_pot(draw_scene):
 
 def test_solve_moves_a_ball_exactly_to_its_place(draw_scene):
     want = '"1" in pocketed and cue near (1.0, 1.56, 0.1)'
-    vary = {"cue.aim_deg": (134, 136), "cue.speed": (2, 3)}
+    vary = {"hit.1": (-0.1, 0.1), "cue.speed": (2, 3)}
     found = carom.solve(draw_scene, want, vary, shots=4000, best=1, exact=True)[0]
     assert found.trouble == "" and found.miss <= 1e-6
+    assert found.values["cue.aim_deg"] == pytest.approx(135, abs=2) and "hit.1" not in found.values
     end = carom.simulate(found.scene)
     assert end.states(end.duration)[0, 0, :2] == pytest.approx([1.0, 1.56], abs=1e-5)
     refused(ValueError, lambda **more: carom.solve(draw_scene, shots=1000, exact=True, **more),

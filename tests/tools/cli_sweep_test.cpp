@@ -335,6 +335,31 @@ TEST(CliSweep, FailuresThatAreThereCount) {
         << result.err;
 }
 
+TEST(CliSweep, APlotAfterAKillShowsTheWholeTable) {
+    const TemporaryFolder folder, pictures;
+    const std::string scene = folder.write("s.toml", kSmallScene);
+    const auto command = [&](const std::string& name) {
+        return std::vector<std::string>{"sweep",     scene,
+                                        "--vary",    "cue.aim_deg=normal(1)",
+                                        "--vary",    "cue.speed=uniform(1,5)",
+                                        "--count",   "60000",
+                                        "--measure", "travel(cue)",
+                                        "--plot",    pictures.file(name + ".svg"),
+                                        "-o",        folder.file(name + ".csv")};
+    };
+    std::vector<std::string> arguments = command("killed");
+    arguments.insert(arguments.begin(), CAROM_PROGRAM);
+    {
+        const Process killed(arguments, {});
+        if (wait_for_parts(folder).empty()) GTEST_SKIP() << "this build has no cairo";
+    }
+    const ProcessResult result = carom(command("killed"));
+    expect_ok(result);
+    EXPECT_NE(result.err.find("continuing with "), result.err.npos) << result.err;
+    expect_ok(carom(command("whole")));
+    EXPECT_TRUE(read_file(pictures.file("killed.svg")) == read_file(pictures.file("whole.svg")));
+}
+
 TEST(CliSweep, SaysWhatItNeeds) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene), output = folder.file("a.csv");

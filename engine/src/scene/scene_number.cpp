@@ -65,7 +65,11 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
                         *f.element(at(scene), k) = value;
                         return contains(f.range, value) ? change : Change::kAnything;
                     },
-                    [&f, at, k](Scene& scene) { return *f.element(at(scene), k); }};
+                    [&f, at, k](Scene& scene) {
+                        const double* number = f.element(at(scene), k);
+                        if (number == nullptr) fail("the numbers of this list cannot be named one by one");
+                        return *number;
+                    }};
         }
         if (f.kind == Key::Kind::kNumber)
             return {&f,
@@ -207,6 +211,7 @@ SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
         row_ = found.row;
         put_ = std::move(found.put);
         get_ = std::move(found.get);
+        if (row_->optional) value(scene);  // which may refuse a part of a list
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
     }

@@ -248,12 +248,15 @@ Replay::Meeting Replay::meet(const Event& event) {
 Dual Replay::ball_ball(const Event& event) {
     const int one = event.a, two = event.b;
     const Leg leg1 = balls_[one].legs.back(), leg2 = balls_[two].legs.back();
-    auto [space, time, at, s1, s2] = meet(event);
+    const Meeting met = meet(event);
+    const bool space = met.space;
+    const Dual& time = met.time;
+    State s1 = met.s1, s2 = met.s2;
     const auto sinks = [](const Leg& leg) { return leg.state == MotionState::kFalling; };
     if (laws_.flights() && (plan_.ball_ball->free || space)) {
         const auto lies = [&](const Leg& leg) { return !flies(leg.state) && !(space && sinks(leg)); };
         if (!space && (sinks(leg1) || sinks(leg2))) s1.v[2] = s2.v[2] = 0.0;
-        collide_free(laws_, one, two, at, event.slow, {lies(leg1), lies(leg2)}, s1, s2);
+        collide_free(laws_, one, two, met.apart, event.slow, {lies(leg1), lies(leg2)}, s1, s2);
         // The engine continues the ball with the smaller coordinates first.
         for (const auto& [ball, leg, s] : {std::tie(one, leg1, s1), std::tie(two, leg2, s2)}) {
             State after = s;
@@ -271,7 +274,7 @@ Dual Replay::ball_ball(const Event& event) {
             }
         }
     } else {
-        collide(laws_, one, two, at, s1, s2);
+        collide(laws_, one, two, met.apart, s1, s2);
         begin(one, time, s1);
         begin(two, time, s2);
     }

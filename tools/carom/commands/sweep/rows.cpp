@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <future>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -91,7 +95,42 @@ SweepRows play_part(const Sweep& sweep, std::uint64_t first, std::size_t shots) 
     return rows;
 }
 
+/// The cells of a line of CSV; those in quotes may contain commas.
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    std::size_t begin = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i <= line.size(); ++i) {
+        if (i < line.size() && line[i] == '"') quoted = !quoted;
+        if (i < line.size() && (quoted || line[i] != ',')) continue;
+        cells.push_back(line.substr(begin, i - begin));
+        begin = i + 1;
+    }
+    return cells;
+}
+
+/// NaN for no number.
+double number_in(std::string_view cell) {
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+    return error == std::errc() ? number : std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
+
+std::vector<PlotShot> plotted_rows(const Sweep& sweep, std::string_view rows) {
+    std::vector<PlotShot> shots;
+    const std::size_t measure = sweep_columns(sweep.variation).size();
+    for (; !rows.empty(); rows.remove_prefix(std::min(rows.size(), rows.find('\n') + 1))) {
+        const std::vector<std::string_view> cells = cells_of(rows.substr(0, rows.find('\n')));
+        if (cells.size() <= measure) continue;
+        PlotShot& shot = shots.emplace_back();
+        shot.value = number_in(cells[measure]);
+        for (std::size_t axis = 0; axis < sweep.plot_keys.size(); ++axis)
+            shot.place[axis] = number_in(cells[sweep.plot_keys[axis] + 1]);
+    }
+    return shots;
+}
 
 std::string sweep_header(const Sweep& sweep) {
     std::vector<Cell> cells;

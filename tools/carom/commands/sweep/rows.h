@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/batch.h"
@@ -46,5 +47,8 @@ struct SweepRows {
 /// @throws Interrupted; std::system_error if the system cannot start the threads; UsageError for a measure
 /// that does not apply to such shots
 SweepRows play_rows(const Sweep& sweep, std::uint64_t first, std::size_t shots);
+
+/// What the plot shows of rows that were written before.
+std::vector<PlotShot> plotted_rows(const Sweep& sweep, std::string_view rows);
 
 }  // namespace carom::tools

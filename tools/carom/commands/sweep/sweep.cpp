@@ -82,6 +82,12 @@ std::uint64_t failures(const Outcomes& outcomes) {
     return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
+void add(const std::vector<PlotShot>& shots, SweepPlot& plot) {
+    const std::size_t room = kMostPlotted - std::min(kMostPlotted, plot.shots.size());
+    plot.shots.insert(plot.shots.end(), shots.begin(),
+                      shots.begin() + static_cast<std::ptrdiff_t>(std::min(room, shots.size())));
+}
+
 /// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
 /// one is awaited and written, so that no thread is idle.
 Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
@@ -108,10 +114,7 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
         table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
         for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
-        const std::size_t room = kMostPlotted - std::min(kMostPlotted, plot.shots.size());
-        plot.shots.insert(
-            plot.shots.end(), rows.plotted.begin(),
-            rows.plotted.begin() + static_cast<std::ptrdiff_t>(std::min(room, rows.plotted.size())));
+        add(rows.plotted, plot);
         if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(table.next(), outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
@@ -217,7 +220,10 @@ int run(const SweepArgs& args) {
     Sweep sweep{variation, measures, isa, jobs};
     SweepPlot plot = prepare_plot(args, sweep);
     std::vector<Tally> tallies(measures.begin(), measures.end());
-    TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first);
+    TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first,
+                       [&](std::string_view rows) {
+                           if (sweep.plot) add(plotted_rows(sweep, rows), plot);
+                       });
     const std::uint64_t from = table.next();
     if (from > range.first) {
         // Another build may have other bits.
@@ -277,7 +283,7 @@ void add_sweep(Options& program) {
     command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
         .one_of(game_names());
     command.option("--plot", &args.plot, "FILE",
-                   "Draw the first measure of the shots of this run: a map over the first two numbers that "
+                   "Draw the first measure: a map over the first two numbers that "
                    "vary, or a histogram; .svg, .png or .pdf (default: not drawn)");
     command.flag("--json", args.json, "Print the summary as JSON (default: off)");
     command.option("--count", &args.count, "N", "Number of shots (default: every point of the grids once)");

@@ -31,7 +31,7 @@ std::string hash_line(std::string_view text) {
 }  // namespace
 
 TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::string_view header,
-                           std::uint64_t first)
+                           std::uint64_t first, const std::function<void(std::string_view)>& found)
     : whole_(path), next_(first), kept_(first), wait_(kFirstWait) {
     whole_.write(header);
     if (whole_.is_direct()) return;
@@ -45,8 +45,8 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
         throw std::runtime_error(folder + ": cannot make this folder: " + error.message());
     folder_ = folder;
     lock_.emplace(folder_ + "/lock", true);
-    while (take_up()) {
-    }
+    while (take_up())
+        if (found) found(found_);
 }
 
 TableInParts::~TableInParts() {

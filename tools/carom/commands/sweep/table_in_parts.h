@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +20,9 @@ namespace carom::tools {
 class TableInParts {
   public:
     /// @param first  number of the first shot
-    TableInParts(const std::string& path, std::uint64_t id, std::string_view header, std::uint64_t first);
+    /// @param found  called with the rows of each part that an earlier run has left
+    TableInParts(const std::string& path, std::uint64_t id, std::string_view header, std::uint64_t first,
+                 const std::function<void(std::string_view)>& found = {});
     ~TableInParts();  ///< keeps the parts
     TableInParts(const TableInParts&) = delete;
     TableInParts& operator=(const TableInParts&) = delete;
