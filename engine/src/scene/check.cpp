@@ -75,7 +75,7 @@ void check_reach(const Section& top, const Scene& scene) {
         for (const Jaw& j : scene.table.jaws) {
             const Vec2 out = p - j.center;
             if (!j.is_arc()) {
-                if (out.norm() < j.radius - R)
+                if (ball.height == 0.0 && out.norm() < j.radius - R)
                     top.fail(
                         ball.where,
                         "ball {} lies inside jaw {}, which balls touch from outside; move it out, or write "
