@@ -11,6 +11,7 @@
 #include "carom/engine/event_details.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/tangents.h"
+#include "carom/engine/variation.h"
 #include "contact/detect.h"
 #include "reference/random_impacts.h"
 #include "support/hard_scenes.h"
@@ -353,6 +354,8 @@ TEST(Arcs, AreWrittenAndReadBack) {
     EXPECT_EQ(scene.table.length, 2.0);
     const Scene again = parse_scene(scene_text(scene), "s.toml");
     EXPECT_TRUE(again.table == scene.table);
+    const std::string wider = with_values(scene_text(scene), "s.toml", {{"table.arc.a1.radius", "1.5"}});
+    EXPECT_EQ(parse_scene(wider, "s.toml").table.jaws[0].radius, 1.5);
     Scene built = scene;
     EXPECT_NO_THROW(validate(built));
     built.table.jaws[0].to_deg = 5.0;
