@@ -166,6 +166,10 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
                                "[table.corner_pockets]\nthroat = 0.1\n[table.side_pockets]\nmouth = 0.13\n"
                                "angle_deg = 103\nshelf = 0\njaw_radius = 0\nradius = 0.07\n[[ball]]\n",
                                "a.toml"));
+    text +=
+        scene_text(parse_scene("[balls]\nshape = \"disc\"\nrolls = false\nmu_b = 0\nf_c = 0\n[[table.arc]]\n"
+                               "center = [0, 0]\nradius = 1\n[[ball]]\nposition = [0, 0]\n",
+                               "a.toml"));
     for (const EffectInfo& effect : effect_table())
         text += std::string(effect.keyword) + " = true\n";  // one stands for all
     // The balls of a rack are written one by one. The words below stand for aim_deg and speed.

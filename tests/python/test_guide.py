@@ -32,8 +32,8 @@ def blocks(page):
 
 def test_there_are_pages():
     assert [page.name for page in PAGES] == [
-        "README.md", "classroom.md", "clusters.md", "fit.md", "games.md", "learning.md", "python.md",
-        "search.md"]
+        "README.md", "classroom.md", "clusters.md", "fit.md", "games.md", "learning.md", "mathematics.md",
+        "python.md", "search.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
@@ -42,7 +42,7 @@ def test_blocks_print_what_the_page_says(page, tmp_path, monkeypatch):
     pyplot = pytest.importorskip("matplotlib.pyplot")
     for package in ("gymnasium", "pettingzoo") if "carom.gym" in page.read_text() else ():
         pytest.importorskip(package, reason=f"{package} is not installed: pip install 'carom-billiards[gym]'")
-    for name in ("scenes", "tests"):
+    for name in ("scenes", "tests", "examples"):
         (tmp_path / name).symlink_to(SOURCE / name)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}

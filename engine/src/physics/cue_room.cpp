@@ -35,7 +35,8 @@ Cone cone_of(const Cue& cue, double elevation_deg, const Vec3& ball, double R) {
 /// Whether the cone is clear of an edge that it crosses at s, as seen from above. `turn` is the sine of the
 /// angle between the two there.
 bool clears_edge(const Cone& cone, double s, double height, double turn) {
-    if (!(s > 0.0 && s <= kCueLength)) return true;
+    // A ball that touches the nose has the tip above it, within rounding.
+    if (!(s > -1e-9 && s <= kCueLength)) return true;
     const double level = length(planar(cone.back)), over = cone.at(s).z() - height;
     // Between two lines in space.
     const double apart = over * level * turn / length(Vec2(level * turn, cone.back.z()));

@@ -61,7 +61,9 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
     const double R = record.size(event.a).R;
     switch (kind(event.type).partner) {
         case Partner::kBall:
-            d.normal = (a.position - d.balls[1].after.position).normalized();
+            d.normal = a.position - d.balls[1].after.position;
+            if (record.balls.discs()) d.normal.z() = 0.0;
+            d.normal.normalize();
             d.point = a.position - R * d.normal;
             return;
         case Partner::kCushion:

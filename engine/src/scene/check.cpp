@@ -75,7 +75,7 @@ void check_reach(const Section& top, const Scene& scene) {
         for (const Jaw& j : scene.table.jaws) {
             const Vec2 out = p - j.center;
             if (!j.is_arc()) {
-                if (out.norm() < j.radius - R)
+                if (ball.height == 0.0 && out.norm() < j.radius - R)
                     top.fail(
                         ball.where,
                         "ball {} lies inside jaw {}, which balls touch from outside; move it out, or write "
@@ -114,7 +114,7 @@ void check_noses(const Section& top, const Scene& scene) {
         }
     };
     for (const Cushion& c : scene.table.cushions) check("cushion", c.id, c.height);
-    for (const Jaw& j : scene.table.jaws) check("jaw", j.id, j.height);
+    for (const Jaw& j : scene.table.jaws) check(j.is_arc() ? "arc" : "jaw", j.id, j.height);
 }
 
 /// Refuses a cloth on which rolling would cost a ball more speed than sliding: resting contacts have no
@@ -204,7 +204,8 @@ void check_cushion_model(const Section& top, const Scene& scene) {
         }
     };
     for (const Cushion& c : scene.table.cushions) check(*scene.physics.cushion, "cushion", c.id, c.height);
-    for (const Jaw& j : scene.table.jaws) check(*scene.physics.jaw_model(), "jaw", j.id, j.height);
+    for (const Jaw& j : scene.table.jaws)
+        check(*scene.physics.jaw_model(), j.is_arc() ? "arc" : "jaw", j.id, j.height);
 }
 
 /// Whether a ball of the scene may ever leave the cloth.

@@ -166,7 +166,7 @@ std::vector<Step> find_section(toml::table& file, std::string_view& key) {
         path.push_back({of.key});
         return path;
     }
-    for (const std::string list : {"cushion", "jaw", "pocket"}) {
+    for (const std::string list : {"cushion", "jaw", "arc", "pocket"}) {
         if (!take(key, list)) continue;
         path.push_back({list});
         path.push_back({"", take_part(key, list)});

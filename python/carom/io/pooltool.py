@@ -149,7 +149,8 @@ _SPECS = {"width": "mouth", "angle": "angle_deg", "radius": "radius"}
 @checked
 def table(specs: dict[str, Any]) -> dict[str, Any]:
     """The section [table] of a scene for a table specification of pooltool: the attributes of its
-    PocketTableSpecs, SnookerTableSpecs or BilliardTableSpecs as a dict, such as `attrs.asdict(specs)`.
+    PocketTableSpecs, SnookerTableSpecs or BilliardTableSpecs as a dict, such as `attrs.asdict(specs)`. The
+    facings of side pockets end where their angle leads, and not up to 0.1 mm beside that, as in pooltool.
 
     Raises SceneError if a measure is missing or is not a number.
     """
