@@ -27,7 +27,7 @@ HardDiscs hard_discs(const Plan& plan) {
         places.emplace_back(ball.position.x() - wall, ball.position.y() - wall);
         velocities.emplace_back(ball.velocity.x(), ball.velocity.y());
     }
-    return {std::move(places), std::move(velocities), contact_distance(R, R),
+    return {std::move(places), std::move(velocities), contact_distance(R, R, false),
             Vec2(scene.table.width - 2.0 * wall, scene.table.length - 2.0 * wall)};
 }
 
