@@ -326,7 +326,7 @@ TEST(Tangents, ManyOfEveryModel) {
     unlike_balls_fits_and_flights(kMany);
 }
 
-constexpr int kShots = 100;
+constexpr int kShots = 40;
 
 /// The cue ball meets one of three balls that touch, `off` radii beside its centre.
 Scene combination(double off) {
