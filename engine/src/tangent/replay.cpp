@@ -301,6 +301,7 @@ Dual Replay::cluster(const Event& event) {
         throw TangentError("more than two balls touch at once, and not all of them on the cloth");
     const Dual time = meet(event).time;
     std::vector<State> states;
+    states.reserve(members.size());
     for (const int ball : members) states.push_back(balls_[ball].legs.back().at(time));
     collide_cluster(laws_, members, event.a, event.b, states);
     for (std::size_t k = 0; k < members.size(); ++k) begin(members[k], time, states[k]);
