@@ -326,7 +326,7 @@ TEST(Tangents, ManyOfEveryModel) {
     unlike_balls_fits_and_flights(kMany);
 }
 
-constexpr int kShots = 100;
+constexpr int kShots = 40;
 
 /// The cue ball meets one of three balls that touch, `off` radii beside its centre.
 Scene combination(double off) {
@@ -525,6 +525,14 @@ TEST(Tangents, WhatHasNoDerivative) {
               "balls.e_b = 1 is at the end of its range, where it has no derivative; move it inwards");
     EXPECT_THROW(Shot(draw, {"cue.spede"}), std::invalid_argument);
     EXPECT_THROW(Shot(draw, {"table.size.0"}), std::invalid_argument);
+    // A record from a file may be of another scene, or of none.
+    Scene bare = draw;
+    bare.table = Table();
+    EXPECT_THROW(Tangents(plan_of(bare), simulate(plan_of(draw)), {"cue.speed"}), std::invalid_argument);
+    const Scene three = combination(0.3);
+    Record wrong = simulate(plan_of(three));
+    std::erase(wrong.clusters[0], 1);
+    EXPECT_THROW(Tangents(plan_of(three), wrong, {"cue.speed"}), std::invalid_argument);
     // Until an event that has none.
     const Plan plan = plan_of(scene_of("snooker_break"));
     const Record record = simulate(plan);

@@ -295,6 +295,8 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     scene.cue.reset();
     scene.ball.clear();
     for (const int ball : balls) scene.ball.push_back(laws.plan.scene.ball[ball]);
+    // Without the table, other effects may be needed than those that the scene excludes.
+    std::erase_if(scene.effects, [](const EffectOverride& effect) { return !effect.in_force; });
     if (laws.flights()) scene.effects.push_back({"airborne", true, {}});
     scene.stop.events = 1;
     // The one that moves is put to touch, so that what touches at rest still does, to the last bit.

@@ -26,6 +26,14 @@ double speed_of(const Vec3& v, const Vec3& w, double R) {
     return length3(v) + R * length3(w);
 }
 
+/// A record from a file may be of another scene.
+template <class Part>
+const Part& part_of(const std::vector<Part>& parts, int index) {
+    if (index < 0 || static_cast<std::size_t>(index) >= parts.size())
+        throw std::invalid_argument("the record is not of this plan: its table has other parts");
+    return parts[static_cast<std::size_t>(index)];
+}
+
 }  // namespace
 
 Replay::Replay(const Plan& plan, const Record& record, Scene& scene, const std::vector<Input>& inputs,
@@ -286,11 +294,17 @@ Dual Replay::ball_ball(const Event& event) {
 
 Dual Replay::cluster(const Event& event) {
     const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(event.detail)];
+    const auto has = [&members](int ball) {
+        return std::find(members.begin(), members.end(), ball) != members.end();
+    };
+    if (!has(event.a) || !has(event.b))
+        throw std::invalid_argument("the record is not of this plan: a cluster without the balls that met");
     const auto off_cloth = [this](int ball) { return is_off_cloth(balls_[ball].legs.back().state); };
     if (std::any_of(members.begin(), members.end(), off_cloth) || (laws_.flights() && plan_.ball_ball->free))
         throw TangentError("more than two balls touch at once, and not all of them on the cloth");
     const Dual time = meet(event).time;
     std::vector<State> states;
+    states.reserve(members.size());
     for (const int ball : members) states.push_back(balls_[ball].legs.back().at(time));
     collide_cluster(laws_, members, event.a, event.b, states);
     for (std::size_t k = 0; k < members.size(); ++k) begin(members[k], time, states[k]);
@@ -317,12 +331,12 @@ Dual Replay::cushion(const Event& event) {
     const double sign = round != nullptr ? round->sign() : 1.0;
     const auto look = [&](const State& s) {
         if (event.detail >= 0) {
-            const Numbers::Round& nose = numbers_.noses[event.detail];
+            const Numbers::Round& nose = part_of(numbers_.noses, event.detail);
             height = nose.height, inset = nose.inset, beyond = sign * nose.radius;
             out = planar(s.r) - nose.center;
             return;
         }
-        const Numbers::Line& line = numbers_.cushions[event.b];
+        const Numbers::Line& line = part_of(numbers_.cushions, event.b);
         height = line.height, inset = line.inset;
         const Dual2 normal{-line.direction[1], line.direction[0]};
         const Dual side = dot(normal, planar(s.r) - line.from);
@@ -356,7 +370,7 @@ Dual Replay::cushion(const Event& event) {
     } else if (event.detail >= 0) {
         add_miss(planar(at), planar(s.v), event);
     } else {
-        const Numbers::Line& line = numbers_.cushions[event.b];
+        const Numbers::Line& line = part_of(numbers_.cushions, event.b);
         const Dual foot = dot(line.direction, planar(s.r) - line.from);
         for (const Dual& left : {foot, line.length - foot})
             rooms_.push_back({left, fmt::format("{} passes the end of {} at {:.3f} s", who(ball),
@@ -378,7 +392,7 @@ Dual Replay::cushion(const Event& event) {
 Dual Replay::pocket(const Event& event) {
     const int ball = event.a;
     const Leg leg = balls_[ball].legs.back();
-    const Numbers::Round& pocket = numbers_.pockets[event.b];
+    const Numbers::Round& pocket = part_of(numbers_.pockets, event.b);
     const bool falls = leg.state == MotionState::kFalling;
     if (event.type == EventType::kBallEdge && falls) throw TangentError("the ball leaves the pocket again");
     Dual time = leg.start + leg.duration;
