@@ -113,6 +113,14 @@ class Release(unittest.TestCase):
                     (self.root / "CITATION.cff").read_text().count("date-released: 2030-01-02"), 1)
                 self.assertIn(f"* New in {version}.", release.notes(self.root))
 
+    def test_promises_of_the_next_minor_version_leave_no_patch(self):
+        major, minor, patch = release.number(release.version_here(self.root))
+        release.write_promise(self.root, f"{major}.{minor + 1}")
+        self.assertEqual(release.faults_of(self.root), [])
+        release.refuse_broken_promise(self.root, f"{major}.{minor + 1}.0")
+        with self.assertRaisesRegex(SystemExit, f"choose {major}.{minor + 1}.0 or later"):
+            release.refuse_broken_promise(self.root, f"{major}.{minor}.{patch + 1}")
+
     def test_a_patch_may_not_renew_a_promise(self):
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         major, minor, patch = map(int, release.version_here(self.root).split("."))
