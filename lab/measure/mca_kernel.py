@@ -73,8 +73,8 @@ def assembly(cxx, source, level, folder):
     path = pathlib.Path(folder) / "probe.cpp"
     path.write_text(source)
     command = [cxx, "-std=c++20", "-O3", f"-march=x86-64-{level}", "-ffp-contract=off", "-DCAROM_LOOP_MARKS",
-               "-w", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-",
-               str(path)]
+               "-w", f"-I{ROOT}/kernel/include", f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel",
+               f"-I{ROOT}/lab", "-S", "-o", "-", str(path)]
     if source != PLAIN:  # as lab/ladder/CMakeLists.txt builds it
         command.append("-fno-math-errno")
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
@@ -85,7 +85,7 @@ def arm_assembly(source, folder):
     path.write_text(source)
     command = ["clang++", "--target=aarch64-linux-gnu", "-mcpu=apple-m1", "-std=c++20", "-O3",
                "-ffp-contract=off", "-w", "-DCAROM_LOOP_MARKS", f"-I{ROOT}/kernel/include",
-               f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", "-S", "-o", "-", str(path)]
+               f"-I{ROOT}/kernel/src", f"-I{ROOT}/kernel", f"-I{ROOT}/lab", "-S", "-o", "-", str(path)]
     run = subprocess.run(command, capture_output=True, text=True)
     return [line.replace("//", "#") if "LLVM-MCA" in line else line for line in run.stdout.splitlines()]
 

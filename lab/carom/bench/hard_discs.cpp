@@ -2,15 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace carom::tools {
-namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 HardDiscs::HardDiscs(std::vector<Vec2> places, std::vector<Vec2> velocities, double reach, const Vec2& size)
     : reach_(reach), size_(size), discs_(places.size()) {

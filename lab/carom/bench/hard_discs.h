@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "carom/engine/vec.h"
@@ -23,6 +24,7 @@ class HardDiscs {
     long collisions() const { return collisions_; }
 
   private:
+    static constexpr double kNever = std::numeric_limits<double>::infinity();
     static constexpr int kBorder = -1, kCell = -2, kNothing = -3;
     struct Disc {
         Vec2 r, v;      // at its own time
