@@ -240,21 +240,23 @@ void guide_friction(Group& g, double h) {
 }
 
 // A wall around a ball turns it and does no work, but its impulse along the first normal does some: that
-// would add up all along the wall. Only for a ball that touches nothing else.
+// would add up all along the wall. Only for a ball that nothing else pushes.
 void run_along_walls(Group& g) {
     for (const Link& link : g.links) {
         if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
         Body& b = g.bodies[link.i];
-        if (std::count_if(g.links.begin(), g.links.end(),
-                          [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
+        if (std::count_if(g.links.begin(), g.links.end(), [&](const Link& other) {
+                return other.J > 0.0 && (other.i == link.i || other.j == link.i);
+            }) > 1)
             continue;
         const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
-        const double before = dot(b.v_end, b.v_end),
-                     work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls;
-        if (!(before > work)) continue;
-        const double share = std::sqrt((before - work) / before);
-        b.v_end *= share;
-        if (b.mode == Mode::kRolling) b.s_end *= share;
+        const double towards = dot(link.n, b.v_end);
+        const Vec2 along = b.v_end - towards * link.n;
+        const double work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls,
+                     left = dot(along, along) - work;
+        if (!(left > 0.0)) continue;
+        b.v_end = towards * link.n + std::sqrt(left / dot(along, along)) * along;
+        if (b.mode == Mode::kRolling) b.s_end = b.v_end;
     }
 }
 
