@@ -163,7 +163,7 @@ double stepped(const Path& path, const Nose& nose, double R, double until) {
     const auto in_front = [&](double t) {
         return nose.span.holds(at(t)) && nose.sign() * length(at(t)) >= nose.radius;
     };
-    constexpr int kSteps = 20000;
+    constexpr int kSteps = 6000;
     for (int k = 0; k < kSteps; ++k) {
         double low = until * k / kSteps, high = until * (k + 1) / kSteps;
         if (!(gap(low) > 0.0 && gap(high) <= 0.0)) continue;
@@ -186,7 +186,7 @@ TEST(Arcs, AreMetFromAllSides) {
         const double x = draw(-most, most);
         return Vec2(x, draw(-most, most));
     };
-    for (int k = 0; k < 1500; ++k) {
+    for (int k = 0; k < 500; ++k) {
         const double from = draw(0.0, 360.0), turn = k % 3 == 0 ? 360.0 : draw(20.0, 350.0);
         const Vec2 center = place(0.4);
         const Jaw wall = arc(center, draw(0.2, 1.0), from, from + turn, k % 2 == 0 ? "inside" : "outside");
@@ -209,8 +209,8 @@ TEST(Arcs, AreMetFromAllSides) {
             EXPECT_FALSE(nose.span.whole) << k;
         (t < kNever ? met : missed) += 1;
     }
-    EXPECT_GT(met, 250);
-    EXPECT_GT(missed, 300);
+    EXPECT_GT(met, 80);
+    EXPECT_GT(missed, 80);
 }
 
 // A ball that loses speed at a round wall comes to run along it, and leaves it where it ends.

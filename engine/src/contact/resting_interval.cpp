@@ -240,14 +240,13 @@ void guide_friction(Group& g, double h) {
 }
 
 // A wall around a ball turns it and does no work, but its impulse along the first normal does some: that
-// would add up all along the wall. Only for a ball that nothing else pushes.
+// would add up all along the wall. Only for a ball that touches nothing else.
 void run_along_walls(Group& g) {
     for (const Link& link : g.links) {
         if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
         Body& b = g.bodies[link.i];
-        if (std::count_if(g.links.begin(), g.links.end(), [&](const Link& other) {
-                return other.J > 0.0 && (other.i == link.i || other.j == link.i);
-            }) > 1)
+        if (std::count_if(g.links.begin(), g.links.end(),
+                          [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
             continue;
         const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
         const double towards = dot(link.n, b.v_end);
