@@ -65,13 +65,15 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
         {*nose, *rail, size->x(), size->y(), *mouth, *throat, *angle, *shelf, *jaw, *hole, *sides.mouth});
     const auto& [c_id, from, to, c_height, c_name] = cushions.at(0);
     expect_unusual({to.x(), to.y(), c_height});
-    const auto& [j_id, j_center, j_radius, j_height, j_name] = jaws.at(0);
-    expect_unusual({j_center.x(), j_center.y(), j_radius, j_height});
+    const auto& [j_id, j_center, j_radius, j_height, j_name, side, from_deg, to_deg] = jaws.at(0);
+    ASSERT_TRUE(side && from_deg && to_deg);
+    expect_unusual({j_center.x(), j_center.y(), j_radius, j_height, *from_deg, *to_deg});
     const auto& [p_id, p_center, p_radius, p_depth, p_name] = pockets.at(0);
     expect_unusual({p_center.x(), p_center.y(), p_radius, p_depth});
     for (const std::string& text : {c_id, c_name, j_id, j_name, p_id, p_name}) EXPECT_NE(text, "");
     const auto& [R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall, f_c_more, f_c_fall,
-                 e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h] = record.balls;
+                 e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h, disc, slides] = record.balls;
+    EXPECT_TRUE(disc == 1.0 && slides == 1.0);
     expect_unusual({R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall, f_c_more, f_c_fall,
                     e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h});
     const auto& [fps, pixels, lines, camera, eye, target] = record.render;
