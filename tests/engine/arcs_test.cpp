@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -162,7 +163,7 @@ double stepped(const Path& path, const Nose& nose, double R, double until) {
     const auto in_front = [&](double t) {
         return nose.span.holds(at(t)) && nose.sign() * length(at(t)) >= nose.radius;
     };
-    constexpr int kSteps = 20000;
+    constexpr int kSteps = 6000;
     for (int k = 0; k < kSteps; ++k) {
         double low = until * k / kSteps, high = until * (k + 1) / kSteps;
         if (!(gap(low) > 0.0 && gap(high) <= 0.0)) continue;
@@ -185,7 +186,7 @@ TEST(Arcs, AreMetFromAllSides) {
         const double x = draw(-most, most);
         return Vec2(x, draw(-most, most));
     };
-    for (int k = 0; k < 1500; ++k) {
+    for (int k = 0; k < 500; ++k) {
         const double from = draw(0.0, 360.0), turn = k % 3 == 0 ? 360.0 : draw(20.0, 350.0);
         const Vec2 center = place(0.4);
         const Jaw wall = arc(center, draw(0.2, 1.0), from, from + turn, k % 2 == 0 ? "inside" : "outside");
@@ -209,8 +210,8 @@ TEST(Arcs, AreMetFromAllSides) {
         }
         (t < kNever ? met : missed) += 1;
     }
-    EXPECT_GT(met, 250);
-    EXPECT_GT(missed, 300);
+    EXPECT_GT(met, 80);
+    EXPECT_GT(missed, 80);
 }
 
 // A ball that loses speed at a round wall comes to run along it, and leaves it where it ends.
@@ -302,6 +303,53 @@ TEST(Arcs, AreDrawnAsShortCushions) {
         EXPECT_NEAR(length(drawn.cushions[i].from - center), 0.5 + kR, 1e-15);
     }
     EXPECT_EQ(drawn.cushions[2].from, Vec2(0.0, 0.5 + kR));
+}
+
+// Balls and pucks that lose speed in round tables and stadiums, some with a round obstacle, until they rest.
+TEST(Arcs, RandomTablesAreLeftInOrder) {
+    for (int k = 0; k < 16; ++k) {
+        SCOPED_TRACE(k);
+        reference::Generator random(static_cast<std::uint64_t>(1000 + k));
+        Scene scene = empty_scene();
+        const double R = scene.balls.R, straight = k % 4 == 0 ? 0.0 : random.uniform(0.05, 1.0);
+        const bool pucks = k % 5 == 4;
+        const double height = pucks ? R : 1.28 * R;
+        const auto wall = [&](const Vec2& center, double radius, double from, double to, const char* side) {
+            scene.table.jaws.push_back({"a", center, radius, height, "", side, from, to});
+        };
+        if (k % 4 == 0) {
+            wall({0.0, 0.0}, 0.5, 0.0, 360.0, "inside");
+        } else {
+            scene.table.cushions.push_back({"c1", {0.0, -0.5}, {straight, -0.5}, height});
+            scene.table.cushions.push_back({"c2", {0.0, 0.5}, {straight, 0.5}, height});
+            wall({0.0, 0.0}, 0.5, 90.0, 270.0, "inside");
+            wall({straight, 0.0}, 0.5, -90.0, 90.0, "inside");
+        }
+        if (k % 4 == 2) wall({0.5 * straight, 0.0}, 0.12, 0.0, 360.0, "outside");
+        if (k % 4 == 3) wall({0.5 * straight, -0.8}, 0.45, 20.0, 160.0, "outside");
+        scene.balls.e_c = random.uniform(0.2, 1.0);
+        scene.balls.e_b = random.uniform(0.5, 1.0);
+        if (pucks) {
+            scene.balls.slides = scene.balls.disc = 1.0;
+            scene.balls.mu_b = scene.balls.f_c = 0.0;
+            scene.physics.ball_ball = ball_ball_model("inelastic");
+            scene.physics.cushion = &kSmooth;
+        }
+        for (int tries = 0; tries < 60 && scene.ball.size() < 4; ++tries) {
+            Scene more = scene;
+            const double x = random.uniform(-0.5, 0.5 + straight), y = random.uniform(-0.5, 0.5),
+                         v = random.uniform(-3.0, 3.0);
+            add_ball(more, std::to_string(tries), x, y, v, random.uniform(-3.0, 3.0));
+            try {
+                validate(more);
+            } catch (const SceneError&) {
+                continue;
+            }
+            scene = more;
+        }
+        const Record record = run_verified(scene);
+        EXPECT_EQ(record.stopped, StopReason::kAtRest);
+    }
 }
 
 const std::string kHead = "[balls]\nradius = 0.01\n";

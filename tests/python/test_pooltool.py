@@ -255,6 +255,9 @@ def test_what_pooltool_cannot_have_is_refused(draw_scene, tmp_path):
         pooltool.save(record, tmp_path / "s.msgpack")
     with pytest.raises(OSError):
         pooltool.save(record, tmp_path / "nowhere/s.json")
+    stadium = carom.simulate(carom.Scene.load(SOURCE / "examples/mathematics/stadium.toml"))
+    with pytest.raises(ValueError, match="no round walls"):
+        pooltool.save(stadium, tmp_path / "s.json")
     heavy = carom.simulate(carom.Scene.load(SOURCE / "scenes/heavy_cue_ball.toml"))
     with pytest.raises(ValueError, match="differ in radius or mass"):
         pooltool.save(heavy, tmp_path / "s.json")

@@ -49,6 +49,12 @@ std::vector<Scene> scenes() {
         "[stop]\nevents = 3\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nmass = 0.2\n"
         "[[ball]]\nid = \"b\"\nposition = [0.6, 1.3]\n[physics]\nball_ball = \"inelastic\"\n",
         "fit.toml"));
+    // And a round wall, and pucks.
+    all.push_back(
+        parse_scene("[balls]\nshape = \"disc\"\nrolls = false\nmu_b = 0\nf_c = 0\n[[table.arc]]\ncenter = "
+                    "[0, 0]\nradius = 1\n"
+                    "[[ball]]\nposition = [0, 0]\nvelocity = [1, 0]\n",
+                    "pucks.toml"));
     return all;
 }
 

@@ -65,9 +65,9 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
         {*nose, *rail, size->x(), size->y(), *mouth, *throat, *angle, *shelf, *jaw, *hole, *sides.mouth});
     const auto& [c_id, from, to, c_height, c_name] = cushions.at(0);
     expect_unusual({to.x(), to.y(), c_height});
-    const auto& [j_id, j_center, j_radius, j_height, j_name, j_side, j_from, j_to] = jaws.at(1);
-    ASSERT_TRUE(j_side && j_from && j_to && !jaws.at(0).side);
-    expect_unusual({j_center.x(), j_center.y(), j_radius, j_height, *j_from, *j_to});
+    const auto& [j_id, j_center, j_radius, j_height, j_name, side, from_deg, to_deg] = jaws.at(0);
+    ASSERT_TRUE(side && from_deg && to_deg);
+    expect_unusual({j_center.x(), j_center.y(), j_radius, j_height, *from_deg, *to_deg});
     const auto& [p_id, p_center, p_radius, p_depth, p_name] = pockets.at(0);
     expect_unusual({p_center.x(), p_center.y(), p_radius, p_depth});
     for (const std::string& text : {c_id, c_name, j_id, j_name, p_id, p_name}) EXPECT_NE(text, "");

@@ -70,7 +70,7 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/balls/mu_b_more", -1, " balls.mu_b_more: expected a number of at least 0"},
         {"/events/1/time", 9.0, " events[2]: happens before the previous event"},
         {"/events/2/balls/1", 3, " events[2].balls[1]: expected an integer from 0 to 2"},
-        {"/events/4/nose", -1, " events[4].nose: expected an integer from 0 to 2"},
+        {"/events/4/nose", -1, " events[4].nose: expected an integer from 0 to 4"},
         {"/events/1/steps", -1, " events[1].steps: expected an integer from 0 to 9223372036854775807"},
     };
     EXPECT_EQ(error_of(changed("", nullptr)), "no error");

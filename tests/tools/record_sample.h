@@ -58,8 +58,7 @@ inline Record sample_record() {
                              .size = Vec2(1.2611, 2.5311)};
     record.table.bed = Rectangle(-0.5, 1e-2, 1.5, 2.75);
     record.table.cushions = {{"left", {0.0, -0.0}, {0.1, 2.54}, 0.037, "left rail"}};
-    record.table.jaws = {{"jaw \"1\"", {1e-300, 0.1}, 0.04, 0.037, "a jaw\n"},
-                         {"an arc", {0.2, 0.3}, 0.05, 0.038, "round", "outside", 12.5, 301.25}};
+    record.table.jaws = {{"jaw \"1\"", {1e-300, 0.1}, 0.04, 0.037, "a jaw\n", "outside", -30.0, 200.0}};
     record.table.pockets = {{"p,1", {1.0 / 3.0, 0.1}, 0.06, 0.08, "Tasche \xc3\xa4"}};
     record.balls = {0.028575, 0.170097, 0.21,  0.011, 0.0127, 0.05, 0.95, 0.85, 0.23, 0.108, 1.0 / 3.0,
                     0.07,     0.41,     0.031, 0.62,  0.51,   0.13, 0.8,  0.17, 1.0,  1.0};

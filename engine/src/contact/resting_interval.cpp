@@ -249,12 +249,13 @@ void run_along_walls(Group& g) {
                           [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
             continue;
         const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
-        const double before = dot(b.v_end, b.v_end),
-                     work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls;
-        if (!(before > work)) continue;
-        const double share = std::sqrt((before - work) / before);
-        b.v_end *= share;
-        if (b.mode == Mode::kRolling) b.s_end *= share;
+        const double towards = dot(link.n, b.v_end);
+        const Vec2 along = b.v_end - towards * link.n;
+        const double work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls,
+                     left = dot(along, along) - work;
+        if (!(left > 0.0)) continue;
+        b.v_end = towards * link.n + std::sqrt(left / dot(along, along)) * along;
+        if (b.mode == Mode::kRolling) b.s_end = b.v_end;
     }
 }
 

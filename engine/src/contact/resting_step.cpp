@@ -47,6 +47,9 @@ bool is_driven(const Group& g, double h) {
         energy += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
         power += (dot(b.v_end, b.v_end - b.v) + kInertia * dot(b.s_end, b.s_end - b.s)) / b.ease;
     }
+    // The wall around a ball turns its normal towards the ball; run_along_walls() takes that work back.
+    for (const Link& link : g.links)
+        if (link.distance < 0.0) power += link.J * dot(link.n, g.bodies[link.i].v_end);
     return power > kWorkRounding * energy;
 }
 

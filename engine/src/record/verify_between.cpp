@@ -260,9 +260,9 @@ double chord_energy(const Record& record, double t) {
         const Segment& s = *(next - 1);
         const double tau = t - s.start;
         if (!s.held || !(tau < s.duration)) continue;
-        const double inertia = s.state == MotionState::kRolling ? 1.0 + kInertia : 1.0;
-        sum += track.own.value_or(record.balls.size()).m / record.balls.m * 0.5 * inertia * tau *
-               (s.duration - tau) * s.a.squaredNorm();
+        const BallSize size = track.own.value_or(record.balls.size());
+        sum += size.m / record.balls.m * 0.5 * tau * (s.duration - tau) *
+               (s.a.squaredNorm() + kInertia * size.R * size.R * s.dw.squaredNorm());
     }
     return sum;
 }

@@ -46,7 +46,10 @@ _BALLSETS = {
 def write(record: Record, name: str) -> None:
     if np.ptp(record.radii) > 0 or np.ptp(record.masses) > 0:
         raise ValueError(f"{name}: the balls differ in radius or mass; save a record with equal balls")
-    text = json.dumps(_Writer(record).system(), allow_nan=False)
+    writer = _Writer(record)
+    if any("side" in jaw for jaw in writer.file["table"]["jaws"]):
+        raise ValueError(f"{name}: pooltool has no round walls; save a record without [[table.arc]]")
+    text = json.dumps(writer.system(), allow_nan=False)
     with whole_file(name) as file:
         file.write(text.encode())
 

@@ -291,8 +291,8 @@ def save(record: Record, path: str | os.PathLike[str]) -> None:
     cushions. The cue is that of the record's scene, with the speed that gives the ball the same velocity in
     pooltool. A record loaded from a file has no cue.
 
-    Raises ValueError if the name does not end in .json or the balls differ in size or mass, and OSError if
-    the file cannot be written.
+    Raises ValueError if the name does not end in .json, the balls differ in size or mass, or the table has
+    arcs, and OSError if the file cannot be written.
     """
     name = os.fspath(path)
     if not name.endswith(".json"):
