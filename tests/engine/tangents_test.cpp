@@ -205,9 +205,9 @@ TEST(Tangents, ScenesAgainstDifferences) {
         inputs.push_back(key);
     compare(scene_of("draw"), inputs, "draw");
     std::vector<std::string> carom = kStroke;
-    for (const char* key :
-         {"balls.mu_s", "balls.mu_r", "balls.mu_sp", "balls.e_b", "table.cushion.c1.height", "balls.e_c",
-          "balls.f_c", "balls.radius", "physics.gravity", "ball.white.position.x", "ball.red.position.y"})
+    for (const char* key : {"balls.mu_s", "balls.mu_r", "balls.mu_sp", "balls.e_b", "table.cushion.c1.height",
+                            "balls.e_c_fit.0", "balls.f_c_fit.0", "balls.radius", "physics.gravity",
+                            "ball.white.position.x", "ball.red.position.y"})
         carom.push_back(key);
     compare(scene_of("three_cushion"), carom, "three_cushion");
 }

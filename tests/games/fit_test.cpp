@@ -20,8 +20,8 @@
 namespace carom::games {
 namespace {
 
-const std::vector<std::string> kVary{"balls.mu_s", "balls.mu_r", "balls.e_c",
-                                     "balls.f_c",  "cue.speed",  "cue.aim_deg"};
+const std::vector<std::string> kVary{"balls.mu_s",      "balls.mu_r", "balls.e_c_fit.0",
+                                     "balls.f_c_fit.0", "cue.speed",  "cue.aim_deg"};
 
 Scene three_cushion() {
     return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/three_cushion.toml");
@@ -118,12 +118,12 @@ TEST(Fit, SaysWhatTheTracksCannotTell) {
     const std::vector<TrackPoint> points = tracks_of(scene, 0.05, 0.0, 1);
     scene.cue->speed *= 1.001;
     const Fit found =
-        fit(scene, points, {{"cue.speed", "cue.restitution", "balls.e_c"}}, kernel::Isa::kScalar);
+        fit(scene, points, {{"cue.speed", "cue.restitution", "balls.e_c_fit.0"}}, kernel::Isa::kScalar);
     ASSERT_EQ(found.warnings.size(), 2u);
     EXPECT_EQ(found.warnings[0],
               "the tracks hardly tell cue.speed from cue.restitution (correlation 1.0000); vary only one of "
               "them, or track another shot");
-    EXPECT_EQ(found.warnings[1], "balls.e_c moves nothing that was tracked");
+    EXPECT_EQ(found.warnings[1], "balls.e_c_fit.0 moves nothing that was tracked");
     EXPECT_EQ(found.deviation(2), std::numeric_limits<double>::infinity());
     EXPECT_LT(found.rms, 1e-8);
     EXPECT_THROW(fit(scene, {}, {kVary}, kernel::Isa::kScalar), std::invalid_argument);
