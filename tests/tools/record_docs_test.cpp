@@ -99,6 +99,11 @@ Json profiled_break() {
                              .corner_pockets = {.mouth = 0.11},
                              .side_pockets = {.mouth = 0.13},
                              .size = Vec2(1.27, 2.54)};
+    Jaw& arc = record.table.jaws.front();
+    arc.side = "outside";
+    arc.from_deg = 0.0;
+    arc.to_deg = 360.0;
+    record.balls.disc = record.balls.slides = 1.0;
     record.events.front().slow = true;
     // Whether a ball hits the end of a cushion depends on the break.
     const auto met = std::find_if(record.events.begin(), record.events.end(),
@@ -115,17 +120,14 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     each_kind(good, "", "", kinds);
     EXPECT_GE(kinds.size(), 90u);
     // A key without which the record is still valid.
-    const std::set<std::string> free = {"/events/#/balls",
-                                        "/events/#/nose",
-                                        "/events/#/slow",
-                                        "/table/bed",
-                                        "/table/size",
-                                        "/table/cushion_height",
-                                        "/table/rail_width",
-                                        "/table/corner_pockets",
-                                        "/table/corner_pockets/mouth",
-                                        "/table/side_pockets",
-                                        "/table/side_pockets/mouth"};
+    const std::set<std::string> free = {"/events/#/balls",       "/events/#/nose",
+                                        "/events/#/slow",        "/table/bed",
+                                        "/table/jaws/#/side",    "/table/jaws/#/from_deg",
+                                        "/table/jaws/#/to_deg",  "/balls/shape",
+                                        "/balls/rolls",          "/table/size",
+                                        "/table/cushion_height", "/table/rail_width",
+                                        "/table/corner_pockets", "/table/corner_pockets/mouth",
+                                        "/table/side_pockets",   "/table/side_pockets/mouth"};
     for (const auto& [kind, at] : kinds) {
         const Json::json_pointer place(at);
         Json bad = good;
