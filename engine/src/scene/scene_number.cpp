@@ -61,9 +61,11 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
             const std::size_t k = element_index(key.substr(dot + 1));
             if (f.element == nullptr || k >= f.count()) break;
             return {&f,
+                    // The numbers of a fit have limits together, too.
                     [&f, at, k, change](Scene& scene, double value) {
                         *f.element(at(scene), k) = value;
-                        return contains(f.range, value) ? change : Change::kAnything;
+                        const bool alone = f.options.instead_of == nullptr;
+                        return alone && contains(f.range, value) ? change : Change::kAnything;
                     },
                     [&f, at, k](Scene& scene) {
                         const double* number = f.element(at(scene), k);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -33,24 +32,6 @@ Input with_step(const std::string& key, double value, const Interval& range,
         throw TangentError(fmt::format(
             "{} = {} is at the end of its range, where it has no derivative; move it inwards", key, value));
     return {key, value, step, std::move(put)};
-}
-
-/// A number of a fit of [balls], such as balls.mu_b_fit.0.
-std::optional<Input> in_fit(const Scene& scene, const std::string& key) {
-    for (const Field<BallParams>& row : kBallFields) {
-        const FieldValue value = row.get(scene.balls);
-        const auto* list = std::get_if<std::vector<double>>(&value);
-        for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
-            if (key != fmt::format("balls.{}.{}", row.key, k)) continue;
-            return with_step(key, (*list)[k], row.range, [&row, k](Scene& s, double x) {
-                auto numbers = std::get<std::vector<double>>(row.get(s.balls));
-                numbers[k] = x;
-                row.set(s.balls, numbers);
-                return Change::kNumbers;
-            });
-        }
-    }
-    return std::nullopt;
 }
 
 /// The numbers in the order in which numbers_of() reads them: of the balls and the stroke, and of the table.
@@ -94,8 +75,6 @@ void add_table(const Geometry& table, std::vector<double>& list) {
 }  // namespace
 
 Input input_of(Scene& scene, const std::string& key) {
-    if (key.starts_with("balls."))
-        if (auto found = in_fit(scene, key)) return *found;
     const SceneNumber number(scene, key);
     const double value = number.value(scene);
     if (std::isnan(value))

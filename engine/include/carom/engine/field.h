@@ -351,6 +351,10 @@ constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& ra
             [](T& object, const FieldValue& value) {
                 const auto& list = std::get<std::vector<double>>(value);
                 object.*kFirst = list[0], object.*kSecond = list[1], object.*kThird = list[2];
+            },
+            nullptr,
+            [](T& object, std::size_t k) -> double* {
+                return k == 0 ? &(object.*kFirst) : k == 1 ? &(object.*kSecond) : &(object.*kThird);
             }};
 }
 
