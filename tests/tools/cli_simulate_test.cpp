@@ -48,6 +48,24 @@ TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) 
     EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
 }
 
+TEST_F(CliSimulate, WithoutARecordTheFinalStateIsTheSame) {
+    const Json all = Json::parse(run({"--json"}).out), end = Json::parse(run({"--json", "--no-record"}).out);
+    EXPECT_EQ(end["duration"], all["duration"]);
+    EXPECT_EQ(end["events"], all["events"]);
+    ASSERT_EQ(end["balls"].size(), all["balls"].size());
+    for (std::size_t i = 0; i < all["balls"].size(); ++i) {
+        for (const char* key : {"id", "position", "pocket"})
+            EXPECT_EQ(end["balls"][i][key], all["balls"][i][key]) << key;
+        EXPECT_EQ(end["balls"][i]["off_table"], false);
+    }
+    const ProcessResult text = run({"--no-record"});
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("final positions (m)\n"), std::string::npos) << text.out;
+    const ProcessResult both = run({"--no-record", "--hash"});
+    EXPECT_EQ(both.status, 2);
+    EXPECT_NE(both.err.find("--hash needs a record; leave out --no-record"), std::string::npos) << both.err;
+}
+
 TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     const ProcessResult good = run({"--hash", "--verify"});
     EXPECT_EQ(good.status, 0) << good.err;

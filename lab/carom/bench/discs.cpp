@@ -40,7 +40,7 @@ struct BenchDiscsArgs {
 };
 
 /// What a run of one size costs.
-struct Subject {
+struct DiscsRun {
     enum Kind { kReference, kOutcome, kRecord } kind;
     Plan plan;
     RunBuffers buffers{};
@@ -75,14 +75,14 @@ struct Subject {
 
 int run(const BenchDiscsArgs& args) {
     std::vector<int> sizes{864, 2500, 10000};
-    std::vector<Subject> subjects;
+    std::vector<DiscsRun> runs;
     for (const int n : sizes) {
         const Plan plan = make_plan(gas_scene(n, args.events, 1), chosen_isa());
-        for (const auto kind : {Subject::kReference, Subject::kOutcome, Subject::kRecord})
-            subjects.push_back({kind, plan});
+        for (const auto kind : {DiscsRun::kReference, DiscsRun::kOutcome, DiscsRun::kRecord})
+            runs.push_back({kind, plan});
     }
-    const auto samples = interleaved("bench discs", subjects.size(), args.repeats,
-                                     [&subjects](std::size_t i) { return subjects[i].time(); });
+    const auto samples = interleaved("bench discs", runs.size(), args.repeats,
+                                     [&runs](std::size_t i) { return runs[i].time(); });
     Table table(Column("discs", "discs", ">8"), Column("reference_ns", "hard discs", ">12.0f"),
                 Column("outcome_ns", "carom", ">9.0f"), Column("record_ns", "record", ">9.0f"),
                 Column("ratio", "ratio", ">8.2f"), Column("growth", "growth", ">8.2f"),

@@ -13,6 +13,7 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/units.h"
+#include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "commands/simulate/story.h"
 #include "report/csv.h"
@@ -35,7 +36,8 @@ struct SimulateArgs {
     bool json = false;
     bool list = false;  ///< tell every event
     std::string units = kUnits[0];
-    bool verify = false;  ///< check the physical laws after every event
+    bool verify = false;     ///< check the physical laws after every event
+    bool no_record = false;  ///< only the final state
 };
 
 /// The total cost of a profiled run's events, by kind. The text shows the means.
@@ -157,6 +159,51 @@ void check_args(const SimulateArgs& args) {
     }
 }
 
+/// Plays without a record, which takes less time and memory if there are many events.
+int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions options) {
+    const std::pair<const char*, bool> asked[] = {{"--output", !args.record.empty()},
+                                                  {"--events", !args.events.empty()},
+                                                  {"--samples", !args.samples.empty()},
+                                                  {"--list", args.list},
+                                                  {"--hash", args.hash},
+                                                  {"--profile", args.profile},
+                                                  {"--verify", args.verify}};
+    for (const auto& [option, given] : asked)
+        if (given) throw UsageError(fmt::format("{} needs a record; leave out --no-record", option));
+    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
+    RunBuffers buffers;
+    Outcome outcome;
+    simulate(plan, buffers, outcome, options);
+    const Unit length = length_unit(units_of(args.units));
+    Json balls = Json::array();
+    std::string text =
+        fmt::format("{}: {}, {:.4f} s, {}; {}\n\nfinal positions ({})\n", args.scene,
+                    counted(outcome.balls.size(), "ball"), outcome.duration, counted(outcome.events, "event"),
+                    words(outcome.stopped).sentence, length.name);
+    for (std::size_t i = 0; i < outcome.balls.size(); ++i) {
+        const BallOutcome& ball = outcome.balls[i];
+        const std::string& id = plan.scene.ball[i].id;
+        const bool off = ball.pocket == kOffTable;
+        const std::string pocket = ball.pocket >= 0 ? plan.scene.table.pockets.at(ball.pocket).id : "";
+        const Vec3 &r = ball.position, shown = r * length.factor;
+        balls.push_back({{"id", id},
+                         {"position", {r.x(), r.y(), r.z()}},
+                         {"pocket", pocket.empty() ? Json() : Json(pocket)},
+                         {"off_table", off}});
+        text += fmt::format("  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", id,
+                            off              ? "off table"
+                            : pocket.empty() ? "on table"
+                                             : pocket,
+                            shown.x(), shown.y());
+    }
+    if (args.json)
+        print(Json({{"duration", outcome.duration}, {"events", outcome.events}, {"balls", balls}}).dump() +
+              "\n");
+    else
+        print(text);
+    return kOk;
+}
+
 bool is_stdout(const std::string& path) {
     return path == "-";
 }
@@ -188,6 +235,7 @@ int run(const SimulateArgs& args) {
     SimulateOptions options;
     options.profile = args.profile;
     options.until = args.until;
+    if (args.no_record) return final_state(args, plan, options);
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
@@ -240,6 +288,7 @@ void add_simulate(Options& program) {
     command.flag("--verify", args.verify,
                  "Check the physical laws after every event; report the first one broken, with exit status 1 "
                  "(default: off)");
+    command.flag("--no-record", args.no_record, "Keep and print only the final state (default: off)");
 }
 
 }  // namespace carom::tools
