@@ -1,4 +1,6 @@
 // Where the cue itself would be while it strikes: over rails and other balls, or in them.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,6 +15,9 @@ namespace {
 
 // [m] A usual cue: 58 inches long, with a tip of 13 mm and a butt of 29 mm.
 constexpr double kCueLength = 1.473, kTipRadius = 0.0065, kButtRadius = 0.0145;
+// [degrees] A level cue in a scene stands for one that is raised as little as any rail asks for, by some 2 to
+// 4 degrees.
+constexpr double kLevel = 5.0;
 // [degrees] Elevations to try.
 constexpr int kSteps = 890;
 constexpr double kStep = 0.1;
@@ -99,6 +104,16 @@ CueRoom room_for(const Scene& scene, const Cue& cue) {
     }
     room.clears_deg.reset();
     return room;
+}
+
+std::string room_note(const Scene& scene) {
+    if (!scene.cue || !(scene.cue->speed > 0.0)) return "";
+    const CueRoom room = room_for(scene, *scene.cue);
+    if (room.in.empty() || (room.clears_deg && *room.clears_deg <= kLevel)) return "";
+    return fmt::format(
+        "the cue would be in {} at an elevation of {} degrees; {}", room.in, scene.cue->elevation_deg,
+        room.clears_deg ? fmt::format("set cue.elevation_deg = {:.1f}, or \"auto\"", *room.clears_deg)
+                        : "no elevation clears it");
 }
 
 }  // namespace carom

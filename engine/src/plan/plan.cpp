@@ -12,7 +12,6 @@
 #include "carom/engine/airborne.h"
 #include "carom/engine/math.h"
 #include "carom/engine/printable.h"
-#include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 #include "physics/cue.h"
 #include "physics/motion.h"
@@ -175,25 +174,9 @@ void warn_of_units(Plan& plan) {
     }
 }
 
-// [degrees] A level cue in a scene stands for one that is raised as little as any rail asks for, by some 2 to
-// 4 degrees.
-constexpr double kLevel = 5.0;
-
-void warn_of_room(Plan& plan) {
-    const Scene& scene = plan.scene;
-    if (!scene.cue || !(scene.cue->speed > 0.0)) return;
-    const CueRoom room = room_for(scene, *scene.cue);
-    if (room.in.empty() || (room.clears_deg && *room.clears_deg <= kLevel)) return;
-    plan.warnings.push_back(fmt::format(
-        "the cue would be in {} at an elevation of {} degrees; {}", room.in, scene.cue->elevation_deg,
-        room.clears_deg ? fmt::format("set cue.elevation_deg = {:.1f}, or \"auto\"", *room.clears_deg)
-                        : "no elevation clears it"));
-}
-
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     warn_of_units(plan);
-    warn_of_room(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
         if (plan.in_force(Effect::kAirborne)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/console.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 
 namespace carom::tools {
@@ -92,6 +93,7 @@ Plan plan_scene(const std::string& path) {
     const kernel::Isa isa = chosen_isa();
     Plan plan = make_plan(read_scene(path), isa);
     for (const std::string& warning : plan.warnings) message("warning: " + warning);
+    if (const std::string note = room_note(plan.scene); !note.empty()) message("note: " + note);
     return plan;
 }
 

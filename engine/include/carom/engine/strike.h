@@ -27,4 +27,7 @@ struct CueRoom {
 };
 CueRoom room_for(const Scene& scene, const Cue& cue);
 
+/// A sentence for people if the scene's cue has no room where it is; "" if it has, or nearly.
+std::string room_note(const Scene& scene);
+
 }  // namespace carom
