@@ -1,13 +1,8 @@
 // The implicit step of a group of resting contacts over an interval (resting_group.h).
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-#include <vector>
 
 #include "carom/engine/tolerances.h"
 #include "contact/resting_group.h"
-#include "physics/motion.h"
 
 namespace carom::resting {
 
