@@ -99,8 +99,8 @@ TEST(Jams, LockedBallsAreNotDriven) {
     EXPECT_EQ(what_breaks(*family_scene("rack_in_box", 9409)), "");
 }
 
-// Friction that leaves no solution is ignored for 30 ms; what it would have changed set intervals of 3e-5 s,
-// and the run did not end in 2.5 s.
+// Friction that leaves no solution is ignored for a while; what it would have changed set intervals of 3e-5
+// s, and the run did not end in 2.5 s.
 TEST(Jams, FrictionWithoutASolutionSetsNoInterval) {
     settles_within(*family_scene("row_between_walls", 879), 1500);
     settles_within(*family_scene("row_between_walls", 6852), 2500);

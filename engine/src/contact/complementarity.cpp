@@ -5,24 +5,11 @@
 #include <utility>
 
 #include "carom/engine/tolerances.h"
+#include "contact/resting_constants.h"
 
 namespace carom {
 
-namespace {
-// [-] Block exchanges without fewer infeasible rows before single exchanges (Murty's rule) begin.
-constexpr int kBlockTries = 8;
-// [-] Further refinements after the first two. Each multiplies the residual by the compliance divided by the
-// smallest eigenvalue, so more of them help only if the matrix is singular to rounding.
-constexpr int kMoreRefinements = 20;
-constexpr double kSlowRow = 0.25, kSlowestRow = 0.9999;  // [-] extrapolated ratios of successive refinements
-// [-] Regularisation, relative to the mobility, at the start of the proximal iteration and at its end, and
-// most rounds.
-constexpr double kApproachSoftness = 1e-4, kLeastSoftness = 1e-8;
-constexpr int kMostRounds = 40;
-// [-] Exchanges before giving up: a matrix that has a solution usually needs three.
-constexpr std::size_t kFewExchanges = 16;
-constexpr double kSumUlp = 4.0;  // [ulp of a row's terms] a smaller residual is the rounding of their sum
-}  // namespace
+using namespace resting;
 
 void Complementarity::multiply_add(double factor, const std::vector<double>& x,
                                    std::vector<double>& result) const {
@@ -132,9 +119,7 @@ void Complementarity::polish(std::vector<double>& w) {
     if (left <= kSumUlp * kEpsilon) return;
     for (int more = 0; more < kMoreRefinements && left > kEpsilon; ++more) {
         last_ = z;
-        before_ = part_;
         refine(w);
-        extrapolate(w);
         const double now = worst_residual(w);
         if (!(now < left)) {
             z = last_;
@@ -143,20 +128,6 @@ void Complementarity::polish(std::vector<double>& w) {
         if (!(now <= 0.5 * left)) return;
         left = now;
     }
-}
-
-// If the smallest eigenvalue is below the compliance, every refinement removes the same small share of the
-// error: the corrections form a geometric series, whose sum follows from the last two.
-void Complementarity::extrapolate(std::vector<double>& w) {
-    double both = 0.0, square = 0.0;
-    for (std::size_t k = 0; k < part_.size(); ++k) {
-        both += before_[k] * part_[k];
-        square += before_[k] * before_[k];
-    }
-    if (!(both > kSlowRow * square) || !(both < kSlowestRow * square)) return;
-    const double more = both / (square - both);
-    for (std::size_t k = 0; k < index_.size(); ++k) z[index_[k]] += more * part_[k];
-    residual(w);
 }
 
 void Complementarity::refine(std::vector<double>& w) {
@@ -169,19 +140,18 @@ void Complementarity::refine(std::vector<double>& w) {
 
 // Rows that no solution can have: a pull, or a negative w.
 void Complementarity::find_wrong(const std::vector<double>& w) {
-    constexpr double kRounding = 1e-12;  // [-] relative; larger violations count as infeasible
     double largest = 0.0;
     for (const double x : z) largest = std::max(largest, std::abs(x));
     wrong_.clear();
     add_sizes();
     for (std::size_t i = 0; i < size; ++i) {
-        const bool wrong = basic_[i] ? z[i] < -kRounding * largest : w[i] < -kRounding * size_of_[i];
+        const bool wrong = basic_[i] ? z[i] < -kInfeasible * largest : w[i] < -kInfeasible * size_of_[i];
         if (wrong) wrong_.push_back(i);
     }
 }
 
-bool Complementarity::solve(bool thorough) {
-    if (exchange(kFewExchanges) || (thorough && approach())) return true;
+bool Complementarity::solve() {
+    if (exchange(kFewExchanges) || approach()) return true;
     std::fill(z.begin(), z.end(), 0.0);
     return false;
 }

@@ -8,10 +8,6 @@
 
 namespace carom {
 
-/// [-] Compliance of each contact of a group, relative to its mobility (the diagonal of A). It makes the
-/// solution unique: redundant contacts share the load.
-inline constexpr double kContactSoftness = 1e-12;
-
 /// z >= 0, w = A z + q >= 0, z . w = 0.
 struct Complementarity {
     /// n unknowns and no columns, in the memory that it has.
@@ -38,10 +34,8 @@ struct Complementarity {
     /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share
     /// their load evenly and the solution is unique; iterative refinement removes this effect again, down to
     /// rounding. Starts with the rows in which z is positive or A z + q negative.
-    /// @param thorough  whether to continue if the pivoting does not end: for matrices without negative
-    /// eigenvalues, for which rounding decides. Others may have no solution, and are given up early
     /// @return false if no solution was found (there may be none); z is then 0
-    bool solve(bool thorough = true);
+    bool solve();
 
     struct Entry {
         std::size_t row;
@@ -68,13 +62,12 @@ struct Complementarity {
     void find_wrong(const std::vector<double>& w);
     void polish(std::vector<double>& w);
     void refine(std::vector<double>& w);
-    void extrapolate(std::vector<double>& w);
 
     std::vector<char> basic_;
     std::vector<std::size_t> index_, pivot_, wrong_;
     std::vector<std::size_t> place_;         // of a basic row in index_
     std::vector<std::size_t> top_, bottom_;  // first and last row of a column of lu_ that is not zero
-    std::vector<double> lu_, w_, part_, before_, last_, size_of_;
+    std::vector<double> lu_, w_, part_, last_, size_of_;
 };
 
 }  // namespace carom

@@ -12,20 +12,7 @@
 
 namespace carom {
 
-namespace {
-
-// [-] Least restitution in the rule of holds(): with 0 the bounce would have no duration at any speed.
-constexpr double kLeastRestitution = 0.1;
-// [s] A speed that rolling friction would stop within this time counts as zero.
-constexpr double kStopNoise = 1e-12;
-// [s] The same if there is only sliding friction: such a speed moves a ball by at most 1e-12 m in an hour.
-constexpr double kSlideNoise = 1e-16;
-// [of a closing speed] Impulses that leave less than this share of it count as progress.
-constexpr double kNearer = 0.5;
-// [s] A slip after an impulse counts as zero if sliding friction ends it within this time.
-constexpr double kSlipNoise = 1e-12;
-
-}  // namespace
+using namespace resting;
 
 namespace resting {
 
@@ -112,7 +99,7 @@ bool keep_energy(Group& g) {
 
 // Accepts the velocities after impulses at an instant as the present ones.
 void accept(Group& g) {
-    const double gone = std::max(g.noise, 3.5 * g.motion.slide * kSlipNoise);
+    const double gone = std::max(g.noise, 3.5 * g.motion.slide * kStopNoise);
     for (Body& b : g.bodies)
         if (b.impulses > 0.0 && !(length(b.slip_end()) > gone)) b.s_end = b.v_end;
     const bool all = keep_energy(g);
@@ -145,17 +132,14 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// If rounding leaves no solution, as in flat wedges, start the next pass from the closest state.
+// In flat wedges rounding leaves no solution; what comes nearer is taken.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
-    const double rounding = kClosingUlp * kEpsilon * fastest;
-    for (int pass = 0; pass < 3; ++pass) {
-        const double before = closing_speed(g, gap_rate);
-        if (before <= rounding) break;
-        if (!strike(g) && !(closing_speed(g, end_rate) < kNearer * before)) break;
+    const double before = closing_speed(g, gap_rate);
+    if (before > kClosingUlp * kEpsilon * fastest &&
+        (strike(g) || closing_speed(g, end_rate) < kNearer * before))
         accept(g);
-    }
     mark_open(g);
 }
 
@@ -234,8 +218,7 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
 }
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now) {
-    resting::Group g{group, around, *group.balls.front().motion, now, {}, {}, 0.0, false, 0.0, 0.0, {},
-                     {},    {}};
+    resting::Group g{group, around, *group.balls.front().motion, now, {}, {}, 0.0, false, 0.0, {}, {}, {}};
     resting::solve(g);
 }
 

@@ -7,31 +7,26 @@
 // for unilateral contacts with friction). For each ball, per mass, let v be its velocity, s = R (w_y, -w_x)
 // the velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
-// P = sum of +-J n are the pushes, C = -sum of f_z J n the couples of the vertical friction f_z J between two
-// balls, f is the friction of the cloth, and d the resistance of a rolling ball. The friction opposes the
-// slip at the end: f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the
-// velocity at the end. So a ball stops, rolls, or slides by the effect of the whole interval, and no interval
-// is too short for a direction that reverses. The impulses of the contacts fulfil J >= 0, gap rate at the end
-// >= 0, J x rate = 0.
+// P = sum of +-J n are the pushes, C = -sum of Z n the couples of the vertical friction Z between two balls,
+// f is the friction of the cloth, and d the resistance of a rolling ball. The friction opposes the slip at
+// the end: f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the velocity
+// at the end. So a ball stops, rolls, or slides by the effect of the whole interval, and no interval is too
+// short for a direction that reverses. The impulses of the contacts fulfil J >= 0, gap rate at the end >= 0,
+// J x rate = 0.
+//
+// Z opposes the slip between the balls at the end, and loads the cloth. It lags by one step of Newton's
+// method: for given Z the rates are the gradient of a convex function of J, so that J exists and is found.
+// Balls that lock each other would let Z grow for ever; after some steps it may only decrease, and so never
+// drives them.
 #pragma once
 
 #include <vector>
 
 #include "contact/complementarity.h"
 #include "contact/resting.h"
+#include "contact/resting_constants.h"
 
 namespace carom::resting {
-
-/// [s] Shortest interval: whatever reverses within it is treated as in its end state.
-inline constexpr double kShortestInterval = 1e-5;
-/// [m] and [s] A deeper overlap is removed within the interval, but over at least this time: otherwise the
-/// rounding errors of a long push would add up to nearly 1e-12 m.
-inline constexpr double kOverlapDepth = 2e-14;
-inline constexpr double kRecoveryTime = 1e-3;
-/// [m] Largest gap of a contact that continues.
-inline constexpr double kGapLeft = 1e-8;
-/// [m] Overlap that may arise within an interval.
-inline constexpr double kOverlapGrowth = 1e-13;
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
@@ -63,8 +58,7 @@ struct Body {
     Vec2 push = Vec2::Zero(), couple = Vec2::Zero();  ///< P and C
     double lift = 0.0;                                ///< vertical impulse of the contacts
     double impulses = 0.0;                            ///< sum of |J| per mass, for rounding
-    Matrix by_push, by_couple;                        ///< derivatives of v_end
-    Vec2 by_lift = Vec2::Zero();                      ///< the same: less load means less friction
+    Matrix by_push;                                   ///< derivative of v_end
 
     Vec2 slip_end() const { return v_end - s_end; }
 };
@@ -80,11 +74,11 @@ struct Link {
     double gap = 0.0;                   ///< [m]; negative: overlap
     bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding
-    bool walled = false;                ///< cannot be stabilised (between opposing fixed normals)
     double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
-    double friction_z = 0.0;            ///< f_z, on ball i
     double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
-    double J = 0.0;                     ///< [m/s] level impulse per mass of the lightest ball
+    // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
+    double J = 0.0, Z = 0.0, lift = 0.0;
+    double friction_z = 0.0;  ///< Z over the J that it was found with
 };
 
 struct Group {
@@ -95,21 +89,12 @@ struct Group {
     std::vector<Body> bodies;  ///< as group.balls
     std::vector<Link> links;   ///< as group.contacts
     double solved = 0.0;       ///< [s] interval for which the bodies and links have a solution; 0: none
-    bool smooth = false;       ///< the solution ignores friction between balls, because with it there is none
-    /// [s] recommended length after a solution was given up because its interval was too long; 0: none was
-    double cut = 0.0;
-    double noise = 0.0;  ///< [m/s] rounding of the group's speeds in a few sums of eight terms
+    bool smooth = false;       ///< the solution has less friction between balls than they have
+    double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
     // Workspace of solve_interval() and step().
     std::vector<Body> bodies_before;
     std::vector<Link> links_before;
     Complementarity problem;
-};
-
-/// Options of a step.
-struct StepOptions {
-    bool friction = true;   ///< the vertical friction between balls
-    bool stabilise = true;  ///< Link::turning
-    bool may_cut = false;   ///< whether to give up on an interval that turns out to be too long (Group::cut)
 };
 
 /// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
@@ -127,24 +112,20 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 
 // resting_response.cpp
 /// Moves the balls by the impulses of their contacts over h [s]; at an instant, h = 0, without friction.
-/// @param friction  whether the contacts' vertical friction loads the cloth
-/// @param stops     whether a ball that hardly moves has the derivatives of a ball at rest
-void respond(Group& g, double h, bool friction, bool stops = false);
+void respond(Group& g, double h);
 
 // resting_newton.cpp
 /// Solves for the impulses of the contacts that are not open, by Newton's method, starting from the present
 /// ones.
 /// @return whether there is a solution
-bool solve_newton(Group& g, double h, const StepOptions& options);
+bool solve_newton(Group& g, double h, bool stabilise);
 /// [m/s] Slip of two balls that their friction ends within the interval.
 double slip_ended(const Group& g, const Link& link);
 
 // resting_step.cpp
 /// Solves the step over h [s]; 0 is an instant, without friction. @return whether there is a solution; if
 /// not, leaves the closest state
-bool step(Group& g, double h, StepOptions options = {});
-/// Whether an impulse of the solution over h exceeds what drives the group: balls lock each other.
-bool locks(const Group& g, double h);
+bool step(Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
 /// [m/s] Rounding of the rates of the gaps.

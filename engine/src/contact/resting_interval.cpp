@@ -12,43 +12,6 @@ namespace carom::resting {
 
 namespace {
 
-// [s] Longest interval, and the length of the first attempt if nothing moves.
-constexpr double kLongestInterval = 1e6;
-// [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
-constexpr double kPlaceError = 2e-8;
-// [s] A ball that friction stops rests after this time at the latest: with the tolerance of positions alone
-// it could creep for days.
-constexpr double kStopsWithin = 0.01;
-// [s] Longest interval without friction between balls, if friction leaves no solution and anything
-// accelerates.
-constexpr double kSmooth = 0.03;
-// [-] If an interval overruns a stop by less than this fraction, keep it as it is.
-constexpr double kSoon = 1e-2;
-// [m] Ignore smaller position errors from using the direction at the end of an interval.
-constexpr double kUnguided = 1e-9;
-// [rad] Up to this angle, use the direction of the middle of the interval for one that turns.
-constexpr double kTurnOfMiddle = 0.5;
-// [rad] Largest rotation of a normal within an interval.
-constexpr double kNormalTurn = 0.03;
-// [of the sliding acceleration] Smaller opening accelerations are the rounding of the forces.
-constexpr double kOpening = 1e-10;
-// [-] Directions that differ by less (sine of the angle) count as constant: the closed form of a straight
-// line applies.
-constexpr double kStraight = 1e-9;
-// [-] Relative tolerance of the length of an interval.
-constexpr double kMet = 1e-9;
-// [ulp of the time] Shortest interval, so that the clock advances.
-constexpr double kClockTicks = 8.0;
-// [-] Most attempts at an interval, and at a longer one that ends when a slip or velocity has gone; a longer
-// one is tried if the end is within kNearly.
-constexpr int kAttempts = 60, kLonger = 6;
-constexpr double kNearly = 1e-2;
-// [-] First attempt, as a multiple of the group's last interval: whatever limited that one mostly limits this
-// one.
-constexpr double kGrowth = 4.0;
-// [-] Shortest next attempt, as a share of the last.
-constexpr double kShorter = 0.2;
-
 // First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
 double time_gone(const Vec2& x, const Vec2& D, double S) {
     const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
@@ -61,11 +24,11 @@ double time_gone(const Vec2& x, const Vec2& D, double S) {
 // `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
     if (!(error > allowed)) return kNever;
-    constexpr double kStep = 0.9;
-    const double falls = power == 1 ? kStep : (power == 2 ? kStep * kStep : kStep * kStep * kStep);
+    const double falls =
+        power == 1 ? kReduced : (power == 2 ? kReduced * kReduced : kReduced * kReduced * kReduced);
     while (error > allowed && h > kShortestInterval) {
         error *= falls;
-        h *= kStep;
+        h *= kReduced;
     }
     return h;
 }
@@ -132,7 +95,7 @@ double friction_interval(const Group& g, const Body& b, double h) {
         return h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
     }
     const double turn = turn_of(m.start, m.end);
-    if (turn <= kStraight) return kNever;
+    if (turn <= kSame) return kNever;
     if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, kPlaceError, 2);
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
@@ -156,7 +119,7 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
         // gap is visible.
         const double opening = (end_rate(g, link) - rate) / h + link.turning;
-        if (opening > kOpening * g.motion.slide)
+        if (opening > 0.0)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
@@ -170,16 +133,15 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
     if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
     if (link.j >= 0 && !g.smooth) {
         // The friction between two balls changes with their slip, until that is gone.
-        const double change = std::abs(friction_at_start(g, link) - link.friction_z);
+        const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval =
-            std::min(interval, allowed_interval(h, change * force * h * h * share / 8.0, kPlaceError, 2));
+        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2));
     }
     const Across t = across(g, link, h);
     const double v = std::abs(t.v), a = std::abs(t.a);
     if (t.distance == 0.0) return interval;
     const double turn = h * (v + 0.5 * h * a) / std::abs(t.distance);
-    if (turn <= kStraight * h) return interval;
+    if (turn <= kSame * h) return interval;
     return std::min(
         {interval, allowed_interval(h, turn, kNormalTurn, 1),
          allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
@@ -199,24 +161,20 @@ double first_attempt(const Group& g) {
 }
 
 // Gives friction the direction of the middle of the interval, for second order.
-bool guide(Group& g, double h) {
+bool guide(Group& g) {
     bool any = false;
-    double wrong = 0.0;  // S w h^2 / 3: the position error with the direction of the end
     for (Body& b : g.bodies) {
         b.guided = false;
         const Moving m = moving(g, b);
         if (!moves(m.start) || !moves(m.end) || (!moves(b.u) && b.mode != Mode::kRolling)) continue;
         if (moves(b.u) && b.mode != Mode::kSliding) continue;
         const double turn = turn_of(m.start, m.end);
-        if (turn <= kStraight || turn > kTurnOfMiddle) continue;
+        if (turn <= kSame || turn > kTurnOfMiddle) continue;
         const Vec2 middle = m.start / length(m.start) + m.end / length(m.end);
         b.guide = middle / length(middle);
         b.guided = any = true;
-        wrong = std::max(wrong, m.strength * turn * h * h / 3.0);
     }
-    if (wrong > kUnguided) return any;
-    for (Body& b : g.bodies) b.guided = false;
-    return false;
+    return any;
 }
 
 // Whether guided balls still move in the direction that their friction opposes.
@@ -230,9 +188,8 @@ void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
     const bool smooth = g.smooth;
-    if (!guide(g, h)) return;
-    const bool solved = step(g, h, {.friction = g.around.balls.ball_friction().any() && !smooth}) &&
-                        !g.smooth && keeps_direction(g);
+    if (!guide(g)) return;
+    const bool solved = step(g, h) && !g.smooth && keeps_direction(g);
     g.smooth = smooth;
     if (solved) return;
     g.bodies.swap(g.bodies_before);
@@ -286,7 +243,7 @@ void write_segments(Group& g, double h) {
         const Body& b = g.bodies[k];
         Segment& s = g.group.balls[k].segment;
         s.duration = interval;
-        const bool slid = b.mode != Mode::kSliding || length(b.slip_end()) <= kMet * length(b.u);
+        const bool slid = b.mode != Mode::kSliding || length(b.slip_end()) <= kSame * length(b.u);
         s.ends = moves(b.u)
                      ? slid && interval == h
                      : (moves(b.v) ? b.mode == Mode::kResting && interval == h : spinning[k] <= interval);
@@ -294,33 +251,11 @@ void write_segments(Group& g, double h) {
 }
 
 bool accelerates(const Group& g) {
-    constexpr double kRounding = 8.0 * kEpsilon;
+    constexpr double kRounding = kChangeUlp * kEpsilon;
     return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
         return length(b.v_end - b.v) > kRounding * length(b.v) ||
                length(b.s_end - b.s) > kRounding * length(b.s);
     });
-}
-
-// The step over h. If friction leaves no solution (Painlevé's paradox), balls lock each other, and may stop
-// each other at an instant. If that has no solution either, friction is ignored for kSmooth at most, and at
-// most for the longest of the attempts that were cut because of friction.
-// @return whether there is a solution
-bool attempt_at(Group& g, double& h, double shortest, double longest, bool may_cut) {
-    g.cut = 0.0;
-    if (!g.smooth) {
-        const bool solved = step(
-            g, h, {.friction = g.around.balls.ball_friction().any(), .may_cut = may_cut && h > shortest});
-        if (g.cut > 0.0) return false;
-        if (!g.smooth || longest <= shortest) return solved;
-        if (step(g, shortest) && !g.smooth && locks(g, shortest)) {
-            h = shortest;
-            return true;
-        }
-        h = std::min(longest, kSmooth);
-    }
-    const bool solved = step(g, h, {.friction = false});
-    g.smooth = true;
-    return solved;
 }
 
 }  // namespace
@@ -337,32 +272,23 @@ void solve_interval(Group& g) {
     for (Body& b : g.bodies) b.guided = false;
     const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
-    double longest = h;
     int longer = 0;
-    bool cut = false;
     double gone_before = 0.0;  // something has gone before this time, but not before the last interval
     for (int attempt = 1;; ++attempt) {
-        if (!cut) longest = h;
-        const bool solved = attempt_at(g, h, shortest, longest, attempt < kAttempts);
-        cut = g.cut > 0.0;
-        if (cut) {
-            gone_before = 0.0;
-            h = std::max({shortest, g.cut, kShorter * h});
-            continue;
-        }
+        const bool solved = step(g, h);
         double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
         if (!solved) accurate = std::min(accurate, 0.25 * h);
+        if (g.smooth) accurate = std::min(accurate, kSmooth);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
             later = std::min(later, gone_later(g, b, h));
         }
         if (attempt == kAttempts) break;  // the bodies hold the solution of this h
-        if (std::min(accurate, gone) < h * (1.0 - kMet) && h > shortest) {
+        if (std::min(accurate, gone) < h * (1.0 - kSame) && h > shortest) {
             gone_before = gone <= accurate ? h : 0.0;
-            // A much too long interval says little about the right length of a shorter one.
-            h = std::max(shortest, std::min(std::max(accurate, kShorter * h), gone * (1.0 + 0.5 * kMet)));
-        } else if (later < std::max(gone_before, (1.0 + kNearly) * h) && longer < kLonger) {
-            h = later * (1.0 + 0.5 * kMet);
+            h = std::max(shortest, std::min(accurate, gone * (1.0 + 0.5 * kSame)));
+        } else if (later < std::max(gone_before, (1.0 + kSoon) * h) && longer < kLonger) {
+            h = later * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
             // If all moves straight and evenly, continue until something ends it.

@@ -8,12 +8,6 @@ namespace carom::resting {
 
 namespace {
 
-// [of the change by friction] A ball that is slower hardly moves.
-constexpr double kHardlyMoves = 1e-2;
-// [-] Mobility of a ball at rest, in the derivatives only, so that balls at rest share a load; a sliding ball
-// has 1. A smaller value would turn a nearly right rate into impulses that set the balls moving.
-constexpr double kRestCompliance = 1e-4;
-
 Matrix identity(double c) {
     return {c, 0.0, c};
 }
@@ -43,8 +37,6 @@ void respond_puck(const Group& g, Body& b, double h) {
     const double grip = g.motion.slide * b.load * h;
     const Vec2 v = b.v + b.push;
     const double speed = length(v);
-    b.by_lift = Vec2::Zero();
-    b.by_couple = {};
     b.s_end = Vec2::Zero();
     if (h == 0.0 || grip == 0.0 || speed > grip) {
         const Vec2 d = h == 0.0 || grip == 0.0 ? Vec2(Vec2::Zero()) : b.guided ? b.guide : Vec2(v / speed);
@@ -60,23 +52,18 @@ void respond_puck(const Group& g, Body& b, double h) {
 }
 
 // The motion of a ball under the impulses on it, and its derivatives.
-void respond(const Group& g, Body& b, double h, bool stops) {
+void respond(const Group& g, Body& b, double h) {
     const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
     const bool slips = moves(b.u);
-    const double by_load = b.load > 0.0 && g.around.gravity > 0.0 ? g.motion.slide / g.around.gravity : 0.0;
-    b.by_lift = Vec2::Zero();
     // At an instant there is no friction.
     if (h == 0.0) {
         slide(b, Vec2::Zero());
         b.by_push = identity(1.0);
-        b.by_couple = {};
         return;
     }
     if (b.guided && slips) {
         slide(b, -grip * b.guide);
         b.by_push = identity(1.0);
-        b.by_couple = {};
-        b.by_lift = by_load * b.guide;
         return;
     }
     const Vec2 slip = b.u + b.push - 2.5 * b.couple;
@@ -86,8 +73,6 @@ void respond(const Group& g, Body& b, double h, bool stops) {
         slide(b, -grip * d);
         const Matrix turn = across_of(grip / size, d);
         b.by_push = minus(identity(1.0), turn);
-        b.by_couple = times(2.5, turn);
-        b.by_lift = by_load * d;
         return;
     }
     const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
@@ -96,22 +81,20 @@ void respond(const Group& g, Body& b, double h, bool stops) {
     if (slips || drag == 0.0) {
         b.mode = Mode::kRolling;
         b.v_end = rolls;
-        b.by_push = b.by_couple = identity(5.0 / 7.0);
+        b.by_push = identity(5.0 / 7.0);
     } else if (b.guided) {
         b.mode = Mode::kRolling;
         b.v_end = rolls - drag * b.guide;
-        b.by_push = b.by_couple = identity(5.0 / 7.0);
+        b.by_push = identity(5.0 / 7.0);
     } else if (speed > drag) {
         const Vec2 d = rolls / speed;
         b.mode = Mode::kRolling;
         b.v_end = rolls - drag * d;
-        b.by_push = b.by_couple = stops && speed <= (1.0 + kHardlyMoves) * drag
-                                      ? identity(kRestCompliance)
-                                      : minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
+        b.by_push = minus(identity(5.0 / 7.0), across_of((5.0 / 7.0) * drag / speed, d));
     } else {
         b.mode = Mode::kResting;
         b.v_end = Vec2::Zero();
-        b.by_push = b.by_couple = identity(kRestCompliance);
+        b.by_push = identity(kRestCompliance);
     }
     if (!moves(b.v_end)) b.mode = Mode::kResting;
     b.s_end = b.v_end;
@@ -119,37 +102,34 @@ void respond(const Group& g, Body& b, double h, bool stops) {
 
 }  // namespace
 
-void respond(Group& g, double h, bool friction, bool stops) {
+void respond(Group& g, double h) {
     for (Body& b : g.bodies) {
         b.push = b.couple = Vec2::Zero();
         b.lift = b.impulses = 0.0;
     }
     for (const Link& link : g.links) {
         Body& bi = g.bodies[link.i];
-        const double Ji = bi.ease * link.J, up = link.friction_z - link.tilt;
+        const double Ji = bi.ease * link.J;
         bi.push -= Ji * link.n;
-        bi.couple -= link.friction_z * Ji * link.n;
-        bi.lift += up * Ji;
+        bi.couple -= bi.ease * link.Z * link.n;
+        bi.lift += bi.ease * link.lift;
         bi.impulses += std::abs(Ji);
         if (link.j < 0) continue;
         Body& bj = g.bodies[link.j];
         const double Jj = bj.ease * link.J;
         bj.push += Jj * link.n;
-        bj.couple -= link.friction_z * Jj * link.n;
-        bj.lift -= up * Jj;
+        bj.couple -= bj.ease * link.Z * link.n;
+        bj.lift -= bj.ease * link.lift;
         bj.impulses += std::abs(Jj);
     }
     const double weight = g.around.gravity * h;
     for (Body& b : g.bodies) {
-        b.load = friction && weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
+        b.load = weight > 0.0 ? std::max(0.0, 1.0 - b.lift / weight) : 1.0;
         if (g.motion.rolls)
-            respond(g, b, h, stops);
+            respond(g, b, h);
         else
             respond_puck(g, b, h);
-        if (b.ease == 1.0) continue;
-        b.by_push = times(b.ease, b.by_push);
-        b.by_couple = times(b.ease, b.by_couple);
-        b.by_lift *= b.ease;
+        if (b.ease != 1.0) b.by_push = times(b.ease, b.by_push);
     }
 }
 

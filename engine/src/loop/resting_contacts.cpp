@@ -7,30 +7,14 @@
 #include "carom/engine/tolerances.h"
 #include "contact/place.h"
 #include "contact/pocket_edge.h"
+#include "contact/resting_constants.h"
 #include "physics/motion.h"
 
 namespace carom {
 
-namespace {
+using namespace resting;
 
-// [s] A contact that bounces repeatedly within this time chatters. It is a twentieth of the duration of one
-// contact of two balls.
-constexpr double kChatterSpan = 1e-5;
-// [-] Treat a contact as resting after the number of bounces that would leave this fraction of the speed,
-// within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
-constexpr double kSpeedLeft = 1e-3;
-constexpr int kFewestBounces = 20, kMostBounces = 200;
-// [of the closing speed at the first of them] More is left of bounces that lose nothing, however fast they
-// come: a grain between walls, or pushed against one by a ball of a hundred million times its mass.
-constexpr double kNotFallen = 0.5;
-// [bounces] Room for the closing speeds of the latest ones, of all contacts.
-constexpr std::size_t kBouncesKept = 1024;
-// [bounces] What a resting contact counts for that began and ended within that
-// time, and a cluster that begins with this contact: it resolves all bounces of its
-// balls at once. No row of impacts has one, and even a second cluster is rare.
-constexpr int kManyAtOnce = 20;
-// [balls] Initial capacity for the balls of one impact; a larger cluster allocates more.
-constexpr std::size_t kMostStruck = 32;
+namespace {
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
     const Partner partner = contact.with == With::kBall ? Partner::kBall
