@@ -19,8 +19,8 @@ constexpr double kCueLength = 1.473, kTipRadius = 0.0065, kButtRadius = 0.0145;
 // 4 degrees.
 constexpr double kLevel = 5.0;
 // [degrees] Elevations to try.
-constexpr int kSteps = 890;
-constexpr double kStep = 0.1;
+constexpr int kElevations = 890;
+constexpr double kElevationStep = 0.1;
 
 /// A cue as a cone: from the tip backwards.
 struct Cone {
@@ -96,8 +96,8 @@ std::string met(const Scene& scene, const Cue& cue, double elevation_deg) {
 CueRoom room_for(const Scene& scene, const Cue& cue) {
     CueRoom room{met(scene, cue, cue.elevation_deg), cue.elevation_deg};
     if (room.in.empty()) return room;
-    for (int k = 0; k <= kSteps; ++k) {
-        const double elevation = kStep * k;
+    for (int k = 0; k <= kElevations; ++k) {
+        const double elevation = kElevationStep * k;
         if (elevation <= cue.elevation_deg || !met(scene, cue, elevation).empty()) continue;
         room.clears_deg = elevation;
         return room;
