@@ -9,8 +9,6 @@
 
 namespace carom {
 
-using namespace resting;
-
 void Complementarity::multiply_add(double factor, const std::vector<double>& x,
                                    std::vector<double>& result) const {
     for (std::size_t j = 0; j < size; ++j) {
@@ -44,7 +42,7 @@ bool Complementarity::factor() {
             top_[c] = std::min(top_[c], r);
             bottom_[c] = std::max(bottom_[c], r);
         }
-        lu_[c * m + c] += kContactSoftness * std::abs(lu_[c * m + c]);
+        lu_[c * m + c] += resting::kContactSoftness * std::abs(lu_[c * m + c]);
     }
     for (std::size_t k = 0; k < m; ++k) {
         double* const column = &lu_[k * m];
@@ -116,8 +114,8 @@ void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
     double left = worst_residual(w);
-    if (left <= kSumUlp * kEpsilon) return;
-    for (int more = 0; more < kMoreRefinements && left > kEpsilon; ++more) {
+    if (left <= resting::kSumUlp * kEpsilon) return;
+    for (int more = 0; more < resting::kMoreRefinements && left > kEpsilon; ++more) {
         last_ = z;
         refine(w);
         const double now = worst_residual(w);
@@ -145,13 +143,14 @@ void Complementarity::find_wrong(const std::vector<double>& w) {
     wrong_.clear();
     add_sizes();
     for (std::size_t i = 0; i < size; ++i) {
-        const bool wrong = basic_[i] ? z[i] < -kInfeasible * largest : w[i] < -kInfeasible * size_of_[i];
+        const bool wrong =
+            basic_[i] ? z[i] < -resting::kInfeasible * largest : w[i] < -resting::kInfeasible * size_of_[i];
         if (wrong) wrong_.push_back(i);
     }
 }
 
 bool Complementarity::solve() {
-    if (exchange(kFewExchanges) || approach()) return true;
+    if (exchange(resting::kFewExchanges) || approach()) return true;
     std::fill(z.begin(), z.end(), 0.0);
     return false;
 }
@@ -171,15 +170,15 @@ bool Complementarity::approach() {
     }
     std::fill(z.begin(), z.end(), 0.0);
     bool found = false, least = false;
-    double softness = kApproachSoftness;
-    for (int round = 0; round < kMostRounds; ++round) {
+    double softness = resting::kApproachSoftness;
+    for (int round = 0; round < resting::kMostRounds; ++round) {
         before = z;
         for (std::size_t c = 0; c < size; ++c) {
             const double soft = softness * std::abs(own[c]);
             entries[diagonal[c]].value = own[c] + soft;
             q[c] = wanted[c] - soft * before[c];
         }
-        if (!exchange(found ? kFewExchanges : 200 + 20 * size)) {
+        if (!exchange(found ? resting::kFewExchanges : 200 + 20 * size)) {
             z = before;  // as near as rounding allows
             if (least || !found) break;
             least = true;
@@ -193,7 +192,7 @@ bool Complementarity::approach() {
             largest = std::max(largest, z[c]);
         }
         if (!(softness * moved > kEpsilon * largest)) break;
-        if (!least) softness = std::max(kLeastSoftness, 0.1 * softness);
+        if (!least) softness = std::max(resting::kLeastSoftness, 0.1 * softness);
     }
     for (std::size_t c = 0; c < size; ++c) entries[diagonal[c]].value = own[c];
     q = wanted;
@@ -206,7 +205,7 @@ bool Complementarity::exchange(std::size_t most) {
     basic_.resize(size);
     for (std::size_t i = 0; i < size; ++i) basic_[i] = z[i] > 0.0 || w[i] < 0.0;
     std::size_t fewest = size + 1;
-    int tries = kBlockTries;
+    int tries = resting::kBlockTries;
     for (std::size_t pivots = 0; pivots < most; ++pivots) {
         if (!factor()) return false;
         std::fill(z.begin(), z.end(), 0.0);
@@ -223,7 +222,7 @@ bool Complementarity::exchange(std::size_t most) {
         }
         if (wrong_.size() < fewest) {
             fewest = wrong_.size();
-            tries = kBlockTries;
+            tries = resting::kBlockTries;
         } else {
             --tries;
         }

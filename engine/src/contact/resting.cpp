@@ -12,8 +12,6 @@
 
 namespace carom {
 
-using namespace resting;
-
 namespace resting {
 
 namespace {
@@ -205,7 +203,8 @@ double time_to_line_end(const CushionLine& line, const Segment& s) {
 
 bool holds(double v_n, double a_c, double restitution) {
     if (!(a_c > 0.0)) return false;
-    const double x = 2.0 * std::max(restitution, kLeastRestitution) * v_n / a_c;  // duration of the rebound
+    const double x =
+        2.0 * std::max(restitution, resting::kLeastRestitution) * v_n / a_c;  // duration of the rebound
     const double x2 = x * x, f2 = kContactTimeFactor * kContactTimeFactor;
     return x2 * x2 * x * v_n <= f2 * f2 * kContactTimeFactor / (kContactStiffness * kContactStiffness);
 }
@@ -213,8 +212,9 @@ bool holds(double v_n, double a_c, double restitution) {
 double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
     const double speed = length(planar(v)), spin = length(Vec2(length(planar(w)), w.z()));
     // Without rolling friction nothing stops such a ball, so sliding friction sets the scale.
-    return std::max(motion.roll > 0.0 ? kStopNoise * motion.roll : kSlideNoise * motion.slide,
-                    8.0 * kClosingUlp * kEpsilon * (speed + motion.R * spin));
+    return std::max(
+        motion.roll > 0.0 ? resting::kStopNoise * motion.roll : resting::kSlideNoise * motion.slide,
+        8.0 * kClosingUlp * kEpsilon * (speed + motion.R * spin));
 }
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now) {

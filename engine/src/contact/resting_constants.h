@@ -13,6 +13,8 @@ namespace carom::resting {
 inline constexpr double kChatterSpan = 1e-5;
 // [-] Treat a contact as resting after the number of bounces that would leave this fraction of the speed,
 // within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
+// A hundredth of it: Jams.BallsWithoutFrictionAreSolvedWithoutIt. At least 50 bounces:
+// Jams.AnImpactDoesNotGoBackAndForthForLong.
 inline constexpr double kSpeedLeft = 1e-3;
 inline constexpr int kFewestBounces = 20, kMostBounces = 200;
 // [of the closing speed at the first of them] More is left of bounces that lose nothing, however fast they
@@ -23,6 +25,7 @@ inline constexpr std::size_t kBouncesKept = 1024;
 // [bounces] A resting contact that began and ended within that time counts for as many, and so does a cluster
 // that begins with this contact: it resolves all bounces of its balls at once. No row of impacts has one, and
 // even a second cluster is rare.
+// Less than half: Jams.BallsWithoutFrictionAreSolvedWithoutIt.
 inline constexpr int kManyAtOnce = 20;
 // [balls] Initial capacity for the balls of one impact; a larger cluster allocates more.
 inline constexpr std::size_t kMostStruck = 32;
@@ -51,6 +54,7 @@ inline constexpr double kClockTicks = 8.0;
 // [s] Longest interval, and the length of the first attempt if nothing moves.
 inline constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
+// A hundred times as much: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kPlaceError = 2e-8;
 // [s] A ball that friction stops rests after this time at the latest: with the tolerance of positions alone
 // it could creep for days.

@@ -12,8 +12,6 @@
 
 namespace carom {
 
-using namespace resting;
-
 namespace {
 
 EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& geometry) {
@@ -49,9 +47,10 @@ bool lies(MotionState state) {
 // Uses products, because logarithms differ between libraries in the last bits.
 int most_bounces(double restitution) {
     int bounces = 0;
-    for (double left = restitution; left >= kSpeedLeft && bounces < kMostBounces; left *= restitution)
+    for (double left = restitution; left >= resting::kSpeedLeft && bounces < resting::kMostBounces;
+         left *= restitution)
         ++bounces;
-    return std::max(kFewestBounces, bounces);
+    return std::max(resting::kFewestBounces, bounces);
 }
 
 bool touches(const RestingContact& c, int ball) {
@@ -64,19 +63,19 @@ RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log,
     : Borrowed(memory), plan_(plan), balls_(balls), log_(log), lossless_(loses_nothing(plan)) {
     contacts_.clear();
     struck_.clear();
-    struck_.reserve(std::min<std::size_t>(plan.sizes.size(), kMostStruck));
+    struck_.reserve(std::min<std::size_t>(plan.sizes.size(), resting::kMostStruck));
     bounces_.clear();
-    bounces_.reserve(kBouncesKept);
+    bounces_.reserve(resting::kBouncesKept);
     next_bounce_ = 0;
 }
 
 void RestingContacts::note(const Bounce& bounce) {
-    if (bounces_.size() < kBouncesKept) {
+    if (bounces_.size() < resting::kBouncesKept) {
         bounces_.push_back(bounce);
         return;
     }
     bounces_[next_bounce_] = bounce;
-    next_bounce_ = (next_bounce_ + 1) % kBouncesKept;
+    next_bounce_ = (next_bounce_ + 1) % resting::kBouncesKept;
 }
 
 // Whether the closing speed of a contact has fallen since this bounce. Of one that is not known any more,
@@ -84,7 +83,7 @@ void RestingContacts::note(const Bounce& bounce) {
 bool RestingContacts::has_fallen(const Event& from, const Contact& contact, double v_n) const {
     for (std::size_t k = 0; k < bounces_.size(); ++k) {
         const Bounce& b = bounces_[(next_bounce_ + k) % bounces_.size()];
-        if (b.time == from.time && b.contact.same(contact)) return v_n <= kNotFallen * b.v_n;
+        if (b.time == from.time && b.contact.same(contact)) return v_n <= resting::kNotFallen * b.v_n;
     }
     return true;
 }
@@ -136,7 +135,7 @@ void RestingContacts::start(int ball) {
 // Determined from the log, so that a resumed run decides in the same way.
 bool RestingContacts::chatters(const Contact& contact, double v_n) const {
     // Bounces that lose nothing go on. Only those that take no time have to come to an end.
-    const double since = lossless_ ? balls_.now() : balls_.now() - kChatterSpan;
+    const double since = lossless_ ? balls_.now() : balls_.now() - resting::kChatterSpan;
     const double restitution = contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c;
     int bounces = 0;
     const std::vector<Event>& events = log_.events();
@@ -146,9 +145,9 @@ bool RestingContacts::chatters(const Contact& contact, double v_n) const {
         const EventPhase phase = kind(e.type).phase;
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
-        bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? kManyAtOnce : 1;
+        bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? resting::kManyAtOnce : 1;
         // Most impacts have none before them, so the limit is counted only from the least of all limits on.
-        if (bounces >= kFewestBounces && bounces >= most_bounces(restitution))
+        if (bounces >= resting::kFewestBounces && bounces >= most_bounces(restitution))
             return restitution < 1.0 || e.time == balls_.now() || has_fallen(e, contact, v_n);
     }
     return false;
@@ -373,7 +372,7 @@ void RestingContacts::restore(const Record& so_far) {
         else if (phase == EventPhase::kRelease)
             std::erase_if(contacts_, [&](const RestingContact& c) { return c.contact == contact; });
         const bool meets = phase == EventPhase::kImpact || phase == EventPhase::kHold;
-        if (meets && e.time >= so_far.duration - kChatterSpan) note_again(so_far, e, contact);
+        if (meets && e.time >= so_far.duration - resting::kChatterSpan) note_again(so_far, e, contact);
     }
     for (RestingContact& c : contacts_) refresh_normal(c);
 }
