@@ -209,7 +209,9 @@ TEST(Tangents, ScenesAgainstDifferences) {
                             "balls.e_c_fit.0", "balls.f_c_fit.0", "balls.radius", "physics.gravity",
                             "ball.white.position.x", "ball.red.position.y"})
         carom.push_back(key);
-    compare(scene_of("three_cushion"), carom, "three_cushion");
+    Scene three = scene_of("three_cushion");
+    three.cue->aim_deg = -7.0;  // the shipped shot only just touches a ball at its end
+    compare(three, carom, "three_cushion");
 }
 
 /// A stroke at one of two balls, of which something may fall.
@@ -359,7 +361,7 @@ TEST(Tangents, Clusters) {
         }
     }
     EXPECT_GE(compared, 20);
-    Scene broken = scene_of("eight_ball_break");
+    Scene broken = scene_of("ten_ball_break");
     broken.stop.time = simulate(plan_of(broken)).events[1].time + 1e-3;
     const Shot shot(broken, kStroke);
     ASSERT_EQ(shot.record.clusters.size(), 1u);
@@ -373,7 +375,7 @@ TEST(Tangents, Clusters) {
             at.push_back(simulate(plan_of(moved)));
         }
         double worst = 0.0, largest = 0.0;
-        for (int ball = 0; ball < 16; ++ball) {
+        for (int ball = 0; ball < 11; ++ball) {
             const double end = shot.record.duration;
             const Vec3 by_differences =
                 (at[1].state_at(ball, end).velocity - at[0].state_at(ball, end).velocity) / (2.0 * h);

@@ -26,26 +26,35 @@ Vec2 end_of(const Scene& scene, int ball) {
     return planar(record.state_at(ball, record.duration).position);
 }
 
+/// The shipped shot only just touches a ball at its end, so that no place is far from another order.
+Scene three_cushion() {
+    Scene scene = scene_of("three_cushion");
+    scene.cue->aim_deg = -7.0;
+    return scene;
+}
+
 TEST(Refine, MovesABallToItsPlace) {
     struct Case {
-        const char* scene;
+        const char* name;
+        Scene scene;
         Vec2 by;
     };
     for (const Case& c :
-         {Case{"draw", {-0.06, 0.05}}, Case{"draw", {0.04, 0.02}}, Case{"three_cushion", {0.003, 0.005}}}) {
-        const Scene scene = scene_of(c.scene);
+         {Case{"draw", scene_of("draw"), {-0.06, 0.05}}, Case{"draw", scene_of("draw"), {0.04, 0.02}},
+          Case{"three_cushion", three_cushion(), {0.003, 0.005}}}) {
+        const Scene& scene = c.scene;
         const Vec2 place = end_of(scene, 0) + c.by;
         const std::vector<Place> places{{0, place}};
         const Refined found = refine(scene, kStroke, places, kernel::Isa::kScalar);
-        EXPECT_EQ(found.trouble, "") << c.scene;
-        EXPECT_LE(found.miss, kRefined) << c.scene;
-        EXPECT_LE(found.shots, 12) << c.scene;
-        EXPECT_LT((end_of(found.scene, 0) - place).norm(), 1e-6) << c.scene;
+        EXPECT_EQ(found.trouble, "") << c.name;
+        EXPECT_LE(found.miss, kRefined) << c.name;
+        EXPECT_LE(found.shots, 12) << c.name;
+        EXPECT_LT((end_of(found.scene, 0) - place).norm(), 1e-6) << c.name;
     }
 }
 
 TEST(Refine, TwoBallsAtOnce) {
-    const Scene scene = scene_of("three_cushion");
+    const Scene scene = three_cushion();
     const std::vector<Place> places{{0, end_of(scene, 0) + Vec2(0.002, 0.001)},
                                     {1, end_of(scene, 1) + Vec2(0.001, 0.002)}};
     const Refined found = refine(scene, kStroke, places, kernel::Isa::kScalar);

@@ -100,6 +100,11 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
+// [rad] How far a normal turns at most.
+double turn_of(const Across& t, double h) {
+    return h * (std::abs(t.v) + 0.5 * h * std::abs(t.a)) / std::abs(t.distance);
+}
+
 double link_interval(const Group& g, const Link& link, double h, double rounding) {
     if (link.open) return kNever;
     double interval = kNever;
@@ -123,6 +128,10 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
+        // A wall around a ball turns it, even if this solution did not.
+        const Across t = across(g, link, h);
+        if (t.distance < 0.0)
+            interval = std::min(interval, allowed_interval(h, turn_of(t, h), kNormalTurn, 1));
         return interval;
     }
     // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an
@@ -140,7 +149,7 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
     const Across t = across(g, link, h);
     const double v = std::abs(t.v), a = std::abs(t.a);
     if (t.distance == 0.0) return interval;
-    const double turn = h * (v + 0.5 * h * a) / std::abs(t.distance);
+    const double turn = turn_of(t, h);
     if (turn <= kSame * h) return interval;
     return std::min(
         {interval, allowed_interval(h, turn, kNormalTurn, 1),
