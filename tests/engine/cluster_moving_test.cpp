@@ -86,11 +86,15 @@ double first_cluster_error(double gap, double speed, double aim_deg) {
     return least;
 }
 
+// The gaps below count beside the compression of the balls. They were chosen for softer balls: by so much
+// less are today's compressed.
+const double kCompression = std::pow(3.094e9 / 4.736e9, 0.4);
+
 TEST(MovingCluster, BreaksFollowAnIntegrationOfTheirOwn) {
     for (const double gap : {0.0, 1e-4, 3e-4}) {
         std::vector<double> errors;
         for (int k = 0; k < 16; ++k)
-            errors.push_back(first_cluster_error(gap, 6.5 + 0.25 * k, 89.7 + 0.04 * k));
+            errors.push_back(first_cluster_error(kCompression * gap, 6.5 + 0.25 * k, 89.7 + 0.04 * k));
 
         report(("break, gap " + std::to_string(gap) + ", error in V").c_str(),
                *std::max_element(errors.begin(), errors.end()));
@@ -164,7 +168,7 @@ TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
          {Case{0.4, 0.0, 1e-3}, Case{0.4, 5e-4, 5e-4}, Case{0.9, 1e-4, 1e-3}, Case{0.9, 5e-4, 1e-4},
           Case{1.4, 1e-4, 5e-4}, Case{1.4, 0.16235795638398e-3, 0.0170}, Case{0.9, 1.0264e-3, 0.0120},
           Case{0.4, 1.4976e-3, 0.0065}}) {
-        const Record record = play({.gap = c.gap, .angle = c.angle, .mu_s = 0.2});
+        const Record record = play({.gap = kCompression * c.gap, .angle = c.angle, .mu_s = 0.2});
         const auto first = std::find_if(record.events.begin(), record.events.end(),
                                         [](const Event& e) { return balls_collide(e.type); });
         ASSERT_NE(first, record.events.end());

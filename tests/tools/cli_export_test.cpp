@@ -149,7 +149,7 @@ TEST(Export, PlacesAreExactAndOrientationsNear) {
         // A float resolves 0.2 micrometres at 2 m, and a time of 10
         // s to 1 microsecond, in which a ball goes 10 micrometres.
         EXPECT_LT(found.place, 1e-5) << scene;
-        // Between two keys, half a radian apart, the rate may be off by 0.005 rad, and the axis changes.
+        // Between two keys, 0.4 rad apart, the rate may be off by 0.005 rad, and the axis changes.
         EXPECT_LT(found.turn, 0.02) << scene;
         largest.place = std::max(largest.place, found.place);
         largest.turn = std::max(largest.turn, found.turn);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kSamePlace = 1e-9;
 /// [rad] Largest turn between two rotation keys, and largest error of a constant rate between them; [-] most
 /// keys of one piece of motion.
-constexpr double kLargestTurn = 0.5, kLargestError = 0.005, kMostKeys = 1e5;
+constexpr double kLargestTurn = 0.4, kLargestError = 0.005, kMostKeys = 1e5;
 
 /// One segment, between the instants at which it applies.
 struct Piece {

@@ -39,8 +39,8 @@ struct RotationKey {
     std::array<float, 4> q{};
 };
 
-/// Keys at the ends of every piece of motion, and enough between them that the ball turns by at most half a
-/// radian and a constant rate is off by at most 0.005.
+/// Keys at the ends of every piece of motion, and enough between them that the ball turns by at most 0.4 rad
+/// and a constant rate is off by at most 0.005.
 std::vector<RotationKey> rotation_keys(const Record& record, int ball);
 
 }  // namespace carom::tools
