@@ -117,8 +117,8 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
             std::swap(above, near_above);
         }
         if (!(best < disagree))
-            throw TangentError(
-                fmt::format("it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));
+            throw TangentError(fmt::format(
+                "it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));
         laws.error = std::max(laws.error, best);
     }
     return out;
