@@ -94,7 +94,8 @@ TEST(CliLabAccuracy, RefusesBadUsage) {
              {{"margin", "none.toml", "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
              {{"margin", "none.toml", "--sweep", "--trace", "t.json"}, "--trace is of one setting"},
              {{"margin", "none.toml", "--plot", "t.png"}, "a name that ends in .svg"},
-             {{"bench"}, "no command given: expected discs, kernel, render or shot; see carom-lab bench --help"}}) {
+             {{"bench"},
+              "no command given: expected discs, kernel, render or shot; see carom-lab bench --help"}}) {
         const ProcessResult result = carom_lab(arguments);
         EXPECT_EQ(result.status, 2) << message;
         EXPECT_NE(result.err.find(message), std::string::npos) << result.err;

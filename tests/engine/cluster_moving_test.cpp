@@ -86,8 +86,8 @@ double first_cluster_error(double gap, double speed, double aim_deg) {
     return least;
 }
 
-// The gaps below count beside the compression of the balls. They were chosen for softer balls: by so much
-// less are today's compressed.
+// The gaps below count beside the compression of the balls. They were chosen for softer balls, which are
+// compressed more, by this ratio.
 const double kCompression = std::pow(3.094e9 / 4.736e9, 0.4);
 
 TEST(MovingCluster, BreaksFollowAnIntegrationOfTheirOwn) {
