@@ -131,11 +131,29 @@ std::vector<std::string> met_by(const Record& r, int ball) {
     return met;
 }
 
-TEST(SceneShots, CaromOpeningScores) {
-    const std::vector<std::string> met = met_by(run("carom_opening"), 0);
-    ASSERT_GE(met.size(), 5u);
-    EXPECT_EQ(std::vector<std::string>(met.begin(), met.begin() + 5),
-              (std::vector<std::string>{"red", "c3", "c2", "c1", "yellow"}));
+TEST(SceneShots, CaromOpeningsScore) {
+    for (const char* name : {"carom_opening", "carom_small_opening"}) {
+        const std::vector<std::string> met = met_by(run(name), 0);
+        ASSERT_GE(met.size(), 5u) << name;
+        EXPECT_EQ(std::vector<std::string>(met.begin(), met.begin() + 5),
+                  (std::vector<std::string>{"red", "c3", "c2", "c1", "yellow"}))
+            << name;
+    }
+}
+
+TEST(SceneShots, BreaksOnOtherTables) {
+    const auto pocketed = [](const std::string& name) {
+        std::string ids;
+        for (const carom::BallTrack& track : run(name).tracks)
+            if (track.pocket >= 0) ids += track.id + " ";
+        return ids;
+    };
+    EXPECT_EQ(pocketed("tight_nine_ball_break"), "1 2 7 ");
+    EXPECT_EQ(pocketed("ten_foot_break"), "1 ");
+    EXPECT_EQ(pocketed("chinese_eight_ball_break"), "");
+    EXPECT_GT(first(run("chinese_eight_ball_break"), EventType::kBallJaw), 0.0);
+    const Record snooker = run("snooker_ten_foot_break");
+    EXPECT_LT(place(snooker, 0, snooker.duration).y(), 0.6);
 }
 
 TEST(SceneShots, MasseGoesAroundYellow) {
