@@ -24,15 +24,15 @@ namespace {
 using Real = long double;  // 11 bits more than double
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-constexpr double kR = 0.01;
+constexpr double kSmallR = 0.01;
 
 Jaw arc(const Vec2& center, double radius, double from_deg, double to_deg, const char* side = "inside") {
-    return {"a", center, radius, kR, "", side, from_deg, to_deg};
+    return {"a", center, radius, kSmallR, "", side, from_deg, to_deg};
 }
 
 Scene lossless() {
     Scene scene = frictionless();
-    scene.balls.R = kR;
+    scene.balls.R = kSmallR;
     return scene;
 }
 
@@ -49,7 +49,7 @@ double energy_left(const Record& record) {
 // In a circle every chord is alike, so the orbit is known for good: 1000 bounces stay within 1e-9 m.
 TEST(Arcs, AThousandBouncesInACircle) {
     Scene scene = lossless();
-    scene.table.jaws.push_back(arc({0.3, -0.2}, 0.5 + kR, 0.0, 360.0));
+    scene.table.jaws.push_back(arc({0.3, -0.2}, 0.5 + kSmallR, 0.0, 360.0));
     const Vec2 start(0.5, -0.1), v(0.6, 0.35);
     add_ball(scene, "1", start.x(), start.y(), v.x(), v.y());
     scene.stop.events = 1000;
@@ -102,9 +102,9 @@ struct Orbit {
 
 Scene stadium() {
     Scene scene = lossless();
-    constexpr double kHalf = 0.5 + kR;
-    scene.table.cushions.push_back({"c1", {0.0, -kHalf}, {1.0, -kHalf}, kR});
-    scene.table.cushions.push_back({"c2", {0.0, kHalf}, {1.0, kHalf}, kR});
+    constexpr double kHalf = 0.5 + kSmallR;
+    scene.table.cushions.push_back({"c1", {0.0, -kHalf}, {1.0, -kHalf}, kSmallR});
+    scene.table.cushions.push_back({"c2", {0.0, kHalf}, {1.0, kHalf}, kSmallR});
     scene.table.jaws.push_back(arc({0.0, 0.0}, kHalf, 90.0, 270.0));
     scene.table.jaws.push_back(arc({1.0, 0.0}, kHalf, -90.0, 90.0));
     return scene;
@@ -196,9 +196,10 @@ TEST(Arcs, AreMetFromAllSides) {
         if (k % 4 != 0) path.a = place(0.5), path.straight = false;
         const Vec2 out = path.r - nose.center;
         // Not already in it, nor behind all of it, where no scene puts a ball.
-        if (std::abs(length(out) - std::abs(nose.radius)) < kR) continue;
+        if (std::abs(length(out) - std::abs(nose.radius)) < kSmallR) continue;
         if (nose.span.whole && nose.sign() * length(out) < nose.radius) continue;
-        const double t = time_to_nose(path, nose, kR), reference = stepped(path, nose, kR, path.horizon);
+        const double t = time_to_nose(path, nose, kSmallR),
+                     reference = stepped(path, nose, kSmallR, path.horizon);
         // A short visit between two steps is seen by one of the two only; and so is a ball that comes around
         // an end, which is what touches it first.
         if (reference < kNever) {
@@ -218,8 +219,8 @@ TEST(Arcs, AreMetFromAllSides) {
 TEST(Arcs, ABallRunsAlongARoundWall) {
     Scene scene = lossless();
     scene.balls.e_c = 0.5;
-    constexpr double kRadius = 0.5 + kR;
-    scene.table.cushions.push_back({"c1", {-1.0, -kRadius}, {0.0, -kRadius}, kR});
+    constexpr double kRadius = 0.5 + kSmallR;
+    scene.table.cushions.push_back({"c1", {-1.0, -kRadius}, {0.0, -kRadius}, kSmallR});
     scene.table.jaws.push_back(arc({0.0, 0.0}, kRadius, -90.0, 90.0));
     add_ball(scene, "1", -0.5, -0.5, 1.0, 0.0);
     scene.stop.time = 3.0;
@@ -300,9 +301,9 @@ TEST(Arcs, AreDrawnAsShortCushions) {
     ASSERT_EQ(drawn.cushions.size(), 2u + 2u * 60u);
     for (std::size_t i = 2; i < drawn.cushions.size(); ++i) {
         const Vec2 center(i < 62 ? 0.0 : 1.0, 0.0);
-        EXPECT_NEAR(length(drawn.cushions[i].from - center), 0.5 + kR, 1e-15);
+        EXPECT_NEAR(length(drawn.cushions[i].from - center), 0.5 + kSmallR, 1e-15);
     }
-    EXPECT_EQ(drawn.cushions[2].from, Vec2(0.0, 0.5 + kR));
+    EXPECT_EQ(drawn.cushions[2].from, Vec2(0.0, 0.5 + kSmallR));
 }
 
 // Balls and pucks that lose speed in round tables and stadiums, some with a round obstacle, until they rest.
@@ -425,7 +426,8 @@ TEST(Discs, TouchAtTheSumOfTheirRadii) {
         scene.stop.time = 1.0;
         const Record record = run_verified(scene);
         ASSERT_EQ(record.events.size(), 1u);
-        EXPECT_NEAR(record.events[0].time, 0.5 - (discs ? kR + 0.04 : 2.0 * std::sqrt(kR * 0.04)), 1e-14);
+        EXPECT_NEAR(record.events[0].time, 0.5 - (discs ? kSmallR + 0.04 : 2.0 * std::sqrt(kSmallR * 0.04)),
+                    1e-14);
         if (discs) EXPECT_EQ(details_of(record, 0).cut, 0.0);
         // Equal masses change their velocities.
         EXPECT_NEAR(record.state_at(0, 1.0).velocity.x(), 0.0, 1e-14);
@@ -466,9 +468,10 @@ TEST(Pucks, ThatStickStopTogether) {
     add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0);
     add_ball(scene, "2", 0.1, 0.0);
     const Record record = run_verified(scene);
-    const double mu_g = 0.15 * 9.81, v2 = 1.0 - 2.0 * mu_g * (0.1 - 2.0 * kR), way = 0.25 * v2 / (2.0 * mu_g);
+    const double mu_g = 0.15 * 9.81, v2 = 1.0 - 2.0 * mu_g * (0.1 - 2.0 * kSmallR),
+                 way = 0.25 * v2 / (2.0 * mu_g);
     EXPECT_NEAR(record.state_at(1, record.duration).position.x(), 0.1 + way, 1e-8);
-    EXPECT_NEAR(record.state_at(0, record.duration).position.x(), 0.1 - 2.0 * kR + way, 1e-8);
+    EXPECT_NEAR(record.state_at(0, record.duration).position.x(), 0.1 - 2.0 * kSmallR + way, 1e-8);
     for (const BallTrack& track : record.tracks)
         for (const Segment& s : track.segments) EXPECT_TRUE(planar(s.w).isZero(0.0));
 }

@@ -30,7 +30,7 @@ using carom::test::matches;
 using carom::test::read_file;
 using carom::test::toml_files;
 
-const std::string kBall = "[[ball]]\nposition = [0.6, 0.5]\n";
+const std::string kOneBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 
 // How a number of any size is read: as the nearest double, or with a message that shows the digits as
 // written.
@@ -48,7 +48,7 @@ TEST(Numbers, AreReadOrRefusedWithTheirDigits) {
         {"1e300", " = 1e+300" + std::string(kOut)},
     };
     for (const auto& c : kCases) {
-        const std::string text = kBall + "[cue]\nspeed = " + c.written;
+        const std::string text = kOneBall + "[cue]\nspeed = " + c.written;
         EXPECT_EQ(error_of(text), c.says.empty() ? "" : "s.toml:4:9: cue.speed" + c.says);
     }
     EXPECT_EQ(
@@ -121,7 +121,7 @@ TEST(Scenes, FilesThatCannotBeRead) {
 TEST(Scenes, TooLargeFile) {
     const std::string large = "#" + std::string(carom::kMaxFileSize, 'x');
     EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; check that it is a scene file");
-    EXPECT_EQ(error_of(kBall + "#" + std::string(carom::kMaxFileSize - kBall.size() - 1, 'x')), "");
+    EXPECT_EQ(error_of(kOneBall + "#" + std::string(carom::kMaxFileSize - kOneBall.size() - 1, 'x')), "");
 }
 
 // A file is read in pieces, and no farther than tells that it is too large.
@@ -141,7 +141,7 @@ TEST(Scenes, FilesAreReadAsAWhole) {
 
 TEST(Scenes, TooManyPartsOfATable) {
     const auto with_pockets = [](int count) {
-        std::string text = kBall;
+        std::string text = kOneBall;
         for (int i = 0; i < count; ++i) text += "[[table.pocket]]\ncenter = [9, 9]\nradius = 0.06\n";
         return text;
     };
@@ -374,10 +374,10 @@ TEST(Scenes, EndlessCloth) {
 }
 
 TEST(Scenes, MiscueLimitIsInclusive) {
-    EXPECT_EQ(error_of(kBall + "[cue]\noffset = [0.3, 0.4]\n"), "");
-    EXPECT_EQ(error_of(kBall + "[cue]\noffset = [0, -0.5]\n"), "");
-    EXPECT_NE(error_of(kBall + "[cue]\noffset = [0, 0.5001]\n"), "");
-    EXPECT_EQ(error_of(kBall + "[cue]\nelevation_deg = 89.9\n"), "");
+    EXPECT_EQ(error_of(kOneBall + "[cue]\noffset = [0.3, 0.4]\n"), "");
+    EXPECT_EQ(error_of(kOneBall + "[cue]\noffset = [0, -0.5]\n"), "");
+    EXPECT_NE(error_of(kOneBall + "[cue]\noffset = [0, 0.5001]\n"), "");
+    EXPECT_EQ(error_of(kOneBall + "[cue]\nelevation_deg = 89.9\n"), "");
 }
 
 TEST(Scenes, ManyBallsUpToTheLimit) {
@@ -387,8 +387,8 @@ TEST(Scenes, ManyBallsUpToTheLimit) {
 }
 
 TEST(Rest, NothingThatMovesNeedsNoStop) {
-    EXPECT_EQ(error_of("[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[physics]\ngravity = 0\n" + kBall), "");
-    EXPECT_EQ(error_of("[balls]\nmu_r = 0\n" + kBall + "[cue]\nspeed = 0\n"), "");
+    EXPECT_EQ(error_of("[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[physics]\ngravity = 0\n" + kOneBall), "");
+    EXPECT_EQ(error_of("[balls]\nmu_r = 0\n" + kOneBall + "[cue]\nspeed = 0\n"), "");
 }
 
 TEST(Rest, AnyStopWillDo) {

@@ -73,8 +73,8 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/events/4/nose", -1, " events[4].nose: expected an integer from 0 to 4"},
         {"/events/1/steps", -1, " events[1].steps: expected an integer from 0 to 9223372036854775807"},
     };
-    EXPECT_EQ(error_of(changed("", nullptr)), "no error");
-    for (const auto& c : kCases) EXPECT_EQ(error_of(changed(c.pointer, c.value)), c.message) << c.pointer;
+    EXPECT_EQ(record_error(changed("", nullptr)), "no error");
+    for (const auto& c : kCases) EXPECT_EQ(record_error(changed(c.pointer, c.value)), c.message) << c.pointer;
 }
 
 // 1e25 rad/s for 1e25 s on a fixed axis, and on one that
@@ -102,20 +102,20 @@ TEST(RecordFile, TheLargestNumbersGiveStates) {
 
 TEST(RecordFile, HostileFilesAreErrors) {
     const std::string cut = changed("", nullptr);
-    EXPECT_EQ(error_of(""), "1:1: this is not JSON, or the file was cut short");
-    EXPECT_EQ(error_of("{\n  \"format\" 1}"), "2:12: this is not JSON, or the file was cut short");
-    EXPECT_NE(error_of(cut.substr(0, cut.size() / 2)).find("cut short"), std::string::npos);
-    EXPECT_NE(error_of(std::string(1000000, '[')).find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of(std::string(1000000, '[') + std::string(1000000, ']')).find("not a carom record"),
+    EXPECT_EQ(record_error(""), "1:1: this is not JSON, or the file was cut short");
+    EXPECT_EQ(record_error("{\n  \"format\" 1}"), "2:12: this is not JSON, or the file was cut short");
+    EXPECT_NE(record_error(cut.substr(0, cut.size() / 2)).find("cut short"), std::string::npos);
+    EXPECT_NE(record_error(std::string(1000000, '[')).find("not JSON"), std::string::npos);
+    EXPECT_NE(record_error(std::string(1000000, '[') + std::string(1000000, ']')).find("not a carom record"),
               std::string::npos);
-    EXPECT_NE(error_of("{\"format\":\"carom-record\",\"version\":1e999}").find("cannot be read"),
+    EXPECT_NE(record_error("{\"format\":\"carom-record\",\"version\":1e999}").find("cannot be read"),
               std::string::npos);
-    EXPECT_NE(error_of("{\"format\":\"\xff\"}").find("not JSON"), std::string::npos);
-    EXPECT_NE(error_of("null").find("not a carom record"), std::string::npos);
-    EXPECT_NE(error_of("{\"format\":\"carom-record\"}").find("the key \"version\" is missing"),
+    EXPECT_NE(record_error("{\"format\":\"\xff\"}").find("not JSON"), std::string::npos);
+    EXPECT_NE(record_error("null").find("not a carom record"), std::string::npos);
+    EXPECT_NE(record_error("{\"format\":\"carom-record\"}").find("the key \"version\" is missing"),
               std::string::npos);
-    EXPECT_NE(error_of(std::string(64, '\0')).find("not JSON"), std::string::npos);
-    EXPECT_EQ(error_of("{\"format\":\"carom-record\",\"\\u0066ormat\":1}"),
+    EXPECT_NE(record_error(std::string(64, '\0')).find("not JSON"), std::string::npos);
+    EXPECT_EQ(record_error("{\"format\":\"carom-record\",\"\\u0066ormat\":1}"),
               " the key \"format\" appears twice");
     EXPECT_THROW(read_record("/nonexistent/r.json"), SceneError);
     EXPECT_THROW(read_record("/dev/zero"), SceneError);
@@ -133,7 +133,7 @@ TEST(RecordFile, NestingNeedsNoStack) {
         in_a_key["extra"] = "HERE";
         std::string text = in_a_key.dump();
         text.replace(text.find("\"HERE\""), 6, open + close);
-        for (const std::string& t : {open, open + close, text}) messages.push_back(error_of(t));
+        for (const std::string& t : {open, open + close, text}) messages.push_back(record_error(t));
         return nullptr;
     };
     std::vector<std::string> messages;
@@ -180,7 +180,7 @@ TEST(RecordFile, Version1IsReadWithANote) {
     // What version 1 may lack, version 2 may not.
     Json json = version_1();
     json["version"] = 2;
-    EXPECT_EQ(error_of(json.dump()), " table.cushions[0]: the key \"name\" is missing");
+    EXPECT_EQ(record_error(json.dump()), " table.cushions[0]: the key \"name\" is missing");
 }
 
 TEST(RecordFile, UnknownKeysAreLeftOutWithANote) {

@@ -93,7 +93,7 @@ inline Record sample_record() {
 }
 
 /// Reads `text` as a record; returns the message of its error without the file name in it.
-inline std::string error_of(const std::string& text) {
+inline std::string record_error(const std::string& text) {
     const TemporaryFolder folder;
     const std::string path = folder.write("r.json", text);
     try {

@@ -212,7 +212,7 @@ std::vector<std::array<MeshVertex, 3>> table_marks(const TableMesh& mesh) {
     return within_marks(seen_from_above(mesh.blended, Material::kChalk));
 }
 
-Json table_shape(const Table& table, const TableMesh& mesh) {
+Json table_shape(const carom::Table& table, const TableMesh& mesh) {
     const auto loops = [&mesh](Material material) {
         return loops_json(mesh, seen_from_above(mesh.solid, material));
     };

@@ -23,6 +23,6 @@ std::vector<std::array<render::MeshVertex, 3>> table_marks(const render::TableMe
 /// - holes: a list of {center, radius}
 /// - numbers: a list of {at, number}: the diamonds' numbers, on the cushions
 /// @param mesh of this table
-nlohmann::ordered_json table_shape(const Table& table, const render::TableMesh& mesh);
+nlohmann::ordered_json table_shape(const carom::Table& table, const render::TableMesh& mesh);
 
 }  // namespace carom::tools
