@@ -19,8 +19,8 @@ namespace carom {
 namespace {
 
 using test::changed;
-using test::error_of;
 using test::Json;
+using test::record_error;
 using test::sample_record;
 using test::TemporaryFolder;
 
