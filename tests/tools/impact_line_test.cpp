@@ -71,7 +71,7 @@ TEST(ImpactLine, MassesThatDiffer) {
     const ImpactAnswer marched = answer_impact(line.dump(), settings());
     ASSERT_TRUE(marched.ok) << marched.json;
     EXPECT_NEAR(Json::parse(marched.json)["v2"][0].get<double>(), out["v2"][0].get<double>(), 2e-3);
-    EXPECT_EQ(line_error(line, settings(ImpactSettings::Method::kInelastic)),
+    EXPECT_EQ(error_of(line, settings(ImpactSettings::Method::kInelastic)),
               "\"m2\": only --method mathavan solves different balls; leave it out");
     // A larger ball 2 stands higher, and the small one is pressed on the cloth.
     line["params"]["R2"] = 0.03;
@@ -80,10 +80,10 @@ TEST(ImpactLine, MassesThatDiffer) {
     ASSERT_TRUE(tilted.ok) << tilted.json;
     EXPECT_NEAR(Json::parse(tilted.json)["v2"][0].get<double>(), 1.95 / 3.0, 2e-2);
     line["params"]["R2"] = 0.115;
-    EXPECT_EQ(line_error(line, by_tolerance), "\"R2\": expected at most a factor of 4 from R");
+    EXPECT_EQ(error_of(line, by_tolerance), "\"R2\": expected at most a factor of 4 from R");
     line["params"].erase("R2");
     line["params"]["m2"] = 1.71e5;
-    EXPECT_EQ(line_error(line, by_tolerance), "\"m2\": expected at most a factor of 1000000 from m");
+    EXPECT_EQ(error_of(line, by_tolerance), "\"m2\": expected at most a factor of 1000000 from m");
 }
 
 TEST(ImpactLine, BallBallIsTheKernelsResult) {
@@ -240,7 +240,7 @@ TEST(ImpactLine, HandsTheIdBack) {
 }
 
 /// The error of a line, or "no error".
-std::string line_error(const std::string& line) {
+std::string error_of(const std::string& line) {
     const ImpactAnswer answer = answer_impact(line, settings());
     const Json json = Json::parse(answer.json);
     if (answer.ok) return "no error";
@@ -289,69 +289,68 @@ TEST(ImpactLine, TheHelpListsTheKeys) {
 }
 
 TEST(ImpactLine, SaysWhatIsWrong) {
-    EXPECT_EQ(line_error(""), "not valid JSON (at byte 1)");
-    EXPECT_EQ(line_error("[1, 2]"), "expected a JSON object");
-    EXPECT_EQ(line_error("{}"), "the key \"kind\" is missing");
-    EXPECT_EQ(line_error("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\", \"cushion\" or \"cloth\"");
+    EXPECT_EQ(error_of(""), "not valid JSON (at byte 1)");
+    EXPECT_EQ(error_of("[1, 2]"), "expected a JSON object");
+    EXPECT_EQ(error_of("{}"), "the key \"kind\" is missing");
+    EXPECT_EQ(error_of("{\"kind\": 3}"), "\"kind\": expected \"ball_ball\", \"cushion\" or \"cloth\"");
     const Json line = ball_ball_line();
-    EXPECT_EQ(line_error(changed(line, "/params", 1)), "\"params\": expected an object");
-    EXPECT_EQ(line_error(changed(line, "/params/R", 0)), "\"R\": expected a number greater than 0");
-    EXPECT_EQ(line_error(changed(line, "/params/R", true)), "\"R\": expected a number");
-    EXPECT_EQ(line_error(changed(line, "/params/mu_b", -0.1)), "\"mu_b\": expected a number at least 0");
-    EXPECT_EQ(line_error(changed(line, "/params/e_b", 1.5)), "\"e_b\": expected a number from 0 to 1");
-    EXPECT_EQ(line_error(changed(line, "/params/e_n", 1)), "unknown key \"e_n\"");
-    EXPECT_EQ(line_error(changed(line, "/v1", {1, 2})), "\"v1\": expected a list of 3 numbers");
-    EXPECT_EQ(line_error(changed(line, "/v1/2", nullptr)), "\"v1\": expected a number");
-    EXPECT_EQ(line_error(changed(line, "/tolerance", 1)), "unknown key \"tolerance\"");
-    EXPECT_EQ(line_error(changed(line, "/r2", line["r1"])),
-              kernel::describe(kernel::ImpactStatus::kBadState));
+    EXPECT_EQ(error_of(changed(line, "/params", 1)), "\"params\": expected an object");
+    EXPECT_EQ(error_of(changed(line, "/params/R", 0)), "\"R\": expected a number greater than 0");
+    EXPECT_EQ(error_of(changed(line, "/params/R", true)), "\"R\": expected a number");
+    EXPECT_EQ(error_of(changed(line, "/params/mu_b", -0.1)), "\"mu_b\": expected a number at least 0");
+    EXPECT_EQ(error_of(changed(line, "/params/e_b", 1.5)), "\"e_b\": expected a number from 0 to 1");
+    EXPECT_EQ(error_of(changed(line, "/params/e_n", 1)), "unknown key \"e_n\"");
+    EXPECT_EQ(error_of(changed(line, "/v1", {1, 2})), "\"v1\": expected a list of 3 numbers");
+    EXPECT_EQ(error_of(changed(line, "/v1/2", nullptr)), "\"v1\": expected a number");
+    EXPECT_EQ(error_of(changed(line, "/tolerance", 1)), "unknown key \"tolerance\"");
+    EXPECT_EQ(error_of(changed(line, "/r2", line["r1"])), kernel::describe(kernel::ImpactStatus::kBadState));
     const Json cushion = cushion_line();
     std::string models;
     for (const CushionModelInfo* model : all_of(&kHan2005))
         models += (models.empty() ? "" : ", ") + std::string(model->name);
-    EXPECT_EQ(line_error(changed(cushion, "/model", "rubber")),
+    EXPECT_EQ(error_of(changed(cushion, "/model", "rubber")),
               "\"model\": unknown cushion model; expected one of " + models);
-    EXPECT_EQ(line_error(changed(cushion, "/normal", {2, 0})),
+    EXPECT_EQ(error_of(changed(cushion, "/normal", {2, 0})),
               "\"normal\": expected a vector of length 1, this one has length 2");
-    EXPECT_EQ(line_error(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");
-    EXPECT_EQ(line_error(changed(cushion, "/params/height", 1)),
+    EXPECT_EQ(error_of(changed(cushion, "/normal", {0, 0, 1})), "\"normal\": expected a list of 2 numbers");
+    EXPECT_EQ(error_of(changed(cushion, "/params/height", 1)),
               "\"height\": expected a number inside 0 to 0.05715");
     Json jams = changed_json(cushion, "/model", "mathavan_2010");
     jams["params"]["f_c"] = 20.0;
-    EXPECT_EQ(line_error(jams.dump()),
+    EXPECT_EQ(error_of(jams.dump()),
               "\"params\": with this f_c and mu_s the ball could jam under the nose; lower one of them");
     Json stuck = line;
     stuck["params"].update({{"mu_s1", 0.6}, {"mu_s2", 0.6}, {"mu_b", 4.0}});
     stuck.update({{"v1", {1, 0, 0}}, {"w1", {0, 1e6, 0}}});
-    EXPECT_EQ(line_error(stuck.dump()), "the integration reached its limit of steps");
+    EXPECT_EQ(error_of(stuck.dump()), "the integration reached its limit of steps");
     for (const Json& whole : {line, cushion}) {
         for (const auto& item : whole.items()) {
             Json less = whole;
             less.erase(item.key());
-            EXPECT_EQ(line_error(less.dump()), "the key \"" + item.key() + "\" is missing");
+            EXPECT_EQ(error_of(less.dump()), "the key \"" + item.key() + "\" is missing");
         }
         for (const auto& item : whole["params"].items()) {
             Json less = whole;
             less["params"].erase(item.key());
-            EXPECT_EQ(line_error(less.dump()), "the key \"" + item.key() + "\" is missing");
+            EXPECT_EQ(error_of(less.dump()), "the key \"" + item.key() + "\" is missing");
         }
     }
 }
 
 TEST(ImpactLine, HostileLinesAreErrors) {
     const std::string whole = ball_ball_line().dump();
-    EXPECT_EQ(line_error(std::string(500000, '[')), "more than 8 levels of nesting");
+    EXPECT_EQ(error_of(std::string(500000, '[')), "more than 8 levels of nesting");
     std::string deep;
     for (int i = 0; i < 100000; ++i) deep += "{\"a\":";
-    EXPECT_EQ(line_error(deep), "more than 8 levels of nesting");
-    EXPECT_NE(line_error("NaN").find("not valid JSON"), std::string::npos);
-    EXPECT_NE(line_error("{\"kind\":\"\xff\xfe\"}").find("not valid JSON"), std::string::npos);
-    EXPECT_NE(line_error(std::string("{\"kind\":\0\"x\"}", 13)).find("not valid JSON"), std::string::npos);
-    EXPECT_EQ(line_error("{\"kind\":1e999}"), "a number is too large");
+    EXPECT_EQ(error_of(deep), "more than 8 levels of nesting");
+    EXPECT_NE(error_of("NaN").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of("{\"kind\":\"\xff\xfe\"}").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of(std::string("{\"kind\":\0\"x\"}", 13)).find("not valid JSON"), std::string::npos);
+    EXPECT_EQ(error_of("{\"kind\":1e999}"), "a number is too large");
     std::string nan = whole;
     nan.replace(nan.find("0.95"), 4, "NaN");
-    EXPECT_NE(line_error(nan).find("not valid JSON"), std::string::npos);
-    EXPECT_NE(line_error(whole + whole).find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of(nan).find("not valid JSON"), std::string::npos);
+    EXPECT_NE(error_of(whole + whole).find("not valid JSON"), std::string::npos);
     // Finite, but its square is not: the answer is an error or finite, never NaN.
     const std::string huge = changed(ball_ball_line(), "/v1/0", 1e300);
     const ImpactAnswer answer = answer_impact(huge, settings());

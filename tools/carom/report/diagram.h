@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/units.h"
+#include "base/shown_units.h"
 #include "carom/engine/record.h"
 #include "carom/engine/scene.h"
 

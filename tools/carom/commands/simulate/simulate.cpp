@@ -12,7 +12,7 @@
 #include "base/console.h"
 #include "base/options.h"
 #include "base/setup.h"
-#include "base/units.h"
+#include "base/shown_units.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "commands/simulate/story.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/units.h"
+#include "base/shown_units.h"
 #include "carom/engine/record.h"
 
 namespace carom::tools {
