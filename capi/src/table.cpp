@@ -27,13 +27,37 @@ using carom::c::need;
 constexpr double kDegrees = 57.295779513082321;
 
 carom_part part_of(const carom::Cushion& c) {
-    return {c.id.c_str(), c.name.c_str(), {c.from.x(), c.from.y()}, {c.to.x(), c.to.y()}, 0.0, c.height};
+    return {c.id.c_str(),
+            c.name.c_str(),
+            {c.from.x(), c.from.y()},
+            {c.to.x(), c.to.y()},
+            0.0,
+            c.height,
+            0.0,
+            0.0,
+            0};
 }
 
 template <class Round>
 carom_part part_of(const Round& r, double height) {
-    return {r.id.c_str(), r.name.c_str(), {r.center.x(), r.center.y()}, {r.center.x(), r.center.y()},
-            r.radius,     height};
+    return {r.id.c_str(),
+            r.name.c_str(),
+            {r.center.x(), r.center.y()},
+            {r.center.x(), r.center.y()},
+            r.radius,
+            height,
+            0.0,
+            0.0,
+            0};
+}
+
+carom_part part_of(const carom::Jaw& jaw) {
+    carom_part part = part_of(jaw, jaw.height);
+    if (!jaw.is_arc()) return part;
+    part.from_deg = jaw.from_deg.value_or(0.0);
+    part.to_deg = jaw.to_deg.value_or(part.from_deg + 360.0);
+    part.inside = jaw.around() ? 1 : 0;
+    return part;
 }
 
 carom_part part_of(const carom::Table& table, carom_partner kind, size_t index) {
@@ -45,7 +69,7 @@ carom_part part_of(const carom::Table& table, carom_partner kind, size_t index) 
         case CAROM_CUSHION:
             return part_of(of(table.cushions, "cushion"));
         case CAROM_JAW:
-            return part_of(of(table.jaws, "jaw"), of(table.jaws, "jaw").height);
+            return part_of(of(table.jaws, "jaw"));
         case CAROM_POCKET:
             return part_of(of(table.pockets, "pocket"), 0.0);
         default:

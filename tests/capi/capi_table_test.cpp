@@ -58,6 +58,14 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     EXPECT_EQ(part.from[0], part.to[0]);
     EXPECT_EQ(carom_scene_part(shot.scene, CAROM_POCKET, 6, &part), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_scene_part(shot.scene, CAROM_BALL, 0, &part), CAROM_BAD_ARGUMENT);
+    const Shot round(
+        "[[table.arc]]\ncenter = [0, 0]\nradius = 1\nheight = 0.03\nfrom_deg = 30\nto_deg = 90\n"
+        "[[ball]]\nid = \"cue\"\nposition = [0, 0]\n[cue]\nspeed = 1\naim_deg = 60\n");
+    ASSERT_EQ(carom_scene_part(round.scene, CAROM_JAW, 0, &part), CAROM_OK);
+    EXPECT_STREQ(part.id, "a1");
+    EXPECT_EQ(part.from_deg, 30.0);
+    EXPECT_EQ(part.to_deg, 90.0);
+    EXPECT_EQ(part.inside, 1);
     double place[2];
     ASSERT_EQ(carom_scene_diamond(shot.scene, "right", 3.0, place), CAROM_OK);
     EXPECT_EQ(place[0], 1.27);

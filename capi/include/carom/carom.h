@@ -355,11 +355,13 @@ typedef enum carom_partner {
 } carom_partner;
 
 typedef struct carom_part {
-    const char* id;        /* "c1", "j1", "p1", ... */
-    const char* name;      /* for people: "left rail, head half"; "" if it has none */
-    double from[2], to[2]; /* [m] the ends of a cushion; of others both are the centre */
-    double radius;         /* of a jaw or pocket [m]; 0 for a cushion */
-    double height;         /* of the nose above the cloth [m]; 0 for a pocket */
+    const char* id;          /* "c1", "j1", "p1", ...; round walls are jaws, "a1", ... */
+    const char* name;        /* for people: "left rail, head half"; "" if it has none */
+    double from[2], to[2];   /* [m] the ends of a cushion; of others both are the centre */
+    double radius;           /* of a jaw or pocket [m]; 0 for a cushion */
+    double height;           /* of the nose above the cloth [m]; 0 for a pocket */
+    double from_deg, to_deg; /* of a round wall, counter-clockwise; 0 for others */
+    int inside;              /* whether a round wall lies around the balls */
 } carom_part;
 CAROM_API carom_status carom_scene_part(const carom_scene* scene, carom_partner kind, size_t index,
                                         carom_part* part);
