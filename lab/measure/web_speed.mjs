@@ -1,7 +1,9 @@
 #!/usr/bin/env node
 // How much longer shots take in WebAssembly than in the native engine: batches of the same shots on one
 // thread, in turn, in the Python module, which calls the engine once per batch, in node, and in headless
-// Chromium. The fewest microseconds of the thread's CPU time per shot, and ratios.
+// Chromium. The fewest microseconds of the thread's CPU time per shot, and ratios; the last column is
+// simulate() in node, which a page calls for each change. CAROM_NPM names another package, such as one
+// without SIMD.
 //
 //   lab/measure/web_speed.mjs [ROUNDS=15]     needs tools/web, build/release/python, chromium
 import {spawn} from "node:child_process";
@@ -64,7 +66,8 @@ async function inChromium(text, shots) {
 await carom.init();
 const median = (list) => list.sort((a, b) => a - b)[Math.floor(list.length / 2)];
 const least = (list) => Math.min(...list);
-console.log(`${"scene".padEnd(24)}native us  node us  Chromium us   ratios of the least   median ratios`);
+console.log(`${"scene".padEnd(24)}native us  node us  Chromium us   ratios of the least   median ratios` +
+  "   alone us");
 for (const [name, shots] of CASES) {
   const text = sceneText(name), scene = carom.Scene.parse(text, name), aim = scene.cue.aim_deg;
   const aims = Float64Array.from({length: shots}, (_, i) => aim + (i / shots - 0.5));
@@ -77,11 +80,19 @@ for (const [name, shots] of CASES) {
     if (round < 2) continue;  // all are warm by then
     [here, (user + system) / 1e6, there].forEach((seconds, k) => times[k].push(seconds));
   }
+  let alone = Infinity;
+  for (let round = 0; round < ROUNDS; ++round) {
+    const before = process.cpuUsage();
+    for (let i = 0; i < shots; ++i) carom.simulate(scene).free();
+    const {user, system} = process.cpuUsage(before);
+    alone = Math.min(alone, (user + system) / shots);
+  }
   const us = times.map((list) => (1e6 * least(list) / shots).toFixed(2));
   const ratio = (k) => (least(times[k]) / least(times[0])).toFixed(2);
   const middle = (k) => median(times[k].map((t, i) => t / times[0][i])).toFixed(2);
   console.log(`${name.padEnd(24)}${us[0].padStart(9)}${us[1].padStart(9)}${us[2].padStart(13)}` +
-    `${ratio(1).padStart(15)}${ratio(2).padStart(7)}${middle(1).padStart(10)}${middle(2).padStart(6)}`);
+    `${ratio(1).padStart(15)}${ratio(2).padStart(7)}${middle(1).padStart(10)}${middle(2).padStart(6)}` +
+    `${alone.toFixed(1).padStart(11)}`);
 }
 worker.stdin.end();
 browser.process.kill();

@@ -546,6 +546,19 @@ TEST(Batch, BadColumnsSayWhatToDo) {
     EXPECT_THROW(simulate_many(scene, 2, twice, kIsa), std::invalid_argument);
 }
 
+// Each number alone may be in its range, and all of them together be no restitution.
+TEST(SceneNumber, OfAFitLeavesTheOthersAndIsCheckedWithThem) {
+    Scene scene;
+    scene.balls = make_ball_params("carom");
+    const double fall = scene.balls.e_c_fall;
+    const SceneNumber first(scene, "balls.e_c_fit.0");
+    EXPECT_EQ(first.value(scene), scene.balls.e_c);
+    EXPECT_EQ(first.put(scene, 0.8), Change::kAnything);
+    EXPECT_EQ(scene.balls.e_c, 0.8);
+    EXPECT_EQ(scene.balls.e_c_fall, fall);
+    EXPECT_GT(fall, 0.0);
+}
+
 TEST(SceneNumber, IntegersAreWhole) {
     Scene scene = scene_of("draw");
     const SceneNumber events(scene, "stop.events"), steps(scene, "physics.substeps");

@@ -344,7 +344,7 @@ Scene combination(double off) {
     return scene;
 }
 
-// A break multiplies differences so much that derivatives are compared right after its first impact.
+// A break multiplies small differences, so its derivatives are compared right after the first impact.
 TEST(Tangents, Clusters) {
     std::vector<std::string> inputs = kStroke;
     inputs.insert(inputs.end(), {"balls.e_b", "balls.mu_b", "ball.cue.position.y"});

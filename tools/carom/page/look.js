@@ -92,7 +92,7 @@ function paint(scratch, projection, path, colour) {
   return canvas;
 }
 
-/** Paints the table without balls. `shape`: as tools/carom/view/table_shape.h describes. */
+/** Paints the table without balls. `shape`: as tools/carom/page/table_shape.h describes. */
 function paintTable(canvas, projection, shape) {
   const context = canvas.getContext("2d");
   const scratch = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
