@@ -21,7 +21,7 @@ loader = importlib.machinery.SourceFileLoader("release", str(ROOT / "tools/relea
 release = importlib.util.module_from_spec(importlib.util.spec_from_loader("release", loader))
 loader.exec_module(release)
 READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h",
-                                               "docs/reference/record.schema.json",
+                                               "web/npm/index.d.ts", "docs/reference/record.schema.json",
                                                "tests/data/engine/golden_hashes.json"}
 
 
@@ -85,6 +85,13 @@ class Release(unittest.TestCase):
         self.assertEqual(release.faults_of(self.root), [])
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         self.one_fault("no longer declares")
+
+    def test_a_type_of_the_npm_package_that_goes_is_a_fault_and_one_that_comes_is_none(self):
+        self.change("web/npm/index.d.ts", "(export interface Cue {\n)", r"\1  chalk: number; // new\n")
+        self.assertEqual(release.faults_of(self.root), [])
+        # The same line is still in other interfaces.
+        self.change("web/npm/index.d.ts", r"(?s)(export interface BallPlace \{.*?)  x: number;\n", r"\1")
+        self.one_fault("index.d.ts no longer declares")
 
     def test_a_comment_is_no_declaration(self):
         self.change("capi/include/carom/carom.h", r"/\* of the cue \[m/s\] \*/", "/* quite another; word */")
