@@ -99,6 +99,12 @@ class Process {
     void interrupt() const { send(SIGINT); }
     void send(int signal) const { ::kill(pid_, signal); }
 
+    /// How many threads it has now.
+    int threads() const {
+        const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
+        return static_cast<int>(std::distance(std::filesystem::directory_iterator(tasks), {}));
+    }
+
     /// Sends text, and reads standard output up to the next line end; "" at its end or after `milliseconds`.
     std::string ask(const std::string& text, int milliseconds) {
         if (::write(to_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) return "";

@@ -141,6 +141,27 @@ TEST(CliSweep, GoesOnAfterAKill) {
     EXPECT_EQ(read_file(killed), read_file(whole));
 }
 
+TEST(CliSweep, PlaysOnTheThreadsOfJobsOnly) {
+    for (const int jobs : {1, 2}) {
+        const TemporaryFolder folder;
+        std::vector<std::string> arguments =
+            breaks(100000, folder.file("a.csv"), {"--jobs", std::to_string(jobs)});
+        arguments.insert(arguments.begin(), CAROM_PROGRAM);
+        Process process(arguments, {});
+        ASSERT_NE(wait_for_parts(folder), "");
+        int most = 0;
+        for (int i = 0; i < 100; ++i) {
+            most = std::max(most, process.threads());
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        process.interrupt();
+        EXPECT_EQ(process.finish("").status, 130);
+        // One more writes the rows, and one waits for the shots of a block.
+        EXPECT_LE(most, jobs + 2);
+        EXPECT_GT(most, 2);
+    }
+}
+
 TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     const TemporaryFolder folder;
     const std::string output = folder.file("a.csv");

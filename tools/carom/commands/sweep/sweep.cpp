@@ -88,8 +88,8 @@ void add(const std::vector<PlotShot>& shots, SweepPlot& plot) {
                       shots.begin() + static_cast<std::ptrdiff_t>(std::min(room, shots.size())));
 }
 
-/// Runs the missing shots of the table, block by block, and writes their rows. The next block is played while
-/// one is awaited and written, so that no thread is idle.
+/// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played.
+/// Two blocks are never played at once, because each uses all of the sweep's threads.
 Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
                     std::vector<Tally>& tallies, SweepPlot& plot) {
     Outcomes outcomes{};
@@ -108,14 +108,13 @@ Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& ra
     while (table.next() < range.last) {
         const Clock::time_point start = Clock::now();
         const std::uint64_t shots = begun - table.next();
-        std::future<SweepRows> ready = std::exchange(next, {});
+        const SweepRows rows = next.get();
+        if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         if (begun < range.last) begin_next();
-        const SweepRows rows = ready.get();
         table.add(rows.text, shots, failures(rows.outcomes));
         for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
         for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
         add(rows.plotted, plot);
-        if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
         status.show(table.next(), outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
                       static_cast<long>(range.last - range.first));
