@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The parts of tools/docs that are not shell:
 
+    site.py files FOLDER        copies into FOLDER whatever its pages link to, and what that links to
     site.py configure FILE      writes the configuration of MkDocs
     site.py interface FILE      writes a page of the C interface from its header
     site.py check FOLDER        follows every link of the built site, also to headings; status 1: a dead link
@@ -11,6 +12,7 @@ import html.parser
 import json
 import pathlib
 import re
+import shutil
 import sys
 import urllib.parse
 
@@ -32,6 +34,23 @@ def navigation():
     return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
             {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"},
             {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
+
+
+def files(folder):
+    """Links between pages and sources then work as in the repository, whose folders are kept."""
+    folder = pathlib.Path(folder).resolve()
+    pages = list(folder.rglob("*.md"))
+    for page in pages:
+        for link in re.findall(r"\]\(([^)#:\s]+)", page.read_text()):
+            copy = (page.parent / link).resolve()
+            if copy.exists() or not copy.is_relative_to(folder):
+                continue
+            source = ROOT / copy.relative_to(folder)
+            if source.is_file():
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(source, copy)
+                if copy.suffix == ".md":
+                    pages.append(copy)
 
 
 def configure(path):
@@ -97,7 +116,7 @@ def check(folder):
 
 
 if __name__ == "__main__":
-    commands = {"configure": configure, "interface": interface, "check": check}
+    commands = {"files": files, "configure": configure, "interface": interface, "check": check}
     if len(sys.argv) != 3 or sys.argv[1] not in commands:
         sys.exit(__doc__)
     sys.exit(commands[sys.argv[1]](sys.argv[2]))

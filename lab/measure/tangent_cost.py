@@ -16,7 +16,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KEYS = ["cue.speed", "cue.aim_deg", "cue.offset.side", "cue.offset.height", "balls.mu_s", "balls.mu_r",
         "balls.e_b", "balls.e_c"]
-SCENES = {"draw": (1, 4, 8), "three_cushion": (4,), "eight_ball_break": (4,)}
+SCENES = {"draw": (1, 4, 8), "three_cushion": (4,), "ten_ball_break": (4,)}
 
 
 def count(probe, scene, what, keys, functions=0):

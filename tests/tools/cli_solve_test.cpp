@@ -109,7 +109,7 @@ TEST_F(CliSolve, MistakesSayWhatIsExpected) {
     refused({"--want", "scratch", "--hand", "aim=-1"}, "--hand aim=-1: expected aim=DEGREES");
     refused({"--want", "scratch", "--hand", "speed=3"}, "--hand speed=3: expected");
     refused({"--want", "scratch", "--hand", "luck=1"}, "there is no \"luck\"");
-    refused({"--want", "scratch", "--shots", "10"}, "range 1000 to");
+    refused({"--want", "scratch", "--shots", "10"}, "--shots: Value 10 not in range");
     refused({"--want", "foul"}, "expected foul(GAME)");
     EXPECT_EQ(carom({"break", "chess"}).status, 2);
     EXPECT_EQ(carom({"break", "--rack", "gap=1"}).status, 2);
