@@ -3,6 +3,8 @@
 // size. Nesting is followed by loops, never by recursion.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -56,8 +58,7 @@ class JsonValue {
 
     template <int kSize>
     Eigen::Matrix<double, kSize, 1> vector() const {
-        if (first() != '[' || size() != kSize)
-            fail("expected a list of " + std::to_string(kSize) + " numbers");
+        if (first() != '[' || size() != kSize) fail(fmt::format("expected a list of {} numbers", kSize));
         Eigen::Matrix<double, kSize, 1> v;
         each([&](const JsonValue& item, std::size_t i) { v[static_cast<Eigen::Index>(i)] = item.number(); });
         return v;
