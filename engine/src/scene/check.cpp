@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
@@ -33,23 +34,28 @@ void check_ids(const Section& top, const Scene& scene) {
 }
 
 void check_overlaps(const Section& top, const Scene& scene) {
-    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const Vec2 p = planar(scene.ball[i].position);
-        const double R = scene.size_of(scene.ball[i]).R;
-        for (std::size_t j = 0; j < i; ++j) {
-            const double other = scene.size_of(scene.ball[j]).R;
-            const bool lie = scene.ball[i].height == 0.0 && scene.ball[j].height == 0.0;
-            const double diameter = lie ? contact_distance(R, other, scene.balls.discs()) : R + other;
-            const double least = diameter - touch_tolerance(p);
-            // Compare the axes first, because most pairs are far apart.
-            const Vec2 d = p - planar(scene.ball[j].position);
-            if (std::abs(d.x()) >= diameter || std::abs(d.y()) >= diameter) continue;
-            const double up = scene.ball[i].position.z() - scene.ball[j].position.z();
-            const double distance = lie ? d.norm() : std::sqrt(d.squaredNorm() + up * up);
-            if (distance >= least) continue;
-            top.fail(scene.ball[i].where, "balls {} and {} overlap by {:.4g} m; move one of them",
-                     in_quotes(scene.ball[j].id), in_quotes(scene.ball[i].id), diameter - distance);
+    struct Outline {
+        double x, y, R;
+    };
+    std::vector<Outline> outlines;
+    for (const BallStart& ball : scene.ball) {
+        const Outline here{ball.position.x(), ball.position.y(), scene.size_of(ball).R};
+        const double touch = touch_tolerance(planar(ball.position));
+        for (std::size_t j = 0; j < outlines.size(); ++j) {
+            // Compare the axes first, because most of up to eight million pairs are far apart.
+            const Outline& there = outlines[j];
+            const double dx = here.x - there.x, dy = here.y - there.y, reach = here.R + there.R;
+            if (std::abs(dx) >= reach || std::abs(dy) >= reach) continue;
+            const BallStart& other = scene.ball[j];
+            const bool lie = ball.height == 0.0 && other.height == 0.0;
+            const double diameter = lie ? contact_distance(here.R, there.R, scene.balls.discs()) : reach;
+            const double up = ball.position.z() - other.position.z();
+            const double distance = std::sqrt(dx * dx + dy * dy + (lie ? 0.0 : up * up));
+            if (distance >= diameter - touch) continue;
+            top.fail(ball.where, "balls {} and {} overlap by {:.4g} m; move one of them", in_quotes(other.id),
+                     in_quotes(ball.id), diameter - distance);
         }
+        outlines.push_back(here);
     }
 }
 
