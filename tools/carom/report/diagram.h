@@ -23,7 +23,7 @@ struct DiagramShot {
     std::string title;
     Record record;
     std::optional<Cue> cue;  ///< nothing if only the record is known
-    std::vector<DiagramSpread> spreads;
+    std::vector<DiagramSpread> spreads = {};
 };
 
 struct DiagramStyle {

@@ -1,6 +1,7 @@
 // carom impact: reads one impact from each line of standard input and writes
 // its result to a line of standard output. Every result is flushed, so that
 // another program can send an impact through a pipe and wait for the result.
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -102,7 +103,7 @@ int run(const ImpactArgs& args) {
         if (got == LineReader::Got::kLine && is_blank(line)) continue;
         const ImpactAnswer answer =
             got == LineReader::Got::kTooLong
-                ? impact_error("the line is longer than " + std::to_string(kLongestImpactLine) + " bytes")
+                ? impact_error(fmt::format("the line is longer than {} bytes", kLongestImpactLine))
                 : answer_impact(line, settings);
         all_computed = all_computed && answer.ok;
         print(answer.json + "\n");
