@@ -128,8 +128,10 @@ TEST(ClusterInSpace, ABallOnThree) {
             z = std::max(z, kPoolR + std::sqrt(4.0 * kPoolR * kPoolR - level.squaredNorm()));
         }
         top.z() = z;
-        balls.push_back(ball(3, top, {rng.uniform(-0.3, 0.3) * V, rng.uniform(-0.3, 0.3) * V, -V},
-                             {rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0)}));
+        // Drawn one after the other: compilers differ in the order of arguments.
+        const Vec3 w{rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0)};
+        const Vec3 v{rng.uniform(-0.3, 0.3) * V, rng.uniform(-0.3, 0.3) * V, -V};
+        balls.push_back(ball(3, top, v, w));
         worst = std::max(worst, error_of(balls, pool_law(), V));
     }
     report("a ball on three, error in V", worst);
@@ -153,8 +155,10 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
             const double height = rng.uniform(0.001, 0.02), x = rng.uniform(-0.002, 0.002);
             const double y = -std::sqrt(4.0 * kPoolR * kPoolR - height * height - x * x);
             const double V = rng.uniform(6.0, 9.0);
-            balls.push_back(ball(15, {x, y, kPoolR + height}, {0.0, V, rng.uniform(-0.4, 0.4)},
-                                 {-rng.uniform(0.0, 2.0) * V / kPoolR, 0.0, rng.uniform(-30.0, 30.0)}));
+            // Drawn one after the other: compilers differ in the order of arguments.
+            const Vec3 w{-rng.uniform(0.0, 2.0) * V / kPoolR, 0.0, rng.uniform(-30.0, 30.0)};
+            const Vec3 v{0.0, V, rng.uniform(-0.4, 0.4)};
+            balls.push_back(ball(15, {x, y, kPoolR + height}, v, w));
             worst = std::max(worst, error_of(balls, pool_law(), V));
         }
         report(("break through the air, gap " + std::to_string(gap) + ", error in V").c_str(), worst);

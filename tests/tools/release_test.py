@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 import unittest.mock
 
@@ -58,6 +59,18 @@ class Release(unittest.TestCase):
                 (self.root / name).write_text("nothing\n")
                 self.assertTrue(any("no version matches" in fault for fault in release.faults_of(self.root)))
                 (self.root / name).write_text(text)
+
+    def test_the_source_package_of_python_has_what_the_build_reads(self):
+        rules = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["scikit-build"]["sdist"]
+        read = set()
+        for name in ("CMakeLists.txt", "*/CMakeLists.txt", "tools/*/CMakeLists.txt", "cmake/*.cmake"):
+            for path in ROOT.glob(name):
+                if f"/{path.relative_to(ROOT).parts[0]}" not in rules["exclude"]:
+                    read |= set(re.findall(r"PROJECT_SOURCE_DIR\}(/[\w./-]+)", path.read_text()))
+        self.assertIn("/docs/reference/scene_format.md", read)
+        left_out = [path for path in sorted(read)
+                    if path not in rules["include"] and "/" + path.split("/")[1] in rules["exclude"]]
+        self.assertEqual(left_out, [])
 
     def test_the_changelog_keeps_its_form(self):
         self.change("CHANGELOG.md", "### Added", "### News")
