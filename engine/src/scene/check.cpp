@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 #include <unordered_map>
-#include <vector>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
@@ -34,28 +33,26 @@ void check_ids(const Section& top, const Scene& scene) {
 }
 
 void check_overlaps(const Section& top, const Scene& scene) {
-    struct Outline {
-        double x, y, R;
-    };
-    std::vector<Outline> outlines;
-    for (const BallStart& ball : scene.ball) {
-        const Outline here{ball.position.x(), ball.position.y(), scene.size_of(ball).R};
-        const double touch = touch_tolerance(planar(ball.position));
-        for (std::size_t j = 0; j < outlines.size(); ++j) {
+    double largest = 0.0;
+    for (const BallStart& ball : scene.ball) largest = std::max(largest, scene.size_of(ball).R);
+    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
+        const BallStart& ball = scene.ball[i];
+        const double x = ball.position.x(), y = ball.position.y(), R = scene.size_of(ball).R;
+        const double touch = touch_tolerance(planar(ball.position)), reach = R + largest;
+        for (std::size_t j = 0; j < i; ++j) {
             // Compare the axes first, because most of up to eight million pairs are far apart.
-            const Outline& there = outlines[j];
-            const double dx = here.x - there.x, dy = here.y - there.y, reach = here.R + there.R;
-            if (std::abs(dx) >= reach || std::abs(dy) >= reach) continue;
             const BallStart& other = scene.ball[j];
+            const double dx = x - other.position.x(), dy = y - other.position.y();
+            if (std::abs(dx) >= reach || std::abs(dy) >= reach) continue;
+            const double other_R = scene.size_of(other).R;
             const bool lie = ball.height == 0.0 && other.height == 0.0;
-            const double diameter = lie ? contact_distance(here.R, there.R, scene.balls.discs()) : reach;
-            const double up = ball.position.z() - other.position.z();
-            const double distance = std::sqrt(dx * dx + dy * dy + (lie ? 0.0 : up * up));
+            const double diameter = lie ? contact_distance(R, other_R, scene.balls.discs()) : R + other_R;
+            const double up = lie ? 0.0 : ball.position.z() - other.position.z();
+            const double distance = std::sqrt(dx * dx + dy * dy + up * up);
             if (distance >= diameter - touch) continue;
             top.fail(ball.where, "balls {} and {} overlap by {:.4g} m; move one of them", in_quotes(other.id),
                      in_quotes(ball.id), diameter - distance);
         }
-        outlines.push_back(here);
     }
 }
 
