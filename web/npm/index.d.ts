@@ -6,7 +6,7 @@
 export function init(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module
   | Promise<Response>): Promise<void>;
 
-/** The version of carom, such as "0.3.0". */
+/** The version of carom: three numbers with points. */
 export function version(): string;
 
 export class CaromError extends Error {
