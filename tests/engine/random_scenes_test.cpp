@@ -145,6 +145,21 @@ TEST(RandomSceneRegressions, LeavingACushionAtItsEnd) {
     settles_within(scene, 100);
 }
 
+// A ball that rolls between two others and touches both: its contact opened almost without force as its normal
+// turned, and closed again at once where the loop keeps the balls, 10 000 times (seed 16275 of the other
+// family).
+TEST(RandomSceneRegressions, FastBetweenTwoThatItTouches) {
+    Scene scene = empty_scene();
+    scene.table = box(1.0, 2.0, 0.036576);
+    scene.physics.ball_ball = ball_ball_model("inelastic");
+    scene.balls.mu_b = 0.2;
+    scene.balls.e_b = 1.0;
+    add_ball(scene, "2", 0.35553333717668034, 1.958153509869857, -0.037363507765253434, 0.011989777107804094);
+    add_ball(scene, "3", 0.29838333717668036, 1.958153509869857, 0.02648949185983325, 4.966073769823338);
+    add_ball(scene, "13", 0.24123333717668036, 1.958153509869857, 8.007143387223751e-07);
+    settles_within(scene, 100);
+}
+
 Scene on_a_box(double mu_s, double mu_b, ClusterModel clusters = ClusterModel::kCompliant) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 2.0, 0.036576);

@@ -228,7 +228,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
                        : map_.compliant(members_, contacts_, settings, v_n);
     };
     std::int64_t steps = run();
-    if ((in_space_ || unlike_) && steps >= 0 && closes_still(v_n)) {
+    if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
         const std::int64_t more = run();
         steps = more < 0 ? more : steps + more;
