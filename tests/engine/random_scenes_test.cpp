@@ -145,9 +145,9 @@ TEST(RandomSceneRegressions, LeavingACushionAtItsEnd) {
     settles_within(scene, 100);
 }
 
-// A ball that rolls between two others and touches both: its contact opened almost without force as its normal
-// turned, and closed again at once where the loop keeps the balls, 10 000 times (seed 16275 of the other
-// family).
+// A ball that rolls between two others and touches both: its contact opened almost without force as its
+// normal turned, and closed again at once where the loop keeps the balls, 10 000 times (seed 16275 of the
+// other family).
 TEST(RandomSceneRegressions, FastBetweenTwoThatItTouches) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 2.0, 0.036576);
