@@ -311,7 +311,11 @@ void unlike_balls_fits_and_flights(int wanted) {
     });
 }
 
+#ifdef CAROM_SANITIZED
+constexpr int kFew = 20, kMany = 100;
+#else
 constexpr int kFew = 20, kMany = 500;
+#endif
 
 TEST(Tangents, EveryCushion) {
     every_cushion(kFew);

@@ -52,13 +52,17 @@ double vertical_impulse(const Group& g, const Link& link) {
     return std::clamp(Z, -now, now);
 }
 
+bool recovers(const Link& link) {
+    return link.gap < -kOverlapDepth;
+}
+
 // [m/s^2] Correction to the acceleration of a gap along its first normal. With the tangential velocity v and
 // acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal
 // turns, and its rate ends at 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. If the gap would become negative
 // meanwhile, let it open instead. Overlaps end within the interval.
 double turning_of(const Link& link, const Across& t, double h) {
     const double time = std::max(h, kRecoveryTime);
-    const double recovery = link.gap < -kOverlapDepth ? 2.0 * link.gap / (time * time) : 0.0;
+    const double recovery = recovers(link) ? 2.0 * link.gap / (time * time) : 0.0;
     if (t.distance == 0.0) return recovery;
     const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
     // A change that rounds to no gap would only stop balls at rest from leaning on each other.
@@ -141,10 +145,10 @@ class Newton {
             if (changed) respond(g_, h_);
             bool harmless = !changed;
             if (is_solved(harmless) && !changed) return true;
-            if (newton >= kHarmlessFrom && harmless) return true;
+            if (newton >= kHarmlessFrom && harmless) return !lacks_room();
             if (newton == kNewtonSteps) return false;
             linearise();
-            if (!problem_.solve()) return harmless;
+            if (!problem_.solve()) return harmless && !lacks_room();
             search();
         }
     }
@@ -190,6 +194,16 @@ class Newton {
                 harmless && wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
         }
         return solved;
+    }
+
+    // An overlap that has no room to end presses its row together, which is not harmless: the row pushes
+    // out balls at its side for as long as it lasts.
+    bool lacks_room() const {
+        if (!stabilise_) return false;
+        const double rounding = rate_rounding(g_);
+        for (std::size_t k = 0; k < active_.size(); ++k)
+            if (recovers(g_.links[active_[k]]) && -rates_[k] > rounding) return true;
+        return false;
     }
 
     // rate + A (J - J now) for the present kinds of motion.
