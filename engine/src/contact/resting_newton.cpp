@@ -52,17 +52,15 @@ double vertical_impulse(const Group& g, const Link& link) {
     return std::clamp(Z, -now, now);
 }
 
-bool recovers(const Link& link) {
-    return link.gap < -kOverlapDepth;
-}
-
 // [m/s^2] Correction to the acceleration of a gap along its first normal. With the tangential velocity v and
 // acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal
 // turns, and its rate ends at 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. If the gap would become negative
-// meanwhile, let it open instead. Overlaps end within the interval.
-double turning_of(const Link& link, const Across& t, double h) {
+// meanwhile, let it open instead. Overlaps end within the interval, and the gaps of the group may close by as
+// much: without room the whole row would be pressed, and would push out balls at its side.
+double turning_of(const Group& g, const Link& link, const Across& t, double h) {
     const double time = std::max(h, kRecoveryTime);
-    const double recovery = recovers(link) ? 2.0 * link.gap / (time * time) : 0.0;
+    const double room = link.gap < -kOverlapDepth ? link.gap : std::clamp(link.gap, 0.0, g.overlap);
+    const double recovery = 2.0 * room / (time * time);
     if (t.distance == 0.0) return recovery;
     const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
     // A change that rounds to no gap would only stop balls at rest from leaning on each other.
@@ -94,7 +92,7 @@ bool update(Group& g, double h, bool stabilise, int times) {
     g.smooth = times >= kFallsFrom;
     for (Link& link : g.links) {
         if (stabilise && !link.open) {
-            const double wanted = turning_of(link, across(g, link, h), h);
+            const double wanted = turning_of(g, link, across(g, link, h), h);
             changed = changed || std::abs(wanted - link.turning) * h * h > kNoGap;
             link.turning = wanted;
         }
@@ -125,11 +123,14 @@ bool update(Group& g, double h, bool stabilise, int times) {
 class Newton {
   public:
     Newton(Group& g, double h, bool stabilise) : g_(g), h_(h), stabilise_(stabilise), problem_(g.problem) {
+        g.overlap = 0.0;
         for (std::size_t c = 0; c < g.links.size(); ++c) {
-            if (g.links[c].open)
+            if (g.links[c].open) {
                 g.links[c].J = 0.0;
-            else
-                active_.push_back(c);
+                continue;
+            }
+            active_.push_back(c);
+            if (g.links[c].gap < -kOverlapDepth) g.overlap = std::max(g.overlap, -g.links[c].gap);
         }
         problem_.resize(active_.size());
         before_.resize(active_.size());
@@ -145,10 +146,10 @@ class Newton {
             if (changed) respond(g_, h_);
             bool harmless = !changed;
             if (is_solved(harmless) && !changed) return true;
-            if (newton >= kHarmlessFrom && harmless) return !lacks_room();
+            if (newton >= kHarmlessFrom && harmless) return true;
             if (newton == kNewtonSteps) return false;
             linearise();
-            if (!problem_.solve()) return harmless && !lacks_room();
+            if (!problem_.solve()) return harmless;
             search();
         }
     }
@@ -194,16 +195,6 @@ class Newton {
                 harmless && wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
         }
         return solved;
-    }
-
-    // An overlap that has no room to end presses its row together, which is not harmless: the row pushes
-    // out balls at its side for as long as it lasts.
-    bool lacks_room() const {
-        if (!stabilise_) return false;
-        const double rounding = rate_rounding(g_);
-        for (std::size_t k = 0; k < active_.size(); ++k)
-            if (recovers(g_.links[active_[k]]) && -rates_[k] > rounding) return true;
-        return false;
     }
 
     // rate + A (J - J now) for the present kinds of motion.

@@ -32,8 +32,7 @@ bool step(Group& g, double h) {
         b.s_end = b.s + share * (b.s_end - b.s);
     }
     bool solved = solve_newton(g, h, h > 0.0);
-    // Two opposing normals that turn, or an overlap in a row without room, can ask for more than there is:
-    // then they keep what they have.
+    // Two opposing normals that turn can ask for more than there is: then they keep what they have.
     if (!solved && h > 0.0) {
         for (Link& link : g.links) link.J = link.Z = link.lift = link.turning = 0.0;
         solved = solve_newton(g, h, false);
