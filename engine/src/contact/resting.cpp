@@ -218,7 +218,7 @@ double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion) {
 }
 
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now) {
-    resting::Group g{group, around, *group.balls.front().motion, now, {}, {}, 0.0, false, 0.0, {}, {}, {}};
+    resting::Group g{group, around, *group.balls.front().motion, now};
     resting::solve(g);
 }
 

@@ -86,16 +86,16 @@ struct Group {
     const RestingSurroundings& around;
     const MotionParams& motion;  ///< of the first ball: the frictions, which all balls share
     double now;
-    std::vector<Body> bodies;  ///< as group.balls
-    std::vector<Link> links;   ///< as group.contacts
-    double solved = 0.0;       ///< [s] interval for which the bodies and links have a solution; 0: none
-    bool smooth = false;       ///< the solution has less friction between balls than they have
-    double overlap = 0.0;      ///< [m] the deepest one that is removed
-    double noise = 0.0;        ///< [m/s] rounding of the group's speeds in a few sums of eight terms
+    std::vector<Body> bodies{};  ///< as group.balls
+    std::vector<Link> links{};   ///< as group.contacts
+    double solved = 0.0;         ///< [s] interval for which the bodies and links have a solution; 0: none
+    bool smooth = false;         ///< the solution has less friction between balls than they have
+    double overlap = 0.0;        ///< [m] the deepest one that is removed
+    double noise = 0.0;          ///< [m/s] rounding of the group's speeds in a few sums of eight terms
     // Workspace of solve_interval() and step().
-    std::vector<Body> bodies_before;
-    std::vector<Link> links_before;
-    Complementarity problem;
+    std::vector<Body> bodies_before{};
+    std::vector<Link> links_before{};
+    Complementarity problem{};
 };
 
 /// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
