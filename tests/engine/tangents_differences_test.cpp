@@ -1,6 +1,7 @@
 // Derivatives of shots against differences of whole shots, in every model, and what margins are worth.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
