@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string_view>
 
 namespace carom::test {
@@ -226,25 +228,41 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
     return "";
 }
 
+/// The file that a quoted include names, below `root`: beside the file, then by room. Empty if there is none.
+std::string included_file(const fs::path& root, const fs::path& file, std::string_view name) {
+    std::vector<fs::path> folders = {file.parent_path(), root / house_of(path_below(root, file))};
+    for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom",
+                                        "tools", "tests", "lab/carom", "lab"})
+        folders.push_back(root / base);
+    for (const fs::path& folder : folders)
+        if (fs::exists(folder / name)) return path_below(root, folder / name);
+    return "";
+}
+
+/// The C interface's own header, which lies in no folder of a layer's name.
+constexpr std::string_view kCHeader = "carom/carom.h";
+
 std::string include_violation(const fs::path& root, const fs::path& file, int layer, const Include& include) {
     if (include.name.empty()) return "is not a literal name, so that its layer cannot be known";
     const std::string from = path_below(root, file);
     if (layer == kNoLayer && !include.quoted) return "";
     if ((starts_with(from, kCInterface) || starts_with(from, kPython) || starts_with(from, kWeb)) &&
-        (include.name == "carom/carom.h" || include.name == "carom/version.h"))
+        (include.name == kCHeader || include.name == "carom/version.h"))
         return "";
     if (starts_with(include.name, "carom/")) return public_violation(root, from, layer, include.name);
     if (!include.quoted) return library_violation(layer, include.name);
-    // Beside the file, then by room.
-    std::vector<fs::path> folders = {file.parent_path(), root / house_of(from)};
-    for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom",
-                                        "tools", "tests", "lab/carom", "lab"})
-        folders.push_back(root / base);
-    for (const fs::path& folder : folders) {
-        const fs::path candidate = folder / include.name;
-        if (fs::exists(candidate)) return target_violation(root, from, layer, path_below(root, candidate));
-    }
+    const std::string to = included_file(root, file, include.name);
+    if (!to.empty()) return target_violation(root, from, layer, to);
     return layer == kNoLayer ? "" : "cannot be resolved";
+}
+
+/// The top folder that an include points to; empty for a library.
+std::string included_folder(const fs::path& root, const fs::path& file, const Include& include) {
+    if (include.name == kCHeader) return std::string(kCInterface);
+    if (!starts_with(include.name, "carom/"))
+        return include.quoted ? top_folder(included_file(root, file, include.name)) : "";
+    const std::string first = top_folder(include.name.substr(6));
+    return layer_of(first) == kNoLayer ? "" : first;
 }
 
 /// A target named in a CMakeLists.txt is an include path: carom::render in engine/ points upwards.
@@ -277,34 +295,75 @@ bool is_source(const fs::path& file) {
     return kEndings.count(file.extension().string()) != 0;
 }
 
+/// The folders of the product with their layers.
+std::vector<std::pair<std::string_view, int>> product_folders() {
+    std::vector<std::pair<std::string_view, int>> folders = {
+        {kCInterface, kCInterfaceLayer}, {kPython, kPythonLayer}, {kWeb, kWebLayer}};
+    for (std::size_t i = 0; i < kLayers.size(); ++i)
+        if (kLayers[i] != kLab) folders.emplace_back(kLayers[i], static_cast<int>(i));
+    return folders;
+}
+
+/// Calls seen(file) for every file in a folder below `root`.
+template <typename Seen>
+void for_each_file(const fs::path& root, std::string_view folder, const Seen& seen) {
+    if (!fs::exists(root / folder)) return;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+        if (entry.is_regular_file()) seen(entry.path());
+}
+
 }  // namespace
 
 std::vector<std::string> layer_violations(const fs::path& root) {
     std::vector<std::string> found;
-    std::vector<std::pair<std::string_view, int>> folders = {
-        {kCInterface, kCInterfaceLayer}, {kPython, kPythonLayer}, {kWeb, kWebLayer}};
-    for (std::size_t i = 0; i < kLayers.size(); ++i) folders.emplace_back(kLayers[i], static_cast<int>(i));
+    std::vector<std::pair<std::string_view, int>> folders = product_folders();
+    folders.emplace_back(kLab, layer_of(kLab));
     for (const std::string_view name : kBesideTheProduct) folders.emplace_back(name, kNoLayer);
-    for (const auto& [name, layer] : folders) {
-        const fs::path folder = root / name;
-        if (!fs::exists(folder)) continue;
-        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-            const fs::path& file = entry.path();
+    for (const auto& [name, layer] : folders)
+        for_each_file(root, name, [&, at = layer](const fs::path& file) {
             if (file.filename() == "CMakeLists.txt") {
-                const std::vector<std::string> more = cmake_violations(file, layer);
+                const std::vector<std::string> more = cmake_violations(file, at);
                 found.insert(found.end(), more.begin(), more.end());
             }
-            if (!entry.is_regular_file() || !is_source(file)) continue;
+            if (!is_source(file)) return;
             for (const Include& include : includes_of(file)) {
-                const std::string wrong = include_violation(root, file, layer, include);
+                const std::string wrong = include_violation(root, file, at, include);
                 if (wrong.empty()) continue;
                 found.push_back(file.string() + ":" + std::to_string(include.line) + ": include of " +
                                 include.name + " " + wrong);
             }
-        }
-    }
+        });
     std::sort(found.begin(), found.end());
     return found;
+}
+
+std::set<std::string> layer_arrows(const fs::path& root) {
+    std::set<std::string> arrows;
+    for (const auto& [name, layer] : product_folders())
+        for_each_file(root, name, [&, from = std::string(name)](const fs::path& file) {
+            if (!is_source(file)) return;
+            for (const Include& include : includes_of(file)) {
+                const std::string to = included_folder(root, file, include);
+                if (!to.empty() && to != from) arrows.insert(from + " -> " + to);
+            }
+        });
+    return arrows;
+}
+
+std::set<std::string> described_arrows(std::string_view page) {
+    std::set<std::string> names, arrows;
+    for (const auto& [name, layer] : product_folders()) names.insert(std::string(name));
+    const std::size_t start = std::min(page.find("## Layers"), page.size());
+    std::istringstream lines(std::string(page.substr(start, page.find("\n## ", start) - start)));
+    const std::regex arrow("([a-z]+) +-> (.*)"), word("[a-z]+");
+    std::smatch match;
+    for (std::string line; std::getline(lines, line);) {
+        if (!std::regex_search(line, match, arrow) || names.count(match[1]) == 0) continue;
+        const std::string from = match[1], to = match[2];
+        for (std::sregex_iterator it(to.begin(), to.end(), word), end; it != end; ++it)
+            if (names.count(it->str()) != 0) arrows.insert(from + " -> " + it->str());
+    }
+    return arrows;
 }
 
 }  // namespace carom::test

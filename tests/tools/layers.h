@@ -3,7 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace carom::test {
@@ -12,5 +14,12 @@ namespace carom::test {
 /// another room or into the laboratory, that cannot be resolved, or that brings in a library which the layer
 /// may not use; and for every product target that reads tests/.
 std::vector<std::string> layer_violations(const std::filesystem::path& root);
+
+/// "games -> engine" for every folder of the product that includes a file of another one.
+std::set<std::string> layer_arrows(const std::filesystem::path& root);
+
+/// The same as the lines "games -> engine, kernel" below the heading "## Layers" of
+/// docs/design/architecture.md say it.
+std::set<std::string> described_arrows(std::string_view page);
 
 }  // namespace carom::test

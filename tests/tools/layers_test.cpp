@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,21 @@ TEST(Layers, NoIncludePointsUpwards) {
         ASSERT_TRUE(fs::exists(fs::path(CAROM_SOURCE_DIR) / layer)) << layer;
     }
     for (const std::string& violation : layer_violations(CAROM_SOURCE_DIR)) ADD_FAILURE() << violation;
+}
+
+std::vector<std::string> missing(const std::set<std::string>& all, const std::set<std::string>& from) {
+    std::vector<std::string> some;
+    std::set_difference(all.begin(), all.end(), from.begin(), from.end(), std::back_inserter(some));
+    return some;
+}
+
+TEST(Layers, TheDesignPageDrawsTheArrowsThatExist) {
+    const std::set<std::string> exist = layer_arrows(CAROM_SOURCE_DIR);
+    const std::set<std::string> drawn =
+        described_arrows(read_file(CAROM_SOURCE_DIR "/docs/design/architecture.md"));
+    ASSERT_GT(exist.size(), 15u);
+    for (const std::string& arrow : missing(exist, drawn)) ADD_FAILURE() << "not drawn: " << arrow;
+    for (const std::string& arrow : missing(drawn, exist)) ADD_FAILURE() << "drawn, but gone: " << arrow;
 }
 
 /// A small tree with all four layers, to which a test adds one line.
@@ -81,6 +99,27 @@ class LayersSelfTest : public ::testing::Test {
 
 TEST_F(LayersSelfTest, AcceptsWhatPointsDownwards) {
     for (const std::string& violation : check()) ADD_FAILURE() << violation;
+}
+
+// One arrow more in the tree, and one less on the page, are seen.
+TEST_F(LayersSelfTest, ReadsArrowsFromTheTreeAndFromThePage) {
+    const std::string page =
+        "# A\n\nkernel -> games\n\n## Layers\n\n```\n"
+        " 6 lab      lab    -> anything\n"
+        " 5 tools    tools  -> render, engine, kernel\n"
+        "            python -> tools (page), render, engine\n"
+        "            capi   -> engine\n"
+        "   games    games  -> engine\n"
+        "            render -> engine\n"
+        " 2 engine   engine -> kernel\n"
+        " 1 kernel   kernel -> the C++ standard library\n```\n\n## Rooms\n\ngames -> render\n";
+    EXPECT_EQ(layer_arrows(folder_.path()), described_arrows(page));
+    put("games/src/g.cpp", "#include \"carom/kernel/k.h\"\n");
+    EXPECT_EQ(missing(layer_arrows(folder_.path()), described_arrows(page)),
+              std::vector<std::string>{"games -> kernel"});
+    put("python/src/p.cpp", "#include \"carom/carom.h\"\n");
+    EXPECT_EQ(missing(layer_arrows(folder_.path()), described_arrows(page)).size(), 2u);
+    EXPECT_EQ(missing(described_arrows(page + "\n"), layer_arrows(folder_.path())).size(), 0u);
 }
 
 TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
