@@ -144,9 +144,7 @@ TEST(Cloth, RestitutionMayFallWithTheSpeed) {
 }
 
 FreePair pair(double mu_b = 0.05) {
-    FreePair p{{kR, kM}, {kR, kM}, balls()};
-    p.balls.mu_b = mu_b;
-    return p;
+    return {{kR, kM}, {kR, kM}, {mu_b}, balls().e_b};
 }
 
 TEST(FreeBalls, AFullHitOfARollingBall) {
@@ -192,7 +190,7 @@ TEST(FreeBalls, KeepTheirLaws) {
     for (int k = 0; k < 20000; ++k) {
         FreePair p = pair(random.uniform(0.0, 0.4));
         p.size2 = {random.uniform(0.02, 0.05), random.uniform(0.05, 0.4)};
-        p.balls.e_b = random.uniform(0.0, 1.0);
+        p.e_b = random.uniform(0.0, 1.0);
         Velocities b1, b2;
         Vec3 n;
         for (int i = 0; i < 3; ++i) {
@@ -250,7 +248,7 @@ TEST(FreeBalls, ASlowContactParts) {
     EXPECT_NEAR(parting, 0.1 * up, 1e-18);
     Velocities top{{0.0, 0.0, -1e-3}, Vec3::Zero()}, low{Vec3::Zero(), Vec3::Zero()};
     const Vec3 n(0.6, 0.0, -0.8);
-    part_slowly(pair(), n, false, true, parting, top, low);
+    part_slowly(pair(), n, {false, true}, kG, top, low);
     EXPECT_NEAR(dot3(top.v - low.v, n), -parting, 1e-16);
     EXPECT_EQ(low.v.z(), 0.0);
     EXPECT_GT(low.v.x(), 0.0);

@@ -103,7 +103,7 @@ Json profiled_break() {
     arc.side = "outside";
     arc.from_deg = 0.0;
     arc.to_deg = 360.0;
-    record.balls.disc = record.balls.slides = 1.0;
+    record.balls.disc = record.balls.slides = true;
     record.events.front().slow = true;
     // Whether a ball hits the end of a cushion depends on the break.
     const auto met = std::find_if(record.events.begin(), record.events.end(),

@@ -214,7 +214,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = plan_.e_b(),
-        .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+        .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,

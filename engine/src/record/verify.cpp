@@ -39,7 +39,7 @@ double energy_of(const Record& record, const std::vector<BallState>& states) {
 bool keeps_energy(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
     return !plan.ball_ball->reads_cloth ||
-           (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
+           (physics.cloth_slip == kernel::ClothSlip::kConsistent && physics.substeps.value_or(100) >= 100);
 }
 
 class Checker {

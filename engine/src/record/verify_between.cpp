@@ -244,9 +244,7 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
     const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
-    return size.m / record.balls.m *
-           (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
-            fallen);
+    return size.m / record.balls.m * (kinetic_energy(state.velocity, state.spin, size.R) + fallen);
 }
 
 double chord_energy(const Record& record, double t) {
@@ -261,8 +259,7 @@ double chord_energy(const Record& record, double t) {
         const double tau = t - s.start;
         if (!s.held || !(tau < s.duration)) continue;
         const BallSize size = track.own.value_or(record.balls.size());
-        sum += size.m / record.balls.m * 0.5 * tau * (s.duration - tau) *
-               (s.a.squaredNorm() + kInertia * size.R * size.R * s.dw.squaredNorm());
+        sum += size.m / record.balls.m * tau * (s.duration - tau) * kinetic_energy(s.a, s.dw, size.R);
     }
     return sum;
 }

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -17,8 +15,6 @@
 
 namespace carom::tangent {
 namespace {
-
-static_assert(std::is_trivially_copyable_v<BallParams> && sizeof(BallParams) % sizeof(double) == 0);
 
 // [-] and [degrees] Steps of the differences. Four points of them are exact to 1e-13 for sines and roots.
 constexpr double kStep = 1e-3, kAngleStep = 0.1;
@@ -36,8 +32,8 @@ Input with_step(const std::string& key, double value, const Interval& range,
 
 /// The numbers in the order in which numbers_of() reads them: of the balls and the stroke, and of the table.
 std::vector<double> list_of(const Scene& scene, Vertical vertical) {
-    std::vector<double> list(kParams);
-    std::memcpy(list.data(), &scene.balls, sizeof(BallParams));
+    std::vector<double> list;
+    for (const auto member : kParamMembers) list.push_back(scene.balls.*member);
     const auto add_all = [&list](const auto& v) { list.insert(list.end(), v.data(), v.data() + v.size()); };
     list.push_back(scene.physics.gravity);
     for (const BallStart& ball : scene.ball) {
@@ -88,15 +84,14 @@ Input input_of(Scene& scene, const std::string& key) {
                      [number](Scene& s, double x) { return number.put(s, x); });
 }
 
-BallParams params_of(const double* list) {
-    BallParams balls{};
-    std::memcpy(&balls.R, list, sizeof(BallParams));
+BallParams with_numbers(BallParams balls, const double* numbers) {
+    for (const auto member : kParamMembers) balls.*member = *numbers++;
     return balls;
 }
 
 const Dual& Numbers::param(double BallParams::*member) const {
-    static const BallParams kAny{};
-    return params[static_cast<std::size_t>(&(kAny.*member) - &kAny.R)];
+    const auto at = std::find(kParamMembers.begin(), kParamMembers.end(), member);
+    return params[static_cast<std::size_t>(at - kParamMembers.begin())];
 }
 
 Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs) {

@@ -195,7 +195,12 @@ void Replay::replay(const Event& event) {
         case EventType::kBallCluster:
             time = cluster(event);
             break;
-        default:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease:
             throw TangentError("it is a resting contact");
     }
     times_.push_back(time);
