@@ -252,10 +252,7 @@ double chord_energy(const Record& record, double t) {
     const std::vector<Jaw>& jaws = record.table.jaws;
     if (std::none_of(jaws.begin(), jaws.end(), [](const Jaw& jaw) { return jaw.is_arc(); })) return sum;
     for (const BallTrack& track : record.tracks) {
-        const auto next = std::upper_bound(track.segments.begin(), track.segments.end(), t,
-                                           [](double time, const Segment& s) { return time < s.start; });
-        if (next == track.segments.begin()) continue;
-        const Segment& s = *(next - 1);
+        const Segment& s = track.segments[track.segment_at(t)];
         const double tau = t - s.start;
         if (!s.held || !(tau < s.duration)) continue;
         const BallSize size = track.own.value_or(record.balls.size());

@@ -168,19 +168,54 @@ double closing_speed(const Dual3& apart, const State& s1, const State& s2) {
     return sum / length3(apart).x;
 }
 
-Arguments pair_arguments(const Laws& laws, int one, int two, const Dual3& apart, const State& s1,
-                         const State& s2) {
+/// Differentiates a law of two balls. law(in, pair, ball1, ball2): the numbers that all share, the sizes and
+/// the way from centre to centre, and the velocities, which it replaces.
+struct Pair {
+    BallSize size1, size2;
+    Vec3 apart;
+};
+template <class Law>
+void meet_pair(Laws& laws, int one, int two, const Dual3& apart, State& s1, State& s2, const Law& law) {
     const Numbers::Ball &b1 = laws.numbers.balls[one], &b2 = laws.numbers.balls[two];
-    Arguments in(laws.numbers);
+    Arguments arguments(laws.numbers);
     // In a thin hit the models bend within the closing speed.
     const double speed = std::abs(closing_speed(apart, s1, s2)), reach = length3(apart).x;
     const double most = std::max({speed_of(s1, b1.R), speed_of(s2, b2.R), speed});
-    in.add(b1);
-    in.add(b2);
-    in.add(apart, most > 0.0 ? reach * speed / most : reach);
-    in.add(s1, b1.R, speed);
-    in.add(s2, b2.R, speed);
-    return in;
+    arguments.add(b1);
+    arguments.add(b2);
+    arguments.add(apart, most > 0.0 ? reach * speed / most : reach);
+    arguments.add(s1, b1.R, speed);
+    arguments.add(s2, b2.R, speed);
+    const std::vector<Dual> out = differentiate(laws, arguments, [&](const double* list) {
+        Reader in(laws, list);
+        const Pair pair{in.size(), in.size(), in.vec()};
+        Velocities ball1 = in.velocities(pair.size1.R), ball2 = in.velocities(pair.size2.R);
+        law(in, pair, ball1, ball2);
+        return list_of({ball1, ball2});
+    });
+    put(s1, out.data());
+    put(s2, out.data() + 6);
+}
+
+/// The same of one ball. law(in, size, about, ball)
+/// @param about  three more numbers that the law reads, in this unit
+template <class Law>
+void meet_table(Laws& laws, int ball, const Dual3& about, double unit, double speed, State& s,
+                const Law& law) {
+    const Numbers::Ball& numbers = laws.numbers.balls[ball];
+    Arguments arguments(laws.numbers);
+    arguments.add(numbers);
+    arguments.add(about, unit);
+    arguments.add(s, numbers.R, speed);
+    const std::vector<Dual> out = differentiate(laws, arguments, [&](const double* list) {
+        Reader in(laws, list);
+        const BallSize size = in.size();
+        const Vec3 more = in.vec();
+        Velocities at = in.velocities(size.R);
+        law(in, size, more, at);
+        return list_of({at});
+    });
+    put(s, out.data());
 }
 
 }  // namespace
@@ -194,23 +229,18 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
     s1.v[2] = s2.v[2] = 0.0;
     BallBallSettings settings = plan.impact;
     settings.tolerance = kernel::kTightestTolerance;
-    const std::vector<Dual> out =
-        differentiate(laws, pair_arguments(laws, one, two, apart, s1, s2), [&](const double* list) {
-            Reader in(laws, list);
-            const BallSize size1 = in.size(), size2 = in.size();
-            const Vec2 r = planar(in.vec());
-            const Vec2 level = r * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(r));
-            Velocities a = in.velocities(size1.R), b = in.velocities(size2.R);
-            a.v.z() = b.v.z() = 0.0;
-            // Friction that a plan skips has no effect, but it may have derivatives: none is skipped.
-            if (collide({*plan.ball_ball, settings, in.balls}, size1, size2, {0.0, 0.0, size1.R},
-                        {level.x(), level.y(), size2.R}, a, b)
-                    .status != kernel::ImpactStatus::kOk)
-                throw TangentError("its model has no solution nearby, as at the edge of a miss");
-            return list_of({a, b});
-        });
-    put(s1, out.data());
-    put(s2, out.data() + 6);
+    meet_pair(laws, one, two, apart, s1, s2,
+              [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
+                  const auto& [size1, size2, r] = pair;
+                  const Vec2 level =
+                      planar(r) * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(planar(r)));
+                  // Friction that a plan skips has no effect, but it may have derivatives: none is skipped.
+                  const PairImpact impact =
+                      carom::collide({*plan.ball_ball, settings, in.balls}, size1, size2, {0.0, 0.0, size1.R},
+                                     {level.x(), level.y(), size2.R}, ball1, ball2);
+                  if (impact.status != kernel::ImpactStatus::kOk)
+                      throw TangentError("its model has no solution nearby, as at the edge of a miss");
+              });
     s1.v[2] = fall1;
     s2.v[2] = fall2;
 }
@@ -218,20 +248,16 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2) {
     const BallBallModelInfo& model = *laws.plan.ball_ball;
-    const std::vector<Dual> out =
-        differentiate(laws, pair_arguments(laws, one, two, apart, s1, s2), [&](const double* list) {
-            Reader in(laws, list);
-            const FreePair pair{in.size(), in.size(), model.friction(in.balls), model.restitution(in.balls)};
-            const Vec3 r = in.vec(), n = r / length3(r);
-            Velocities a = in.velocities(pair.size1.R), b = in.velocities(pair.size2.R);
-            if (slow)
-                part_slowly(pair, n, lies, in.gravity, a, b);
-            else
-                hit_ball(pair, n, a, b);
-            return list_of({a, b});
-        });
-    put(s1, out.data());
-    put(s2, out.data() + 6);
+    meet_pair(laws, one, two, apart, s1, s2,
+              [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
+                  const FreePair free{pair.size1, pair.size2, model.friction(in.balls),
+                                      model.restitution(in.balls)};
+                  const Vec3 n = pair.apart / length3(pair.apart);
+                  if (slow)
+                      part_slowly(free, n, lies, in.gravity, ball1, ball2);
+                  else
+                      hit_ball(free, n, ball1, ball2);
+              });
 }
 
 // The loop resolves the cluster again, in a scene that contains nothing else.
@@ -294,63 +320,36 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
 
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,
                   const Dual& height, bool hops, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
     const Dual fall = s.v[2];
     s.v[2] = 0.0;
     const double speed = std::abs(normal[0].x * s.v[0].x + normal[1].x * s.v[1].x);
-    const double most = std::max(speed_of(s, numbers.R), speed);
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add({normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0);
-    in.add(s, numbers.R, speed);
-    const std::vector<Dual> out = differentiate(laws, in, [&](const double* list) {
-        Reader read(laws, list);
-        const BallSize size = read.size();
-        const Vec3 nose = read.vec();
-        const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
-        Velocities at = read.velocities(size.R);
-        if (!bounce(read.balls, size, {&touch, 1}, hops ? std::optional(read.gravity) : std::nullopt, at))
-            throw TangentError("its model has no solution nearby");
-        return list_of({at});
-    });
-    put(s, out.data());
+    const double most = std::max(speed_of(s, laws.numbers.balls[ball].R), speed);
+    meet_table(
+        laws, ball, {normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0, speed, s,
+        [&](const Reader& in, const BallSize& size, const Vec3& nose, Velocities& at) {
+            const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
+            if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt, at))
+                throw TangentError("its model has no solution nearby");
+        });
     if (!hops) s.v[2] = fall;
 }
 
 void meet_nose_in_air(Laws& laws, int ball, const CushionModelInfo& model, const Dual3& apart, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
     double speed = 0.0;
     for (int i = 0; i < 3; ++i) speed += apart[i].x * s.v[i].x;
-    const double reach = length3(apart).x, most = speed_of(s, numbers.R);
+    const double reach = length3(apart).x, most = speed_of(s, laws.numbers.balls[ball].R);
     speed = std::abs(speed) / reach;
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add(apart, most > 0.0 ? reach * speed / most : reach);
-    in.add(s, numbers.R, speed);
-    const std::vector<Dual> out = differentiate(laws, in, [&](const double* list) {
-        Reader read(laws, list);
-        const BallSize size = read.size();
-        const Vec3 r = read.vec();
-        Velocities at = read.velocities(size.R);
-        hit_nose(read.balls, size.R, model, r / length3(r), parting_speed(size.R, read.gravity), at);
-        return list_of({at});
-    });
-    put(s, out.data());
+    meet_table(laws, ball, apart, most > 0.0 ? reach * speed / most : reach, speed, s,
+               [&](const Reader& in, const BallSize& size, const Vec3& r, Velocities& at) {
+                   hit_nose(in.balls, size.R, model, r / length3(r), parting_speed(size.R, in.gravity), at);
+               });
 }
 
 void meet_cloth(Laws& laws, int ball, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add(s, numbers.R, std::abs(s.v[2].x));
-    const std::vector<Dual> out = differentiate(laws, in, [&](const double* list) {
-        Reader read(laws, list);
-        const BallSize size = read.size();
-        Velocities at = read.velocities(size.R);
-        hit_cloth(read.balls, motion_params(read.balls, read.gravity, size.R), at);
-        return list_of({at});
-    });
-    put(s, out.data());
+    meet_table(laws, ball, {}, 1.0, std::abs(s.v[2].x), s,
+               [](const Reader& in, const BallSize& size, const Vec3&, Velocities& at) {
+                   hit_cloth(in.balls, motion_params(in.balls, in.gravity, size.R), at);
+               });
 }
 
 }  // namespace carom::tangent

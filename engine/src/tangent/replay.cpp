@@ -213,10 +213,9 @@ Dual Replay::transition(const Event& event) {
     time.x = now_;
     State s = leg.at(time);
     if (leg.state == MotionState::kSliding) {
-        const Dual2 u{leg.from.v[0] - leg.R * leg.from.w[1], leg.from.v[1] + leg.R * leg.from.w[0]};
+        const Dual2 u = slip_of(leg.from, leg.R);
         for (int i = 0; i < 2; ++i) s.v[i] = leg.from.v[i] - 2.0 / 7.0 * u[i];
-        s.w[0] = -(s.v[1] / leg.R);
-        s.w[1] = s.v[0] / leg.R;
+        roll(s, leg.R);
     } else {
         for (int i = 0; i < 2; ++i) s.v[i] = s.w[i] = 0.0;
     }
