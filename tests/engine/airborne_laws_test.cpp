@@ -204,9 +204,9 @@ TEST(FreeBalls, KeepTheirLaws) {
         if (!(dot3(b1.v - b2.v, n) > 0.0)) n = -n;
         Velocities a1 = b1, a2 = b2;
         hit_ball(p, n, a1, a2);
-        const auto& [s1, s2, all] = p;
+        const BallSize &s1 = p.size1, &s2 = p.size2;
         EXPECT_LE((s1.m * (a1.v - b1.v) + s2.m * (a2.v - b2.v)).norm(), 1e-14);
-        EXPECT_NEAR(dot3(a1.v - a2.v, n), -all.e_b * dot3(b1.v - b2.v, n), 1e-13);
+        EXPECT_NEAR(dot3(a1.v - a2.v, n), -p.e_b * dot3(b1.v - b2.v, n), 1e-13);
         EXPECT_NEAR(dot3(a1.w, n), dot3(b1.w, n), 1e-12);
         EXPECT_NEAR(dot3(a2.w, n), dot3(b2.w, n), 1e-12);
         EXPECT_LE((s1.m * s1.R * (a1.w - b1.w) - s2.m * s2.R * (a2.w - b2.w)).norm(), 1e-14);
