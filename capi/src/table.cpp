@@ -72,9 +72,11 @@ carom_part part_of(const carom::Table& table, carom_partner kind, size_t index) 
             return part_of(of(table.jaws, "jaw"));
         case CAROM_POCKET:
             return part_of(of(table.pockets, "pocket"), 0.0);
-        default:
-            throw BadArgument("a part is a cushion, a jaw or a pocket");
+        case CAROM_NO_PARTNER:
+        case CAROM_BALL:
+            break;
     }
+    throw BadArgument("a part is a cushion, a jaw or a pocket");
 }
 
 /// A record that was read, with the scene that was played.

@@ -281,7 +281,7 @@ TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
     };
     Scene scene = lossless();
     scene.stop.time = 0.1;
-    scene.balls.disc = 1.0;
+    scene.balls.disc = true;
     add_ball(scene, "1", 0.0, 0.0, 1.0, 0.5);
     EXPECT_EQ(why_not(scene), "");
     add_ball(scene, "2", 0.5, 0.0);
@@ -289,7 +289,7 @@ TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
     scene.ball.back().position.z() = 0.04;
     EXPECT_EQ(why_not(scene), "discs of unlike size have no derivatives here");
     scene.ball.pop_back();
-    scene.balls.slides = 1.0;
+    scene.balls.slides = true;
     EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");
 }
 
@@ -331,7 +331,7 @@ TEST(Arcs, RandomTablesAreLeftInOrder) {
         scene.balls.e_c = random.uniform(0.2, 1.0);
         scene.balls.e_b = random.uniform(0.5, 1.0);
         if (pucks) {
-            scene.balls.slides = scene.balls.disc = 1.0;
+            scene.balls.slides = scene.balls.disc = true;
             scene.balls.mu_b = scene.balls.f_c = 0.0;
             scene.physics.ball_ball = ball_ball_model("inelastic");
             scene.physics.cushion = &kSmooth;
@@ -437,7 +437,7 @@ TEST(Discs, TouchAtTheSumOfTheirRadii) {
 
 Scene pucks() {
     Scene scene = lossless();
-    scene.balls.disc = scene.balls.slides = 1.0;
+    scene.balls.disc = scene.balls.slides = true;
     scene.balls.mu_s = 0.15;
     scene.physics.gravity = 9.81;
     return scene;

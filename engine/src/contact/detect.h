@@ -25,10 +25,6 @@ struct Path {
     double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the centre's speed
 };
 
-/// [ulp of the speeds of centres and surfaces] Lower closing speeds are rounding errors of the projection,
-/// not an approach.
-inline constexpr double kClosingUlp = 8.0;
-
 /// Time until the distance between two centres decreases to `reach` (R1 + R2) while closing; kNever if not
 /// within both horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);

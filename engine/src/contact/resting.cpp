@@ -83,8 +83,8 @@ Link link_of(const Group& g, const RestingContact& c) {
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
-        before += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
-        after += (dot(b.v_end, b.v_end) + kInertia * dot(b.s_end, b.s_end)) / b.ease;
+        before += kinetic_energy(b.v, b.s, 1.0) / b.ease;
+        after += kinetic_energy(b.v_end, b.s_end, 1.0) / b.ease;
     }
     if (!(after > before)) return false;
     const double share = std::sqrt(before / after);

@@ -116,7 +116,7 @@ inline constexpr double kOverlapGrowth = 1e-13;
 // close; the turning of its normal may use the rest. An existing overlap reduces the tolerance. A gap that
 // opens under an impulse gains energy; this share [of the group's] is rounding.
 // Without them: Jams.GapsHaveRoomForARate, RestingGroups.LongLineTakesFewIntervals.
-inline constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 1e-13;
+inline constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 2e-13;
 // [-] A gap whose normal turns further than this is not examined in detail: the interval is shortened anyway.
 inline constexpr double kLongestTurn = 0.1;
 // [ulp of the speeds and impulses] Smaller rates of a gap are zero.

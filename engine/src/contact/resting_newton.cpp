@@ -184,7 +184,7 @@ class Newton {
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         double energy = 0.0;
-        for (const Body& b : g_.bodies) energy += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
+        for (const Body& b : g_.bodies) energy += kinetic_energy(b.v, b.s, 1.0) / b.ease;
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);

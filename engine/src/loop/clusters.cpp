@@ -214,7 +214,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = plan_.e_b(),
-        .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+        .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,
@@ -223,9 +223,9 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
-        if (in_space_) return map_.compliant_in_space(members_, contacts_, settings, v_n);
-        return unlike_ ? map_.compliant_unlike(members_, contacts_, settings, v_n)
-                       : map_.compliant(members_, contacts_, settings, v_n);
+        return in_space_ || unlike_
+                   ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
+                   : map_.compliant(members_, contacts_, settings, v_n);
     };
     std::int64_t steps = run();
     if (steps >= 0 && closes_still(v_n)) {

@@ -22,7 +22,4 @@ ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, i
 /// separate.
 double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two);
 
-/// Coefficient of friction of two touching balls, at their present slip.
-double pair_friction(const Plan& plan, const Balls& balls, int one, int two);
-
 }  // namespace carom

@@ -5,7 +5,6 @@
 
 #include "contact/pocket_edge.h"
 #include "loop/resolver.h"
-#include "physics/nose_reach.h"
 
 namespace carom {
 
@@ -67,20 +66,17 @@ void Resolver::free_balls(int a, int b) {
         const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
-    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
-    pair.balls.e_b = plan_.e_b();
-    if (!plan_.ball_ball->reads_friction || !plan_.in_force(Effect::kThrow))
-        pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
+    const FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls),
+                        plan_.e_b()};
     const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
     const double v_n = dot3(ball1.v - ball2.v, n);
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
-    const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
-    const bool slow = pair.balls.e_b * v_n < parting;
+    const bool slow = pair.e_b * v_n < parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     {
         const Stopwatch watch(kernel_ns_);
         if (slow)
-            part_slowly(pair, n, lies(one), lies(two), parting, ball1, ball2);
+            part_slowly(pair, n, {lies(one), lies(two)}, plan_.gravity, ball1, ball2);
         else
             hit_ball(pair, n, ball1, ball2);
     }
@@ -129,16 +125,6 @@ void Resolver::cushion_in_air(const Contact& contact) {
     log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
     if (slow) log_.mark_slow();
     go_on(ball, at.position, after);
-}
-
-/// [m/s] The speed at which a cushion throws up a ball that lay on the cloth.
-double Resolver::hop(const TableTouch& touch, const Velocities& before) const {
-    const int ball = touch.approach.contact.ball;
-    const MotionParams& motion = balls_.motion(ball);
-    if (balls_.segment(ball).state == MotionState::kFalling || touch.model->grip == nullptr) return 0.0;
-    const double up = motion.R - touch.height, reach = nose_reach(motion.R, touch.height, 0.0);
-    const Vec3 n(motion.R / reach * touch.normal.x(), motion.R / reach * touch.normal.y(), up / reach);
-    return hop_speed(plan_.balls, motion, *touch.model, n, before);
 }
 
 void Resolver::pocket_in_air(const Contact& contact) {

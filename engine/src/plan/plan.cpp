@@ -110,6 +110,7 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     choose_search(plan);
     plan.impact = {};
     plan.impact.tolerance = scene.physics.tolerance;
+    plan.impact.cloth_slip = scene.physics.cloth_slip;
     if (scene.physics.substeps) {
         plan.impact.march = scene.physics.march == March::kPublished
                                 ? kernel::march_function(plan.isa)

@@ -80,7 +80,8 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
                            jaw ? record.table.jaws[part].height : record.table.cushions[part].height);
             return;
         }
-        default:
+        case Partner::kPocket:
+        case Partner::kNone:
             if (event.type != EventType::kBallCloth) return;
             d.normal = Vec3::UnitZ();
             d.point = a.position - R * d.normal;

@@ -43,7 +43,9 @@ FieldValue read_value(const Key& key, const JsonValue& value) {
             return positive ? value.positive() : range.low == 0.0 ? value.non_negative() : value.number();
         case Key::Kind::kText:
             return value.text();
-        default:
+        case Key::Kind::kInteger:
+        case Key::Kind::kNumbers:
+        case Key::Kind::kIntegers:
             break;
     }
     const bool whole = key.kind == Key::Kind::kIntegers;

@@ -39,7 +39,7 @@ double energy_of(const Record& record, const std::vector<BallState>& states) {
 bool keeps_energy(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
     return !plan.ball_ball->reads_cloth ||
-           (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
+           (physics.cloth_slip == kernel::ClothSlip::kConsistent && physics.substeps.value_or(100) >= 100);
 }
 
 class Checker {
@@ -147,11 +147,7 @@ class Checker {
 
     void check_penetration(const std::vector<BallState>& now, double t) {
         const auto seen = [&](std::size_t i) {
-            const std::vector<Segment>& segments = record_.tracks[i].segments;
-            const auto next = std::upper_bound(segments.begin(), segments.end(), t,
-                                               [](double at, const Segment& s) { return at < s.start; });
-            const std::ptrdiff_t segment = std::max<std::ptrdiff_t>(0, next - segments.begin() - 1);
-            return see(record_, i, static_cast<std::size_t>(segment), now[i].position,
+            return see(record_, i, record_.tracks[i].segment_at(t), now[i].position,
                        rounding_of(now[i].velocity, now[i].spin, R(i), t), plan_.in_force(Effect::kAirborne));
         };
         for (std::size_t i = 0; i < now.size(); ++i) {
@@ -180,14 +176,11 @@ class Checker {
     // Checks the segment itself, because state_at derives the spin of a rolling ball from its velocity.
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
-            const std::vector<Segment>& segments = record_.tracks[i].segments;
-            const auto next = std::upper_bound(segments.begin(), segments.end(), time,
-                                               [](double t, const Segment& s) { return t < s.start; });
-            if (next == segments.begin()) continue;
-            const Segment& s = *(next - 1);
+            const BallTrack& track = record_.tracks[i];
+            const Segment& s = track.segments[track.segment_at(time)];
             if (s.state == MotionState::kRolling &&
                 length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
-                report("U7", "ball {} rolls and slips", record_.tracks[i].id);
+                report("U7", "ball {} rolls and slips", track.id);
         }
     }
 

@@ -244,9 +244,7 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
     const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
-    return size.m / record.balls.m *
-           (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
-            fallen);
+    return size.m / record.balls.m * (kinetic_energy(state.velocity, state.spin, size.R) + fallen);
 }
 
 double chord_energy(const Record& record, double t) {
@@ -254,15 +252,11 @@ double chord_energy(const Record& record, double t) {
     const std::vector<Jaw>& jaws = record.table.jaws;
     if (std::none_of(jaws.begin(), jaws.end(), [](const Jaw& jaw) { return jaw.is_arc(); })) return sum;
     for (const BallTrack& track : record.tracks) {
-        const auto next = std::upper_bound(track.segments.begin(), track.segments.end(), t,
-                                           [](double time, const Segment& s) { return time < s.start; });
-        if (next == track.segments.begin()) continue;
-        const Segment& s = *(next - 1);
+        const Segment& s = track.segments[track.segment_at(t)];
         const double tau = t - s.start;
         if (!s.held || !(tau < s.duration)) continue;
         const BallSize size = track.own.value_or(record.balls.size());
-        sum += size.m / record.balls.m * 0.5 * tau * (s.duration - tau) *
-               (s.a.squaredNorm() + kInertia * size.R * size.R * s.dw.squaredNorm());
+        sum += size.m / record.balls.m * tau * (s.duration - tau) * kinetic_energy(s.a, s.dw, size.R);
     }
     return sum;
 }

@@ -142,21 +142,12 @@ std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSiz
         return fmt::format("accepts mass ratios up to {}", kernel::kLargestMassRatio);
     if (!(radii <= kernel::kLargestRadiusRatio))
         return fmt::format("accepts radius ratios up to {}", kernel::kLargestRadiusRatio);
-    const kernel::ImpactParams params{.R = one.R,
-                                      .m = one.m,
-                                      .mu_s1 = scene.balls.mu_s,
-                                      .mu_s2 = scene.balls.mu_s,
-                                      .mu_b = scene.balls.ball_friction().most(),
-                                      .e_b = scene.balls.e_b,
-                                      .cloth_slip = scene.physics.cloth_slip == ClothSlipSign::kAsPublished
-                                                        ? kernel::ClothSlip::kAsPublished
-                                                        : kernel::ClothSlip::kConsistent,
-                                      .mass_ratio = two.m / one.m,
-                                      .radius_ratio = two.R / one.R};
-    if (kernel::sizes_have_solution(params)) return "";
+    const double mu_b = scene.balls.ball_friction().most();
+    const PairLaw law{*scene.physics.ball_ball, {.cloth_slip = scene.physics.cloth_slip}, scene.balls};
+    if (kernel::sizes_have_solution(law.params(one, two, mu_b))) return "";
     return fmt::format(
         "has no solution with balls.mu_s = {} and a friction of {} between balls of these sizes",
-        params.mu_s1, params.mu_b);
+        scene.balls.mu_s, mu_b);
 }
 
 /// Refuses balls of different size if the models of the scene have no formula for them.

@@ -195,7 +195,12 @@ void Replay::replay(const Event& event) {
         case EventType::kBallCluster:
             time = cluster(event);
             break;
-        default:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease:
             throw TangentError("it is a resting contact");
     }
     times_.push_back(time);
@@ -208,10 +213,9 @@ Dual Replay::transition(const Event& event) {
     time.x = now_;
     State s = leg.at(time);
     if (leg.state == MotionState::kSliding) {
-        const Dual2 u{leg.from.v[0] - leg.R * leg.from.w[1], leg.from.v[1] + leg.R * leg.from.w[0]};
+        const Dual2 u = slip_of(leg.from, leg.R);
         for (int i = 0; i < 2; ++i) s.v[i] = leg.from.v[i] - 2.0 / 7.0 * u[i];
-        s.w[0] = -(s.v[1] / leg.R);
-        s.w[1] = s.v[0] / leg.R;
+        roll(s, leg.R);
     } else {
         for (int i = 0; i < 2; ++i) s.v[i] = s.w[i] = 0.0;
     }

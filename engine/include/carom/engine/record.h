@@ -210,6 +210,8 @@ struct BallTrack {
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
     bool operator==(const BallTrack&) const = default;
+    /// Index of the segment in force at time t: the last one that starts at or before t.
+    std::size_t segment_at(double t) const;
 };
 
 class Record {

@@ -17,6 +17,7 @@
 #include "carom/engine/frame_size.h"
 #include "carom/engine/table.h"
 #include "carom/engine/tolerances.h"
+#include "carom/kernel/impact.h"
 #include "carom/kernel/tolerance.h"
 
 namespace carom {
@@ -100,11 +101,10 @@ struct BallParams {
     /// Share of the downward speed after a cushion that throws the ball up again. 0: the published planar
     /// cushions.
     double e_h = 0.0;
-    // BallParams has numbers only (tangents read them as a list): these two are 0 or 1.
-    double disc = 0.0;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
-    double slides = 0.0;  ///< pucks: they never roll
-    bool discs() const { return disc != 0.0; }
-    bool rolls() const { return slides == 0.0; }
+    bool disc = false;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
+    bool slides = false;  ///< pucks: they never roll
+    bool discs() const { return disc; }
+    bool rolls() const { return !slides; }
     BallSize size() const { return {R, m}; }
     /// Between two balls, as a function of their slip at the contact. Source of the form: D. Alciatore,
     /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the slip
@@ -317,10 +317,11 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::restitution>("restitution", kRestitution, "of the tip; 1 loses nothing"),
 };
 
-enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
-constexpr auto names_of(ClothSlipSign) {
+namespace kernel {
+constexpr auto names_of(ClothSlip) {
     return std::array{"consistent", "as_published"};
 }
+}  // namespace kernel
 /// Where a ball touches a cushion.
 enum class CushionTouch : std::uint8_t { kRadius, kNose };
 constexpr auto names_of(CushionTouch) {
@@ -364,7 +365,7 @@ struct Physics {
     const CushionModelInfo* cushion = &kHan2005;
     const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: the same as straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
-    ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
+    kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
     /// set: the published integration with this many steps, instead of the tolerance
