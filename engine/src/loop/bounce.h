@@ -21,12 +21,12 @@ struct TableTouch {
     ContactKinematics approach;  ///< its a_c is that before the impact
     Vec2 normal;                 ///< unit, from the part into the table
     double height = 0.0;         ///< [m] of the nose above the cloth
-    double curving = 0.0;        ///< [m/s^2] separating acceleration of a ball that moves around the nose
+    double bend = 0.0;           ///< [m/s^2] Touch::bend
     const CushionModelInfo* model = nullptr;
 
     /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.
     double pressing(const Vec2& pull) const {
-        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
+        return -(normal.x() * pull.x() + normal.y() * pull.y()) - bend;
     }
 };
 
