@@ -60,12 +60,12 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
 void place_contact(const Record& record, const Event& event, EventDetails& d) {
     const BallState& a = d.balls.front().after;
     const double R = record.size(event.a).R;
-    const BallAt<Vec3> ball{a.position, a.velocity, R};
     switch (kind(event.type).partner) {
         case Partner::kBall: {
             const BallState& b = d.balls[1].after;
-            const BallAt<Vec3> other{b.position, b.velocity, record.size(event.b).R};
-            d.normal = -(record.balls.discs() ? touch_level(ball, other, true) : touch_ball(ball, other)).n;
+            const BallAt<Vec3> ball{a.position, a.velocity, R},
+                other{b.position, b.velocity, record.size(event.b).R};
+            d.normal = (record.balls.discs() ? touch_level(other, ball, true) : touch_ball(other, ball)).n;
             d.point = a.position - R * d.normal;
             return;
         }
@@ -85,7 +85,7 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
         }
         default:
             if (event.type != EventType::kBallCloth) return;
-            d.normal = -touch_cloth(ball).n;
+            d.normal = Vec3::UnitZ();
             d.point = a.position - R * d.normal;
     }
 }
