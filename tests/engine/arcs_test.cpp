@@ -74,6 +74,21 @@ TEST(Arcs, AThousandBouncesInACircle) {
     EXPECT_NEAR(energy_left(record), 1.0, 1e-12);
 }
 
+// A ball behind an arc, inside the square around its circle, bounces off a cushion as if there were no arc.
+TEST(Arcs, ActOnTheirOwnSideAlsoInACommonBounce) {
+    for (const bool with_arc : {false, true}) {
+        Scene scene = lossless();
+        scene.table.cushions.push_back({"c", {0.29, 0.2}, {0.29, 0.5}, kSmallR});
+        if (with_arc) scene.table.jaws.push_back(arc({0.0, 0.0}, 0.3, 0.0, 45.0));
+        add_ball(scene, "1", 0.2, 0.27, 0.5, -0.125);
+        scene.stop.events = 1;
+        const Record record = run_verified(scene);
+        ASSERT_EQ(record.events.size(), 1u);
+        EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
+        EXPECT_EQ(record.tracks[0].segments.back().v, Vec3(-0.5, -0.125, 0.0)) << with_arc;
+    }
+}
+
 /// The next bounce of a point in a stadium: half circles of radius 1/2 about (0, 0) and (1, 0), and the lines
 /// y = -1/2 and 1/2 between them.
 struct Orbit {

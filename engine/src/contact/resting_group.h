@@ -67,15 +67,14 @@ struct Body {
 struct Link {
     int i, j;
     Vec2 n;
+    Contact contact;
     /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
-    double distance;
-    const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
-    const Nose* arc = nullptr;          ///< the arc, if it is one with ends
-    double gap = 0.0;                   ///< [m]; negative: overlap
-    bool begins = false;                ///< the contact begins now, and so does not end now
-    bool open = false;                  ///< the gap opens by more than rounding
-    double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
-    double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
+    double distance = 0.0;
+    double gap = 0.0;      ///< [m]; negative: overlap
+    bool begins = false;   ///< the contact begins now, and so does not end now
+    bool open = false;     ///< the gap opens by more than rounding
+    double turning = 0.0;  ///< [m/s^2] what the turning normal adds to the gap's acceleration
+    double tilt = 0.0;     ///< of the normal, upwards from i to j: vertical share over level one
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
     double friction_z = 0.0;  ///< Z over the J that it was found with

@@ -107,18 +107,10 @@ double turn_of(const Across& t, double h) {
 
 double link_interval(const Group& g, const Link& link, double h, double rounding) {
     if (link.open) return kNever;
-    double interval = kNever;
     const Body& b = g.bodies[link.i];
-    if (link.line != nullptr) {
-        Segment s;
-        s.r = g.group.balls[link.i].r;
-        s.v = Vec3(b.v.x(), b.v.y(), 0.0);
-        s.a = (b.v_end - b.v) / h;
-        interval = time_to_line_end(*link.line, s);
-    }
-    if (link.arc != nullptr)
-        interval = time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center, b.v,
-                                                    (b.v_end - b.v) / h, kNever, false, true});
+    double interval =
+        time_past_end(g.around.geometry, link.contact,
+                      {planar(g.group.balls[link.i].r), b.v, (b.v_end - b.v) / h, kNever, false, true});
     const double rate = gap_rate(g, link);
     if (!(link.J > 0.0)) {
         // A contact that opens is released once its rate can be distinguished from rounding, and before its

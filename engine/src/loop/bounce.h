@@ -20,11 +20,11 @@ namespace carom {
 /// A cushion or a nose that a ball touches.
 struct TableTouch : NoseTouch {
     ContactKinematics approach;  ///< its a_c is that before the impact
-    double curving = 0.0;        ///< [m/s^2] separating acceleration of a ball that moves around the nose
+    double bend = 0.0;           ///< [m/s^2] Touch::bend
 
     /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.
     double pressing(const Vec2& pull) const {
-        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
+        return -(normal.x() * pull.x() + normal.y() * pull.y()) - bend;
     }
 };
 

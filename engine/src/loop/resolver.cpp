@@ -10,6 +10,7 @@
 
 #include "carom/engine/cushion.h"
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/bounce.h"
 #include "physics/motion.h"
 
@@ -118,14 +119,21 @@ void Resolver::ball_ball(int a, int b) {
 // A slow cluster may contain another contact that is pressed together, besides the first one. As a resting
 // contact it drives that one too; after a common bounce the two would meet again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
-    const auto segment = [this](const ClusterBall& b) {
-        return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
+    // Before an impact, slow rolling balls decelerate and seem to separate; after it, this shows whether the
+    // bounce ends.
+    const auto pressing = [this](const ClusterBall& p, const ClusterBall& q) {
+        const auto segment = [this](const ClusterBall& b) {
+            return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
+        };
+        const Segment one = segment(p), two = segment(q);
+        return touch_level<Vec3>({one.r, one.v, p.R}, {two.r, two.v, q.R}, plan_.balls.discs())
+            .pressing(one.a - two.a);
     };
     for (const ClusterContact& c : clusters_.contacts()) {
         const ClusterBall &p = clusters_.balls()[c.i], &q = clusters_.balls()[c.j];
         if (c.gap > 0.0 || resting_.has({p.ball, With::kBall, q.ball})) continue;
         ContactKinematics approach = kinematics_of(plan_, balls_, p.ball, q.ball);
-        if (when == Pressed::kAfter) approach.a_c = closing_acceleration(approach.n, segment(p), segment(q));
+        if (when == Pressed::kAfter) approach.a_c = pressing(p, q);
         if (approach.v_n > 0.0 && resting_.try_hold(approach, plan_.balls.e_b)) return true;
     }
     return false;

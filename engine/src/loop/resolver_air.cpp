@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/resolver.h"
 
 namespace carom {
@@ -68,9 +69,11 @@ void Resolver::free_balls(int a, int b) {
     }
     const FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls),
                         plan_.e_b()};
-    const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
+    const Touch<Vec3> touch =
+        touch_ball<Vec3>({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
+    const Vec3& n = touch.n;
+    const double v_n = touch.closing;
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
-    const double v_n = dot3(ball1.v - ball2.v, n);
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
     const bool slow = pair.e_b * v_n < parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
     {
@@ -101,26 +104,10 @@ void Resolver::cushion_in_air(const Contact& contact) {
     const Placed at = balls_.placed(ball);
     const bool jaw = is_jaw(contact, plan_.geometry);
     const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
-    Vec2 foot;
-    double height = 0.0, radius = 0.0;
-    if (contact.with == With::kNose) {
-        const Nose& nose = plan_.geometry.noses[contact.other];
-        foot = nose.center;
-        height = nose.height;
-        radius = nose.radius;
-    } else {
-        const CushionLine& line = plan_.geometry.cushions[contact.other];
-        foot = line.from + line.direction * dot(line.direction, planar(at.position) - line.from);
-        height = line.height;
-    }
-    const Vec2 out = planar(at.position) - foot;
-    const double distance = length(out), level = distance - radius;
-    const Vec2 away = distance > 0.0 ? Vec2(out / distance) : Vec2(0.0, 0.0);
-    Vec3 n(level * away.x(), level * away.y(), at.position.z() - height);
-    n /= length3(n);
+    const double R = balls_.radius(ball);
+    const Vec3 n = -touch_part(plan_.geometry, contact, BallAt<Vec3>{at.position, at.velocity, R, true}).n;
     Velocities after{at.velocity, balls_.spin(ball)};
-    const bool slow = hit_nose(plan_.balls, balls_.radius(ball), model, n,
-                               parting_speed(balls_.radius(ball), plan_.gravity), after);
+    const bool slow = hit_nose(plan_.balls, R, model, n, parting_speed(R, plan_.gravity), after);
     if (cost_ != nullptr) cost_->method = model.name;
     log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
     if (slow) log_.mark_slow();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/detector.h"
 
 namespace carom {
@@ -114,14 +115,13 @@ double Detector::time_to(const Contact& contact, const Path& p, double window) c
     switch (contact.with) {
         case With::kCushion: {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
-            const double reach = R - c.inset;
-            if (stays_off_line(p, c.from, c.direction, reach, window) || resting_.has(contact)) return kNever;
-            return time_to_line(p, c.from, c.direction, c.length, reach);
+            if (stays_off_line(p, c, R, window) || resting_.has(contact)) return kNever;
+            return time_to_line(p, c, R);
         }
         case With::kNose: {
             const Nose& n = plan_.geometry.noses[contact.other];
             if (n.is_arc()) return resting_.has(contact) ? kNever : time_to_nose(p, n, R);
-            const double reach = R + n.radius - n.inset;
+            const double reach = turn_around(n, R);
             if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
             return time_to_circle(p, n.center, reach);
         }

@@ -12,6 +12,7 @@
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 #include "physics/nose_reach.h"
 #include "record/gaps.h"
@@ -182,7 +183,7 @@ class Between {
         // With a bed there is cloth on both sides of a cushion.
         const bool may_cross = in_air && plan_.scene.table.bed;
         for (const CushionLine& line : plan_.geometry.cushions) {
-            if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
+            if (std::abs(in_frame(line, pieces_[ball].r - line.from).y()) > near) continue;
             if (!may_cross) check_crossing(ball, line, from, to);
             for (const double share : kShares) {
                 const double t = from + share * (to - from);
@@ -215,14 +216,14 @@ class Between {
         const Segment& s = segment(ball);
         const double tau = std::min(from - s.start, s.duration),
                      duration = std::min(to - s.start, s.duration) - tau;
-        const Vec2 r = pieces_[ball].r, v = planar(velocity_at(s, tau));
-        const double height = cross(line.direction, r - line.from), side = height < 0.0 ? -1.0 : 1.0;
+        const Vec2 r = in_frame(line, pieces_[ball].r - line.from),
+                   v = in_frame(line, planar(velocity_at(s, tau))), a = in_frame(line, s.a);
+        const double side = r.y() < 0.0 ? -1.0 : 1.0;
         const bool flew = flies(s.state);
-        if (flew && !(std::abs(height) > kCrossingEnd)) return;
-        const double t = first_descent_quadratic(side * height, side * cross(line.direction, v),
-                                                 side * cross(line.direction, s.a), duration);
+        if (flew && !(std::abs(r.y()) > kCrossingEnd)) return;
+        const double t = first_descent_quadratic(side * r.y(), side * v.y(), side * a.y(), duration);
         if (!(flew ? t < kBeforeEnd * duration : t <= duration)) return;
-        const double foot = dot(line.direction, r + t * (v + 0.5 * t * s.a) - line.from);
+        const double foot = r.x() + t * (v.x() + 0.5 * t * a.x());
         if (foot > kCrossingEnd && foot < line.length - kCrossingEnd)
             report("U3", from + t, "ball {} {} a cushion", id(ball),
                    flew ? "flies on behind" : "passes through");

@@ -86,9 +86,7 @@ class Skipped {
 
     void check_table(const Path& path) {
         for (const Cushion& c : plan_.scene.table.cushions) {
-            const Vec2 along = c.to - c.from;
-            const double extent = length(along);
-            const bool meets = time_to_line(path, c.from, along / extent, extent, R_) < kNever ||
+            const bool meets = time_to_line(path, line_of(c, 0.0), R_) < kNever ||
                                time_to_circle(path, c.from, R_) < kNever ||
                                time_to_circle(path, c.to, R_) < kNever;
             if (meets) need("cushions", "meets cushion " + c.id);
