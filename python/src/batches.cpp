@@ -9,21 +9,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "batches.h"
 #include "carom/engine/batch.h"
-#include "carom/engine/sweep_columns.h"
 #include "carom/engine/variation.h"
-#include "carom/games/measures.h"
+#include "carom/games/sweep.h"
 #include "measures.h"
 #include "native.h"
 
@@ -68,26 +67,14 @@ std::vector<Failure> many(const NativeScene& native, std::size_t shots, const st
                           });
 }
 
-struct NativeSweep {
-    explicit NativeSweep(Variation of) : variation(std::move(of)), columns(sweep_columns(variation)) {}
-    NativeSweep(NativeSweep&&) = default;  // measures cannot be copied
-    Variation variation;
-    std::vector<SweepColumn> columns;  ///< those of the measures last
-    std::vector<games::Measure> measures;
-};
-
-NativeSweep make_sweep(const NativeScene& scene, const std::vector<std::string>& rules, std::uint64_t seed,
-                       const std::vector<std::string>& measures, const std::optional<std::string>& game) {
+games::Sweep make_sweep(const NativeScene& scene, const std::vector<std::string>& rules, std::uint64_t seed,
+                        const std::vector<std::string>& measures, const std::optional<std::string>& game) {
     try {
-        NativeSweep sweep(Variation::from_text(scene.source, scene.scene->file, rules, seed));
-        for (const std::string& text : measures) {
-            const games::Measure& measure =
-                sweep.measures.emplace_back(measure_of(text, sweep.variation.base(), game));
-            sweep.columns.push_back(
-                {text, measure.is_number() ? ValueKind::kNumber : ValueKind::kText, "", true});
-        }
-        return sweep;
+        return {Variation::from_text(scene.source, scene.scene->file, rules, seed), measures,
+                game_or_none(game)};
     } catch (const VariationError& error) {
+        throw nb::value_error(error.what());
+    } catch (const games::MeasureError& error) {
         throw nb::value_error(error.what());
     }
 }
@@ -101,6 +88,40 @@ nb::any array_of(std::vector<T>&& list) {
         nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
+/// The values of one column; only the arrays of its kind are filled.
+struct ColumnValues {
+    std::vector<double> numbers;       // NaN for no value
+    std::vector<std::int64_t> wholes;  // 0 for no value
+    std::vector<std::int32_t> places;  // of each shot's text in `texts`, -1 for no value
+    std::vector<std::string> texts;    // each text once
+};
+
+ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& column,
+                       const games::SweptShots& shots) {
+    ColumnValues values;
+    std::unordered_map<std::string, std::int32_t> known;
+    for (std::size_t shot = 0; shot < shots.count; ++shot) {
+        const games::SweepValue value = sweep.value(column, shots, shot);
+        const auto* const* item = std::get_if<const ListedValue*>(&value);
+        const ListedValue* const listed = item != nullptr ? *item : nullptr;
+        if (column.kind == ValueKind::kNumber) {
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            const double* const number = listed ? &listed->number : std::get_if<double>(&value);
+            values.numbers.push_back(number != nullptr ? *number : kNone);
+        } else if (column.kind == ValueKind::kWhole) {
+            const std::int64_t* const whole = listed ? &listed->integer : std::get_if<std::int64_t>(&value);
+            values.wholes.push_back(whole != nullptr ? *whole : 0);
+        } else if (const std::string* text = listed ? &listed->text : std::get_if<std::string>(&value)) {
+            const auto [place, is_new] = known.try_emplace(*text, static_cast<std::int32_t>(known.size()));
+            if (is_new) values.texts.push_back(*text);
+            values.places.push_back(place->second);
+        } else {
+            values.places.push_back(-1);
+        }
+    }
+    return values;
+}
+
 /// A column: its array, and its texts if the array holds indices of texts.
 std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnValues&& values) {
     if (kind == ValueKind::kNumber) return {array_of(std::move(values.numbers)), {}};
@@ -108,60 +129,32 @@ std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnVal
     return {array_of(std::move(values.places)), std::move(values.texts)};
 }
 
-/// The column of one measure: its values in the order of the shots. Shots without a result have none.
-ColumnValues measure_column(const games::Measure& measure, std::span<const games::MeasureValue> measured,
-                            std::size_t first, std::size_t step, const ShotStatus* status) {
-    ColumnValues column;
-    std::map<std::string, std::int32_t> known;
-    for (std::size_t at = first, shot = 0; at < measured.size(); at += step, ++shot) {
-        if (measure.is_number()) {
-            column.numbers.push_back(has_result(status[shot]) ? std::get<double>(measured[at])
-                                                              : std::numeric_limits<double>::quiet_NaN());
-        } else if (!has_result(status[shot])) {
-            column.places.push_back(-1);
-        } else {
-            const auto [place, is_new] = known.try_emplace(games::text_of(measured[at]), column.texts.size());
-            if (is_new) column.texts.push_back(place->first);
-            column.places.push_back(place->second);
-        }
-    }
-    return column;
-}
-
+/// @param stop  one flag: not 0 ends the batch with the exception BatchStopped
 /// @return why shots have no result, and the columns
 std::pair<std::vector<Failure>, std::vector<std::pair<nb::any, std::vector<std::string>>>> sweep_shots(
-    const NativeSweep& sweep, std::uint64_t first, std::size_t shots, int threads, const ShotArrays& out,
+    const games::Sweep& sweep, std::uint64_t first, std::size_t count, int threads, const ShotArrays& out,
     std::uint64_t hash_every) {
     const kernel::Isa isa = chosen_isa();
-    const Variation& variation = sweep.variation;
-    const std::size_t measures = sweep.measures.size();
-    std::vector<games::MeasureValue> measured(shots * measures);
     std::vector<ColumnValues> values;
-    std::vector<Failure> failures = played(
-        out, variation.base().ball.size(), threads, [&](BatchOptions& options, const BatchArrays& into) {
-            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
-            if (measures > 0)
-                options.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
-                    for (std::size_t m = 0; m < measures; ++m)
-                        measured[shot * measures + m] = sweep.measures[m].in_table(record);
-                };
-            std::vector<std::string> draws;
-            auto messages = simulate_many(variation, first, shots, isa, options, into, draws);
-            values = sweep_values(variation, first, shots, draws, into, messages);
-            for (std::size_t m = 0; m < measures; ++m)
-                values.push_back(measure_column(sweep.measures[m], measured, m, measures, into.status));
-            return messages;
-        });
+    std::vector<Failure> failures = played(out, sweep.variation().base().ball.size(), threads,
+                                           [&](BatchOptions& options, const BatchArrays& into) {
+                                               options.hash_every = std::max<std::uint64_t>(hash_every, 1);
+                                               games::SweptShots shots =
+                                                   sweep.play(first, count, isa, options, into);
+                                               for (const games::SweepColumn& column : sweep.columns())
+                                                   values.push_back(values_of(sweep, column, shots));
+                                               return std::move(shots.messages);
+                                           });
     std::vector<std::pair<nb::any, std::vector<std::string>>> columns;
     for (std::size_t k = 0; k < values.size(); ++k)
-        columns.push_back(column_of(sweep.columns[k].kind, std::move(values[k])));
+        columns.push_back(column_of(sweep.columns()[k].kind, std::move(values[k])));
     return {std::move(failures), std::move(columns)};
 }
 
 /// Name, kind, unit, and whether shots without a result have none.
-std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows(const NativeSweep& sweep) {
+std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows(const games::Sweep& sweep) {
     std::vector<std::tuple<std::string, std::string, std::string, bool>> rows;
-    for (const SweepColumn& column : sweep.columns) {
+    for (const games::SweepColumn& column : sweep.columns()) {
         const char* const kind = column.kind == ValueKind::kNumber  ? "float64"
                                  : column.kind == ValueKind::kWhole ? "int64"
                                                                     : "text";
@@ -176,7 +169,7 @@ void add_batches(nb::module_& m) {
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
           nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"),
           nb::arg("out").noconvert(), nb::arg("times").noconvert(), nb::arg("paths").noconvert());
-    nb::class_<NativeSweep>(m, "Sweep")
+    nb::class_<games::Sweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
         .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
              nb::arg("out").noconvert(), nb::arg("hash_every"));

@@ -33,6 +33,8 @@ std::optional<games::Game> game_or_none(const std::optional<std::string>& game) 
     return game ? std::optional(value_of<games::Game>("game", *game)) : std::nullopt;
 }
 
+namespace {
+
 games::Measure measure_of(const std::string& text, const Scene& scene,
                           const std::optional<std::string>& game) {
     try {
@@ -41,8 +43,6 @@ games::Measure measure_of(const std::string& text, const Scene& scene,
         throw nb::value_error(error.what());
     }
 }
-
-namespace {
 
 using Rows = std::vector<std::tuple<std::string, std::string, std::string>>;
 

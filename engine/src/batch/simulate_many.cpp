@@ -300,15 +300,13 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
 
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
-                                          const BatchArrays& out, std::vector<std::string>& values) {
+                                          const BatchArrays& out, std::vector<DrawnValue>& values) {
     check_shots(shots);
     const std::size_t keys = variation.keys().size();
     values.assign(shots * keys, {});
     const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
-        std::vector<std::string> drawn;
-        const ShotStatus status = player.whole.play(variation, first + shot, drawn, how);
-        std::move(drawn.begin(), drawn.end(), values.begin() + static_cast<std::ptrdiff_t>(shot * keys));
-        return status;
+        const std::span drawn = std::span(values).subspan(shot * keys, keys);
+        return player.whole.play(variation, first + shot, drawn, how);
     };
     Work work(variation.base(), shots, play, isa, options, out);
     work.number = first;

@@ -56,8 +56,8 @@ class Simulator {
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
     /// The same for a shot of a variation. This simulator must have been made for its base(), and all its
     /// shots must come from this variation.
-    /// @param values  receives the draws, as VariedShot
-    ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
+    /// @param values  receives the draws, one per key
+    ShotStatus play(const Variation& variation, std::uint64_t index, std::span<DrawnValue> values,
                     const SimulateOptions& options = {});
     /// From now on every shot also has a record, in memory that is reused.
     void keep_records() { records_ = true; }
@@ -173,9 +173,9 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           const BatchOptions& options, const BatchArrays& out);
 
 /// Plays shots first, first + 1, ... of a variation; otherwise the same. Ignores `options.absent`.
-/// @param values  receives the draws: a text per shot and key, as in VariedShot
+/// @param values  receives the draws: one per shot and key, as in VariedShot
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
-                                          const BatchArrays& out, std::vector<std::string>& values);
+                                          const BatchArrays& out, std::vector<DrawnValue>& values);
 
 }  // namespace carom
