@@ -6,8 +6,10 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -88,12 +90,13 @@ nb::any array_of(std::vector<T>&& list) {
         nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
-/// The values of one column; only the arrays of its kind are filled.
+/// The values of one column: those of its kind only.
 struct ColumnValues {
-    std::vector<double> numbers;       // NaN for no value
-    std::vector<std::int64_t> wholes;  // 0 for no value
-    std::vector<std::int32_t> places;  // of each shot's text in `texts`, -1 for no value
+    std::vector<double> numbers;
+    std::vector<std::int64_t> wholes;
+    std::vector<std::int32_t> places;  // of each shot's text in `texts`, -1 for none
     std::vector<std::string> texts;    // each text once
+    std::vector<std::uint8_t> missing;
 };
 
 ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& column,
@@ -104,61 +107,80 @@ ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& colu
         const games::SweepValue value = sweep.value(column, shots, shot);
         const auto* const* item = std::get_if<const ListedValue*>(&value);
         const ListedValue* const listed = item != nullptr ? *item : nullptr;
+        bool missing = value.index() == 0;
         if (column.kind == ValueKind::kNumber) {
-            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             const double* const number = listed ? &listed->number : std::get_if<double>(&value);
-            values.numbers.push_back(number != nullptr ? *number : kNone);
+            values.numbers.push_back(number ? *number : std::numeric_limits<double>::quiet_NaN());
+            missing = std::isnan(values.numbers.back());
         } else if (column.kind == ValueKind::kWhole) {
             const std::int64_t* const whole = listed ? &listed->integer : std::get_if<std::int64_t>(&value);
-            values.wholes.push_back(whole != nullptr ? *whole : 0);
-        } else if (const std::string* text = listed ? &listed->text : std::get_if<std::string>(&value)) {
-            const auto [place, is_new] = known.try_emplace(*text, static_cast<std::int32_t>(known.size()));
-            if (is_new) values.texts.push_back(*text);
-            values.places.push_back(place->second);
-        } else {
+            values.wholes.push_back(whole ? *whole : 0);
+        } else if (missing) {
             values.places.push_back(-1);
+        } else {
+            const std::string& text = listed ? listed->text : std::get<std::string>(value);
+            const auto [place, is_new] = known.try_emplace(text, static_cast<std::int32_t>(known.size()));
+            if (is_new) values.texts.push_back(text);
+            values.places.push_back(place->second);
         }
+        values.missing.push_back(missing);
     }
     return values;
 }
 
-/// A column: its array, and its texts if the array holds indices of texts.
-std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnValues&& values) {
-    if (kind == ValueKind::kNumber) return {array_of(std::move(values.numbers)), {}};
-    if (kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), {}};
-    return {array_of(std::move(values.places)), std::move(values.texts)};
+/// Its array, which holds the indices of texts if it has any; its texts; and for each shot whether its value
+/// is missing, unless none can be.
+using SweepArrays = std::tuple<nb::any, std::optional<std::vector<std::string>>, nb::any>;
+
+SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& values) {
+    nb::any missing = nb::borrow<nb::any>(nb::none());
+    if (column.of_result || column.kind == ValueKind::kNumber) missing = array_of(std::move(values.missing));
+    if (column.kind == ValueKind::kText)
+        return {array_of(std::move(values.places)), std::move(values.texts), missing};
+    if (column.kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), std::nullopt, missing};
+    return {array_of(std::move(values.numbers)), std::nullopt, missing};
 }
 
-/// @param stop  one flag: not 0 ends the batch with the exception BatchStopped
-/// @return why shots have no result, and the columns
-std::pair<std::vector<Failure>, std::vector<std::pair<nb::any, std::vector<std::string>>>> sweep_shots(
-    const games::Sweep& sweep, std::uint64_t first, std::size_t count, int threads, const ShotArrays& out,
-    std::uint64_t hash_every) {
+/// @param hash_every  0: no hashes  @param stop  one flag: the batch ends with BatchStopped once it is not 0
+/// @return the columns, the status of each shot, and the hashes
+std::tuple<std::vector<SweepArrays>, nb::any, nb::any> sweep_shots(const games::Sweep& sweep,
+                                                                   std::uint64_t first, std::size_t count,
+                                                                   int threads, std::uint64_t hash_every,
+                                                                   const Flat<const std::uint8_t>& stop) {
     const kernel::Isa isa = chosen_isa();
+    Batch batch(count, sweep.variation().base().ball.size(), hash_every > 0);
     std::vector<ColumnValues> values;
-    std::vector<Failure> failures = played(out, sweep.variation().base().ball.size(), threads,
-                                           [&](BatchOptions& options, const BatchArrays& into) {
-                                               options.hash_every = std::max<std::uint64_t>(hash_every, 1);
-                                               games::SweptShots shots =
-                                                   sweep.play(first, count, isa, options, into);
-                                               for (const games::SweepColumn& column : sweep.columns())
-                                                   values.push_back(values_of(sweep, column, shots));
-                                               return std::move(shots.messages);
-                                           });
-    std::vector<std::pair<nb::any, std::vector<std::string>>> columns;
+    try {
+        interruptible([&](const std::function<bool()>& interrupted) {
+            BatchOptions options;
+            options.threads = threads;
+            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
+            const volatile std::uint8_t* const flag = stop.data();
+            options.stop = [&interrupted, flag] { return *flag != 0 || interrupted(); };
+            const games::SweptShots shots = sweep.play(first, count, isa, options, batch.arrays());
+            for (const games::SweepColumn& column : sweep.columns())
+                values.push_back(values_of(sweep, column, shots));
+        });
+    } catch (const games::MeasureError& error) {
+        throw nb::value_error(error.what());
+    }
+    std::vector<SweepArrays> columns;
     for (std::size_t k = 0; k < values.size(); ++k)
-        columns.push_back(column_of(sweep.columns()[k].kind, std::move(values[k])));
-    return {std::move(failures), std::move(columns)};
+        columns.push_back(arrays_of(sweep.columns()[k], std::move(values[k])));
+    std::vector<std::uint8_t> status(count);
+    std::transform(batch.status.begin(), batch.status.end(), status.begin(),
+                   [](ShotStatus s) { return static_cast<std::uint8_t>(s); });
+    return {std::move(columns), array_of(std::move(status)), array_of(std::move(batch.hash))};
 }
 
-/// Name, kind, unit, and whether shots without a result have none.
-std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows(const games::Sweep& sweep) {
-    std::vector<std::tuple<std::string, std::string, std::string, bool>> rows;
+/// Name, kind and unit.
+std::vector<std::tuple<std::string, std::string, std::string>> column_rows(const games::Sweep& sweep) {
+    std::vector<std::tuple<std::string, std::string, std::string>> rows;
     for (const games::SweepColumn& column : sweep.columns()) {
         const char* const kind = column.kind == ValueKind::kNumber  ? "float64"
                                  : column.kind == ValueKind::kWhole ? "int64"
                                                                     : "text";
-        rows.emplace_back(column.name, kind, column.unit, column.of_result);
+        rows.emplace_back(column.name, kind, column.unit);
     }
     return rows;
 }
@@ -172,7 +194,7 @@ void add_batches(nb::module_& m) {
     nb::class_<games::Sweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
         .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
-             nb::arg("out").noconvert(), nb::arg("hash_every"));
+             nb::arg("hash_every"), nb::arg("stop").noconvert());
     m.def("make_sweep", make_sweep, nb::arg("scene"), nb::arg("rules"), nb::arg("seed"),
           nb::arg("measures") = std::vector<std::string>(), nb::arg("game") = nb::none());
 }
