@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 namespace carom::games {
 namespace {
@@ -79,9 +78,12 @@ SweepValue Sweep::value(const SweepColumn& column, const SweptShots& shots, std:
     switch (column.of) {
         case Of::kShot:
             return static_cast<std::int64_t>(shots.first + shot);
-        case Of::kKey:
-            return std::visit([](auto drawn) -> SweepValue { return drawn; },
-                              shots.draws[shot * variation_.keys().size() + column.which]);
+        case Of::kKey: {
+            const DrawnValue& drawn = shots.draws[shot * variation_.keys().size() + column.which];
+            if (column.kind == ValueKind::kNumber) return number_of(drawn);
+            if (column.kind == ValueKind::kWhole) return integer_of(drawn);
+            return text_of(drawn);
+        }
         case Of::kOutcome:
             return std::string(name(out.status[shot]));
         case Of::kDuration:

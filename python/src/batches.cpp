@@ -90,55 +90,51 @@ nb::any array_of(std::vector<T>&& list) {
         nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
-/// The values of one column: those of its kind only.
 struct ColumnValues {
-    std::vector<double> numbers;
-    std::vector<std::int64_t> wholes;
-    std::vector<std::int32_t> places;  // of each shot's text in `texts`, -1 for none
-    std::vector<std::string> texts;    // each text once
+    // Of texts, the index of each in `texts`, -1 for none.
+    std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::int32_t>> values;
+    std::vector<std::string> texts;  // each once
     std::vector<std::uint8_t> missing;
 };
 
 ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& column,
                        const games::SweptShots& shots) {
-    ColumnValues values;
+    ColumnValues of;
     std::unordered_map<std::string, std::int32_t> known;
-    for (std::size_t shot = 0; shot < shots.count; ++shot) {
-        const games::SweepValue value = sweep.value(column, shots, shot);
-        const auto* const* item = std::get_if<const ListedValue*>(&value);
-        const ListedValue* const listed = item != nullptr ? *item : nullptr;
-        bool missing = value.index() == 0;
-        if (column.kind == ValueKind::kNumber) {
-            const double* const number = listed ? &listed->number : std::get_if<double>(&value);
-            values.numbers.push_back(number ? *number : std::numeric_limits<double>::quiet_NaN());
-            missing = std::isnan(values.numbers.back());
-        } else if (column.kind == ValueKind::kWhole) {
-            const std::int64_t* const whole = listed ? &listed->integer : std::get_if<std::int64_t>(&value);
-            values.wholes.push_back(whole ? *whole : 0);
-        } else if (missing) {
-            values.places.push_back(-1);
-        } else {
-            const std::string& text = listed ? listed->text : std::get<std::string>(value);
-            const auto [place, is_new] = known.try_emplace(text, static_cast<std::int32_t>(known.size()));
-            if (is_new) values.texts.push_back(text);
-            values.places.push_back(place->second);
+    const auto add = [&](auto& list, auto none, const auto& read) {
+        for (std::size_t shot = 0; shot < shots.count; ++shot) {
+            const games::SweepValue value = sweep.value(column, shots, shot);
+            list.push_back(value.index() == 0 ? none : read(value));
+            // NaN differs from itself.
+            of.missing.push_back(value.index() == 0 || list.back() != list.back());
         }
-        values.missing.push_back(missing);
-    }
-    return values;
+    };
+    if (column.kind == ValueKind::kNumber)
+        add(of.values.emplace<0>(), std::nan(""), [](const auto& value) { return std::get<double>(value); });
+    else if (column.kind == ValueKind::kWhole)
+        add(of.values.emplace<1>(), std::int64_t{0},
+            [](const auto& value) { return std::get<std::int64_t>(value); });
+    else
+        add(of.values.emplace<2>(), -1, [&](const auto& value) {
+            const auto& text = std::get<std::string>(value);
+            const auto [place, is_new] = known.try_emplace(text, static_cast<std::int32_t>(known.size()));
+            if (is_new) of.texts.push_back(text);
+            return place->second;
+        });
+    return of;
 }
 
 /// Its array, which holds the indices of texts if it has any; its texts; and for each shot whether its value
 /// is missing, unless none can be.
 using SweepArrays = std::tuple<nb::any, std::optional<std::vector<std::string>>, nb::any>;
 
-SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& values) {
+SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& of) {
     nb::any missing = nb::borrow<nb::any>(nb::none());
-    if (column.of_result || column.kind == ValueKind::kNumber) missing = array_of(std::move(values.missing));
-    if (column.kind == ValueKind::kText)
-        return {array_of(std::move(values.places)), std::move(values.texts), missing};
-    if (column.kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), std::nullopt, missing};
-    return {array_of(std::move(values.numbers)), std::nullopt, missing};
+    if (column.of_result || column.kind == ValueKind::kNumber) missing = array_of(std::move(of.missing));
+    std::optional<std::vector<std::string>> texts;
+    if (column.kind == ValueKind::kText) texts = std::move(of.texts);
+    nb::any values = std::visit([](auto& list) { return array_of(std::move(list)); }, of.values);
+    return {std::move(values), std::move(texts), std::move(missing)};
 }
 
 /// @param hash_every  0: no hashes  @param stop  one flag: the batch ends with BatchStopped once it is not 0

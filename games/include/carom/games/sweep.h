@@ -31,7 +31,7 @@ struct SweepColumn {
         kY,
         kPocket,
         kMessage,
-        kMeasure,
+        kMeasure
     };
 
     std::string name;
@@ -42,8 +42,8 @@ struct SweepColumn {
     std::size_t which = 0;  ///< the number of the key, the ball or the measure
 };
 
-/// A value of a row: nothing if the shot has none, otherwise of the column's kind or of a list.
-using SweepValue = std::variant<std::monostate, double, std::int64_t, std::string, const ListedValue*>;
+/// A value of a row: nothing if the shot has none, otherwise of the column's kind.
+using SweepValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// Shots that were played.
 struct SweptShots {

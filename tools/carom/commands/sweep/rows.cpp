@@ -49,11 +49,13 @@ std::string sweep_rows(const games::Sweep& sweep, const games::SweptShots& shots
     using Of = games::SweepColumn::Of;
     std::string rows;
     const AppendCsv append{rows};
-    const std::size_t measures = sweep.measures().size();
+    const std::size_t keys = sweep.variation().keys().size(), measures = sweep.measures().size();
     for (std::size_t shot = 0; shot < shots.count; ++shot) {
         for (const games::SweepColumn& column : sweep.columns()) {
-            // A measure without a value is empty, not nan.
-            if (column.of == Of::kMeasure && has_result(shots.outcomes.status[shot]))
+            // A number of a list is written as in the list, and a measure without a value is empty, not nan.
+            if (column.of == Of::kKey)
+                std::visit(append, shots.draws[shot * keys + column.which]);
+            else if (column.of == Of::kMeasure && has_result(shots.outcomes.status[shot]))
                 append(games::text_of(shots.measured[shot * measures + column.which]));
             else
                 std::visit(append, sweep.value(column, shots, shot));
