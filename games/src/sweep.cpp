@@ -1,6 +1,5 @@
 #include "carom/games/sweep.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -56,17 +55,24 @@ Sweep::Sweep(Variation variation, std::span<const std::string> measures, std::op
 }
 
 SweptShots Sweep::play(std::uint64_t first, std::size_t count, kernel::Isa isa, BatchOptions options,
-                       const BatchArrays& out) const {
-    SweptShots shots{first, count, out, {}, std::vector<MeasureValue>(count * measures_.size()), {}};
-    if (!measures_.empty())
+                       const BatchArrays& out,
+                       const std::function<void(const SweptShots&, std::size_t)>& done) const {
+    const std::size_t measures = measures_.size();
+    SweptShots shots{
+        first, count, out, {}, std::vector<MeasureValue>(count * measures), std::vector<std::string>(count)};
+    if (measures > 0)
         options.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
-            for (std::size_t m = 0; m < measures_.size(); ++m) try {
-                    shots.measured[shot * measures_.size() + m] = measures_[m].in_table(record);
+            for (std::size_t m = 0; m < measures; ++m) try {
+                    shots.measured[shot * measures + m] = measures_[m].in_table(record);
                 } catch (const std::invalid_argument& refused) {
                     throw MeasureError(measures_[m].text() + ": " + refused.what());
                 }
         };
-    shots.messages = simulate_many(variation_, first, count, isa, options, out, shots.draws);
+    options.done = [&](std::size_t shot, const std::string& message) {
+        shots.messages[shot] = message;
+        if (done) done(shots, shot);
+    };
+    simulate_many(variation_, first, count, isa, options, out, shots.draws);
     return shots;
 }
 
@@ -110,12 +116,8 @@ SweepValue Sweep::value(const SweepColumn& column, const SweptShots& shots, std:
             return pocket < 0 ? std::string()
                               : variation_.base().table.pockets[static_cast<std::size_t>(pocket)].id;
         }
-        case Of::kMessage: {
-            const auto why = std::lower_bound(
-                shots.messages.begin(), shots.messages.end(), shot,
-                [](const Batch::Message& message, std::size_t of) { return message.shot < of; });
-            return why != shots.messages.end() && why->shot == shot ? why->text : std::string();
-        }
+        case Of::kMessage:
+            return shots.messages[shot];
         case Of::kMeasure:
             break;
     }

@@ -59,7 +59,7 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
         shots.draws.insert(shots.draws.end(), {speed, &three, &smooth, 80.5, std::int64_t{1}});
     using Texts = std::vector<std::string>;
     shots.measured = {1.25, Texts{}, 0.0, Texts{}, std::nan(""), Texts{"cue", "ball.2"}};
-    shots.messages = {{1, "it fell over"}};
+    shots.messages = {"", "it fell over", ""};
     const auto row = [&](std::size_t shot) {
         std::string text;
         for (const SweepColumn& column : sweep.columns()) {

@@ -202,12 +202,13 @@ struct Work {
         const bool some = player.last != &player.whole;
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-        if (!has_result(status)) {
+        if (has_result(status)) {
+            keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
+            if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
+        } else {
             add_message(shot, player.last->message());
-            return;
         }
-        keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
-        if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
+        if (options.done) options.done(shot, has_result(status) ? std::string() : player.last->message());
     }
 
     void play_all() noexcept {

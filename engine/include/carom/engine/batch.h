@@ -99,6 +99,9 @@ struct BatchOptions {
     /// without playing them again. Both arguments are valid during the call only, and neither contains balls
     /// that were left out. An exception ends the batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
+    /// Called by each thread after every shot, once the arrays hold it and it is judged. @param message  why
+    /// it has no result, or ""
+    std::function<void(std::size_t shot, const std::string& message)> done{};
     /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes
     /// short shots take half as long again.
     std::uint64_t hash_every = 1;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,10 +50,10 @@ using SweepValue = std::variant<std::monostate, double, std::int64_t, std::strin
 struct SweptShots {
     std::uint64_t first = 0;  ///< the number of the first shot
     std::size_t count = 0;
-    BatchArrays outcomes;                  ///< of the caller
-    std::vector<DrawnValue> draws;         ///< count x keys
-    std::vector<MeasureValue> measured;    ///< count x measures
-    std::vector<Batch::Message> messages;  ///< in the order of the shots
+    BatchArrays outcomes;                ///< of the caller
+    std::vector<DrawnValue> draws;       ///< count x keys
+    std::vector<MeasureValue> measured;  ///< count x measures
+    std::vector<std::string> messages;   ///< why a shot has no result, or ""
 };
 
 class Sweep {
@@ -68,11 +69,13 @@ class Sweep {
     const std::vector<SweepColumn>& columns() const { return columns_; }
 
     /// Plays shots first, first + 1, ... A row depends only on the variation and the number of its shot.
-    /// @param options  `judge` is not called
+    /// @param options  `judge` and `done` are not called
     /// @param out  needs all arrays except `cushions` and `hash`
+    /// @param done  called by each thread after every shot, whose row is complete
     /// @throws MeasureError for a measure that does not apply to such shots, and as simulate_many
     SweptShots play(std::uint64_t first, std::size_t count, kernel::Isa isa, BatchOptions options,
-                    const BatchArrays& out) const;
+                    const BatchArrays& out,
+                    const std::function<void(const SweptShots& shots, std::size_t shot)>& done = {}) const;
     SweepValue value(const SweepColumn& column, const SweptShots& shots, std::size_t shot) const;
 
   private:

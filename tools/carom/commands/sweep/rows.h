@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "carom/engine/batch.h"
 #include "carom/games/sweep.h"
@@ -14,10 +15,12 @@ namespace carom::tools {
 
 using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
-/// Consecutive shots, and the arrays of their outcomes.
+/// Consecutive shots, the arrays of their outcomes, and their rows, with line ends; invalid and failed shots
+/// have a row, too.
 struct SweepBlock {
     Batch batch;
     games::SweptShots shots;
+    std::vector<std::string> rows;
 };
 
 /// Plays shots first, first + 1, ... @throws Interrupted; std::system_error if the system cannot start the
@@ -27,7 +30,5 @@ SweepBlock play_block(const games::Sweep& sweep, std::uint64_t first, std::size_
 
 /// The names of the columns, with a line end.
 std::string sweep_header(const games::Sweep& sweep);
-/// The rows, with their line ends; invalid and failed shots have one, too.
-std::string sweep_rows(const games::Sweep& sweep, const games::SweptShots& shots);
 
 }  // namespace carom::tools

@@ -3,6 +3,7 @@
 // A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on
 // all threads, and their rows are written in order.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -118,7 +119,7 @@ void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa,
         const SweepBlock block = next.get();
         if (Clock::now() - start < kBlockTime && size < kLargestBlock) size *= 2;
         if (begun < range.last) begin_next();
-        table.add(sweep_rows(sweep, block.shots), block.shots.count, totals.add(block.shots));
+        table.add(fmt::format("{}", fmt::join(block.rows, "")), block.shots.count, totals.add(block.shots));
         status.show(table.next(), totals.outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
                       static_cast<long>(range.last - range.first));
@@ -196,7 +197,7 @@ int run(const SweepArgs& args) {
     const std::uint64_t from = table.next();
     if (from > range.first) {
         // Another build may have other bits.
-        if (!table.ends_with(sweep_rows(sweep, play_block(sweep, from - 1, 1, isa, 1).shots)))
+        if (!table.ends_with(play_block(sweep, from - 1, 1, isa, 1).rows.front()))
             throw std::runtime_error(
                 fmt::format("{}: its last row is not what this program computes; remove it to start again",
                             table.folder()));
