@@ -96,12 +96,12 @@ TEST(SceneAim, WordsFollowTheBallsThatVary) {
     const Variation places = Variation::from_text(scene_with("aim_at = \"1\"\n"), "v.toml",
                                                   {"ball.1.position.x=uniform(0.5,1.1)"}, 1);
     for (std::uint64_t i = 0; i < 20; ++i) {
-        const Scene scene = places.shot(i).scene.value();
+        const VariedShot shot = places.shot(i);
+        const Scene scene = shot.scene.value();
         const Vec2 way = planar(scene.ball[1].position - scene.ball[0].position);
         EXPECT_NEAR(scene.cue->aim_deg, std::atan2(way.y(), way.x()) / kDegree, 1e-12);
         Scene quick = places.base();
-        std::vector<std::string> values;
-        EXPECT_FALSE(places.put(i, quick, values));
+        EXPECT_FALSE(places.put(shot.values, quick));
     }
     // A rule for the aim takes its place.
     const Variation aims =

@@ -167,10 +167,10 @@ TEST(Measures, VaryInSweeps) {
     for (std::uint64_t i = 0; i < 4; ++i) {
         const VariedShot shot = varied.shot(i);
         ASSERT_TRUE(shot.scene) << shot.error;
-        const double mouth = std::stod(shot.values[0]);
+        const double mouth = number_of(shot.values[0]);
         EXPECT_TRUE(*shot.scene ==
                         parse_scene("[table]\ncushion_height = 0.036\n[table.corner_pockets]\nmouth = " +
-                                        shot.values[0] + "\n" + kShot,
+                                        text_of(shot.values[0]) + "\n" + kShot,
                                     "s.toml") ||
                     shot.scene->table == make_table("nine_foot", shot.scene->table.measures));
         EXPECT_EQ(*shot.scene->table.measures.corner_pockets.mouth, mouth);

@@ -8,19 +8,22 @@ import itertools
 import json
 import os
 import queue
-import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from carom._arguments import checked
+from carom.sweep._columns import NEVER
 from carom.sweep._folder import PLAN, in_parallel, status, those_there
 from carom.sweep._plan import Plan, SweepError, wrong_worker
 from carom.sweep._shard import Tally, footer, make_shard, need, run_shard, tables
 
 if TYPE_CHECKING:
     import pyarrow
+    from numpy.typing import NDArray
 
 #: The least number of shards in an executor's queue; limited so that the client's memory does not grow with
 #: the sweep.
@@ -77,17 +80,17 @@ class _Threads:
     """The executor within one process. It can stop in the middle of a shard."""
 
     def __init__(self, threads: int) -> None:
-        self.ended = threading.Event()
+        self.ended = np.zeros(1, np.uint8)
         self.pool = ThreadPoolExecutor(threads or len(os.sched_getaffinity(0)), "carom-sweep")
 
     def submit(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        return self.pool.submit(work, *arguments, self.ended.is_set)
+        return self.pool.submit(work, *arguments, self.ended)
 
     def __enter__(self) -> _Threads:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.ended.set()
+        self.ended[0] = 1
         self.pool.shutdown(cancel_futures=True)
 
 
@@ -248,7 +251,7 @@ def run(
 
 
 def _reduced(
-    plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False
+    plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: NDArray[np.uint8] = NEVER
 ) -> tuple[Any, dict[str, int]]:
     import pyarrow
 
