@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "carom/engine/tolerances.h"
-#include "reference/random_impacts.h"
 #include "support/engine_cases.h"
 #include "support/hard_scenes.h"
 #include "support/moving_contacts.h"

@@ -2,7 +2,6 @@
 // The bound on the error is in tolerance_bound_test.cpp.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,7 +1,6 @@
 // Impacts of balls of different radius and mass, by tolerance and marched.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -91,12 +91,6 @@ TEST_F(CliRender, OneFrameAndOneInstant) {
     EXPECT_EQ(read_file(frame(0)), read_file(frame(7)));  // 7 / 10 s is 0.7 s
 }
 
-TEST_F(CliRender, AFolderThatCannotBeMadeExits1) {
-    const ProcessResult result = carom({"render", scene_, "-o", folder_.file("a/b/%d.png"), "--to", "0"});
-    EXPECT_EQ(result.status, 1);
-    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-}
-
 TEST_F(CliRender, AnInterruptKeepsFinishedFramesAndNothingElse) {
     // Large and slow enough that the run is far from its end after the second frame.
     Process process({CAROM_PROGRAM, "render", scene_, "-o", pattern(), "--fps", "2000", "--size", "1280x720"},
