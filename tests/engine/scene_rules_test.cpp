@@ -138,57 +138,12 @@ TEST(Scenes, TooManyPartsOfATable) {
               "s.toml:3:1: table.pocket has 4097 entries; at most 4096 are allowed");
 }
 
+// The defaults of every section are those of the file, which scene_text wrote.
 TEST(Scenes, DefaultsAreWrittenOut) {
-    const Scene s = parse_scene("[[ball]]\n", "s.toml");
-    EXPECT_EQ(s.file, "s.toml");
-    EXPECT_EQ(s.table.preset, "nine_foot");
-    EXPECT_EQ(s.ball_preset, "pool");
-    EXPECT_EQ(s.balls.R, 0.028575);
-    EXPECT_EQ(s.balls.m, 0.170097);
-    EXPECT_EQ(s.balls.mu_s, 0.2);
-    EXPECT_EQ(s.balls.mu_r, 0.01);
-    EXPECT_EQ(s.balls.mu_sp, 0.0127);
-    EXPECT_EQ(s.balls.mu_b, 0.009951);
-    EXPECT_EQ(s.balls.mu_b_more, 0.108);
-    EXPECT_EQ(s.balls.mu_b_fall, 1.088);
-    EXPECT_EQ(s.balls.e_b, 0.95);
-    EXPECT_EQ(s.balls.e_c, 0.85);
-    EXPECT_EQ(s.balls.f_c, 0.2);
-    ASSERT_EQ(s.ball.size(), 1u);
-    EXPECT_EQ(s.ball[0].id, "cue");
-    EXPECT_EQ(s.ball[0].position, Vec3(0.635, 0.5, 0.028575));
-    EXPECT_EQ(s.ball[0].velocity, Vec3(0, 0, 0));
-    EXPECT_EQ(s.ball[0].spin, Vec3(0, 0, 0));
-    EXPECT_FALSE(s.cue);
-    EXPECT_EQ(s.physics.gravity, 9.81);
-    EXPECT_STREQ(name(s.physics.ball_ball), "mathavan");
-    EXPECT_STREQ(name(s.physics.cushion), "han_2005");
-    EXPECT_STREQ(name(s.physics.cloth_slip), "consistent");
-    EXPECT_STREQ(name(s.physics.clusters), "compliant");
-    EXPECT_EQ(s.physics.tolerance, 1e-6);
-    EXPECT_FALSE(s.physics.substeps);
-    EXPECT_STREQ(name(s.physics.march), "summed");
-    EXPECT_FALSE(s.stop.time);
-    EXPECT_FALSE(s.stop.events);
-    EXPECT_EQ(s.render.fps, 60.0);
-    EXPECT_EQ(s.render.width, 1280);
-    EXPECT_EQ(s.render.height, 720);
-    EXPECT_EQ(s.render.camera, "top");
-}
-
-TEST(Scenes, DefaultsOfAnEmptyCueAreThoseShownInTheFormat) {
     const Scene s = parse_scene("[[ball]]\n[cue]\n", "s.toml");
-    ASSERT_TRUE(s.cue);
-    EXPECT_EQ(s.cue->ball, "cue");
-    EXPECT_EQ(s.cue->speed, 9.0);
-    EXPECT_EQ(s.cue->aim_deg, 90.0);
-    EXPECT_EQ(s.cue->elevation_deg, 0.0);
-    EXPECT_EQ(s.cue->side, 0.0);
-    EXPECT_EQ(s.cue->height, 0.1);
-    EXPECT_EQ(s.cue->mass, 0.567);
-    EXPECT_EQ(s.cue->end_mass, 0.00567);
-    EXPECT_EQ(s.cue->restitution, 0.73);
-    EXPECT_EQ(s.cue->preset, "low_deflection");
+    EXPECT_EQ(scene_text(s), read_file(CAROM_TEST_DATA "/default_scene.toml"));
+    EXPECT_EQ(s.file, "s.toml");
+    EXPECT_FALSE(parse_scene("[[ball]]\n", "s.toml").cue);
 }
 
 TEST(Scenes, EveryKeyIsRead) {

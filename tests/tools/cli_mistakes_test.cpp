@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -204,16 +203,6 @@ TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     const std::string table = folder_.file("table.csv");
     ASSERT_EQ(carom(sweep(table)).status, 0);
     EXPECT_TRUE(shell(sweep("/dev/stdout")).starts_with("before\n" + read_file(table)));
-}
-
-TEST_F(Mistakes, ListTellsEveryEvent) {
-    const ProcessResult result = carom({"simulate", scene_, "--list"});
-    EXPECT_EQ(result.status, 0);
-    const auto counts = nlohmann::json::parse(carom({"simulate", scene_, "--json"}).out);
-    const std::vector<std::string> lines = lines_of(result.out);
-    const auto told =
-        std::count_if(lines.begin(), lines.end(), [](const std::string& l) { return contains(l, " s  "); });
-    EXPECT_EQ(told, counts["events"].get<int>());
 }
 
 TEST_F(Mistakes, TheLargestSeedIsASeed) {

@@ -111,13 +111,6 @@ TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
     EXPECT_EQ(folder_.names().size(), 2u);  // no file
 }
 
-TEST_F(CliRenderOptions, AClosedPipeEndsRawFrames) {
-    ProcessOptions options;
-    options.close_output = true;
-    const ProcessResult result = carom({"render", record_, "--raw", "--size", "640x360"}, options);
-    EXPECT_NE(result.status, 0);
-}
-
 TEST_F(CliRenderOptions, AFullDeviceEndsRawFramesWithAMessage) {
     ProcessOptions options;
     options.output_to = "/dev/full";
@@ -190,18 +183,6 @@ TEST_F(CliRenderOptions, AFolderThatIsReadOnlyIsNamed) {
     const std::string locked = folder_.file("locked");
     ASSERT_EQ(::mkdir(locked.c_str(), 0555), 0);
     expect_refused(1, locked, {"--at", "0", "-o", locked + "/%d.png"});
-}
-
-TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
-    // The limit imitates a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
-    ProcessOptions options;
-    options.file_limit = 8L * 512;
-    const ProcessResult result = carom(
-        {"render", record_, "-o", folder_.file("big%d.png"), "--size", "640x360", "--to", "0.1"}, options);
-    EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_NE(result.err.find("big"), std::string::npos) << result.err;
-    EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
-    EXPECT_EQ(folder_.names().size(), 2u);
 }
 
 }  // namespace

@@ -66,15 +66,6 @@ TEST(CliUsage, AFullDiskIsAnError) {
     EXPECT_EQ(result.err, "carom: standard output: No space left on device\n");
 }
 
-TEST(CliUsage, AClosedPipeEndsQuietly) {
-    const TemporaryFolder folder;
-    ProcessOptions options;
-    options.close_output = true;
-    const ProcessResult result = carom({"check", folder.write("s.toml", kSmallScene)}, options);
-    EXPECT_EQ(result.status, 1);
-    EXPECT_EQ(result.err, "");
-}
-
 TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene);
