@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -220,40 +219,6 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_NEAR(carom_record_duration(rest_of_it.get()) + 0.8, carom_record_duration(whole.get()), 1e-6);
     EXPECT_EQ(carom_scene_from_record(nullptr, &next), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(next, nullptr);
-}
-
-// A ball that all but never stops bouncing: what a run may hold has a limit, in each of a batch as well.
-TEST(CApiBatch, ARunWithoutEndHasALimitOfEvents) {
-    carom_scene* parsed = nullptr;
-    ASSERT_EQ(carom_scene_parse("[balls]\ne_t = 0.9999999\n[[ball]]\nheight = 0.1\n", "endless", &parsed),
-              CAROM_OK)
-        << carom_last_error();
-    const ScenePtr scene(parsed, carom_scene_free);
-    const auto says_so = [](const std::string& text) {
-        for (const char* part :
-             {"simulation stopped at t = ", " s after 1000000 events: ",
-              "allow more with [stop] events, or end the run earlier with [stop] time", "last events:\n",
-              " ball_cloth cue", "balls that move (id state x y vx vy wx wy wz):\n  cue airborne "})
-            EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
-    };
-    carom_record* record = nullptr;
-    EXPECT_EQ(carom_simulate(scene.get(), -1.0, &record), CAROM_FAILED);
-    EXPECT_EQ(record, nullptr);
-    says_so(carom_last_error());
-
-    // The second of them comes to rest, the third is to stop sooner.
-    const BatchPtr batch =
-        many(scene.get(), {"balls.e_t", "stop.events"}, {0.9999999, 0.5, 0.9999999, 2e6, 2e6, 50.0}, 3, 2);
-    EXPECT_EQ(carom_batch_status(batch.get())[1], CAROM_SHOT_AT_REST);
-    EXPECT_EQ(carom_batch_status(batch.get())[2], CAROM_SHOT_EVENTS);
-    EXPECT_EQ(carom_batch_events(batch.get())[2], 50);
-    EXPECT_EQ(carom_batch_status(batch.get())[0], CAROM_SHOT_EVENTS);
-    EXPECT_EQ(carom_batch_events(batch.get())[0], 2000000);
-    const BatchPtr usual = many(scene.get(), {"balls.e_t"}, {0.9999999, 0.5}, 2, 2);
-    EXPECT_EQ(carom_batch_status(usual.get())[0], CAROM_SHOT_FAILED);
-    EXPECT_EQ(carom_batch_status(usual.get())[1], CAROM_SHOT_AT_REST);
-    says_so(carom_batch_message(usual.get(), 0));
-    EXPECT_STREQ(carom_batch_message(usual.get(), 1), "");
 }
 
 // Does in one call what a record and a cue do together, with the same checks.

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "carom/carom.h"
 #include "carom/engine/record.h"

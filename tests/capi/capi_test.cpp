@@ -1,11 +1,9 @@
 // The C interface: the same results as the C++ one, and a status with a message for whatever cannot be done.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -227,29 +225,6 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     ASSERT_EQ(carom_scene_get_ball_param(h.scene, "radius", &radius), CAROM_OK);
     EXPECT_EQ(radius, 0.03);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
-}
-
-// A host calls from its own thread, whose stack may be small.
-TEST(CApi, AKeyOfManyPartsLeavesTheHostAlone) {
-    std::string text = "[[ball]]\na";
-    for (int i = 0; i < 40000; ++i) text += ".a";
-    text += " = 1\n";
-    pthread_attr_t attributes;
-    pthread_t thread;
-    ASSERT_EQ(pthread_attr_init(&attributes), 0);
-    ASSERT_EQ(pthread_attr_setstacksize(&attributes, 512 << 10), 0);
-    const auto host = [](void* scene_text) -> void* {
-        carom_scene* scene = nullptr;
-        EXPECT_EQ(carom_scene_parse(static_cast<const char*>(scene_text), "x.toml", &scene), CAROM_BAD_SCENE);
-        EXPECT_EQ(std::string(carom_last_error()).rfind("x.toml:2:32: this key has more than 16 parts", 0),
-                  0u)
-            << carom_last_error();
-        EXPECT_EQ(scene, nullptr);
-        return nullptr;
-    };
-    ASSERT_EQ(pthread_create(&thread, &attributes, host, text.data()), 0);
-    pthread_join(thread, nullptr);
-    pthread_attr_destroy(&attributes);
 }
 
 TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {

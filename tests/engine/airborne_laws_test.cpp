@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/ball_ball.h"

@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "carom/engine/ball_ball.h"
 #include "carom/engine/tolerances.h"
-#include "carom/engine/verify.h"
 #include "physics/cluster.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"

@@ -1,9 +1,7 @@
 // The detector alone: no impact is resolved, no shot simulated. Positions of balls are set by hand.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "contact/detect.h"
 #include "loop/detector.h"

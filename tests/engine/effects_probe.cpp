@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"

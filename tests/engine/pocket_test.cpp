@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <string>
 
-#include "carom/engine/cushion.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "contact/pocket_edge.h"

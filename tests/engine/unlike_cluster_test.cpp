@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "carom/engine/ball_ball.h"
 #include "carom/kernel/tolerance.h"
 #include "physics/cluster.h"
 #include "reference/random_impacts.h"

@@ -2,9 +2,7 @@
 // and for random mistakes, compared with the route through a text.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -18,7 +16,7 @@
 #include "carom/engine/cushion.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
-#include "support/scene_files.h"
+#include "support/files.h"
 
 namespace carom::test {
 namespace {

@@ -1,10 +1,8 @@
 // Any text as a number, wherever a scene or a rule takes one: it is refused, or it is the number that the
 // text says.
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 #include <vector>
 

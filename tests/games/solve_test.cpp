@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "carom/engine/variation.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {

@@ -1,12 +1,9 @@
-// carom render: numbered whole frames, and an interrupt that leaves no partial one.
+// carom render: numbered whole frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -89,35 +86,6 @@ TEST_F(CliRender, OneFrameAndOneInstant) {
     EXPECT_EQ(result.out, "1 frame: " + frame(0) + "\n");
     EXPECT_EQ(folder_.names().size(), 3u);
     EXPECT_EQ(read_file(frame(0)), read_file(frame(7)));  // 7 / 10 s is 0.7 s
-}
-
-TEST_F(CliRender, AFolderThatCannotBeMadeExits1) {
-    const ProcessResult result = carom({"render", scene_, "-o", folder_.file("a/b/%d.png"), "--to", "0"});
-    EXPECT_EQ(result.status, 1);
-    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-}
-
-TEST_F(CliRender, AnInterruptKeepsFinishedFramesAndNothingElse) {
-    // Large and slow enough that the run is far from its end after the second frame.
-    Process process({CAROM_PROGRAM, "render", scene_, "-o", pattern(), "--fps", "2000", "--size", "1280x720"},
-                    {});
-    for (int wait = 0; wait < 3000 && !std::filesystem::exists(frame(2)); ++wait) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ASSERT_TRUE(std::filesystem::exists(frame(2)));
-    process.interrupt();
-    const ProcessResult result = process.finish("");
-    EXPECT_EQ(result.status, 130);
-    EXPECT_EQ(result.out, "");
-    int frames = 0;
-    for (const std::string& name : folder_.names()) {
-        if (name == "s.toml") continue;
-        EXPECT_EQ(name.substr(name.size() - 4), ".png") << name;
-        ++frames;
-    }
-    EXPECT_GE(frames, 3);
-    EXPECT_LT(frames, 2000);
-    for (int k = 0; k < frames; ++k) EXPECT_EQ(png_size(frame(k)), std::make_pair(1280u, 720u)) << k;
 }
 
 }  // namespace
