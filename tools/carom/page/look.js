@@ -1,9 +1,12 @@
 // How a table and its balls look from above: the lamp, materials and patterns of the rendered frames
 // (render/src/draw/shaders), computed pixel by pixel. The table is painted once per size, a ball whenever it
 // moves or turns.
-"use strict";
 
-const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+import {kBright, kChalk, kCloth, kCushionGain, kDot, kInk, kInlay, kIvory, kLargeDot, kPaleDot, kPaleHalf,
+  kRedDot, kSpot, kStripe, kTrim, kWoodDark, kWoodLight} from "../../../render/include/carom/render/look.h";
+import {brightness} from "./dom.js";
+
+export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
 /** GLSL's smoothstep; a may be greater than b. */
 const step = (a, b, x) => { const t = clamp((x - a) / (b - a), 0, 1); return t * t * (3 - 2 * t); };
@@ -14,7 +17,6 @@ const toScreen = (c) => {
 };
 const fromScreen = (c) => c.map((x) => x * x);
 
-// The build inserts the constants with a k from render/include/carom/render/look.h here.
 const [CLOTH, WOOD_DARK, WOOD_LIGHT, TRIM, INLAY, IVORY, RED_DOT, PALE_DOT] =
   [kCloth, kWoodDark, kWoodLight, kTrim, kInlay, kIvory, kRedDot, kPaleDot].map(fromScreen);
 
@@ -41,7 +43,7 @@ function lampLight(lamp, x, y, z) {
 }
 
 /** Where the table [m] is on a canvas [px]: lengthwise along the longer side, as in the camera `top`. */
-class Projection {
+export class Projection {
   constructor(bounds, width, height, margin) {
     const [w, l] = [0, 1].map((k) => Math.max(bounds.high[k] - bounds.low[k], 1e-3));
     const W = Math.max(width - 2 * margin, 10), H = Math.max(height - 2 * margin, 10);
@@ -63,7 +65,7 @@ class Projection {
   }
 }
 
-function pathOf(loops) {
+export function pathOf(loops) {
   const path = new Path2D();
   for (const loop of loops) {
     for (let i = 0; i < loop.length; i += 2) path[i === 0 ? "moveTo" : "lineTo"](loop[i], loop[i + 1]);
@@ -93,7 +95,7 @@ function paint(scratch, projection, path, colour) {
 }
 
 /** Paints the table without balls. `shape`: as tools/carom/page/table_shape.h describes. */
-function paintTable(canvas, projection, shape) {
+export function paintTable(canvas, projection, shape) {
   const context = canvas.getContext("2d");
   const scratch = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
   scratch.canvas.width = canvas.width;
@@ -221,11 +223,10 @@ function albedo(style, b, w, out) {
 }
 
 /** A ball as a small picture, which is drawn again when the ball moves or turns. */
-class BallPicture {
+export class BallPicture {
   constructor(style) {
     this.style = {...style, base: fromScreen(style.color), bright: false};
-    const [red, green, blue] = this.style.base;
-    this.style.bright = 0.3 * red + 0.6 * green + 0.1 * blue > kBright;
+    this.style.bright = brightness(this.style.base) > kBright;
     this.context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
     this.key = "";
   }
@@ -292,7 +293,7 @@ class BallPicture {
 }
 
 /** A round shadow, whose darkness at d radii is profile(d), up to `reach` radii. */
-function shadowPicture(reach, profile) {
+export function shadowPicture(reach, profile) {
   const canvas = document.createElement("canvas"), size = canvas.width = canvas.height = 64;
   const context = canvas.getContext("2d");
   const image = context.createImageData(size, size);

@@ -118,15 +118,12 @@ int run(const PlayArgs& args) {
         return true;
     }();
     static_cast<void>(added);
-    const std::vector<std::string> scripts = {"dom.js",    "motion.js", "look.js",   "stage.js",
-                                              "core.js",   "share.js",  "words.js",  "tip.js",
-                                              "tables.js", "paper.js",  "extras.js", "play.js"};
     const std::vector<PageData> data = {{"wasm", '"' + std::string(kPlayWasm) + '"'},
                                         {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}};
     PageExtras extras;
     for (const char* style : {"play.css", "extras.css"}) extras.styles.emplace_back(style);
     extras.wasm = true;
-    const std::string html = page_html("carom", scripts, data, extras);
+    const std::string html = page_html("carom", "play.js", data, extras);
     write_report(args.output, html);
     print(fmt::format("{}: open it in a browser; {} kB\n", args.output, (html.size() + 500) / 1000));
     return kOk;
