@@ -1,4 +1,4 @@
-# Writes scripts, styles and schemas into a C++ file:
+# Writes scripts, styles and other files of pages into a C++ file:
 # cmake "-DFILES=a.js;b.css" -DFUNCTION=page_files -DOUTPUT=page_files.cpp -P embed.cmake
 #
 # Scripts are ES modules, which node imports unchanged. A page that is opened from a file cannot load modules,
@@ -28,6 +28,8 @@ return {${exported}};\n})();\n" PARENT_SCOPE)
 endfunction()
 
 set(text "// Made by tools/carom/page/embed.cmake.\n#include \"page/page.h\"\n\n")
+# The standard asks for 65536 characters only.
+string(APPEND text "#pragma GCC diagnostic ignored \"-Woverlength-strings\"\n\n")
 string(APPEND text "namespace carom::tools {\n\nconst std::vector<PageFile>& ${FUNCTION}() {\n")
 string(APPEND text "    static const std::vector<PageFile> files = {\n")
 foreach(path IN LISTS FILES)
