@@ -2,8 +2,7 @@
 // (render/src/draw/shaders), computed pixel by pixel. The table is painted once per size, a ball whenever it
 // moves or turns.
 
-import {kBright, kChalk, kCloth, kCushionGain, kDot, kInk, kInlay, kIvory, kLargeDot, kPaleDot, kPaleHalf,
-  kRedDot, kSpot, kStripe, kTrim, kWoodDark, kWoodLight} from "../../../render/include/carom/render/look.h";
+import * as look from "../../../render/include/carom/render/look.h";
 import {brightness} from "./dom.js";
 
 export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
@@ -18,7 +17,8 @@ const toScreen = (c) => {
 const fromScreen = (c) => c.map((x) => x * x);
 
 const [CLOTH, WOOD_DARK, WOOD_LIGHT, TRIM, INLAY, IVORY, RED_DOT, PALE_DOT] =
-  [kCloth, kWoodDark, kWoodLight, kTrim, kInlay, kIvory, kRedDot, kPaleDot].map(fromScreen);
+  ["Cloth", "WoodDark", "WoodLight", "Trim", "Inlay", "Ivory", "RedDot", "PaleDot"]
+    .map((name) => fromScreen(look[`k${name}`]));
 
 function lattice(x, y) {
   let h = Math.imul(x, 0x9E3779B1) ^ Math.imul(y, 0x85EBCA77);
@@ -132,11 +132,11 @@ export function paintTable(canvas, projection, shape) {
   }
   layer(shape.cloth, (x, y, out) => lit(out, CLOTH, nap(x, y), x, y, 0));
   shade(context, projection, shape);
-  layer(shape.chalk, (x, y, out) => lit(out, [kChalk, kChalk, kChalk], 0.42, x, y, 0));
+  layer(shape.chalk, (x, y, out) => lit(out, [look.kChalk, look.kChalk, look.kChalk], 0.42, x, y, 0));
   plain();
   for (const hole of shape.holes) paintHole(context, projection, hole);
   layer(shape.trim, (x, y, out) => lit(out, TRIM, 1, x, y, top));
-  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, kCushionGain * nap(x, y), x, y, 0.04));
+  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, look.kCushionGain * nap(x, y), x, y, 0.04));
   line(shape.cushion, 0.0025, "rgba(0,20,10,0.35)");
   layer(shape.inlay, (x, y, out) => lit(out, INLAY, 1, x, y, top));
   plain();
@@ -202,23 +202,23 @@ function albedo(style, b, w, out) {
   const blend = (colour, t) => { for (let k = 0; k < 3; ++k) out[k] = mix(out[k], colour[k], t); };
   for (let k = 0; k < 3; ++k) out[k] = style.base[k];
   if (style.pattern === "stripe") {
-    const band = inside(Math.abs(b[0]) - kStripe);
+    const band = inside(Math.abs(b[0]) - look.kStripe);
     for (let k = 0; k < 3; ++k) out[k] = mix(IVORY[k], style.base[k], band);
   } else if (style.pattern === "dots") {
     const [x, y, z] = b.map(Math.abs), upper = z >= x && z >= y;
     const away = upper ? Math.hypot(x, y) : x > y ? Math.hypot(y, z) : Math.hypot(x, z);
-    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? kLargeDot : kDot)));
+    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? look.kLargeDot : look.kDot)));
   } else if (style.pattern === "halves") {
-    blend(style.base.map((c) => mix(c, 1, kPaleHalf)), inside(b[0]));
+    blend(style.base.map((c) => mix(c, 1, look.kPaleHalf)), inside(b[0]));
   }
   if (style.number === 0) return 1;
-  const spot = inside(Math.hypot(b[0], b[1]) - kSpot);
+  const spot = inside(Math.hypot(b[0], b[1]) - look.kSpot);
   if (spot === 0) return 1;
   blend(IVORY, spot);
-  const across = b[1] / (2 * kSpot) + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / (2 * kSpot) + 0.5;
+  const across = b[1] / (2 * look.kSpot) + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / (2 * look.kSpot) + 0.5;
   const i = Math.floor(clamp(across, 0, 0.999) * GLYPH), j = Math.floor(clamp(down, 0, 0.999) * GLYPH);
   const ink = spot * glyphOf(style.number)[j * GLYPH + i] / 255;
-  blend([kInk, kInk, kInk], ink);
+  blend([look.kInk, look.kInk, look.kInk], ink);
   return 1 - 0.85 * ink;
 }
 
@@ -226,7 +226,7 @@ function albedo(style, b, w, out) {
 export class BallPicture {
   constructor(style) {
     this.style = {...style, base: fromScreen(style.color), bright: false};
-    this.style.bright = brightness(this.style.base) > kBright;
+    this.style.bright = brightness(this.style.base) > look.kBright;
     this.context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
     this.key = "";
   }

@@ -20,15 +20,8 @@ export const flies = (track) => track.segments.some((s) => s.state === "airborne
 /** The length of a vector. */
 export const size = (v) => Math.hypot(...v);
 
-export function radiusOf(record, ball) {
-  const own = record.tracks[ball].radius;
-  return own === undefined ? record.balls.R : own;
-}
-
-function massOf(record, ball) {
-  const own = record.tracks[ball].mass;
-  return own === undefined ? record.balls.m : own;
-}
+export const radiusOf = (record, ball) => record.tracks[ball].radius ?? record.balls.R;
+const massOf = (record, ball) => record.tracks[ball].mass ?? record.balls.m;
 
 function velocityAt(s, tau) {
   if (s.state === "rolling" && s.duration !== null && !s.held) {

@@ -186,10 +186,16 @@ export class TableView {
     context.restore();
   }
 
+  /** The canvas pixel under the pointer. */
+  pixelAt(event) {
+    const box = this.over.getBoundingClientRect();
+    return [(event.clientX - box.left) * this.dense, (event.clientY - box.top) * this.dense];
+  }
+  /** The place of the table under the pointer [m]. */
+  placeAt(event) { return this.projection.table(...this.pixelAt(event)); }
   /** The ball under the pointer, or -1. */
   ballAt(event) {
-    const box = this.over.getBoundingClientRect();
-    const x = (event.clientX - box.left) * this.dense, y = (event.clientY - box.top) * this.dense;
+    const [x, y] = this.pixelAt(event);
     let best = -1, nearest = 12 * this.dense;
     for (const ball of this.seen || []) {
       const away = Math.hypot(ball.x - x, ball.y - y) - ball.r;

@@ -5,6 +5,14 @@ import {printShots} from "./paper.js";
 import {sectionOf} from "./scene_text.js";
 import {begin, change} from "./shots.js";
 
+/** A dialog with a title, and a bar of buttons at its end that closes it. */
+export function dialog(title, parts, ...buttons) {
+  const element = make("dialog", {"aria-label": title}, make("h2", {}, title), ...parts, make("div",
+    {class: "bar"}, ...buttons, make("span", {class: "room"}), button("Close", () => element.close())));
+  document.body.append(element);
+  return element;
+}
+
 /** The value that an input's text stands for. @throws Error with a sentence */
 export function valueOf(key, {type, enum: names}, text) {
   if (names) return text;
@@ -56,15 +64,11 @@ function settingsDialog(state, keys) {
     }));
     if (focused) document.getElementById(focused)?.focus();
   };
-  const title = "Table, balls and physics";
-  const dialog = make("dialog", {"aria-label": title}, make("h2", {}, title), wrong, form,
-    make("div", {class: "bar"}, make("span", {class: "room"}),
-      button("Close", () => dialog.close())));
-  document.body.append(dialog);
+  const element = dialog("Table, balls and physics", [wrong, form]);
   return () => {
     wrong.textContent = "";
     fill();
-    dialog.showModal();
+    element.showModal();
   };
 }
 

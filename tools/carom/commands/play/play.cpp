@@ -2,8 +2,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,9 +41,8 @@ struct PlayArgs {
 /// "cue.speed,balls" as a list of keys. @throws UsageError
 Json locked_keys(const std::string& list) {
     Json keys = Json::array();
-    for (std::size_t begin = 0; begin < list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        const std::string key = list.substr(begin, end - begin);
+    std::istringstream in(list);
+    for (std::string key; std::getline(in, key, ',');) {
         const std::string part = key.substr(0, key.find('.'));
         if (part != "cue" && part != "ball" && part != "balls" && part != "table" && part != "physics")
             throw UsageError(
@@ -51,7 +50,6 @@ Json locked_keys(const std::string& list) {
                             "such as cue.speed,ball",
                             harmless(list)));
         keys.push_back(key);
-        begin = end + 1;
     }
     return keys;
 }

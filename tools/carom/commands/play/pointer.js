@@ -4,11 +4,6 @@ import {put} from "./place.js";
 import {change, takeBack} from "./shots.js";
 import {aimAt, nudge} from "./stroke.js";
 
-function placeOf({over, dense, projection}, event) {
-  const box = over.getBoundingClientRect();
-  return projection.table((event.clientX - box.left) * dense, (event.clientY - box.top) * dense);
-}
-
 /** Moves the held ball to the pointer, or aims there. Undo takes back a whole drag. */
 function follow(state) {
   const {held, pointed, scene} = state;
@@ -25,7 +20,7 @@ function press(state, event) {
   if (!state.aiming || event.button !== 0) return;
   view.over.setPointerCapture(event.pointerId);
   const at = view.ballAt(event), ball = at >= 0 ? state.ball(shot.balls[at]) : undefined;
-  const [x, y] = placeOf(view, event);
+  const [x, y] = view.placeAt(event);
   state.held = ball ? {id: ball.id, dx: ball.x - x, dy: ball.y - y, kept: false} : {id: null, kept: false};
   if (ball) {
     state.placed = ball.id;
@@ -42,7 +37,7 @@ function move(state, event) {
     view.over.style.cursor = clock.now > 0 ? "default" : view.ballAt(event) >= 0 ? "grab" : "crosshair";
     return;
   }
-  state.pointed = placeOf(view, event);
+  state.pointed = view.placeAt(event);
   if (state.asked) return;
   state.asked = true;
   requestAnimationFrame(() => follow(state));

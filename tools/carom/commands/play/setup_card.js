@@ -3,7 +3,7 @@
 import {make, select} from "../../page/dom.js";
 import {placeFields} from "./place.js";
 import {begin, change, setOrDrop} from "./shots.js";
-import {CLOTHS, CUSHIONS, startOf} from "./tables.js";
+import {CLOTHS, startOf} from "./tables.js";
 
 const MATERIAL = [["mu_s", "sliding friction", 0.01], ["mu_r", "rolling friction", 0.001],
   ["mu_b", "ball-ball friction", 0.01], ["e_b", "ball-ball restitution", 0.01],
@@ -30,8 +30,9 @@ export function setupCard(state) {
   const tables = page.tables.map((name) => [name, name.replaceAll("_", " ")]);
   const table = select("Table", tables, "nine_foot", (name) => begin(state, startOf(carom, "", name)));
   const cloth = select("Cloth", CLOTHS, "", (name) => setOrDrop(state, "table.cloth", name));
-  const cushions =
-    select("Cushion model", CUSHIONS, "", (name) => setOrDrop(state, "physics.cushion", name));
+  const models = page.keys.physics.cushion.enum.map((name) => [name, name]);
+  const cushions = select("Cushion model", [["", "as the balls"], ...models], "",
+    (name) => setOrDrop(state, "physics.cushion", name));
   const units = select("Units", [["metric", "metric"], ["inch", "inches, mph"]], state.units, (x) => {
     state.units = x;
     state.tell("stroke");

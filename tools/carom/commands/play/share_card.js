@@ -1,7 +1,7 @@
 // The scene as a file and as an address, the hash of the shot, and what else the page offers.
 
 import {button, make} from "../../page/dom.js";
-import {extras} from "./extras.js";
+import {dialog, extras} from "./extras.js";
 import {rangeOf} from "./scene_text.js";
 import {LONGEST_FRAGMENT, fragmentOf, sceneInFragment} from "./share.js";
 import {LIMITS, begin} from "./shots.js";
@@ -72,22 +72,20 @@ function fileDialog(state) {
       if (line > 0) showLine(area, line);
       return;
     }
-    dialog.close();
+    element.close();
     begin(state, area.value);
   };
   const file = make("input", {type: "file", accept: ".toml,text/plain",
     onchange: async () => { area.value = await file.files[0].text(); }});
-  const dialog = make("dialog", {"aria-label": "Scene file"}, make("h2", {}, "Scene file"), area, wrong,
-    make("div", {class: "bar"}, button("Use this scene", use, {disabled: state.fixed ? "" : null}),
-      button("Copy", () => copy(state, area.value)),
-      button("Every value", () => { area.value = state.scene.everything; }),
-      make("label", {class: "file"}, "Open … ", file), make("span", {class: "room"}),
-      button("Close", () => dialog.close())));
-  document.body.append(dialog);
+  const element = dialog("Scene file", [area, wrong],
+    button("Use this scene", use, {disabled: state.fixed ? "" : null}),
+    button("Copy", () => copy(state, area.value)),
+    button("Every value", () => { area.value = state.scene.everything; }),
+    make("label", {class: "file"}, "Open … ", file));
   return () => {
     area.value = state.scene.toml;
     wrong.textContent = "";
-    dialog.showModal();
+    element.showModal();
   };
 }
 

@@ -2,8 +2,6 @@
 
 export const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "tournament"],
   ["match_heated", "heated, match"]];
-export const CUSHIONS = [["", "as the balls"], ["han_2005", "han_2005"], ["mathavan_2010", "mathavan_2010"],
-  ["stronge", "stronge"], ["impulse", "impulse"], ["smooth", "smooth"]];
 export const GAMES = [["", "no rules"], ["eight_ball", "eight-ball"], ["nine_ball", "nine-ball"],
   ["three_cushion", "three-cushion"]];
 
