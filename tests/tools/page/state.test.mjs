@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {put, refusal} from "../../../tools/carom/commands/play/place.js";
-import {without} from "../../../tools/carom/commands/play/scene_text.js";
+import {rangeOf, sectionOf, without} from "../../../tools/carom/commands/play/scene_text.js";
 import {begin, change, takeBack} from "../../../tools/carom/commands/play/shots.js";
 import {aimAt, nudge, wrapped} from "../../../tools/carom/commands/play/stroke.js";
 import {reachable} from "../../../tools/carom/commands/play/tip.js";
@@ -92,8 +92,13 @@ test("a locked page says which keys are fixed", () => {
   assert.equal(put(state, "1", 0.5, 0.5), false);
 });
 
-test("a key is removed from its own section only", () => {
-  const toml = '[table]\ncloth = "club"\npreset = "x"\n[physics]\ncloth = "y"\ncushion_touch = "nose"\n';
-  assert.equal(without(toml, "table.cloth"), toml.replace('cloth = "club"\n', ""));
+test("keys of a scene file are those of its sections", () => {
+  const toml = '[table]\n  cloth = "club"\ncorners = [\n[0.5, 1],\n]\nwidth = 1 # m\n[physics]\ncloth = "y"\n' +
+    'cushion_touch = "nose"\n';
+  assert.equal(without(toml, "table.cloth"), toml.replace('  cloth = "club"\n', ""));
   assert.equal(without(toml, "physics.cushion"), toml);
+  assert.equal(without('table.cloth = "club"\n', "table.cloth"), "");
+  assert.deepEqual(sectionOf(toml, "table"), {cloth: '"club"', corners: "[", width: "1 # m"});
+  assert.deepEqual(sectionOf(toml, "balls"), {});
+  assert.equal(toml.slice(...rangeOf(toml, 6)), "width = 1 # m");
 });

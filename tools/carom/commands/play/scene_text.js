@@ -1,27 +1,25 @@
 // Lines of a scene file.
 
-/** The lines as {line, section, key, value}; key and value are undefined except in "key = value". */
+/** The lines as {line, name, value}; in "key = value", name is the section and the key. */
 function linesOf(toml) {
   let section = "";
   return toml.split("\n").map((line) => {
-    if (line.startsWith("[")) section = line.trim().replace(/^\[|\]$/g, "");
-    const [, key, value] = /^([\w.]+)\s*=\s*(.*)$/.exec(line) || [];
-    return {line, section, key, value};
+    const [, head] = /^\s*\[+([A-Za-z_][\w.]*)\]/.exec(line) || [];
+    if (head) section = `${head}.`;
+    const [, key, value] = /^\s*([\w.]+)\s*=\s*(.*)$/.exec(line) || [];
+    return {line, name: key && section + key, value};
   });
 }
 
 /** The values in one section of a scene file that carom wrote: {key: text}. */
 export function sectionOf(toml, section) {
-  const own = linesOf(toml).filter((line) => line.section === section && line.key !== undefined);
-  return Object.fromEntries(own.map(({key, value}) => [key, value]));
+  const own = linesOf(toml).filter(({name}) => name?.startsWith(`${section}.`));
+  return Object.fromEntries(own.map(({name, value}) => [name.slice(section.length + 1), value]));
 }
 
 /** The file without the line of "section.key". */
-export function without(toml, name) {
-  const [section, key] = name.split(".");
-  return linesOf(toml).filter((line) => !(line.section === section && line.key === key))
-    .map(({line}) => line).join("\n");
-}
+export const without = (toml, key) =>
+  linesOf(toml).filter(({name}) => name !== key).map(({line}) => line).join("\n");
 
 /** Where the n-th line begins and ends in a text, from 1. */
 export function rangeOf(text, n) {
