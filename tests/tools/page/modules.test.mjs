@@ -24,6 +24,11 @@ test("every imported name is exported on a line of its own", () => {
     }
 });
 
+test("no text spans lines, because pages leave out indentation", () => {
+  for (const file of files)
+    for (const line of text(file).split("\n")) assert.equal(line.split("`").length % 2, 1, `${file}: ${line}`);
+});
+
 test("modules have different names, and none needs itself", () => {
   const names = files.map((file) => path.basename(file));
   assert.equal(new Set(names).size, names.length);

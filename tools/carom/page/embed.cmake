@@ -3,7 +3,8 @@
 #
 # Scripts are ES modules, which node imports unchanged. A page that is opened from a file cannot load modules,
 # so each becomes a script that reads its imports from the object `modules` and puts its exports there, under
-# its file name without the folder. It has neither comments nor empty lines.
+# its file name without the folder. Comments, empty lines and indentation are left out, so no text between
+# backticks may span lines.
 include(${CMAKE_CURRENT_LIST_DIR}/../../../render/look.cmake)
 
 # The script of a module, and the file names of its imports as a list of C++ strings.
@@ -20,7 +21,7 @@ function(module_script name source script imports)
   string(REGEX REPLACE "\nimport ([^\"]+) from \"([^\"]+/)([A-Za-z_.]+)\";" "\nconst \\1 = modules[\"\\3\"];"
     source "\n${source}")
   string(REGEX REPLACE "(\n *|  )//[^\n]*|\n */[*]([^*]|[*][^/])*[*]/" "" source "${source}")
-  string(REGEX REPLACE "\n\n+" "\n" source "${source}")
+  string(REGEX REPLACE "\n[ \n]+" "\n" source "${source}")
   string(REPLACE "\nconst * as " "\nconst " source "${source}")
   string(REPLACE "\nexport " "\n" source "${source}")
   set(${script} "\"use strict\";\n(globalThis.modules ??= {})[\"${name}\"] = (() => {${source}

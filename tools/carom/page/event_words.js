@@ -21,7 +21,7 @@ export function described(record, e) {
   const detail = () => [words(e.method), e.steps > 0 ? `${e.steps} steps` : "",
     e.kernel_ns > 0 ? duration(e.kernel_ns) : ""].filter((x) => x).join(", ");
   return {words: [make("b", {}, words(e.type)), ` ${who}`,
-    record.profiled && e.method ? make("small", {}, detail()) : null].filter((x) => x),
+    record.profiled && e.method ? make("small", {}, detail()) : null],
   title: !record.profiled ? null : `detection ${duration(e.detect_ns)}, ` +
       `resolution ${duration(e.resolve_ns)} including kernel ${duration(e.kernel_ns)}`};
 }

@@ -18,6 +18,7 @@ export class Playback {
     this.now = Math.min(Math.max(t, 0), this.host.end());
     this.host.show(...about);
   }
+  refresh() { this.show(this.now); }
   /** Stops at an instant. */
   go(t, ...about) {
     this.run(false);
@@ -27,7 +28,7 @@ export class Playback {
     if (on === this.playing) return;
     this.playing = on;
     this.host.label();
-    if (!on) return this.show(this.now);
+    if (!on) return this.refresh();
     if (this.now >= this.host.end()) this.now = 0;
     this.host.starts?.();
     this.drawn = performance.now();
@@ -56,16 +57,16 @@ export class Playback {
   jump(direction) { this.go(this.eventTime(direction)); }
 }
 
-/** The buttons and the slider of a clock. `names`: of the buttons to the event before and to the next.
- * @param digits  of times in s */
+/** The buttons and the slider of a clock. `digits`: of times in s. `names`: of the buttons to the event
+ * before and to the next. */
 export class PlaybackBar {
-  constructor(clock, {digits, names, speedName}) {
+  constructor(clock, digits, names) {
     Object.assign(this, {clock, digits});
     this.time = make("output", {class: "clock"});
     this.scrub = make("input", {type: "range", min: "0", step: "any", class: "scrub",
       "aria-label": "Time in seconds", oninput: () => clock.go(Number(this.scrub.value))});
     this.play = iconButton(ICONS.play, "Play (space)", () => clock.run(!clock.playing));
-    this.speeds = select(speedName, SPEEDS.map((x) => [String(x), `${x} ×`]), "1",
+    this.speeds = select("Speed of playback", SPEEDS.map((x) => [String(x), `${x} ×`]), "1",
       (x) => { clock.speed = Number(x); });
     this.element = make("div", {class: "bar", role: "group", "aria-label": "Playback"},
       iconButton(ICONS.back, names[0], () => clock.jump(-1)), this.play,

@@ -39,15 +39,14 @@ class ShotPage {
   /** The table with the controls below it. */
   stage() {
     const {record, view, clock} = this, end = record.duration;
-    this.bar = new PlaybackBar(clock, {digits: 3, speedName: "Speed",
-      names: ["Previous event (arrow up)", "Next event (arrow down)"]});
+    this.bar = new PlaybackBar(clock, 3, ["Previous event (arrow up)", "Next event (arrow down)"]);
     this.trailBox = select("Trails",
       [["state", "trails: state"], ["ball", "trails: ball"], ["off", "no trails"]], this.trails,
-      (x) => { this.trails = x; this.refresh(); });
+      (x) => { this.trails = x; this.clock.refresh(); });
     const modes = this.second && select("Second shot",
       [["over", "second over"], ["beside", "second beside"], ["off", "second off"]], this.mode,
       (x) => { this.mode = x; this.lay(); });
-    this.bar.element.append(...[this.bar.speeds, this.trailBox, modes].filter((x) => x));
+    this.bar.element.append(this.bar.speeds, this.trailBox, modes || "");
     const ticks = record.events.map((e) => {
       const tick = make("i", {class: e.type.startsWith("ball_") ? "hit" : null});
       tick.style.left = `${end > 0 ? 100 * e.time / end : 0}%`;
@@ -62,8 +61,6 @@ class ShotPage {
         make("div", {class: "ticks", "aria-hidden": "true"}, ...ticks)), this.bar.element,
       make("p", {class: "keys"}, KEYS), this.spoken);
   }
-
-  refresh() { this.clock.show(this.clock.now); }
 
   /** Draws the instant; `event`: which event to mark, if several have this time. */
   draw(event = eventBefore(this.record.events, this.clock.now)) {
@@ -114,12 +111,12 @@ class ShotPage {
 
   mark(i) {
     this.marked = i;
-    this.refresh();
+    this.clock.refresh();
   }
   hover(i) {
     if (i === this.hovered) return;
     this.hovered = i;
-    if (!this.clock.playing) this.refresh();
+    if (!this.clock.playing) this.clock.refresh();
   }
 
   setSpeed(turn) {
@@ -134,7 +131,7 @@ class ShotPage {
       ArrowRight: () => clock.go(clock.now + FRAME), ArrowUp: () => clock.jump(-1),
       ArrowDown: () => clock.jump(1), Home: () => clock.go(0), End: () => clock.go(this.record.duration),
       "+": () => this.setSpeed(1), "-": () => this.setSpeed(-1), Escape: () => this.mark(-1),
-      d: () => { view.numbered = !view.numbered; this.refresh(); },
+      d: () => { view.numbered = !view.numbered; this.clock.refresh(); },
       t: () => { trailBox.selectedIndex = (trailBox.selectedIndex + 1) % 3; trailBox.onchange(); }};
     document.addEventListener("keydown", (event) => {
       const on = event.target, action = actions[event.key] || actions[event.key.toLowerCase()];
@@ -166,7 +163,7 @@ class ShotPage {
     if (beside) beside.element.hidden = !both;
     view.fit(width, room);
     if (both) beside.fit(width, room);
-    this.refresh();
+    this.clock.refresh();
   }
 }
 

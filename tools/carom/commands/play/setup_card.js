@@ -26,7 +26,7 @@ function materialFields(state) {
 }
 
 export function setupCard(state) {
-  const {page, carom} = state, refresh = () => state.clock.show(state.clock.now);
+  const {page, carom} = state;
   const tables = page.tables.map((name) => [name, name.replaceAll("_", " ")]);
   const table = select("Table", tables, "nine_foot", (name) => begin(state, startOf(carom, "", name)));
   const cloth = select("Cloth", CLOTHS, "", (name) => setOrDrop(state, "table.cloth", name));
@@ -40,7 +40,7 @@ export function setupCard(state) {
   });
   const numbers = make("input", {type: "checkbox", onchange: () => {
     state.numbered = state.view.numbered = numbers.checked;
-    refresh();
+    state.clock.refresh();
   }});
   table.disabled = state.fixed || state.locked("table");
   cloth.disabled = cushions.disabled = state.locked("table");

@@ -55,20 +55,19 @@ function lay(state, box) {
   const beside = matchMedia("(max-height: 520px) and (orientation: landscape)").matches;
   const rest = beside ? 92 : window.innerWidth > 900 ? 240 : 200;
   state.view.fit(Math.max(box.clientWidth, 200), Math.max(window.innerHeight - rest, beside ? 180 : 260));
-  state.clock.show(state.clock.now);
+  state.clock.refresh();
 }
 
 /** The bar below the table. */
 function playbackBar(state) {
   const {clock} = state;
-  const bar = new PlaybackBar(clock, {digits: 2, speedName: "Speed of playback",
-    names: ["Previous event", "Next event"]});
+  const bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
   bar.play.className = "shoot";
   const back = button("Back to aiming", () => clock.go(0)), next = button("Next shot", () => nextShot(state));
   const undo = button("Undo", () => takeBack(state));
   bar.element.append(back, next, undo, bar.speeds, select("Predicted paths",
     [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths,
-    (x) => { state.paths = x; clock.show(clock.now); }));
+    (x) => { state.paths = x; clock.refresh(); }));
   const label = () => {
     const name = clock.playing ? "Pause" : clock.now === 0 ? "Shoot" : "Play";
     bar.label(name, name === "Shoot" ? name : "");
