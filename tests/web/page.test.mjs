@@ -264,7 +264,7 @@ test("a thousand damaged addresses: refused or played, no script, no hang", skip
         continue;
       }
       try {
-        const found = await sceneInFragment(damaged);
+        const found = await modules["share.js"].sceneInFragment(damaged);
         if (found !== null) caromPlay.begin(found.toml);
         ++played;
       } catch (error) {

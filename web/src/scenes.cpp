@@ -17,8 +17,6 @@
 namespace carom::web {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// Replaces the value of a key, or adds it.
 void keep(std::vector<NewValue>& changed, const NewValue& value) {
     const auto same = std::find_if(changed.begin(), changed.end(),
@@ -137,20 +135,13 @@ Json look(const Scene& scene) {
             {"styles", tools::ball_styles(ids, scene.table.preset)}};
 }
 
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
-}  // namespace carom::web
-
-using carom::web::WebScene;
 
 CAROM_WEB int carom_scene_parse(const char* text, std::size_t size, const char* name, std::size_t name_size) {
-    return carom::web::guarded([&] {
+    return guarded([&] {
         const std::string source(text, size);
         const std::string file(name, name_size);
-        carom::web::give(new WebScene{carom::parse_scene(source, file), source, {}}, "");
+        give(new WebScene{parse_scene(source, file), source, {}}, "");
     });
 }
 CAROM_WEB void carom_free_scene(WebScene* scene) {
@@ -158,23 +149,23 @@ CAROM_WEB void carom_free_scene(WebScene* scene) {
 }
 /// @param changes JSON: an object of keys with dots, and their values
 CAROM_WEB int carom_scene_change(const WebScene* scene, const char* changes, std::size_t size) {
-    return carom::web::guarded([&] {
-        const auto json = carom::web::Json::parse(carom::web::text_at(changes, size));
-        carom::web::give(new WebScene(carom::web::changed(*scene, json)), "");
+    return guarded([&] {
+        const auto json = Json::parse(text_at(changes, size));
+        give(new WebScene(changed(*scene, json)), "");
     });
 }
 CAROM_WEB int carom_scene_source(const WebScene* scene) {
-    return carom::web::guarded([&] { carom::web::give(nullptr, carom::web::source_of(*scene)); });
+    return guarded([&] { give(nullptr, source_of(*scene)); });
 }
 /// Every value written out, and every ball placed on its own.
 CAROM_WEB int carom_scene_text(const WebScene* scene) {
-    return carom::web::guarded([&] { carom::web::give(nullptr, carom::scene_text(scene->scene)); });
+    return guarded([&] { give(nullptr, scene_text(scene->scene)); });
 }
 CAROM_WEB int carom_scene_describe(const WebScene* scene) {
-    return carom::web::guarded(
-        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::described(scene->scene))); });
+    return guarded([&] { give(nullptr, dumped(described(scene->scene))); });
 }
 CAROM_WEB int carom_scene_look(const WebScene* scene) {
-    return carom::web::guarded(
-        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::look(scene->scene))); });
+    return guarded([&] { give(nullptr, dumped(look(scene->scene))); });
 }
+
+}  // namespace carom::web

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -51,6 +52,9 @@ class TooLong : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
+
+using Json = nlohmann::ordered_json;
+std::string dumped(const Json& json);
 
 void give(void* handle, std::string text);
 /// Describes the exception that is being handled. @returns 1

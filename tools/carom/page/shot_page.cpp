@@ -49,8 +49,7 @@ std::string shot_page(const Record& record, const Record* second, const nlohmann
         data.push_back({"second", record_json(*second)});
     }
     data.push_back({"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)});
-    return page_html(texts.title, {"dom.js", "motion.js", "look.js", "stage.js", "chart.js", "shot.js"},
-                     data);
+    return page_html(texts.title, "shot.js", data);
 }
 
 }  // namespace carom::tools

@@ -3,15 +3,11 @@ import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import * as path from "node:path";
 import {test} from "node:test";
-import vm from "node:vm";
 import {fileURLToPath} from "node:url";
+import {fragmentOf, sceneInFragment} from "../../../tools/carom/commands/play/share.js";
 
-const SOURCE = fileURLToPath(new URL("../..", import.meta.url));
-const sceneText = (name) => readFileSync(path.join(SOURCE, "scenes", name), "utf8");
-
-const code = readFileSync(path.join(SOURCE, "tools/carom/commands/play/share.js"), "utf8");
-const {fragmentOf, sceneInFragment} = vm.runInThisContext(
-  `(() => {${code}; return {fragmentOf, sceneInFragment}; })()`);
+const SCENES = fileURLToPath(new URL("../../../scenes", import.meta.url));
+const sceneText = (name) => readFileSync(path.join(SCENES, name), "utf8");
 const HASH = "0123456789abcdef";
 
 test("a scene comes back as it was", async () => {
