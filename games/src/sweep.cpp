@@ -1,7 +1,13 @@
 #include "carom/games/sweep.h"
 
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace carom::games {
 namespace {
@@ -62,11 +68,13 @@ SweptShots Sweep::play(std::uint64_t first, std::size_t count, kernel::Isa isa, 
         first, count, out, {}, std::vector<MeasureValue>(count * measures), std::vector<std::string>(count)};
     if (measures > 0)
         options.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
-            for (std::size_t m = 0; m < measures; ++m) try {
+            for (std::size_t m = 0; m < measures; ++m) {
+                try {
                     shots.measured[shot * measures + m] = measures_[m].in_table(record);
                 } catch (const std::invalid_argument& refused) {
                     throw MeasureError(measures_[m].text() + ": " + refused.what());
                 }
+            }
         };
     options.done = [&](std::size_t shot, const std::string& message) {
         shots.messages[shot] = message;

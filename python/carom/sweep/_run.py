@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import functools
 import itertools
@@ -10,7 +11,7 @@ import os
 import queue
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
-from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -59,21 +60,18 @@ class _Count:
 
     def __init__(self, shards: int, tell: Callable[[Progress], None] | None) -> None:
         self.tell, self.start = tell, time.perf_counter()
-        self.now = Progress(shards, 0, 0, 0, 0.0, {})
+        self.progress = Progress(shards, 0, 0, 0, 0.0, {})
 
     def add(self, outcomes: dict[str, int], played: bool) -> None:
-        rows, now = sum(outcomes.values()), self.now
-        names = now.outcomes | outcomes
-        whole = {name: now.outcomes.get(name, 0) + outcomes.get(name, 0) for name in names}
-        played_rows = now.played + rows * played
-        self.now = now._replace(done=now.done + 1, rows=now.rows + rows, played=played_rows, outcomes=whole)
-
-    def progress(self) -> Progress:
-        return self.now._replace(seconds=time.perf_counter() - self.start)
+        rows, now = sum(outcomes.values()), self.progress
+        self.progress = now._replace(
+            done=now.done + 1, rows=now.rows + rows, played=now.played + rows * played,
+            seconds=time.perf_counter() - self.start,
+            outcomes=dict(collections.Counter(now.outcomes) + collections.Counter(outcomes)))
 
     def show(self) -> None:
         if self.tell is not None:
-            self.tell(self.progress())
+            self.tell(self.progress)
 
 
 class _Threads:
@@ -134,16 +132,15 @@ class _Tasks:
                 continue
             try:
                 return shard, future.result()
-            except (BrokenExecutor, CancelledError) as error:
-                what = f"its worker or the scheduler has gone ({type(error).__name__})"
-                raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
             except Exception as error:
-                if type(error).__name__ in ("CancelledError", "FutureCancelledError"):
-                    what = "the scheduler has gone"
+                kind = type(error).__name__
+                # Dask has errors of its own with these names.
+                if isinstance(error, BrokenExecutor) or kind in ("CancelledError", "FutureCancelledError"):
+                    what = f"its worker or the scheduler has gone ({kind})"
                     raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
                 # Dask gives up a task whose workers have died several times, which may be the machines'
                 # fault.
-                if type(error).__name__ != "KilledWorker" or self.left == 0:
+                if kind != "KilledWorker" or self.left == 0:
                     raise
                 self.left -= 1
                 self.begin(shard)
@@ -247,7 +244,7 @@ def run(
         for result in results:
             count.add(result["outcomes"], result["played"])
             count.show()
-    return count.progress()
+    return count.progress
 
 
 def _reduced(

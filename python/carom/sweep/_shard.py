@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import _carom
 from carom._arguments import checked
 from carom._files import whole_file
 from carom.sweep._columns import NEVER, OUTCOMES, Column, Played, arrow, arrow_schema, provenance
