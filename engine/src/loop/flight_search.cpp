@@ -53,7 +53,7 @@ double time_over_jaw(const Path& path, const Vec2& center, double radius) {
 bool Detector::over_pocket(const Vec2& here) const {
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     return std::any_of(pockets.begin(), pockets.end(),
-                       [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
+                       [&here](const Pocket& p) { return is_inside(p, here); });
 }
 
 // A flying ball meets noses at their height. Once over them it is out, and it meets a pocket only at its far

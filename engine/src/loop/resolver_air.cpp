@@ -129,7 +129,7 @@ void Resolver::land(int ball) {
     r.z() = motion.R;
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     for (std::size_t k = 0; k < pockets.size(); ++k) {
-        if (!(length(planar(r) - pockets[k].center) < pockets[k].radius)) continue;
+        if (!is_inside(pockets[k], planar(r))) continue;
         log_.fall(ball, static_cast<int>(k));
         return;
     }

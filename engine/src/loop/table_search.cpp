@@ -14,10 +14,6 @@ Box around(const Vec2& center, double reach) {
     return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
 }
 
-bool is_inside(const Segment& s, const Pocket& pocket) {
-    return length(Vec2(s.r.x(), s.r.y()) - pocket.center) < pocket.radius;
-}
-
 /// Whether all parts are in the same positions.
 bool same_places(const Geometry& a, const Geometry& b) {
     const auto same = [](const auto& x, const auto& y, auto equal) {
@@ -86,7 +82,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);
-            if (contact.with == With::kPocket && is_inside(s, plan_.geometry.pockets[contact.other]))
+            if (contact.with == With::kPocket &&
+                is_inside(plan_.geometry.pockets[contact.other], planar(s.r)))
                 first = {s.start, contact};
         }
         return;

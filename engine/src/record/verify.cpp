@@ -8,6 +8,7 @@
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 #include "record/gaps.h"
 #include "record/verify_between.h"
@@ -208,9 +209,8 @@ class Checker {
             const double m1 = mass(record_, e.a), m2 = mass(record_, e.b);
             const Vec3 w1 = spin_at(*before1, e.time - before1->start, R1),
                        w2 = spin_at(*before2, e.time - before2->start, R2);
-            Vec3 n3 = after2->r - after1->r;
-            if (!free) n3.z() = 0.0;
-            n3.normalize();
+            const BallAt<Vec3> ball1{after1->r, v1, R1}, ball2{after2->r, v2, R2};
+            const Vec3 n3 = (free ? touch_ball(ball1, ball2) : touch_level(ball1, ball2, true)).n;
             // Two radii on the cloth touch along a tilted line.
             const double S = free || record_.balls.discs() ? 0.0 : (R2 - R1) / (R1 + R2),
                          C = std::sqrt(1.0 - S * S);

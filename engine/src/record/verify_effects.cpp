@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/detect.h"
+#include "contact/pocket_edge.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
 
@@ -97,8 +98,7 @@ class Skipped {
 
     void check_pocket(const Path& path) {
         for (const Pocket& p : plan_.scene.table.pockets) {
-            const bool inside = length(path.r - p.center) < p.radius;
-            if (inside || time_to_pocket(path, p.center, p.radius) < kNever)
+            if (is_inside(p, path.r) || time_to_pocket(path, p.center, p.radius) < kNever)
                 need("pockets", "enters pocket " + p.id);
         }
     }
