@@ -149,7 +149,7 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const Ball& b
     result.status = kernel::ImpactStatus::kOk;
 }
 
-namespace {
+namespace effects {
 
 /// The friction between two balls on the cloth, at their slip. The line of centres of unlike balls is tilted.
 [[gnu::noinline]] double pair_friction(const Falling& friction, double R1, double R2, const Vec2& apart,
@@ -164,6 +164,10 @@ namespace {
     const double upward = R1 * (x.x() * w.x() + x.y() * w.y()) - S * dot(y, planar(v));
     return friction(length(Vec2(along, upward)));
 }
+
+}  // namespace effects
+
+namespace {
 
 Ball kernel_ball(const Vec3& r, const Velocities& at) {
     return {{r.x(), r.y(), r.z()}, {at.v.x(), at.v.y(), at.v.z()}, {at.w.x(), at.w.y(), at.w.z()}};
