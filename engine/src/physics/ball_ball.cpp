@@ -192,9 +192,9 @@ ImpactParams PairLaw::params(const BallSize& size1, const BallSize& size2, doubl
 PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& size2, const Vec3& r1,
                    const Vec3& r2, Velocities& ball1, Velocities& ball2) {
     const Falling friction = law.model.friction(law.balls);
-    const double mu_b = friction.any()
-                            ? pair_friction(friction, size1.R, size2.R, planar(r2) - planar(r1), ball1, ball2)
-                            : 0.0;
+    const double mu_b = friction.any() ? effects::pair_friction(friction, size1.R, size2.R,
+                                                                planar(r2) - planar(r1), ball1, ball2)
+                                       : 0.0;
     const ImpactParams params = law.params(size1, size2, mu_b);
     const Ball one = kernel_ball(r1, ball1), two = kernel_ball(r2, ball2);
     const bool integrated =
