@@ -149,7 +149,7 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const Ball& b
     result.status = kernel::ImpactStatus::kOk;
 }
 
-namespace {
+namespace effects {
 
 /// The friction between two balls on the cloth, at their slip. The line of centres of unlike balls is tilted.
 [[gnu::noinline]] double pair_friction(const Falling& friction, double R1, double R2, const Vec2& apart,
@@ -164,6 +164,10 @@ namespace {
     const double upward = R1 * (x.x() * w.x() + x.y() * w.y()) - S * dot(y, planar(v));
     return friction(length(Vec2(along, upward)));
 }
+
+}  // namespace effects
+
+namespace {
 
 Ball kernel_ball(const Vec3& r, const Velocities& at) {
     return {{r.x(), r.y(), r.z()}, {at.v.x(), at.v.y(), at.v.z()}, {at.w.x(), at.w.y(), at.w.z()}};
@@ -188,9 +192,9 @@ ImpactParams PairLaw::params(const BallSize& size1, const BallSize& size2, doubl
 PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& size2, const Vec3& r1,
                    const Vec3& r2, Velocities& ball1, Velocities& ball2) {
     const Falling friction = law.model.friction(law.balls);
-    const double mu_b = friction.any()
-                            ? pair_friction(friction, size1.R, size2.R, planar(r2) - planar(r1), ball1, ball2)
-                            : 0.0;
+    const double mu_b = friction.any() ? effects::pair_friction(friction, size1.R, size2.R,
+                                                                planar(r2) - planar(r1), ball1, ball2)
+                                       : 0.0;
     const ImpactParams params = law.params(size1, size2, mu_b);
     const Ball one = kernel_ball(r1, ball1), two = kernel_ball(r2, ball2);
     const bool integrated =
