@@ -18,7 +18,7 @@ games::State state_at(const char* text, std::size_t size) {
 }
 
 games::Call call_at(const char* text, std::size_t size) {
-    const Json json = Json::parse(text_at(text, size));
+    const Json json = Json::parse(text, text + size);
     return {json.value("ball", ""), json.value("pocket", ""), json.value("safety", false),
             json.value("pushOut", false)};
 }

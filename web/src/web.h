@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -69,10 +68,6 @@ int guarded(Work&& work) noexcept {
     } catch (...) {
         return give_error();
     }
-}
-
-inline std::string_view text_at(const char* text, std::size_t size) {
-    return {text, size};
 }
 
 }  // namespace carom::web

@@ -26,7 +26,8 @@ test("every imported name is exported on a line of its own", () => {
 
 test("no text spans lines, because pages leave out indentation", () => {
   for (const file of files)
-    for (const line of text(file).split("\n")) assert.equal(line.split("`").length % 2, 1, `${file}: ${line}`);
+    for (const line of text(file).split("\n"))
+      assert.equal(line.split("`").length % 2, 1, `${file}: ${line}`);
 });
 
 test("modules have different names, and none needs itself", () => {

@@ -56,29 +56,24 @@ std::string policy_hash(const PageFile& file) {
     return fmt::format(" 'sha256-{}'", base64(file.sha256));
 }
 
-std::string as_html(const std::string& text) {
+std::string replaced(const std::string& text, char what, std::string_view with) {
     std::string out;
     for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
+        if (c == what)
+            out += with;
         else
             out += c;
     }
     return out;
 }
 
+std::string as_html(const std::string& text) {
+    return replaced(replaced(text, '&', "&amp;"), '<', "&lt;");
+}
+
 /// JSON whose texts cannot end the element: "<" occurs only in strings, where it may be escaped.
 std::string inlined(const std::string& json) {
-    std::string out;
-    for (const char c : json) {
-        if (c == '<')
-            out += "\\u003c";
-        else
-            out += c;
-    }
-    return out;
+    return replaced(json, '<', "\\u003c");
 }
 
 }  // namespace
