@@ -206,9 +206,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
-        return in_space_ || unlike_
-                   ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
-                   : map_.compliant(members_, contacts_, settings, v_n);
+        return in_space_ || unlike_ ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
+                                    : map_.compliant(members_, contacts_, settings, v_n);
     };
     std::int64_t steps = run();
     if (steps >= 0 && closes_still(v_n)) {
