@@ -50,6 +50,7 @@ TEST(Solve, FindsAPotFromAnyDirection) {
 TEST(Solve, HitAimsAtItsBall) {
     const Scene scene = scene_named("draw");
     SolveOptions options = small();
+    options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
     options.hand = {0.0, 0.0, 0.0, 0.0};
     const Solution full =
@@ -94,6 +95,7 @@ TEST(Solve, LayoutsOfUnlikeBalls) {
     wanted.radius_sd = 1e-4;
     const games::BreakSearch asked = games::break_search(wanted, kernel::best_isa());
     SolveOptions options = small();
+    options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
     options.hand = {0.0, 0.0, 0.0, 0.0};
     options.layouts = asked.layouts;
