@@ -82,7 +82,6 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
         for (const std::string& other : seen) EXPECT_TRUE(with != other) << layer;
         seen.push_back(with);
     }
-    EXPECT_TRUE(picture({"--trails"}, at) == seen[1]);
     expect_refused(2, "--overlay: ", {"--overlay", "trails,shadow"});
 }
 

@@ -315,7 +315,7 @@ void write_record(const Record& record, const std::string& path);
 /// The text that write_record writes. @throws std::runtime_error as write_record does, except for the file
 std::string record_json(const Record& record);
 
-/// Reads what write_record wrote, in this version or in version 1 (docs/reference/record_format.md). `notes`
+/// Reads what write_record wrote, in this version of the format (docs/reference/record_format.md). `notes`
 /// receives a sentence for everything that the file lacks or that this version does not know. @throws
 /// SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);

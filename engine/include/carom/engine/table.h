@@ -33,8 +33,7 @@ inline constexpr Field<Cushion> kCushionFields[] = {
     field<&Cushion::to>("to", kCoordinate, "the other end", {.shape = "[x, y]", .needed = true}),
     field<&Cushion::height>("height", kNoseHeight, "of the nose above the cloth",
                             {.standard = "1.28 x ball radius"}),
-    field<&Cushion::name>("name", "for people, such as: left rail, head half",
-                          {.files = Files::kRecord, .since = 2}),
+    field<&Cushion::name>("name", "for people, such as: left rail, head half", {.files = Files::kRecord}),
 };
 
 /// A rounded jaw: a full circle. A ball touches it at centre distance R + radius. Or an arc: a round wall,
@@ -60,15 +59,15 @@ inline constexpr Field<Jaw> kJawFields[] = {
                         {.needed = true}),
     field<&Jaw::height>("height", kNoseHeight, "of the nose above the cloth",
                         {.standard = "1.28 x ball radius"}),
-    field<&Jaw::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+    field<&Jaw::name>("name", "for people", {.files = Files::kRecord}),
     field<&Jaw::side>("side", "of an arc's circle, on which the balls are: `inside` for a round table",
-                      {.since = 2, .later = true, .standard = "inside", .names = kArcSides}),
+                      {.later = true, .standard = "inside", .names = kArcSides}),
     field<&Jaw::from_deg>("from_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                           "of an arc: direction from the centre to its first end; 0 is +x",
-                          {.since = 2, .later = true, .standard = "0"}),
+                          {.later = true, .standard = "0"}),
     field<&Jaw::to_deg>("to_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                         "of an arc: to its other end, counter-clockwise; 360 more is the full circle",
-                        {.since = 2, .later = true, .standard = "`from_deg` + 360"}),
+                        {.later = true, .standard = "`from_deg` + 360"}),
 };
 
 /// A ball whose centre crosses the circle falls (docs/reference/physics.md, "Pockets").
@@ -87,7 +86,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
                            "a ball whose centre crosses this circle falls", {.needed = true}),
     field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
                           {.files = Files::kRecord}),
-    field<&Pocket::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+    field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
 
 /// Measures of the pockets at the corners, or at the sides, that replace those of a preset.
@@ -183,7 +182,7 @@ inline constexpr Field<Table> kTableFields[] = {
     field<&Table::bed>(
         "bed", kCoordinate,
         "two corners of the playing surface: a ball in the air is out when it leaves this rectangle",
-        {.shape = "[x0, y0, x1, y1]", .since = 2, .later = true, .standard = "behind any cushion"}),
+        {.shape = "[x0, y0, x1, y1]", .later = true, .standard = "behind any cushion"}),
 };
 
 /// Foot spot, the default position of racks: (w/2, 3l/4) from the table's corner.
