@@ -56,8 +56,7 @@ std::string method_of(const std::string& rack) {
 /// Speed that the ball gets from one metre per second of the cue, hit in its centre.
 double ball_speed(const Scene& scene, kernel::Isa isa) {
     Scene alone = scene;
-    for (const BallStart& ball : scene.ball)
-        if (ball.id == scene.cue->ball) alone.ball = {ball};
+    alone.ball = {scene.ball[index_of(scene.ball, scene.cue->ball)]};
     alone.cue->speed = 1.0;
     alone.cue->side = alone.cue->height = 0.0;
     alone.stop.events = 1;

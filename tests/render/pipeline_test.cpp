@@ -116,21 +116,12 @@ TEST(Pipeline, RawFramesComeInOrderWithTheSamePixels) {
     EXPECT_EQ(folder.entries(), 31U);
 }
 
-TEST(Pipeline, BothWritersGiveTheSamePixels) {
-    const ScratchFolder folder("writers");
-    SequenceOptions options = options_for(folder.file("a%02d.png"));
-    const std::vector<FrameTiming> changes = render_sequence(rolling_ball(), options);
-    options.pattern = folder.file("b%02d.png");
-    options.libpng = true;
-    const std::vector<FrameTiming> whole = render_sequence(rolling_ball(), options);
-    for (long k = 0; k < static_cast<long>(whole.size()); ++k) {
-        EXPECT_TRUE(same_pixels(render_test::read_png(frame_path(folder.file("a%02d.png"), k)),
-                                render_test::read_png(frame_path(options.pattern, k))))
-            << k;
-        EXPECT_EQ(whole[static_cast<std::size_t>(k)].encoded_share, 1.0);
-    }
-    EXPECT_GT(changes.back().encoded_share, 0.0);
-    EXPECT_LT(changes.back().encoded_share, 0.5);
+TEST(Pipeline, OnlyWhatChangedIsEncoded) {
+    const ScratchFolder folder("changes");
+    const std::vector<FrameTiming> frames =
+        render_sequence(rolling_ball(), options_for(folder.file("a%02d.png")));
+    EXPECT_GT(frames.back().encoded_share, 0.0);
+    EXPECT_LT(frames.back().encoded_share, 0.5);
 }
 
 // Threads, their number and earlier contents of an encoder change no byte.

@@ -48,7 +48,7 @@ TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
         {{"render", scene, "--frame", "1000000"}, "--frame 1000000: the last frame is"},
         {{"render", scene, "--at", "1", "--to", "2"}, "--at shows one instant"},
         {{"render", scene, "--png-level", "1"}, "--png-level"},
-        {{"render", scene, "--png-writer", "paint"}, "paint"},
+        {{"render", scene, "--png-writer", "libpng"}, "--png-writer"},
         {{"render", scene, "--raw", "--y4m"}, "--raw"},
         {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m cannot be combined"},
         {{"render", scene, "--camera", "from the moon"}, "from the moon"},

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "browser.h"
 #include "carom/engine/record.h"
+#include "carom/kernel/splitmix64.h"
 #include "carom/render/draw_list.h"
 #include "cli.h"
 

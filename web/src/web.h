@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -53,6 +54,8 @@ class TooLong : public std::runtime_error {
 };
 
 void give(void* handle, std::string text);
+/// Bytes that are not UTF-8 become the replacement character.
+std::string dumped(const nlohmann::ordered_json& json);
 /// Describes the exception that is being handled. @returns 1
 int give_error() noexcept;
 

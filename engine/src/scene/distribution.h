@@ -10,8 +10,8 @@
 #include <utility>
 #include <variant>
 
-#include "base/splitmix64.h"
 #include "carom/engine/variation.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::detail {
 

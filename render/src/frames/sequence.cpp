@@ -312,7 +312,7 @@ void render_sheet(const Record& record, const SequenceOptions& options, int colu
         if (options.progress) options.progress(i + 1, last + 1);
     }
     std::vector<std::uint8_t> bytes;
-    options.libpng ? encode_png(sheet, kFrameLevel, bytes) : KeptPng().encode(sheet, bytes);
+    KeptPng().encode(sheet, bytes);
     write_file(path, bytes);
 }
 

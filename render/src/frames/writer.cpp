@@ -28,13 +28,8 @@ const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image, const s
         share_ = rgb_.share();
         return bytes;
     }
-    if (options_.libpng) {
-        encode_png(image.image(), kFrameLevel, bytes_);
-        share_ = 1.0;
-    } else {
-        png_.encode(image, bytes_);
-        share_ = png_.share();
-    }
+    png_.encode(image, bytes_);
+    share_ = png_.share();
     if (!mark.empty()) add_mark(bytes_, mark);
     return bytes_;
 }

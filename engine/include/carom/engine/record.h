@@ -302,6 +302,9 @@ inline double until_floor(const Segment& s, double R, double gravity) {
     return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
 }
 
+/// Whether a record may be of this scene: it has the same balls in the same order.
+bool same_balls(const Scene& scene, const Record& record);
+
 /// The scene for the next shot: that of the record with every ball as it is at the end, without the balls in
 /// pockets and without a cue. The caller chooses the ball to strike, and puts fallen balls back. A ball that
 /// is still falling starts its fall again. The result may need other [effects].

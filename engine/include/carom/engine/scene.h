@@ -525,6 +525,9 @@ std::string read_scene_text(const std::string& path);
 /// The same from text; messages call the file `name`.
 Scene parse_scene(std::string_view text, const std::string& name);
 
+/// The [cue] of such a text, aimed at the balls of `scene`. @throws SceneError
+Cue parse_cue(std::string_view text, const Scene& scene);
+
 /// A scene as the text of a scene file, every value written out: parse_scene reads the same scene back.
 /// Racked balls are placed one by one; names for people and depths of pockets are left out.
 std::string scene_text(const Scene& scene);

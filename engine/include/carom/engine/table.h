@@ -3,8 +3,11 @@
 // Frame: right-handed, z up, x along the short side, y along the long side, origin where two nose lines meet.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/field.h"
@@ -185,7 +188,33 @@ inline constexpr Field<Table> kTableFields[] = {
         {.shape = "[x0, y0, x1, y1]", .later = true, .standard = "behind any cushion"}),
 };
 
-/// Foot spot, the default position of racks: (w/2, 3l/4) from the table's corner.
+/// Index of the ball, pocket, ... with this id, or -1.
+template <class Part>
+int index_of(const std::vector<Part>& list, std::string_view id) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].id == id) return static_cast<int>(i);
+    return -1;
+}
+template <class Part>
+std::vector<std::string> ids_of(const std::vector<Part>& list) {
+    std::vector<std::string> ids;
+    for (const Part& part : list) ids.push_back(part.id);
+    return ids;
+}
+
+/// A place on the long axis or beside it [m], from the table's corner of smallest y.
+Vec2 spot_on_axis(const Table& table, double y, double aside = 0.0);
+/// Spots on the long axis: the head string, the centre and the foot string, at a quarter, a half and three
+/// quarters of the length. Racks are at the foot spot by default.
+Vec2 head_spot(const Table& table);
+Vec2 center_spot(const Table& table);
 Vec2 foot_spot(const Table& table);
+/// The colours of snooker, from the highest value, 7, down to 2.
+inline constexpr std::array<std::string_view, 6> kColours = {"black", "pink",  "blue",
+                                                             "brown", "green", "yellow"};
+/// The spot of a snooker colour. @throws std::invalid_argument for another id
+Vec2 snooker_spot(const Table& table, std::string_view colour);
+/// The radius of the D [m], whose centre is the spot of the brown.
+double radius_of_d(const Table& table);
 
 }  // namespace carom

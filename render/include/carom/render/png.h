@@ -9,11 +9,9 @@
 
 namespace carom::render {
 
-/// zlib level of frames: higher levels take far longer and save little.
-inline constexpr int kFrameLevel = 1;
-
-/// Encodes a whole picture with libpng, as 8-bit RGB without row filters. kept_png.h is many times faster.
-/// level: of zlib, 0..9. `bytes` is overwritten and its memory is reused. @throws RenderError
+/// Encodes a whole picture with libpng, as 8-bit RGB without row filters. Frames are encoded by kept_png.h,
+/// many times faster; this makes smaller files. level: of zlib, 0..9. `bytes` is overwritten and its memory
+/// is reused. @throws RenderError
 void encode_png(const Image& image, int level, std::vector<std::uint8_t>& bytes);
 
 /// Writes to a temporary name in the same folder, then renames it to `path`. After a failure no file is left.

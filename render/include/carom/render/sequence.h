@@ -48,8 +48,6 @@ struct SequenceOptions {
     /// Samples per pixel of the table, which is drawn once per camera, as in StageOptions; not used if the
     /// camera moves
     int table_samples = 16;
-    /// Encode every frame as a whole with libpng. Default: only what changed is encoded (kept_png.h)
-    bool libpng = false;
     Backend backend = Backend::kAuto;
     /// Number of threads that encode and write. 1: everything runs on the
     /// calling thread, so that the timings do not disturb each other. 0: one

@@ -33,7 +33,6 @@ struct RenderArgs {
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
     std::string gl = "auto";
-    std::string png_writer = "changes";
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
     std::string ball;         ///< ball for camera "follow"; empty: the first that moves
     std::string overlay;      ///< list of names
@@ -90,8 +89,6 @@ void check_args(const RenderArgs& args) {
         if (args.resume) throw UsageError(what + ": a film cannot be resumed; leave out --resume");
         if (args.frame || args.at)
             throw UsageError(what + ": a film needs more than one frame; use --from and --to");
-        if (args.png_writer != "changes")
-            throw UsageError(what + ": --png-writer applies only to PNG files; leave it out");
         require_ffmpeg(args.pattern);
         return;
     }
@@ -170,7 +167,6 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     options.frame = args.frame;
     options.size = args.size.empty() ? settings.size() : parse_size(args.size);
     set_view(args, settings, options);
-    options.libpng = args.png_writer == "libpng";
     options.jobs = args.jobs;
     options.resume = args.resume;
     if (args.raw || args.y4m) {
@@ -334,11 +330,6 @@ void add_render(Options& program) {
         "--y4m", args.y4m,
         "Write a Y4M stream (4:2:0) to standard output instead: half the bytes of --raw (default: off)");
     add_gl(command, args.gl);
-    command
-        .option(
-            "--png-writer", &args.png_writer, "NAME",
-            "changes: encode only what changed since the previous frame; libpng: encode every frame whole")
-        .one_of({"changes", "libpng"});
 }
 
 }  // namespace carom::tools
