@@ -64,7 +64,7 @@ games::BreakSearch read_break(const BreakArgs& args) {
     games::BreakOptions options = args.wanted;
     options.seed = args.search.seed;
     try {
-        return games::break_search(options, chosen_isa());
+        return games::break_search(options);
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
     }
