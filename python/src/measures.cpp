@@ -174,7 +174,7 @@ std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRo
     games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
-        search = games::break_search(wanted, chosen_isa());
+        search = games::break_search(wanted);
     } catch (const std::invalid_argument& error) {
         throw nb::value_error(error.what());
     }

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/engine_cases.h"
 #include "support/pages.h"
 #include "support/random_scenes.h"

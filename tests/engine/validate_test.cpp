@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/files.h"
 
 namespace carom::test {

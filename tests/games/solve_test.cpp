@@ -93,7 +93,7 @@ TEST(Solve, AMapShowsTheInputThatMustBeMet) {
 TEST(Solve, LayoutsOfUnlikeBalls) {
     games::BreakOptions wanted;
     wanted.radius_sd = 1e-4;
-    const games::BreakSearch asked = games::break_search(wanted, kernel::best_isa());
+    const games::BreakSearch asked = games::break_search(wanted);
     SolveOptions options = small();
     options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};

@@ -135,8 +135,10 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
     ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
     ASSERT_EQ(render({}).status, 0);
     EXPECT_TRUE(contains(render({"--resume"}).out, "all frames already exist"));
-    const std::vector<std::vector<std::string>> others = {
-        {"--camera", "rail"}, {"--trails"}, {"--from", "0.1"}, {"--eye", "1,1,1", "--target", "0,0,0"}};
+    const std::vector<std::vector<std::string>> others = {{"--camera", "rail"},
+                                                          {"--overlay", "trails"},
+                                                          {"--from", "0.1"},
+                                                          {"--eye", "1,1,1", "--target", "0,0,0"}};
     for (std::vector<std::string> other : others) {
         other.push_back("--resume");
         const ProcessResult result = render(other);

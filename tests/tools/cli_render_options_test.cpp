@@ -72,7 +72,6 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
         for (const std::string& other : seen) EXPECT_TRUE(with != other) << layer;
         seen.push_back(with);
     }
-    EXPECT_TRUE(picture({"--trails"}, at) == seen[1]);
 }
 
 // From a scene, the margin bar counts the simulation too.

@@ -69,11 +69,13 @@ TEST_F(CliRender, ARecordGivesTheSameFramesAsItsScene) {
     }
 }
 
-TEST_F(CliRender, AnOlderRecordIsDrawnWithANote) {
-    const std::string old = CAROM_SOURCE_DIR "/tests/fuzz/corpus/record/short.json";
-    const ProcessResult result = carom({"render", old, "-o", pattern(), "--at", "0", "--size", "64x36"});
+TEST_F(CliRender, ARecordWithAnUnknownKeyIsDrawnWithANote) {
+    std::string text = read_file(CAROM_SOURCE_DIR "/tests/fuzz/corpus/record/short.json");
+    text.insert(1, "\"weather\": 1, ");
+    const std::string newer = folder_.write("newer.json", text);
+    const ProcessResult result = carom({"render", newer, "-o", pattern(), "--at", "0", "--size", "64x36"});
     EXPECT_EQ(result.status, 0);
-    EXPECT_EQ(result.err.substr(0, old.size() + 15), "carom: note: " + old + ": ");
+    EXPECT_EQ(result.err.substr(0, newer.size() + 15), "carom: note: " + newer + ": ");
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 }
 

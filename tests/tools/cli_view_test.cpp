@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "browser.h"
 #include "carom/engine/record.h"
+#include "carom/kernel/splitmix64.h"
 #include "carom/render/draw_list.h"
 #include "cli.h"
 
@@ -75,7 +75,7 @@ struct MadePage {
 };
 
 MadePage make_page(const TemporaryFolder& folder, const std::string& scene,
-                   const std::vector<std::string>& options = {"--no-margin"}) {
+                   const std::vector<std::string>& options = {}) {
     const std::string file = folder.file(stem(scene) + ".html");
     std::vector<std::string> arguments = {"view", scene, "-o", file};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -150,7 +150,8 @@ TEST(View, ABrowserShowsEveryScene) {
     scenes.push_back(hostile_record(folder));
     for (const std::string& scene : scenes) {
         const bool timed = stem(scene) == "eight_ball_break";
-        const MadePage page = timed ? make_page(folder, scene, {}) : make_page(folder, scene);
+        const MadePage page = make_page(
+            folder, scene, timed ? std::vector<std::string>{"--margin"} : std::vector<std::string>());
         pages.push_back(manifest_page(stem(scene), page));
         if (!timed) continue;
         const auto bytes = std::filesystem::file_size(page.file);
@@ -160,7 +161,7 @@ TEST(View, ABrowserShowsEveryScene) {
     // Two shots in one page, and how far apart their cue balls are at some instant.
     const std::string other = CAROM_SOURCE_DIR "/scenes/follow.toml";
     const TemporaryFolder more;
-    const MadePage two = make_page(more, CAROM_SOURCE_DIR "/scenes/draw.toml", {other, "--no-margin"});
+    const MadePage two = make_page(more, CAROM_SOURCE_DIR "/scenes/draw.toml", {other});
     pages.insert(pages.begin(), manifest_page("two", two));
     constexpr double kInstant = 0.9;
     const Vec3 apart = two.record.state_at(0, kInstant).position -
@@ -205,9 +206,11 @@ TEST(View, ARecordIsShownAsItIs) {
     ASSERT_EQ(carom({"simulate", scene, "-o", json}).status, 0);
     const ProcessResult plain = carom({"view", json, scene, "-o", page});
     EXPECT_EQ(plain.status, 0) << plain.err;
-    EXPECT_TRUE(contains(plain.err, "shot.json: the record is not profiled, so the page has no frame chart"));
+    EXPECT_EQ(plain.err, "");
     EXPECT_TRUE(contains(read_file(page), "id=\"second\""));
     EXPECT_TRUE(contains(read_file(page), "\"margin\":null"));
+    EXPECT_TRUE(
+        contains(carom({"view", json, "-o", page, "--margin"}).err, "shot.json is not profiled; use"));
     ASSERT_EQ(carom({"simulate", scene, "-o", json, "--profile"}).status, 0);
     const ProcessResult profiled = carom({"view", json, "-o", page});
     EXPECT_EQ(profiled.status, 0) << profiled.err;
@@ -218,7 +221,8 @@ TEST(View, ARecordIsShownAsItIs) {
 TEST(View, WithMarginThePageHasEveryFrame) {
     const TemporaryFolder folder;
     const std::string page = folder.file("shot.html");
-    const ProcessResult made = carom({"view", folder.write("small.toml", kSmallScene), "-o", page});
+    const ProcessResult made =
+        carom({"view", folder.write("small.toml", kSmallScene), "--margin", "-o", page});
     ASSERT_EQ(made.status, 0) << made.err;
     const std::string html = read_file(page), before = "id=\"page\">";
     const std::size_t from = html.find(before) + before.size();
@@ -229,7 +233,8 @@ TEST(View, WithMarginThePageHasEveryFrame) {
     EXPECT_EQ(margin.at("series").at(0).at("name"), "whole frame");
     EXPECT_EQ(margin.at("levels").at(0).at("y"), 1000.0 / 60.0);
     EXPECT_EQ(margin.at("marks").size(), 1u);
-    EXPECT_EQ(data.at("command"), fmt::format("carom view {} -o {}", folder.file("small.toml"), page));
+    EXPECT_EQ(data.at("command"),
+              fmt::format("carom view {} --margin -o {}", folder.file("small.toml"), page));
     const Record record = parse_record(
         html.substr(html.find("id=\"shot\">") + 10, html.find("</script>") - html.find("id=\"shot\">") - 10),
         "page");

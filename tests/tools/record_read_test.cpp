@@ -102,42 +102,6 @@ TEST(RecordFile, NestingNeedsNoStack) {
     EXPECT_EQ(messages[2], "no error");
 }
 
-/// The sample as version 1 had it.
-Json version_1() {
-    Json json = Json::parse(changed("/version", 1));
-    for (const char* key : {"mu_b_more", "mu_b_fall", "e_c_fall", "e_c_above", "f_c_more", "f_c_fall", "e_t",
-                            "e_t_more", "e_t_fall", "e_h"})
-        json["balls"].erase(key);
-    for (const char* list : {"cushions", "jaws", "pockets"})
-        for (Json& part : json["table"][list]) part.erase("name");
-    for (Json& event : json["events"]) event.erase("queue_ns");
-    return json;
-}
-
-TEST(RecordFile, Version1IsReadWithANote) {
-    std::vector<std::string> notes;
-    const Record old = parse_record(version_1().dump(), "old.json", &notes);
-    ASSERT_EQ(notes.size(), 1u);
-    EXPECT_NE(notes[0].find("version 1 of the format lacks mu_b_fit"), std::string::npos) << notes[0];
-    // Everything else is present.
-    Record expected = sample_record();
-    BallParams& balls = expected.balls;
-    balls.mu_b_more = balls.mu_b_fall = 0.0;
-    balls.e_c_fall = balls.e_c_above = balls.f_c_more = balls.f_c_fall = 0.0;
-    balls.e_t_more = balls.e_t_fall = balls.e_h = 0.0;
-    balls.e_t = 0.5;
-    for (Cushion& c : expected.table.cushions) c.name.clear();
-    for (Jaw& j : expected.table.jaws) j.name.clear();
-    for (Pocket& p : expected.table.pockets) p.name.clear();
-    for (EventCost& cost : expected.costs) cost.queue_ns = 0.0;
-    EXPECT_TRUE(old == expected);
-    EXPECT_TRUE(parse_record(version_1().dump(), "old.json") == expected);
-    // What version 1 may lack, version 2 may not.
-    Json json = version_1();
-    json["version"] = 2;
-    EXPECT_EQ(record_error(json.dump()), " table.cushions[0]: the key \"name\" is missing");
-}
-
 TEST(RecordFile, UnknownKeysAreLeftOutWithANote) {
     std::vector<std::string> notes;
     Json json = Json::parse(changed("/tracks/1/segments/2/jerk\x1b", {{"of", {1, "]}", nullptr}}}));

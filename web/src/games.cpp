@@ -30,6 +30,12 @@ const games::Option& option_of(const WebVerdict* verdict, std::size_t index) {
     return verdict->verdict.options[index];
 }
 
+void give_scene(Scene scene) {
+    validate(scene);
+    std::string source = scene_text(scene);
+    give(new WebScene{std::move(scene), std::move(source), {}}, "");
+}
+
 }  // namespace
 
 CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int target) {
@@ -40,10 +46,8 @@ CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int 
 }
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
-        std::vector<std::string> ids;
-        for (const BallStart& ball : scene->scene.ball) ids.push_back(ball.id);
         const games::State before = state_at(state, size);
-        const games::Legal legal = games::legal(before, ids);
+        const games::Legal legal = games::legal(before, ids_of(scene->scene.ball));
         give(nullptr, dumped({{"cueBalls", legal.cue_balls},
                               {"first", legal.first},
                               {"callable", legal.callable},
@@ -88,15 +92,11 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
         if (x == x && y == y)
             place = Vec2(x, y);
         else if (option.state.in_hand != games::InHand::kNo)
-            place = tools::free_place(shot->record, option);
+            place = games::free_place(shot->record, option, head_spot(shot->record.table));
         Scene next = games::table_after(shot->scene, shot->record, option, place);
-        std::vector<std::string> ids;
-        for (const BallStart& ball : next.ball) ids.push_back(ball.id);
         next.cue = tools::next_cue(next, shot->scene.cue.value_or(Cue{}), games::cue_ball(option.state),
-                                   games::legal(option.state, ids).first);
-        validate(next);
-        std::string source = scene_text(next);
-        give(new WebScene{std::move(next), std::move(source), {}}, "");
+                                   games::legal(option.state, ids_of(next.ball)).first);
+        give_scene(std::move(next));
     });
 }
 /// The table as it rests, without a game: pocketed balls are gone, and the cue is that of the last shot. If
@@ -104,12 +104,8 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
 CAROM_WEB int carom_shot_after(const WebShot* shot) {
     return guarded([&] {
         Scene next = scene_after(shot->scene, shot->record);
-        if (shot->scene.cue)
-            for (const BallStart& ball : next.ball)
-                if (ball.id == shot->scene.cue->ball) next.cue = shot->scene.cue;
-        validate(next);
-        std::string source = scene_text(next);
-        give(new WebScene{std::move(next), std::move(source), {}}, "");
+        if (shot->scene.cue && index_of(next.ball, shot->scene.cue->ball) >= 0) next.cue = shot->scene.cue;
+        give_scene(std::move(next));
     });
 }
 

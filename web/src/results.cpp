@@ -52,12 +52,12 @@ Json error_json() {
 
 }  // namespace
 
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 void give(void* handle, std::string text) {
     result() = {handle, std::move(text)};
+}
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 int give_error() noexcept {

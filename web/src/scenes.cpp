@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -98,7 +99,10 @@ Json described(const Scene& scene) {
                {"aim_deg", c.aim_deg}, {"elevation_deg", c.elevation_deg},
                {"side", c.side},       {"height", c.height}};
     }
-    const BallParams& b = scene.balls;
+    // By the keys of [balls].
+    Json material;
+    for (const Field<BallParams>& f : kBallFields)
+        if (f.kind == Key::Kind::kNumber) material[f.key] = std::get<double>(f.get(scene.balls));
     return {{"balls", balls},
             {"cue", cue},
             {"table",
@@ -109,30 +113,17 @@ Json described(const Scene& scene) {
               {"corner", place(scene.table.corner)},
               {"pockets", pockets}}},
             {"ballPreset", scene.ball_preset},
-            {"material",
-             {{"radius", b.R},
-              {"mass", b.m},
-              {"mu_s", b.mu_s},
-              {"mu_r", b.mu_r},
-              {"mu_sp", b.mu_sp},
-              {"mu_b", b.mu_b},
-              {"e_b", b.e_b},
-              {"e_c", b.e_c},
-              {"f_c", b.f_c}}}};
+            {"material", material}};
 }
 
 /// What a page needs to draw the scene: the shape of the table, and the look of each ball.
 Json look(const Scene& scene) {
     std::vector<Vec2> places;
-    std::vector<std::string> ids;
-    for (const BallStart& ball : scene.ball) {
-        places.push_back(ball.position.head<2>());
-        ids.push_back(ball.id);
-    }
+    for (const BallStart& ball : scene.ball) places.push_back(ball.position.head<2>());
     const render::TableMesh mesh =
         render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
     return {{"shape", tools::table_shape(scene.table, mesh)},
-            {"styles", tools::ball_styles(ids, scene.table.preset)}};
+            {"styles", tools::ball_styles(ids_of(scene.ball), scene.table.preset)}};
 }
 
 }  // namespace
@@ -150,7 +141,7 @@ CAROM_WEB void carom_free_scene(WebScene* scene) {
 /// @param changes JSON: an object of keys with dots, and their values
 CAROM_WEB int carom_scene_change(const WebScene* scene, const char* changes, std::size_t size) {
     return guarded([&] {
-        const auto json = Json::parse(changes, changes + size);
+        const auto json = Json::parse(text_at(changes, size));
         give(new WebScene(changed(*scene, json)), "");
     });
 }

@@ -145,15 +145,7 @@ CAROM_WEB int carom_shot_events(const WebShot* shot) {
 CAROM_WEB int carom_shot_states(const WebShot* shot, std::size_t count, const double* times, double* numbers,
                                 std::uint8_t* states) {
     return guarded([&] {
-        const auto balls = static_cast<int>(shot->record.tracks.size());
-        for (std::size_t i = 0; i < count; ++i) {
-            for (int ball = 0; ball < balls; ++ball) {
-                const BallState state = shot->record.state_at(ball, times[i]);
-                for (const Vec3& v : {state.position, state.velocity, state.spin})
-                    for (const double x : v) *numbers++ = x;
-                *states++ = static_cast<std::uint8_t>(state.state);
-            }
-        }
+        shot->record.states_at({times, count}, numbers, states);
         give(nullptr, "");
     });
 }
@@ -164,7 +156,7 @@ CAROM_WEB int carom_simulate_many(const WebScene* scene, const char* keys, std::
                                   std::size_t shots, const double* values, int hash) {
     return guarded([&] {
         std::vector<BatchColumn> columns;
-        for (const auto& key : Json::parse(keys, keys + size))
+        for (const auto& key : Json::parse(text_at(keys, size)))
             columns.push_back({key.get<std::string>(), std::span(values + columns.size() * shots, shots)});
         BatchOptions options;
         options.threads = 1;

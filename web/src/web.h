@@ -53,9 +53,10 @@ class TooLong : public std::runtime_error {
 };
 
 using Json = nlohmann::ordered_json;
-std::string dumped(const Json& json);
 
 void give(void* handle, std::string text);
+/// Bytes that are not UTF-8 become the replacement character.
+std::string dumped(const Json& json);
 /// Describes the exception that is being handled. @returns 1
 int give_error() noexcept;
 

@@ -182,9 +182,12 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     return segment_turn(s, std::min(t - s.start, turns), made.largest_step) * made.at_start[ball][i];
 }
 
+bool same_balls(const Scene& scene, const Record& record) {
+    return ids_of(scene.ball) == ids_of(record.tracks);
+}
+
 Scene scene_after(const Scene& scene, const Record& record) {
-    if (!std::equal(scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
-                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+    if (!same_balls(scene, record))
         throw std::invalid_argument(
             "the scene and the record have different balls; pass the scene of the record");
     Scene after = scene;

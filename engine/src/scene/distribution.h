@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/splitmix64.h"
 #include "carom/engine/variation.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::detail {
 

@@ -44,10 +44,9 @@ struct KeyOptions {
     const char* shape = "";            ///< of a list: "[x, y]"
     const char* record_key = nullptr;  ///< the key in record files, if it differs
     Files files = Files::kBoth;
-    int since = 1;                            ///< the version of record files that introduced the key
-    bool later = false;                       ///< added within that version: older files of it lack the key
-    bool needed = false;                      ///< the scene must give it
-    bool last_may_lack = false;               ///< the last number of a list may be omitted if it is 0
+    bool later = false;          ///< added within a version of record files: older ones of it lack the key
+    bool needed = false;         ///< the scene must give it
+    bool last_may_lack = false;  ///< the last number of a list may be omitted if it is 0
     const char* standard = nullptr;           ///< the default in words, if it is not a value
     const char* instead_of = nullptr;         ///< the key that this one replaces if it is given
     std::span<const char* const> names = {};  ///< the texts allowed; empty: all
@@ -319,7 +318,7 @@ constexpr Field<detail::ClassOf<kMember>> either(const char* key, const char* me
          Key::Kind::kText,
          at_least(0.0, 0.0),
          meaning,
-         {.since = 2, .later = true, .standard = kWords[0], .names = kWords},
+         {.later = true, .standard = kWords[0], .names = kWords},
          true,
          1,
          nullptr},

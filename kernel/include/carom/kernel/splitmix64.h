@@ -1,4 +1,5 @@
-// The random generator for racks. It is implemented here so that a seed gives the same rack on every system.
+// The random generator of everything that is drawn. It is implemented here so that a seed gives the same
+// numbers on every system.
 //
 // SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
 // constants of the variant mix13.
@@ -22,6 +23,7 @@ class SplitMix64 {
 
     /// Uniform in [0, 1); multiples of 2^-53.
     double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
     /// Uniform in 0 .. n-1 for small n (the bias is below n 2^-32).
     int below(int n) { return static_cast<int>(((next() >> 32) * static_cast<std::uint64_t>(n)) >> 32); }
