@@ -4,21 +4,14 @@
 
 #include <toml++/toml.h>
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "jams.h"
-#include "support/crowded_scenes.h"
 #include "support/random_scenes.h"
+#include "support/scene_scan.h"
 
 namespace carom::test {
 namespace {
-
-std::optional<Scene> scene_of(const std::string& family, std::uint64_t seed) {
-    if (family == "random") return RandomScene(seed).make();
-    if (family == "other") return RandomScene(seed, DrawOrder::kFirstFirst).make();
-    return family_scene(family, seed);
-}
 
 /// @param asks  what a row asks for beyond the laws
 void expect_laws(const Scene& scene, const toml::table& asks) {
@@ -48,7 +41,7 @@ class Jam : public testing::Test {
             const auto family = one["family"].value<std::string>().value();
             const auto seed = one["seed"].value<std::int64_t>().value();
             SCOPED_TRACE(family + " " + std::to_string(seed));
-            const auto scene = scene_of(family, static_cast<std::uint64_t>(seed));
+            const auto scene = seeded_scene(family, static_cast<std::uint64_t>(seed));
             ASSERT_TRUE(scene) << "there is no such family";
             expect_laws(*scene, one);
         }

@@ -66,28 +66,6 @@ TEST(RandomScenes, WithFitsAndNoses) {
 
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
 
-// The first attempt at an interval follows the last one, whether or not the run was stopped between them.
-TEST(CrowdedScenes, GoOnWithTheSameBits) {
-    int held = 0;
-    for (const char* family : {"tray", "frozen_rail_row", "rack_in_box", "touching_pack"}) {
-        for (std::uint64_t seed = 0; seed < 4; ++seed) {
-            const Scene scene = *family_scene(family, seed);
-            const Plan plan = plan_of(scene);
-            const Record whole = simulate(plan);
-            for (const double part : {0.1, 0.4, 0.7, 0.95}) {
-                Scene stops = scene;
-                stops.stop.events =
-                    1 + static_cast<std::int64_t>(part * static_cast<double>(whole.events.size()));
-                const Record stopped = simulate(plan_of(stops));
-                for (const BallTrack& track : stopped.tracks) held += track.segments.back().held ? 1 : 0;
-                EXPECT_EQ(resume(plan, stopped).hash(), whole.hash())
-                    << family << " " << seed << ", part " << part;
-            }
-        }
-    }
-    EXPECT_GT(held, 50);
-}
-
 /// Scenes in which contacts do not end well yet (lab/notes/2026-11-jams.md): if you fix one, remove it here.
 struct Open {
     const char* family;
