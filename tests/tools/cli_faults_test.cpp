@@ -309,7 +309,7 @@ TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
     };
     const ProcessResult enough = with_limit(300000);
     EXPECT_EQ(enough.status, 2);
-    EXPECT_EQ(enough.err, "carom: " + path + ": the key \"profiled\" is missing\n");
+    EXPECT_EQ(enough.err, "carom: " + path + ": the key \"duration\" is missing\n");
     int out_of_memory = 0;
     for (int kilobytes = 40000; kilobytes < 100000; kilobytes += 6000) {
         const ProcessResult result = with_limit(kilobytes);
