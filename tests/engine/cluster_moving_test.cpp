@@ -23,11 +23,13 @@ using namespace test;
 
 constexpr double kBallR = 0.028575;  // [m] of pool balls
 
-/// The state in which a ball enters an event at `time`, or in which it leaves it.
+/// The state in which a ball enters an event at `time`, or in which it leaves it: where a cluster lasts, at its
+/// end.
 MovingBall state(const Record& record, int ball, double time, bool after) {
     const std::vector<Segment>& list = record.tracks[ball].segments;
     std::size_t k = 0;
     while (k + 1 < list.size() && (after ? list[k + 1].start <= time : list[k + 1].start < time)) ++k;
+    if (after && list[k].state == MotionState::kColliding) time = list[++k].start;
     const double t = time - list[k].start;
     const Vec3 r = position_at(list[k], t), v = velocity_at(list[k], t), w = spin_at(list[k], t, kBallR);
     return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};

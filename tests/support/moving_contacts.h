@@ -22,7 +22,9 @@ struct MovingLaw {
     double mu_b_more = 0.0, mu_b_fall = 0.0;  ///< friction mu_b + more exp(-fall |slip|), slip in m/s
     double slip = 1e-4;                       ///< [V] regularisation of the friction
     double step = 5e-4;                       ///< [L/V]
-    double look_ahead = 2.0;  ///< [L/V] it ends when all are open and none touches within this time
+    double look_ahead = 2.0;  ///< [L/V] run() ends when all are open and none touches within this time
+    double weight = 0.0;      ///< [m/s^2] gravity, which presses all balls on the cloth
+    double reach = 40.0;      ///< [L] pairs with a larger gap at the start never touch
     bool cloth = true;  ///< holds every ball, with friction under those pressed down; else they move in space
 };
 
@@ -41,7 +43,7 @@ class MovingContacts {
             for (std::size_t j = i + 1; j < balls_.size(); ++j) {
                 // The rounding of positions that should touch is not a gap.
                 const double gap = distance(balls_[i], balls_[j]) - 2.0 * law.R;
-                if (gap < 40.0 * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
+                if (gap < law.reach * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
             }
         }
     }
@@ -58,6 +60,12 @@ class MovingContacts {
             if (apart && finished()) return time;
         }
         return -1.0;
+    }
+
+    /// Runs for a duration [s].
+    void run_for(double duration) {
+        const auto steps = static_cast<int>(std::ceil(duration / (law_.step * unit_)));
+        for (int k = 0; k < steps; ++k) step(duration / steps);
     }
 
     const std::vector<MovingBall>& balls() const { return balls_; }
@@ -124,7 +132,7 @@ class MovingContacts {
         }
         if (!law_.cloth) return s;
         for (std::size_t b = 0; b < at.size(); ++b) {
-            up[b] = s[b].v[2];
+            up[b] = s[b].v[2] - law_.weight;
             s[b].v[2] = 0.0;
         }
         for (std::size_t b = 0; b < at.size(); ++b) {

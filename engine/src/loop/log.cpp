@@ -56,8 +56,15 @@ void Log::reserve() {
 void Log::resume(const Record& so_far) {
     so_far_ = &so_far;
     events_ = so_far.events;
-    for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
-        for (const Segment& s : so_far.tracks[i].segments) balls_.set(static_cast<int>(i), s);
+    for (int i = 0; i < balls_.count(); ++i) {
+        const std::vector<Segment>& segments = so_far.tracks[static_cast<std::size_t>(i)].segments;
+        for (const Segment& s : segments)
+            if (s.start <= so_far.duration) balls_.set(i, s);
+        if (!balls_.collides(i)) continue;
+        int other = 0;
+        while (!collide(balls_.segment(i), balls_.segment(other))) ++other;
+        balls_.set_afterwards(i, segments.back(), other);
+    }
     balls_.advance_to(so_far.duration);
     reserve();
 }
@@ -167,6 +174,9 @@ Record Log::record_so_far() const {
         Record record = *so_far_;
         record.costs.clear();
         record.start_time = options_.start_time;
+        // finish_record() adds the motions after clusters.
+        for (BallTrack& track : record.tracks)
+            if (track.segments.back().start > record.duration) track.segments.pop_back();
         return record;
     }
     Record record;
@@ -205,8 +215,11 @@ void Log::finish_record(StopReason why, Record& record) {
     std::vector<std::size_t> count(record.tracks.size());
     for (std::size_t i = 0; i < count.size(); ++i) count[i] = record.tracks[i].segments.size();
     for (const BallSegment& s : segments_) ++count[s.ball];
+    for (int i = 0; i < balls_.count(); ++i) count[i] += balls_.collides(i);
     for (std::size_t i = 0; i < count.size(); ++i) record.tracks[i].segments.reserve(count[i]);
     for (const BallSegment& s : segments_) record.tracks[s.ball].segments.push_back(s.segment);
+    for (int i = 0; i < balls_.count(); ++i)
+        if (balls_.collides(i)) record.tracks[i].segments.push_back(balls_.afterwards(i));
     auto member = cluster_ball_.begin();
     for (const std::size_t end : cluster_end_) {
         std::vector<int>& cluster = record.clusters.emplace_back();

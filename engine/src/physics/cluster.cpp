@@ -94,6 +94,7 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettin
                       int axes) {
     motion_.clear();
     mass_.clear();
+    moved_.assign(2 * balls.size(), 0.0);
     for (const ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
         for (int k = 0; k < axes; ++k) motion_.push_back(ball.v[k] / V);
@@ -103,7 +104,10 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettin
 }
 
 void ClusterMap::unload(const ClusterSettings& settings, double V, int axes,
-                        std::vector<ClusterBall>& balls) const {
+                        std::vector<ClusterBall>& balls) {
+    const double L = contact_length(V);
+    for (double& x : moved_) x *= L;
+    duration_ *= L / V;
     const double* y = motion_.data();
     for (ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
@@ -189,7 +193,9 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     curvature(L, settings.R, settings.turns)};
+                                     curvature(L, settings.R, settings.turns),
+                                     moved_.data(),
+                                     &duration_};
     const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                                   kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
@@ -255,7 +261,10 @@ std::int64_t ClusterMap::in_space(std::vector<ClusterBall>& balls,
                                       motion_.data(),
                                       contacts_in_space_.data(),
                                       numbers_.data(),
-                                      curvature(L, settings.R, settings.turns)};
+                                      curvature(L, settings.R, settings.turns),
+                                      nullptr,
+                                      moved_.data(),
+                                      &duration_};
     double longest_step = settings.longest_step;
     kernel::UnlikeBalls unlike{};
     if (settings.unlike) {

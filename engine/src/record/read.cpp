@@ -146,6 +146,9 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
             item.fail("starts before the previous segment");
         }
     });
+    for (const Segment& s : {track.segments.front(), track.segments.back()})
+        if (s.state == MotionState::kColliding)
+            segments.fail("the motion of a colliding ball before or after its cluster is missing");
     return track;
 }
 

@@ -55,7 +55,7 @@ class Replay {
     Dual pocket(const Event& event);
     Dual transition(const Event& event);
     bool in_space(int a, int b) const;
-    const Segment& next(int ball);
+    const Segment& next(int ball, double start);
     void begin(int ball, const Dual& time, const State& state);
     void go_on(int ball, const Dual& time, State state);
     Dual when(const Dual& gap, double rate, double size) const;

@@ -91,7 +91,10 @@ class InSpace {
                 for (int b = 0; b < phase_.balls; ++b) {
                     for (int k = 0; k < kPerMotion; ++k)
                         phase_.motion[kPerMotion * b + k] = y_[kPerState * b + 3 + k];
+                    if (phase_.moved == nullptr) continue;
+                    for (int k = 0; k < 2; ++k) phase_.moved[2 * b + k] = y_[kPerState * b + k];
                 }
+                if (phase_.time != nullptr) *phase_.time = time;
                 return steps;
             }
             if (overlaps()) continue;
