@@ -23,8 +23,8 @@ using namespace test;
 
 constexpr double kBallR = 0.028575;  // [m] of pool balls
 
-/// The state in which a ball enters an event at `time`, or in which it leaves it: where a cluster lasts, at its
-/// end.
+/// The state in which a ball enters an event at `time`, or in which it leaves it: where a cluster lasts, at
+/// its end.
 MovingBall state(const Record& record, int ball, double time, bool after) {
     const std::vector<Segment>& list = record.tracks[ball].segments;
     std::size_t k = 0;

@@ -89,7 +89,7 @@ class Plain {
 
   public:
     std::vector<double> y;
-    std::vector<double> moved;     // displacements, as of ContactPhase
+    std::vector<double> moved;  // displacements, as of ContactPhase
     double time = 0.0;
     std::set<std::size_t> stages;  // of the steps with friction
 

@@ -62,10 +62,13 @@ class MovingContacts {
         return -1.0;
     }
 
-    /// Runs for a duration [s].
-    void run_for(double duration) {
+    /// Runs for a duration [s], and on until no contact is closed. @return how long
+    double run_for(double duration) {
         const auto steps = static_cast<int>(std::ceil(duration / (law_.step * unit_)));
-        for (int k = 0; k < steps; ++k) step(duration / steps);
+        const double h = duration / steps;
+        int done = 0;
+        for (; done < steps || !all_open(); ++done) step(h);
+        return done * h;
     }
 
     const std::vector<MovingBall>& balls() const { return balls_; }
@@ -132,14 +135,16 @@ class MovingContacts {
         }
         if (!law_.cloth) return s;
         for (std::size_t b = 0; b < at.size(); ++b) {
-            up[b] = s[b].v[2] - law_.weight;
+            up[b] = s[b].v[2];
             s[b].v[2] = 0.0;
         }
         for (std::size_t b = 0; b < at.size(); ++b) {
-            if (up[b] >= 0.0) continue;
             const double u[2] = {at[b].v[0] - R * at[b].w[1], at[b].v[1] + R * at[b].w[0]};
-            const double size = std::sqrt(u[0] * u[0] + u[1] * u[1] + slip_ * slip_);
-            const double f[2] = {law_.mu_s * up[b] * u[0] / size, law_.mu_s * up[b] * u[1] / size};
+            const double u2 = u[0] * u[0] + u[1] * u[1], sharp = 0.02 * slip_;
+            // The weight is so small beside the contacts that its friction can stick more sharply.
+            const double k = std::min(up[b], 0.0) / std::sqrt(u2 + slip_ * slip_) -
+                             law_.weight / std::sqrt(u2 + sharp * sharp);
+            const double f[2] = {law_.mu_s * k * u[0], law_.mu_s * k * u[1]};
             s[b].v[0] += f[0];
             s[b].v[1] += f[1];
             s[b].w[0] += 2.5 / R * f[1];

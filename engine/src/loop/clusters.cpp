@@ -14,11 +14,10 @@ namespace {
 // [reach] Contacts between balls nearer than this follow the motion of the balls: their normals turn.
 constexpr double kNearShare = 0.5;
 // [reach] Contacts up to this gap are listed, because balls may get there while the cluster lasts.
-constexpr double kListed = 4.0;
-// [contact time] A cluster that would last longer takes no time: its balls would go too far on straight paths.
-constexpr double kLongest = 10.0;
-// [-] So often a cluster is extended until its balls overlap no more.
-constexpr int kExtensions = 3;
+constexpr double kListed = 8.0;
+// [contact time] A cluster that would last longer takes no time: its balls would go too far on straight
+// paths.
+constexpr double kLongest = 20.0;
 // [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
 constexpr double kClosesStill = 1e-12;
 
@@ -238,22 +237,12 @@ bool Clusters::find_paths() {
         double share = 0.0;
         for (const ClusterContact& c : contacts_)
             if (c.i == static_cast<int>(k) || c.j == static_cast<int>(k)) share = std::max(share, c.turn);
-        const Vec2 v = planar(members_[k].v), change = v - before_[k];
-        const Vec2 moved = share * map_.moved(k) + (1.0 - share) * duration * v;
-        const double pushed = dot(change, change);
-        // moved = before (duration - free) + v free
-        const double free = pushed > 0.0 ? dot(moved - duration * before_[k], change) / pushed : duration;
-        paths_.push_back({moved, std::clamp(free, 0.0, duration)});
+        paths_.push_back(share * map_.moved(k) + (1.0 - share) * duration * planar(members_[k].v));
     }
-    double more = overlap_ends();
-    for (int again = 0; more > 0.0; more = overlap_ends()) {
-        more = std::min(more, 0.5 * duration);
-        if (++again > kExtensions) return false;
+    while (const double more = overlap_ends()) {
         duration += more;
-        for (std::size_t k = 0; k < members_.size(); ++k) {
-            paths_[k].moved += more * planar(members_[k].v);
-            paths_[k].free += more;
-        }
+        if (!(duration <= kLongest * contact_time_)) break;
+        for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * planar(members_[k].v);
     }
     if (!(duration <= kLongest * contact_time_)) return false;
     duration_ = duration;
@@ -267,7 +256,7 @@ double Clusters::overlap_ends() const {
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
             const ClusterBall &p = members_[i], &q = members_[j];
-            const Vec2 apart = planar(q.r) + paths_[j].moved - planar(p.r) - paths_[i].moved;
+            const Vec2 apart = planar(q.r) + paths_[j] - planar(p.r) - paths_[i];
             const double distance = length(apart), most = contact_distance(p.R, q.R, plan_.balls.discs());
             if (!(distance < most - kTouchUlp * std::max(p.R, q.R))) continue;
             const double opens = dot(apart, planar(q.v) - planar(p.v)) / distance;
@@ -282,7 +271,7 @@ double Clusters::overlap_ends() const {
 bool Clusters::has_room() const {
     for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall& ball = members_[k];
-        const Vec2& path = paths_[k].moved;
+        const Vec2& path = paths_[k];
         bool room = true;
         detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { room = false; });
         if (!room) return false;
@@ -315,10 +304,10 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) co
     return length(apart + share * relative) > touching;
 }
 
-// Where a cluster takes no time, its solution moves the balls, but they stay in place. In the solution, a glancing contact with a
-// fast slip opens almost without force, because its normal turns while the balls pass each other. In place they
-// still approach, and the same cluster would recur ten thousand times. So every touching contact must open in
-// place: solve again with fixed normals, as in an impact of two balls.
+// Where a cluster takes no time, its solution moves the balls, but they stay in place. In the solution, a
+// glancing contact with a fast slip opens almost without force, because its normal turns while the balls pass
+// each other. In place they still approach, and the same cluster would recur ten thousand times. So every
+// touching contact must open in place: solve again with fixed normals, as in an impact of two balls.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
         return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
@@ -339,6 +328,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,
+        .slide = p.rolls() ? plan_.motion.front().slide : 0.0,
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
@@ -347,11 +337,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
                        : map_.compliant(members_, contacts_, settings, v_n);
     };
     // A ball that falls, or one in space, would move up or down during the cluster.
-    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
-        return balls_.sinks(m.ball);
-    });
-    before_.clear();
-    for (const ClusterBall& m : members_) before_.push_back(planar(m.v));
+    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(),
+                                           [this](const ClusterBall& m) { return balls_.sinks(m.ball); });
     std::int64_t steps = run();
     if (steps >= 0 && may_last && find_paths()) return steps;
     if (steps >= 0 && closes_still(v_n)) {

@@ -19,14 +19,7 @@ struct ClustersMemory {
     std::vector<ClusterContact> contacts_;
     std::vector<std::array<double, 2>> nearest_;  // per ball
     std::vector<double> firm_;                    // per ball
-    /// How a ball moves in a cluster that lasts: its displacement [m], and for how long before the end it has
-    /// had its final velocity, on average [s].
-    struct Path {
-        Vec2 moved;
-        double free;
-    };
-    std::vector<Path> paths_;
-    std::vector<Vec2> before_;  // velocities
+    std::vector<Vec2> paths_;                     // per ball
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -51,8 +44,8 @@ class Clusters : private Borrowed<ClustersMemory> {
 
     /// [s] Duration of the cluster that was resolved last; 0: it takes no time, and the balls stay in place.
     double duration() const { return duration_; }
-    /// The path of the k-th ball in it.
-    const Path& path(std::size_t k) const { return paths_[k]; }
+    /// [m] The displacement of the k-th ball in it.
+    const Vec2& path(std::size_t k) const { return paths_[k]; }
 
     /// Number of balls that collect() has examined besides the first two; used by tests.
     std::int64_t looks() const { return looks_; }

@@ -71,8 +71,7 @@ void Resolver::resolve(const Contact& contact) {
 }
 
 // The motion of a ball after an impact. A falling ball continues to fall.
-Segment Resolver::after_impact(double time, int ball, const Vec3& r, const Vec3& v,
-                               const Vec3& w) const {
+Segment Resolver::after_impact(double time, int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
     const Segment& before = balls_.segment(ball);
     const MotionParams& motion = balls_.motion(ball);
     if (before.state != MotionState::kFalling) {
@@ -221,23 +220,20 @@ bool Resolver::cluster(int a, int b, double v_n) {
     return true;
 }
 
-// Every ball moves straight to its place at the end of the cluster, and freely from there. The cloth brakes it
-// since it has had its new velocity.
+// Every ball moves straight to its place at the end of the cluster, and freely from there.
 void Resolver::begin_cluster(int a, int b) {
     const std::vector<ClusterBall>& members = clusters_.balls();
     for (const ClusterBall& ball : members) resting_.release(ball.ball);
     log_.cluster(a, b, members);
-    const double now = balls_.now(), duration = clusters_.duration(), end = now + duration;
+    const double now = balls_.now(), duration = clusters_.duration();
+    int other = members.front().ball;
     for (std::size_t k = 0; k < members.size(); ++k) {
         const ClusterBall& m = members[k];
-        const auto& [moved, free] = clusters_.path(k);
-        const Segment pushed = after_impact(end - free, m.ball, m.r, m.v, m.w);
-        const double tau = std::min(free, pushed.duration);
-        const Vec3 w = spin_at(pushed, tau, balls_.radius(m.ball));
-        const Segment after = after_impact(end, m.ball, m.r + Vec3(moved.x(), moved.y(), 0.0),
-                                           velocity_at(pushed, tau), w);
-        log_.begin_colliding(m.ball, colliding_segment(now, m.r, moved, w, duration), after,
-                             members[k > 0 ? k - 1 : k].ball);
+        const Vec2& path = clusters_.path(k);
+        const Vec3 end = m.r + Vec3(path.x(), path.y(), 0.0);
+        log_.begin_colliding(m.ball, colliding_segment(now, m.r, path, m.w, duration),
+                             after_impact(now + duration, m.ball, end, m.v, m.w), other);
+        other = m.ball;
     }
 }
 

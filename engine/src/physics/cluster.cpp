@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kCacheLine = 64;  // [bytes]
 
 // [L/V] The integration continues while a listed pair would touch within this time.
-constexpr double kClusterLookAhead = 2.0;
+constexpr double kClusterLookAhead = 4.0;
 // [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
@@ -69,7 +69,9 @@ int law_exponent(double e_b) {
 kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     const int p = law_exponent(s.e_b);
     const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
-    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more, s.mu_b_fall * V};
+    const double slide = s.slide * contact_length(V) / (V * V);
+    return {1.0 - b,         b,    p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more,
+            s.mu_b_fall * V, slide};
 }
 
 // The integration reads and writes four numbers at once. Aligned to a cache line, none of these groups

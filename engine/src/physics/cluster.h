@@ -1,6 +1,6 @@
 // Many contacts at once: the compliant model (Hertz contacts of the whole cluster, which last while the balls
-// move) and the rigid symmetric projection, which takes no time. Equations: docs/reference/physics.md; docs/design/hard_cases.md says what such a model can and
-// cannot claim.
+// move) and the rigid symmetric projection, which takes no time. Equations: docs/reference/physics.md;
+// docs/design/hard_cases.md says what such a model can and cannot claim.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,7 @@ struct ClusterSettings {
     kernel::ContactPhaseFunction integrate = nullptr;  ///< not read where the balls are unlike or in space
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
+    double slide = 0.0;   ///< [m/s^2] deceleration of a ball that slips on the cloth
     bool turns = true;    ///< false: all normals stay as the contacts give them
     bool unlike = false;  ///< the balls differ in size; R is that of balls with the mass 1
 };
@@ -72,8 +73,8 @@ class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
-    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls stay: duration()
-    /// and moved() tell how long the contacts last and how far the balls move in that time.
+    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls stay:
+    /// duration() and moved() tell how long the contacts last and how far the balls move in that time.
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V);
 

@@ -277,8 +277,8 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
     put(s2, out.data() + 6);
 }
 
-// The loop resolves the cluster again, in a scene that contains nothing else. Its duration depends on the steps
-// of the integration, but where the balls come from, with their final velocities, does not.
+// The loop resolves the cluster again, in a scene that contains nothing else. Its duration depends on the
+// steps of the integration, but where the balls come from, with their final velocities, does not.
 void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, bool lasts,
                      std::vector<State>& states) {
     const auto member = [&](int ball) {

@@ -326,7 +326,12 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
     update_rates(w);
     std::int64_t steps = 0;
     double next = longest_step;
-    double time = 0.0;
+    double time = 0.0, braked = 0.0;
+    const auto brake_all = [&w, &law, &time, &braked] {
+        for (int n = 0; n < kRow * w.balls && law.slide > 0.0; n += kRow)
+            brake(law.slide * (time - braked), w.y[n], w.y[n + 2], w.y[n + 1], w.y[n + 3]);
+        braked = time;
+    };
     for (;;) {
         if (!(time < time_limit)) return -1;
         const double most =
@@ -342,7 +347,10 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
         if (any_overlap(w)) continue;
         fly(phase, w, flight, look_ahead);
         time += flight;
+        brake_all();
+        update_rates(w);
     }
+    brake_all();
     for (int b = 0; b < w.balls; ++b) {
         for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
         if (phase.moved == nullptr) continue;

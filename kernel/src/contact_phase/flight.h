@@ -95,7 +95,7 @@ CAROM_INLINE double falling(double x, double from, double to) {
 
 // Moves all balls straight ahead for `time`, when the first contact closes. If that takes almost the whole
 // look-ahead, the caller is about to take over, and its impacts of two balls take no time. So such contacts,
-// and those that close soon after, turn less while they are closed.
+// and those that close soon after, turn less while they are closed. The caller updates the rates.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     for (int n = 0; n < kRow * w.rows; n += kRow) add_displacement(w, n, time * load<4>(w.y + n));
@@ -110,7 +110,6 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
         w.bend[c] = w.curvature;
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
-    update_rates(w);
 }
 
 // Closes a contact that turns less than the balls. By HertzContact::turn its normal moves from that of the

@@ -35,8 +35,8 @@ enum class MotionState : std::uint8_t {
     kColliding
 };
 constexpr auto names_of(MotionState) {
-    return std::array{"stationary", "spinning", "sliding",  "rolling",  "pocketed",
-                      "falling",    "airborne", "out",      "colliding"};
+    return std::array{"stationary", "spinning", "sliding", "rolling",  "pocketed",
+                      "falling",    "airborne", "out",     "colliding"};
 }
 /// Whether a ball in this state is out of play.
 constexpr bool is_gone(MotionState state) {
@@ -56,8 +56,8 @@ struct Segment {
     double start = 0.0;  ///< s since the start of the shot
     /// Centre, velocity and angular velocity at the start. While a ball falls into a pocket, r_z stays at the
     /// height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z - g
-    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2. While it collides, v is
-    /// its mean velocity, and w that after the cluster.
+    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2. While it collides, v
+    /// is its mean velocity, and w that after the cluster.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
@@ -208,8 +208,8 @@ struct BallState {
 
 struct BallTrack {
     std::string id;
-    /// Ordered by start; of two with the same start, the later one counts. A record that ends during a cluster
-    /// has the motion after the cluster too: it starts after the end.
+    /// Ordered by start; of two with the same start, the later one counts. A record that ends during a
+    /// cluster has the motion after the cluster too: it starts after the end.
     std::vector<Segment> segments;
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
