@@ -31,8 +31,8 @@ TEST(RecordFile, SaysWhatIsWrong) {
         const char* message;
     } kCases[] = {
         {"/format", "other", " this is not a carom record; write one with carom simulate SCENE -o shot.json"},
-        {"/version", 3,
-         " version: this program reads versions 1 to 2; use the carom that wrote it, or write it again: "
+        {"/version", 4,
+         " version: this program reads versions 1 to 3; use the carom that wrote it, or write it again: "
          "carom "
          "simulate SCENE -o shot.json"},
         {"/version", 0, " version: expected an integer from 1 to 1000000"},
@@ -51,6 +51,8 @@ TEST(RecordFile, SaysWhatIsWrong) {
         {"/tracks/0/segments/3/r", Json::array({1, 2}),
          " tracks[0].segments[3].r: expected a list of 3 numbers"},
         {"/tracks/0/segments/3/r/1", "x", " tracks[0].segments[3].r[1]: expected a number"},
+        {"/tracks/1/segments/0/state", "colliding",
+         " tracks[1].segments: the motion of a colliding ball before or after its cluster is missing"},
         {"/tracks/0/segments/3/start", 0.0, " tracks[0].segments[3]: starts before the previous segment"},
         {"/tracks/0/segments/3/duration", -1.0,
          " tracks[0].segments[3].duration: expected a number of at least 0"},
