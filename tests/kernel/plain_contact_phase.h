@@ -153,9 +153,8 @@ class Plain {
         return root2 < 0.0 ? 1e300 : q / (c + std::sqrt(root2));
     }
 
-    Direction after(const Direction& n, const Way& w, double time) const {
-        return turned(n, 1.0 + curvature_ * w.gap - curvature_ * w.closing * time,
-                      -curvature_ * w.across * time);
+    Direction after(const Direction& n, const Way& w, double in) const {
+        return turned(n, 1.0 + curvature_ * w.gap - curvature_ * w.closing * in, -curvature_ * w.across * in);
     }
 
     double next_touch() const {
@@ -268,24 +267,24 @@ class Plain {
         return power;
     }
 
-    // The slope of a state whose normals have turned for `time`.
-    Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double time) const {
+    // The slope of a state whose normals have turned for a time.
+    Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double in) const {
         const std::size_t balls = y.size() / 5;
         Slope s{std::vector<double>(y.size(), 0.0),
                 {},
                 std::vector<double>(balls, 0.0),
                 std::vector<double>(balls, 0.0)};
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
-            const Direction n = predicted(c, time);
+            const Direction n = predicted(c, in);
             s.d.push_back(rate(at, c, n));
             if (d[c] > 0.0) push(at, d[c], c, n.x, n.y, s);
         }
         return s;
     }
 
-    Direction predicted(std::size_t c, double time) const {
+    Direction predicted(std::size_t c, double in) const {
         const Direction n = contacts_[c].n;
-        const double angle = time * contacts_[c].turn;
+        const double angle = in * contacts_[c].turn;
         return {n.x - angle * n.y, n.y + angle * n.x};
     }
 

@@ -277,9 +277,9 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
     put(s2, out.data() + 6);
 }
 
-// The loop resolves the cluster again, in a scene that contains nothing else. Its duration depends on the
-// steps of the integration, but where the balls come from, with their final velocities, does not.
-void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, bool lasts,
+// The loop resolves the cluster again, in a scene that contains nothing else. Where it ends depends on the
+// steps of the integration, but not where the balls are at one fixed time afterwards.
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states) {
     const auto member = [&](int ball) {
         return static_cast<std::size_t>(std::find(balls.begin(), balls.end(), ball) - balls.begin());
@@ -287,7 +287,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     const std::size_t one = member(hit), two = member(met);
     const double speed = std::abs(closing_speed(states[two].r - states[one].r, states[one], states[two]));
     // [s] By which lengths are as large as speeds.
-    const double unit = kClusterReach * laws.numbers.balls[hit].R.x / speed;
+    const double unit = laws.numbers.balls[hit].R.x / speed;
     Arguments in(laws.numbers);
     for (std::size_t k = 0; k < balls.size(); ++k) {
         const Numbers::Ball& ball = laws.numbers.balls[balls[k]];
@@ -329,10 +329,12 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
             throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
         List after;
         for (const BallTrack& track : record.tracks) {
-            const Segment &end = track.segments.back(), &start = track.segments.front();
-            if ((end.start > 0.0) != lasts) throw TangentError("its balls meet something else during it");
-            add(after, {end.v, end.w});
-            const Vec2 from = planar(end.r) - end.start * planar(end.v) - planar(start.r);
+            const Segment& end = track.segments.back();
+            const double tau = duration - end.start;
+            if ((end.start > 0.0) != (duration > 0.0))
+                throw TangentError("its balls meet something else during it");
+            add(after, {velocity_at(end, tau), spin_at(end, tau, track.own->R)});
+            const Vec2 from = planar(position_at(end, tau)) - planar(track.segments.front().r);
             for (const double x : from) after.push_back(x / unit);
         }
         return after;

@@ -31,9 +31,8 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
                   State& s2);
 
 /// Balls on the cloth that touch at once, because two of them, `hit` and `met`, meet.
-/// @param lasts  whether the cluster lasts; then `states` receive the places from which the balls would have to
-/// start, with their velocities afterwards, to be where they are after it
-void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, bool lasts,
+/// @param duration  of the cluster [s], at the end of which the `states` are computed; 0: it takes no time
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states);
 
 /// A ball on the cloth at a nose; it may hop.

@@ -312,13 +312,10 @@ Dual Replay::cluster(const Event& event) {
     const bool lasts = colliding.state == MotionState::kColliding;
     const Dual duration = lasts ? colliding.duration : 0.0;
     std::vector<State> after = states;
-    collide_cluster(laws_, members, event.a, event.b, lasts, after);
+    collide_cluster(laws_, members, event.a, event.b, duration.x, after);
     for (std::size_t k = 0; k < members.size(); ++k) {
         if (lasts) {
-            for (int i = 0; i < 2; ++i) {
-                after[k].r[i] = after[k].r[i] + duration * after[k].v[i];
-                states[k].v[i] = (after[k].r[i] - states[k].r[i]) / duration;
-            }
+            for (int i = 0; i < 2; ++i) states[k].v[i] = (after[k].r[i] - states[k].r[i]) / duration;
             states[k].w = after[k].w;
             begin(members[k], time, states[k]);
         }

@@ -340,6 +340,7 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
+        if (time - braked > kBrakes) brake_all();
         if (any_pressed(w, law, time_limit - time)) continue;
         const double flight = next_touch(w);
         if (!(flight < look_ahead)) break;

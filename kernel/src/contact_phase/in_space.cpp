@@ -85,6 +85,10 @@ class InSpace {
         double time = 0.0, braked = 0.0;
         for (std::int64_t steps = 1; time < time_limit; ++steps) {
             time += step(longest_step);
+            if (time - braked > kBrakes) {
+                brake_all(time - braked);
+                braked = time;
+            }
             if (presses(time_limit - time)) continue;
             const double flight = next_touch();
             if (!(flight < look_ahead)) {
