@@ -75,10 +75,6 @@ bool Clusters::passes(int a, int b) const {
 ClusterBall Clusters::member(int ball) const {
     const BallSize& size = plan_.sizes[ball];
     const double mass = size.m / plan_.balls.m;
-    if (balls_.collides(ball)) {
-        const Segment& after = balls_.afterwards(ball);
-        return {ball, balls_.position(ball), after.v, after.w, size.R, mass};
-    }
     if (flights_ && flies(balls_.segment(ball).state)) {
         const Placed at = balls_.placed(ball);
         return {ball, at.position, at.velocity, balls_.spin(ball), size.R, mass};
@@ -149,7 +145,8 @@ void Clusters::collect_at(int a, int b, double v_n) {
         detector_.balls_near(near_box(here, most), [&](int q) {
             const bool known = std::any_of(members_.begin(), members_.end(),
                                            [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || passes(here.ball, q)) return;
+            // A ball of another cluster is compressed; what it meets waits until that is over.
+            if (known || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Gap near = gap_of(here, candidate);
@@ -292,12 +289,13 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) co
     if (is_gone(s.state)) return true;
     const Vec2 apart = planar(balls_.position(other)) - planar(ball.r);
     double touching = (ball.R + balls_.radius(other)) * (1.0 + kBoxShare);
-    if (balls_.collides(other)) {
-        // It may leave its cluster.
-        const double speed = std::max(length(planar(s.v)), length(planar(balls_.afterwards(other).v)));
+    touching += 0.5 * duration_ * duration_ * length(s.a);
+    if (balls_.collides(other) || s.held) {
+        // It may leave its cluster, or be pushed otherwise.
+        double speed = length(planar(balls_.velocity(other)));
+        if (!s.held) speed = std::max(speed, length(planar(balls_.afterwards(other).v)));
         return length(apart) > touching + length(path) + duration_ * speed;
     }
-    touching += 0.5 * duration_ * duration_ * length(s.a);
     const Vec2 relative = duration_ * planar(balls_.velocity(other)) - path;
     const double whole = dot(relative, relative),
                  share = whole > 0.0 ? std::clamp(-dot(apart, relative) / whole, 0.0, 1.0) : 0.0;
@@ -336,9 +334,11 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         return unlike_ ? map_.compliant_unlike(members_, contacts_, settings, v_n)
                        : map_.compliant(members_, contacts_, settings, v_n);
     };
-    // A ball that falls, or one in space, would move up or down during the cluster.
-    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(),
-                                           [this](const ClusterBall& m) { return balls_.sinks(m.ball); });
+    // A ball that falls, or one in space, would move up or down during the cluster, and resting contacts
+    // would push others meanwhile.
+    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+        return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
+    });
     std::int64_t steps = run();
     if (steps >= 0 && may_last && find_paths()) return steps;
     if (steps >= 0 && closes_still(v_n)) {

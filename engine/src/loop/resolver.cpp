@@ -223,7 +223,6 @@ bool Resolver::cluster(int a, int b, double v_n) {
 // Every ball moves straight to its place at the end of the cluster, and freely from there.
 void Resolver::begin_cluster(int a, int b) {
     const std::vector<ClusterBall>& members = clusters_.balls();
-    for (const ClusterBall& ball : members) resting_.release(ball.ball);
     log_.cluster(a, b, members);
     const double now = balls_.now(), duration = clusters_.duration();
     int other = members.front().ball;
