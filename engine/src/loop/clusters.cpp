@@ -18,6 +18,8 @@ constexpr double kListed = 8.0;
 // [contact time] A cluster that would last longer takes no time: its balls would go too far on straight
 // paths.
 constexpr double kLongest = 20.0;
+// [m/s] A slower cluster takes no time: it would last for milliseconds, in which other balls come along.
+constexpr double kSlowest = 0.2;
 // [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
 constexpr double kClosesStill = 1e-12;
 
@@ -336,9 +338,10 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     };
     // A ball that falls, or one in space, would move up or down during the cluster, and resting contacts
     // would push others meanwhile.
-    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
-        return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
-    });
+    may_last &= v_n > kSlowest && !in_space_ &&
+                std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+                    return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
+                });
     std::int64_t steps = run();
     if (steps >= 0 && may_last && find_paths()) return steps;
     if (steps >= 0 && closes_still(v_n)) {
