@@ -69,8 +69,8 @@ Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, cons
 /// The velocity with which a flying ball lands: exact, also for a ball that rose from the cloth.
 Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
-/// The segment of a ball in a cluster that lasts for `duration` and moves it by `path`, after which its spin is
-/// w.
+/// The segment of a ball in a cluster that lasts for `duration` and moves it by `path`. Its spin afterwards
+/// is w.
 Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration);
 
 /// Whether two balls with these segments are in one cluster, which lasts. They may overlap.
