@@ -46,7 +46,7 @@ Link link_of(const Group& g, const RestingContact& c) {
         return static_cast<int>(std::find_if(g.group.balls.begin(), g.group.balls.end(), is_it) -
                                 g.group.balls.begin());
     };
-    Link link{.i = body_of(c.contact.ball), .j = -1, .n = c.n, .distance = 0.0};
+    Link link{.i = body_of(c.contact.ball), .j = -1, .first = c.n, .n = c.n, .distance = 0.0};
     const Vec2 here = planar(g.group.balls[link.i].r);
     const double R = g.bodies[link.i].R;
     double depth;
@@ -117,8 +117,12 @@ void accept(Group& g) {
 void mark_open(Group& g) {
     for (Link& link : g.links) {
         const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
-        const bool stays = link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide, e));
-        link.open = rate > g.noise && !stays;
+        // A wall around a ball turns it, and so presses.
+        const double across_it = cross(link.first, g.bodies[link.i].v);
+        const double turns = link.distance < 0.0 ? across_it * across_it / -link.distance : 0.0;
+        const bool stays =
+            link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide + turns, e));
+        link.open = (rate > g.noise && !stays) || (link.gap > 2.0 * kGapLeft && !link.begins);
     }
 }
 
@@ -130,13 +134,18 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// In flat wedges rounding leaves no solution; what comes nearer is taken.
+// In flat wedges rounding leaves no solution; what comes nearer is taken. A contact with a gap may close: the
+// interval ends that.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
-    const double before = closing_speed(g, gap_rate);
+    const double time = std::max(kShortestInterval, kSlackShare * g.group.last);
+    for (Link& link : g.links) link.slack = !link.begins ? std::max(0.0, link.gap) / time : 0.0;
+    const auto at_start = [](const Group& all, const Link& link) { return gap_rate(all, link) + link.slack; };
+    const auto at_end = [](const Group& all, const Link& link) { return end_rate(all, link) + link.slack; };
+    const double before = closing_speed(g, at_start);
     if (before > kClosingUlp * kEpsilon * fastest &&
-        (strike(g) || closing_speed(g, end_rate) < kNearer * before))
+        (strike(g) || closing_speed(g, at_end) < kNearer * before))
         accept(g);
     mark_open(g);
 }
@@ -158,25 +167,65 @@ void solve(Group& g) {
 
 }  // namespace
 
+namespace {
+
+Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity) {
+    const Vec2 own = g.bodies[link.i].*velocity;
+    return link.j >= 0 ? Vec2(g.bodies[link.j].*velocity - own) : Vec2(-own);
+}
+
+}  // namespace
+
 Across across(const Group& g, const Link& link, double h) {
-    const Vec2 t(link.n.y(), -link.n.x());
-    const Body& bi = g.bodies[link.i];
-    Vec2 v = -bi.v, change = bi.v - bi.v_end;
-    if (link.j >= 0) {
-        v += g.bodies[link.j].v;
-        change += g.bodies[link.j].v_end - g.bodies[link.j].v;
-    }
-    return {dot(v, t), dot(change, t) / h, link.distance};
+    const Vec2 t(link.first.y(), -link.first.x()), v = relative(g, link, &Body::v);
+    return {dot(v, t), dot(relative(g, link, &Body::v_end) - v, t) / h, link.distance};
 }
 
 double gap_rate(const Group& g, const Link& link) {
-    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v : Vec2(Vec2::Zero());
-    return dot(link.n, other - g.bodies[link.i].v);
+    return dot(link.first, relative(g, link, &Body::v));
 }
 
 double end_rate(const Group& g, const Link& link) {
-    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v_end : Vec2(Vec2::Zero());
-    return dot(link.n, other - g.bodies[link.i].v_end);
+    return dot(link.n, relative(g, link, &Body::v_end));
+}
+
+GapCourse::GapCourse(const Group& g, const Link& link, double h)
+    : gap_(link.gap),
+      round_(link.distance == 0.0 ? 0.0 : std::copysign(1.0, link.distance)),
+      far_(std::abs(link.distance + link.gap)),
+      from_(round_ == 0.0 ? link.first : Vec2((link.distance + link.gap) * link.first)),
+      v_(relative(g, link, &Body::v)),
+      half_a_((0.5 / h) * (relative(g, link, &Body::v_end) - v_)) {}
+
+// The squared distance is a polynomial of degree 4, and its derivative one of degree 3; between the turning
+// points of that it has at most one root. An extremum is insensitive to its time.
+GapCourse::Range GapCourse::range(double h) const {
+    const Vec2 a = 2.0 * half_a_;
+    const bool round = round_ != 0.0;
+    const double c0 = dot(v_, from_), c1 = (round ? dot(v_, v_) : 0.0) + dot(a, from_),
+                 c2 = round ? 1.5 * dot(v_, a) : 0.0, c3 = round ? 0.5 * dot(a, a) : 0.0;
+    const auto slope = [&](double t) { return c0 + t * (c1 + t * (c2 + t * c3)); };
+    double ends[4] = {0.0, h, h, h};
+    const double D = c2 * c2 - 3.0 * c1 * c3;
+    if (D > 0.0) {
+        const double q = -(c2 + std::copysign(std::sqrt(D), c2));
+        const double one = c3 != 0.0 ? q / (3.0 * c3) : h, other = c1 / q;
+        ends[1] = std::clamp(std::min(one, other), 0.0, h);
+        ends[2] = std::clamp(std::max(one, other), 0.0, h);
+    }
+    Range range{std::min(gap_, at(h)), std::max(gap_, at(h))};
+    for (int k = 0; k < 3; ++k) {
+        double low = ends[k], high = ends[k + 1];
+        const bool rises = slope(low) > 0.0;
+        if (rises == (slope(high) > 0.0)) continue;
+        for (int turn = 0; turn < 20; ++turn) {
+            const double middle = 0.5 * (low + high);
+            ((slope(middle) > 0.0) == rises ? low : high) = middle;
+        }
+        const double gap = at(low);
+        range = {std::min(range.least, gap), std::max(range.most, gap)};
+    }
+    return range;
 }
 
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end) {

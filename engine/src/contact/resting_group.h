@@ -48,6 +48,7 @@ struct Body {
     /// Direction of the friction, if an earlier solution gives that of the middle of the interval.
     bool guided = false;
     Vec2 guide = Vec2::Zero();
+    double slid = 0.0;  ///< share of the interval in which it slips
     double load = 1.0;  ///< share of the weight that the cloth supports
     double R = 0.0;     ///< [m]
     double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
@@ -66,7 +67,8 @@ struct Body {
 /// A contact in the equations; i and j index the bodies, j = -1 for the table.
 struct Link {
     int i, j;
-    Vec2 n;
+    Vec2 first;  ///< the normal at the start of the interval
+    Vec2 n;      ///< in its middle: the direction of the impulse
     /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
     double distance;
     const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
@@ -74,7 +76,8 @@ struct Link {
     double gap = 0.0;                   ///< [m]; negative: overlap
     bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding
-    double turning = 0.0;               ///< [m/s^2] what the turning normal adds to the gap's acceleration
+    double slack = 0.0;                 ///< [m/s] at which it may close at an instant: it has a gap
+    double turning = 0.0;               ///< [m/s^2] what the rate at the end lacks of where the gap shall end
     double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
@@ -103,6 +106,32 @@ struct Across {
     double v, a, distance;
 };
 Across across(const Group& g, const Link& link, double h);
+
+/// The gap within the interval h, for its solution.
+class GapCourse {
+  public:
+    GapCourse(const Group& g, const Link& link, double h);
+    /// [m]
+    double at(double t) const {
+        const Vec2 moved = t * (v_ + t * half_a_);
+        if (round_ == 0.0) return gap_ + dot(from_, moved);
+        const Vec2 to = from_ + moved;
+        return gap_ + round_ * dot(moved, from_ + to) / (far_ + length(to));
+    }
+
+    /// [m] The least and the greatest until h.
+    struct Range {
+        double least, most;
+    };
+    Range range(double h) const;
+
+  private:
+    double gap_, round_, far_;  // round_: the sign of the distance
+    Vec2 from_, v_, half_a_;
+};
+
+/// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
+double time_gone(const Vec2& x, const Vec2& D, double S);
 
 /// [m/s] Rate at which the gap opens, at the start and at the end of the interval (without the turning of the
 /// normal).

@@ -12,14 +12,6 @@ namespace carom::resting {
 
 namespace {
 
-// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
-double time_gone(const Vec2& x, const Vec2& D, double S) {
-    const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
-    const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
-    const double time = root - xD > 0.0 ? xx / (root - xD) : kNever;
-    return time > 0.0 ? time : kNever;
-}
-
 // Interval, reduced in steps of a tenth, in which an error that grows as the given power of it is at most
 // `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
@@ -92,7 +84,13 @@ double friction_interval(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     if (gone < kNever) {
         const double slack = after_stop(length(m.start));
-        return h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
+        double limit = h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
+        if (moves(b.u) && b.mode == Mode::kResting) {
+            const double stop = time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll) +
+                                after_stop(length(b.v));
+            if (h > stop) limit = std::min(limit, stop);
+        }
+        return limit;
     }
     const double turn = turn_of(m.start, m.end);
     if (turn <= kSame) return kNever;
@@ -105,7 +103,18 @@ double turn_of(const Across& t, double h) {
     return h * (std::abs(t.v) + 0.5 * h * std::abs(t.a)) / std::abs(t.distance);
 }
 
-double link_interval(const Group& g, const Link& link, double h, double rounding) {
+// [s] How long a gap stays within its room.
+double gap_interval(const Group& g, const Link& link, double h) {
+    const GapCourse course(g, link, h);
+    const GapCourse::Range range = course.range(h);
+    if (range.least < std::min(link.gap, -kOverlapGrowth) - kNoGap) return kShorter * h;
+    if (link.J > 0.0 && range.most > std::max(link.gap, kGapLeft)) return kShorter * h;
+    // If all goes on evenly.
+    const double rate = end_rate(g, link);
+    return rate < 0.0 ? h + std::max(0.0, course.at(h)) / -rate : kNever;
+}
+
+double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
     double interval = kNever;
     const Body& b = g.bodies[link.i];
@@ -120,41 +129,28 @@ double link_interval(const Group& g, const Link& link, double h, double rounding
         interval = time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center, b.v,
                                                     (b.v_end - b.v) / h, kNever, false, true});
     const double rate = gap_rate(g, link);
+    const Across t = across(g, link, h);
     if (!(link.J > 0.0)) {
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
         // gap is visible.
-        const double opening = (end_rate(g, link) - rate) / h + link.turning;
+        const double opening = 2.0 * (GapCourse(g, link, h).at(h) - link.gap - rate * h) / (h * h);
         if (opening > 0.0)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
-        // A wall around a ball turns it, even if this solution did not.
-        const Across t = across(g, link, h);
-        if (t.distance < 0.0)
-            interval = std::min(interval, allowed_interval(h, turn_of(t, h), kNormalTurn, 1));
-        return interval;
+        return std::min(interval, gap_interval(g, link, h));
     }
-    // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an
-    // overlap.
-    const double closing = rounding + std::max(0.0, -rate);
-    interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
-    if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
     if (link.j >= 0 && !g.smooth) {
         // The friction between two balls changes with their slip, until that is gone.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
         interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2));
     }
-    const Across t = across(g, link, h);
-    const double v = std::abs(t.v), a = std::abs(t.a);
-    if (t.distance == 0.0) return interval;
-    const double turn = turn_of(t, h);
+    interval = std::min(interval, gap_interval(g, link, h));
+    const double turn = t.distance == 0.0 ? 0.0 : turn_of(t, h);
     if (turn <= kSame * h) return interval;
-    return std::min(
-        {interval, allowed_interval(h, turn, kNormalTurn, 1),
-         allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
-         allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / std::abs(t.distance), kGapLeft, 3)});
+    return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3));
 }
 
 // The first attempt: until friction alone would have stopped the first ball.
@@ -267,13 +263,24 @@ bool accelerates(const Group& g) {
     });
 }
 
+bool gaps_stay(const Group& g, double h) {
+    return std::all_of(g.links.begin(), g.links.end(),
+                       [&](const Link& link) { return link.open || gap_interval(g, link, h) >= h; });
+}
+
 }  // namespace
+
+double time_gone(const Vec2& x, const Vec2& D, double S) {
+    const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
+    const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
+    const double time = root - xD > 0.0 ? xx / (root - xD) : kNever;
+    return time > 0.0 ? time : kNever;
+}
 
 double accurate_interval(const Group& g, double h) {
     double accurate = kNever;
     for (const Body& b : g.bodies) accurate = std::min(accurate, friction_interval(g, b, h));
-    const double rounding = rate_rounding(g);
-    for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h, rounding));
+    for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h));
     return accurate;
 }
 
@@ -302,10 +309,13 @@ void solve_interval(Group& g) {
         } else {
             // If all moves straight and evenly, continue until something ends it.
             if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
-            break;
+            guide_friction(g, h);
+            if (h <= shortest || gaps_stay(g, h)) break;
+            for (Body& b : g.bodies) b.guided = false;
+            h = std::max(shortest, kShorter * h);
+            longer = kLonger;
         }
     }
-    guide_friction(g, h);
     run_along_walls(g);
     write_segments(g, h);
 }

@@ -103,7 +103,7 @@ double first_descent(const double (&c)[5], double T) {
     }
     if (b[0] > 0.0) {
         // If f never decreases, or all Bernstein coefficients are positive, there is no root on [0, 1].
-        if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0) return kNever;
+        if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0 && b[4] >= 0.0) return kNever;
         const double b1 = b[0] + b[1] / 4.0, b2 = b[0] + b[1] / 2.0 + b[2] / 6.0;
         const double b3 = b[0] + 0.75 * b[1] + 0.5 * b[2] + 0.25 * b[3],
                      b4 = b[0] + b[1] + b[2] + b[3] + b[4];
