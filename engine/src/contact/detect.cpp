@@ -91,7 +91,7 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     if (kSide > 0 && !(along > 0.0)) return kNever;
     const double miss = std::abs(cross(m.r, e));
     if (kSide > 0 && !(miss < reach)) return kNever;
-    // From inside there is always an end: a ball that moves along the wall may miss it by rounding.
+    // From inside every path meets the wall, also one along it that misses the circle by rounding.
     const double half_chord = std::sqrt(std::max(0.0, (reach - miss) * (reach + miss)));
     // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product, which avoids cancellation near contact.
     const double d = length(m.r);

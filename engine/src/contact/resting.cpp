@@ -117,9 +117,9 @@ void accept(Group& g) {
 void mark_open(Group& g) {
     for (Link& link : g.links) {
         const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
-        // A wall around a ball turns it, and so presses.
-        const double across_it = cross(link.first, g.bodies[link.i].v);
-        const double turns = link.distance < 0.0 ? across_it * across_it / -link.distance : 0.0;
+        // A wall around a ball turns it, and so presses it.
+        const double across = link.distance < 0.0 ? cross(link.first, g.bodies[link.i].v) : 0.0,
+                     turns = across != 0.0 ? across * across / -link.distance : 0.0;
         const bool stays =
             link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide + turns, e));
         link.open = (rate > g.noise && !stays) || (link.gap > 2.0 * kGapLeft && !link.begins);
@@ -134,12 +134,12 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// In flat wedges rounding leaves no solution; what comes nearer is taken. A contact with a gap may close: the
-// interval ends that.
+// In flat wedges rounding leaves no solution; a state that comes nearer is accepted. A contact with a gap may
+// close slowly: the interval ends that.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
-    const double time = std::max(kShortestInterval, kSlackShare * g.group.last);
+    const double time = std::max(kShortestInterval, kSlackTime * g.group.last);
     for (Link& link : g.links) link.slack = !link.begins ? std::max(0.0, link.gap) / time : 0.0;
     const auto at_start = [](const Group& all, const Link& link) { return gap_rate(all, link) + link.slack; };
     const auto at_end = [](const Group& all, const Link& link) { return end_rate(all, link) + link.slack; };
@@ -167,18 +167,9 @@ void solve(Group& g) {
 
 }  // namespace
 
-namespace {
-
 Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity) {
     const Vec2 own = g.bodies[link.i].*velocity;
     return link.j >= 0 ? Vec2(g.bodies[link.j].*velocity - own) : Vec2(-own);
-}
-
-}  // namespace
-
-Across across(const Group& g, const Link& link, double h) {
-    const Vec2 t(link.first.y(), -link.first.x()), v = relative(g, link, &Body::v);
-    return {dot(v, t), dot(relative(g, link, &Body::v_end) - v, t) / h, link.distance};
 }
 
 double gap_rate(const Group& g, const Link& link) {
@@ -197,34 +188,16 @@ GapCourse::GapCourse(const Group& g, const Link& link, double h)
       v_(relative(g, link, &Body::v)),
       half_a_((0.5 / h) * (relative(g, link, &Body::v_end) - v_)) {}
 
-// The squared distance is a polynomial of degree 4, and its derivative one of degree 3; between the turning
-// points of that it has at most one root. An extremum is insensitive to its time.
+// The squared distance has its extrema at the same times.
 GapCourse::Range GapCourse::range(double h) const {
-    const Vec2 a = 2.0 * half_a_;
-    const bool round = round_ != 0.0;
-    const double c0 = dot(v_, from_), c1 = (round ? dot(v_, v_) : 0.0) + dot(a, from_),
-                 c2 = round ? 1.5 * dot(v_, a) : 0.0, c3 = round ? 0.5 * dot(a, a) : 0.0;
-    const auto slope = [&](double t) { return c0 + t * (c1 + t * (c2 + t * c3)); };
-    double ends[4] = {0.0, h, h, h};
-    const double D = c2 * c2 - 3.0 * c1 * c3;
-    if (D > 0.0) {
-        const double q = -(c2 + std::copysign(std::sqrt(D), c2));
-        const double one = c3 != 0.0 ? q / (3.0 * c3) : h, other = c1 / q;
-        ends[1] = std::clamp(std::min(one, other), 0.0, h);
-        ends[2] = std::clamp(std::max(one, other), 0.0, h);
-    }
-    Range range{std::min(gap_, at(h)), std::max(gap_, at(h))};
-    for (int k = 0; k < 3; ++k) {
-        double low = ends[k], high = ends[k + 1];
-        const bool rises = slope(low) > 0.0;
-        if (rises == (slope(high) > 0.0)) continue;
-        for (int turn = 0; turn < 20; ++turn) {
-            const double middle = 0.5 * (low + high);
-            ((slope(middle) > 0.0) == rises ? low : high) = middle;
-        }
-        const double gap = at(low);
-        range = {std::min(range.least, gap), std::max(range.most, gap)};
-    }
+    const double round = std::abs(round_);
+    const double c[5] = {0.0, 2.0 * dot(from_, v_), round * dot(v_, v_) + 2.0 * dot(from_, half_a_),
+                         round * 2.0 * dot(v_, half_a_), round * dot(half_a_, half_a_)};
+    double times[3];
+    const int count = extrema(c, h, times);
+    Range range = std::minmax(gap_, at(h));
+    for (int k = 0; k < count; ++k)
+        range = {std::min(range.first, at(times[k])), std::max(range.second, at(times[k]))};
     return range;
 }
 

@@ -44,10 +44,13 @@ inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: a fifth of the wavelength of light would still be no gap to
 // see.
 inline constexpr double kGapLeft = 1e-8;
-// [m] Gap that a contact keeps whose normal turns: room on both sides.
+// [m] Largest gap that a contact keeps if its normal turns: it has room on both sides.
 inline constexpr double kGapKept = 0.5 * kGapLeft;
-// [-] A contact with a gap may close in this many of the last interval, or slower.
-inline constexpr double kSlackShare = 4.0;
+// [last intervals] A contact with a gap may close it in this time, or slower, without an impulse.
+inline constexpr double kSlackTime = 4.0;
+// [of the speeds] Where nothing takes energy, a contact rests only if it closes more slowly: the energy of its
+// bounce is then less than --verify sees.
+inline constexpr double kLosslessShare = 5e-7;
 
 // How long an interval is (contact/resting_interval.cpp)
 
@@ -60,12 +63,9 @@ inline constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
 // A hundred times as much: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kPlaceError = 2e-8;
-// [s] A ball that friction stops rests after this time at the latest: with the tolerance of positions alone
-// it could creep for days.
+// [s] A ball that friction stops while others of its group move rests after this time at the latest: with the
+// tolerance of positions alone it could creep for days.
 inline constexpr double kStopsWithin = 0.01;
-// [s] Longest interval with less friction between balls than they have.
-// No test fails without it: it bounds how long less friction acts.
-inline constexpr double kSmooth = 0.3;
 // [-] If an interval overruns a stop by less than this fraction, keep it as it is; if a stop comes as soon
 // after it, try a longer one.
 // Without it: Jams.GapsHaveRoomForARate.

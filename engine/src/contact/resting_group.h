@@ -20,6 +20,7 @@
 // drives them.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "contact/complementarity.h"
@@ -48,7 +49,7 @@ struct Body {
     /// Direction of the friction, if an earlier solution gives that of the middle of the interval.
     bool guided = false;
     Vec2 guide = Vec2::Zero();
-    double slid = 0.0;  ///< share of the interval in which it slips
+    double slid = 0.0;  ///< share of the interval in which a ball that slips at its start still does
     double load = 1.0;  ///< share of the weight that the cloth supports
     double R = 0.0;     ///< [m]
     double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
@@ -76,8 +77,8 @@ struct Link {
     double gap = 0.0;                   ///< [m]; negative: overlap
     bool begins = false;                ///< the contact begins now, and so does not end now
     bool open = false;                  ///< the gap opens by more than rounding
-    double slack = 0.0;                 ///< [m/s] at which it may close at an instant: it has a gap
-    double turning = 0.0;               ///< [m/s^2] what the rate at the end lacks of where the gap shall end
+    double slack = 0.0;                 ///< [m/s] rate at which it may close at an instant: it has a gap
+    double turning = 0.0;               ///< [m/s^2] of the gap at the end, beyond the rate along n
     double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
@@ -101,11 +102,8 @@ struct Group {
     Complementarity problem{};
 };
 
-/// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
-struct Across {
-    double v, a, distance;
-};
-Across across(const Group& g, const Link& link, double h);
+/// [m/s] Velocity of the other ball, or of the table, relative to ball i: v or v_end.
+Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity);
 
 /// The gap within the interval h, for its solution.
 class GapCourse {
@@ -118,11 +116,8 @@ class GapCourse {
         const Vec2 to = from_ + moved;
         return gap_ + round_ * dot(moved, from_ + to) / (far_ + length(to));
     }
-
     /// [m] The least and the greatest until h.
-    struct Range {
-        double least, most;
-    };
+    using Range = std::pair<double, double>;
     Range range(double h) const;
 
   private:
@@ -130,11 +125,7 @@ class GapCourse {
     Vec2 from_, v_, half_a_;
 };
 
-/// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
-double time_gone(const Vec2& x, const Vec2& D, double S);
-
-/// [m/s] Rate at which the gap opens, at the start and at the end of the interval (without the turning of the
-/// normal).
+/// [m/s] Rate at which the gap opens at the start of the interval, and at its end along Link::n.
 double gap_rate(const Group& g, const Link& link);
 double end_rate(const Group& g, const Link& link);
 /// [m/s] Upward slip of two balls at their contact, and the slip parallel to the cloth.
@@ -164,6 +155,8 @@ double rate_rounding(const Group& g);
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
+/// [s] Time after which friction has ended the slip of a ball that slips at the start of the interval h.
+double slip_gone(const Group& g, const Body& b, double h);
 /// [s] How long a solution over h is accurate.
 double accurate_interval(const Group& g, double h);
 /// Chooses the interval, solves it and writes the segments.

@@ -12,6 +12,14 @@ namespace carom::resting {
 
 namespace {
 
+// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
+double time_gone(const Vec2& x, const Vec2& D, double S) {
+    const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
+    const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
+    const double time = root - xD > 0.0 ? xx / (root - xD) : kNever;
+    return time > 0.0 ? time : kNever;
+}
+
 // Interval, reduced in steps of a tenth, in which an error that grows as the given power of it is at most
 // `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
@@ -44,12 +52,19 @@ double turn_of(const Vec2& from, const Vec2& to) {
 
 // Time at which the slip or the velocity of a ball has gone, if that is within the interval h.
 double gone_within(const Group& g, const Body& b, double h) {
-    if (moves(b.u))
-        return b.mode == Mode::kSliding ? kNever
-                                        : time_gone(b.u, (b.push - 2.5 * b.couple) / h,
-                                                    (g.motion.rolls ? 3.5 : 1.0) * g.motion.slide * b.load);
+    if (moves(b.u)) return b.mode == Mode::kSliding ? kNever : slip_gone(g, b, h);
     if (b.mode != Mode::kResting || !moves(b.v)) return kNever;
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
+}
+
+// Time at which the last ball of a group stops that comes to rest within the interval h.
+double time_of_rest(const Group& g, double h) {
+    double last = 0.0;
+    for (const Body& b : g.bodies) {
+        if (b.mode != Mode::kResting || moves(b.u)) return kNever;
+        if (moves(b.v)) last = std::max(last, gone_within(g, b, h));
+    }
+    return last > 0.0 ? last : kNever;
 }
 
 // [s] How far an interval may extend past a stop: a ball that stops within it decelerates evenly until its
@@ -98,18 +113,13 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
-// [rad] How far a normal turns at most.
-double turn_of(const Across& t, double h) {
-    return h * (std::abs(t.v) + 0.5 * h * std::abs(t.a)) / std::abs(t.distance);
-}
-
 // [s] How long a gap stays within its room.
 double gap_interval(const Group& g, const Link& link, double h) {
     const GapCourse course(g, link, h);
-    const GapCourse::Range range = course.range(h);
-    if (range.least < std::min(link.gap, -kOverlapGrowth) - kNoGap) return kShorter * h;
-    if (link.J > 0.0 && range.most > std::max(link.gap, kGapLeft)) return kShorter * h;
-    // If all goes on evenly.
+    const auto [least, most] = course.range(h);
+    if (least < std::min(link.gap, -kOverlapGrowth) - kNoGap) return kShorter * h;
+    if (link.J > 0.0 && most > std::max(link.gap, kGapLeft)) return kShorter * h;
+    // If all continues evenly.
     const double rate = end_rate(g, link);
     return rate < 0.0 ? h + std::max(0.0, course.at(h)) / -rate : kNever;
 }
@@ -128,9 +138,8 @@ double link_interval(const Group& g, const Link& link, double h) {
     if (link.arc != nullptr)
         interval = time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center, b.v,
                                                     (b.v_end - b.v) / h, kNever, false, true});
-    const double rate = gap_rate(g, link);
-    const Across t = across(g, link, h);
     if (!(link.J > 0.0)) {
+        const double rate = gap_rate(g, link);
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
         // gap is visible.
         const double opening = 2.0 * (GapCourse(g, link, h).at(h) - link.gap - rate * h) / (h * h);
@@ -148,8 +157,11 @@ double link_interval(const Group& g, const Link& link, double h) {
         interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2));
     }
     interval = std::min(interval, gap_interval(g, link, h));
-    const double turn = t.distance == 0.0 ? 0.0 : turn_of(t, h);
-    if (turn <= kSame * h) return interval;
+    if (link.distance == 0.0) return interval;
+    const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
+    // [rad] How far the normal turns at most.
+    const double turn = 0.5 * h / std::abs(link.distance) *
+                        (std::abs(cross(link.first, v)) + std::abs(cross(link.first, v_end)));
     return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3));
 }
 
@@ -263,6 +275,7 @@ bool accelerates(const Group& g) {
     });
 }
 
+// Whether all gaps stay within their room until h.
 bool gaps_stay(const Group& g, double h) {
     return std::all_of(g.links.begin(), g.links.end(),
                        [&](const Link& link) { return link.open || gap_interval(g, link, h) >= h; });
@@ -270,11 +283,9 @@ bool gaps_stay(const Group& g, double h) {
 
 }  // namespace
 
-double time_gone(const Vec2& x, const Vec2& D, double S) {
-    const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
-    const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
-    const double time = root - xD > 0.0 ? xx / (root - xD) : kNever;
-    return time > 0.0 ? time : kNever;
+double slip_gone(const Group& g, const Body& b, double h) {
+    return time_gone(b.u, (b.push - 2.5 * b.couple) / h,
+                     (g.motion.rolls ? 3.5 : 1.0) * g.motion.slide * b.load);
 }
 
 double accurate_interval(const Group& g, double h) {
@@ -294,7 +305,6 @@ void solve_interval(Group& g) {
         const bool solved = step(g, h);
         double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
         if (!solved) accurate = std::min(accurate, 0.25 * h);
-        if (g.smooth) accurate = std::min(accurate, kSmooth);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
             later = std::min(later, gone_later(g, b, h));
@@ -305,6 +315,9 @@ void solve_interval(Group& g) {
             h = std::max(shortest, std::min(accurate, gone * (1.0 + 0.5 * kSame)));
         } else if (later < std::max(gone_before, (1.0 + kSoon) * h) && longer < kLonger) {
             h = later * (1.0 + 0.5 * kSame);
+            ++longer;
+        } else if (const double rest = time_of_rest(g, h); rest < h * (1.0 - kSame) && longer < kLonger) {
+            h = rest * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
             // If all moves straight and evenly, continue until something ends it.

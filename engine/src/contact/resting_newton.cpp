@@ -21,7 +21,8 @@ double ease_of(const Group& g, const Link& link) {
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
 
-// The rate that must not be negative: that of a gap at an instant, or what makes the gap end where it shall.
+// The rate that must not be negative: that of a gap at an instant; over an interval, the one that leaves the gap
+// which the contact keeps, or else no overlap.
 double wanted_rate(const Group& g, const Link& link, double h, bool stabilise) {
     if (h == 0.0) return end_rate(g, link) + link.slack;
     if (stabilise) return end_rate(g, link) + h * link.turning;
@@ -55,50 +56,48 @@ double vertical_impulse(const Group& g, const Link& link) {
     return std::clamp(Z, -now, now);
 }
 
-// The normal in the middle of the interval, and the correction of the rate at its end.
+// The normal in the middle of the interval, and Link::turning.
 struct Turn {
     Vec2 n;
     double turning;
 };
 
-// A contact shall end where gap + h rate / 2 (at the end) is the gap that it keeps: that ends any error in two
-// intervals. It keeps the gap at which its rate would end evenly, within its room: where the gap's acceleration
-// changes, as its normal turns, it needs some on both sides. Overlaps end, and the gaps of the group may close
-// by as much: without room the whole row would be pressed, and would push out balls at its side.
+// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error is gone after
+// two intervals. It keeps the gap at which its present rate would end evenly, within its room: a normal that
+// turns needs room on both sides, because the gap's acceleration changes. Overlaps end, and the other gaps of
+// the group may close by as much: without room the whole row would be pressed, and would push out balls at
+// its side.
 Turn turn_of(const Group& g, const Link& link, double h) {
-    const double rate = gap_rate(g, link), D = link.distance;
-    const auto correction = [&](double bend, double gap_end, double end, double turn) {
+    const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
+    const double rate = dot(link.first, v), D = link.distance;
+    // room [m] for the turning; the gap and its rate at the end; the share of the rate that is not along n
+    const auto correction = [&](double room, double gap_end, double rate_end, double turned) {
         double least = link.gap < -kOverlapDepth ? 0.0 : std::min(link.gap, 0.0);
-        if (bend > kNoGap) least = std::max(least, std::min(kGapKept, bend));
+        if (room > kNoGap) least = std::max(least, std::min(kGapKept, room));
         const double even = std::clamp(link.gap + 0.5 * h * rate, least, std::max(least, kGapKept));
-        const double keeps = even - std::clamp(link.gap, 0.0, g.overlap);
-        return (0.5 * (turn - end) + (gap_end - keeps) / h) / h;
+        const double kept = even - std::clamp(link.gap, 0.0, g.overlap);
+        return (0.5 * (turned - rate_end) + (gap_end - kept) / h) / h;
     };
-    const Body& bi = g.bodies[link.i];
-    Vec2 v = -bi.v, end = -bi.v_end;
-    if (link.j >= 0) {
-        v += g.bodies[link.j].v;
-        end += g.bodies[link.j].v_end;
-    }
-    const double straight_end = dot(link.first, end);
-    const Turn straight{link.first,
-                        correction(0.0, link.gap + 0.5 * h * (rate + straight_end), straight_end, 0.0)};
-    const Vec2 moved = (0.5 * h) * (v + end);
-    if (D == 0.0) return straight;
-    const Vec2 side(link.first.y(), -link.first.x());
+    const double level_end = dot(link.first, v_end);
+    const Turn level{link.first,
+                     correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
+    if (D == 0.0) return level;
+    const Vec2 moved = (0.5 * h) * (v + v_end);
     // Far from a solution.
-    if (length(moved) > kLongestTurn * std::abs(D))
-        return {link.first, straight.turning + dot(side, v) * dot(side, v) / D};
+    if (length(moved) > kLongestTurn * std::abs(D)) {
+        const double across = cross(link.first, v);
+        return {link.first, level.turning + across * across / D};
+    }
     const Vec2 from = (D + link.gap) * link.first, middle = from + 0.5 * moved, to = from + moved;
-    const double sign = D < 0.0 ? -1.0 : 1.0, far = length(middle), far_end = length(to);
-    const Vec2 n = (sign / far) * middle, n_end = (sign / far_end) * to, along(n.y(), -n.x());
-    const double turn = dot(moved, along) / D;
-    const double bend = std::abs(turn * dot(end - v, along)) * h + std::abs(D) * (turn * turn) * (turn * turn) / 64.0;
+    const double sign = std::copysign(1.0, D), far = length(middle), far_end = length(to);
+    const Vec2 n = (sign / far) * middle, n_end = (sign / far_end) * to;
+    const double turn = cross(moved, n) / D, turn_squared = turn * turn;
+    const double room = 2.0 * h * std::abs(turn * cross(v_end - v, n)) +
+                        std::abs(D) * turn_squared * turn_squared / 32.0;
     const double gap_end = link.gap + 2.0 * dot(moved, n) * far / (length(from) + far_end);
-    const Turn turned{n, correction(2.0 * bend, gap_end, dot(n, end), dot(n_end - n, end))};
+    const double turning = correction(room, gap_end, dot(n, v_end), dot(n_end - n, v_end));
     // A change that rounds to no gap would only stop balls at rest from leaning on each other.
-    if (std::abs(turned.turning - straight.turning) * h * h <= kNoGap) return {n, straight.turning};
-    return turned;
+    return {n, std::abs(turning - level.turning) * h * h <= kNoGap ? level.turning : turning};
 }
 
 // Takes from a solution the vertical impulses and the turning of normals of the next one. They lag by one
@@ -110,10 +109,8 @@ bool update(Group& g, double h, bool stabilise, int times) {
     bool changed = false;
     g.smooth = times >= kFallsFrom;
     for (Body& b : g.bodies) {
-        if (!moves(b.u)) continue;
-        const double slid = std::min(
-            1.0, time_gone(b.u, (b.push - 2.5 * b.couple) / h, 3.5 * g.motion.slide * b.load) / h);
-        if (std::abs(slid - b.slid) * g.motion.roll * h <= left) continue;
+        const double slid = std::min(1.0, slip_gone(g, b, h) / h);
+        if (!moves(b.u) || std::abs(slid - b.slid) * g.motion.roll * h <= left) continue;
         changed = true;
         b.slid = slid;
     }
@@ -214,8 +211,7 @@ class Newton {
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless =
-                harmless && wrong <= std::max(rounding, kOverlapGrowth / time);
+            harmless = harmless && wrong <= std::max(rounding, kOverlapGrowth / time);
         }
         return solved;
     }
