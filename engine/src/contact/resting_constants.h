@@ -43,7 +43,7 @@ inline constexpr double kSlideNoise = 1e-16;
 inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: a fifth of the wavelength of light would still be no gap to
 // see.
-inline constexpr double kGapLeft = 1e-8;
+inline constexpr double kGapLeft = 1e-7;
 // [m] Largest gap that a contact keeps if its normal turns: it has room on both sides.
 inline constexpr double kGapKept = 0.5 * kGapLeft;
 // [last intervals] A contact with a gap may close it in this time, or slower, without an impulse.

@@ -1,5 +1,6 @@
 // Impacts of balls in the air, and those after which balls leave the cloth.
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -76,7 +77,9 @@ void Resolver::free_balls(int a, int b) {
     const double v_n = dot3(ball1.v - ball2.v, n);
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
     const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
-    const bool slow = pair.balls.e_b * v_n < parting;
+    const std::optional<double> e_b = restitution_in_air(pair.balls.e_b, v_n, parting);
+    const bool slow = !e_b;
+    pair.balls.e_b = e_b.value_or(0.0);
     {
         const Stopwatch watch(kernel_ns_);
         if (slow)

@@ -263,11 +263,13 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
             if (!model.reads_friction) pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
             const Vec3 r = in.vec(), n = r / length3(r);
             Velocities a = in.velocities(pair.size1.R), b = in.velocities(pair.size2.R);
-            if (slow)
-                part_slowly(pair, n, lies.one, lies.two,
-                            parting_speed(std::max(pair.size1.R, pair.size2.R), in.gravity), a, b);
-            else
+            const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), in.gravity);
+            if (slow) {
+                part_slowly(pair, n, lies.one, lies.two, parting, a, b);
+            } else {
+                pair.balls.e_b = std::max(pair.balls.e_b, parting / dot3(a.v - b.v, n));
                 hit_ball(pair, n, a, b);
+            }
             List after;
             add(after, a);
             add(after, b);
