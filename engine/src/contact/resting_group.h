@@ -20,6 +20,7 @@
 // drives them.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -83,6 +84,8 @@ struct Link {
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
     double friction_z = 0.0;  ///< Z over the J that it was found with
+    /// The mean of the interval of this, if an earlier solution gives it.
+    std::optional<double> guide = std::nullopt;
 };
 
 struct Group {

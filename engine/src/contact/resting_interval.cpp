@@ -154,7 +154,10 @@ double link_interval(const Group& g, const Link& link, double h) {
         // The friction between two balls changes with their slip, until that is gone.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2));
+        interval =
+            std::min(interval, share < 1.0
+                                   ? allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2)
+                                   : allowed_interval(h, change * h * h / 12.0, kFrictionError, 3));
     }
     interval = std::min(interval, gap_interval(g, link, h));
     if (link.distance == 0.0) return interval;
@@ -177,11 +180,29 @@ double first_attempt(const Group& g) {
     return h;
 }
 
-// Gives friction the direction of the middle of the interval, for second order.
+// Whether the friction between two balls lasts as long as the interval.
+bool slips_on(const Group& g, const Link& link) {
+    return slip_ended(g, link) < length(contact_slip(g, link, false));
+}
+
+void unguide(Group& g) {
+    for (Body& b : g.bodies) b.guided = false;
+    for (Link& link : g.links) link.guide.reset();
+}
+
+// Gives friction its mean of the interval, for second order: the direction of the middle on the cloth, and the
+// mean of start and end between balls.
 bool guide(Group& g) {
     bool any = false;
+    unguide(g);
+    for (Link& link : g.links) {
+        if (link.j < 0 || !(link.J > 0.0) || !slips_on(g, link)) continue;
+        const double mean = 0.5 * (friction_at_start(g, link) + link.friction_z);
+        if (mean == link.friction_z) continue;
+        link.guide = mean;
+        any = true;
+    }
     for (Body& b : g.bodies) {
-        b.guided = false;
         const Moving m = moving(g, b);
         if (!moves(m.start) || !moves(m.end) || (!moves(b.u) && b.mode != Mode::kRolling)) continue;
         if (moves(b.u) && b.mode != Mode::kSliding) continue;
@@ -296,7 +317,7 @@ double accurate_interval(const Group& g, double h) {
 }
 
 void solve_interval(Group& g) {
-    for (Body& b : g.bodies) b.guided = false;
+    unguide(g);
     const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     int longer = 0;
@@ -324,7 +345,7 @@ void solve_interval(Group& g) {
             if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             guide_friction(g, h);
             if (h <= shortest || gaps_stay(g, h)) break;
-            for (Body& b : g.bodies) b.guided = false;
+            unguide(g);
             h = std::max(shortest, kShorter * h);
             longer = kLonger;
         }

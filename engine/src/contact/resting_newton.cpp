@@ -126,7 +126,9 @@ bool update(Group& g, double h, bool stabilise, int times) {
             }
         }
         if (link.j < 0) continue;
-        double Z = link.J > 0.0 && times < kNoneFrom ? vertical_impulse(g, link) : 0.0;
+        double Z = !(link.J > 0.0) || times >= kNoneFrom ? 0.0
+                   : link.guide                          ? *link.guide * link.J
+                                                         : vertical_impulse(g, link);
         if (times >= kFallsFrom)
             Z = Z * link.Z > 0.0 ? std::copysign(std::min(std::abs(Z), std::abs(link.Z)), Z) : 0.0;
         const double lift = Z - link.tilt * link.J;
