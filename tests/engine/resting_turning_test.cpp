@@ -145,7 +145,7 @@ Scene small_tray(reference::Generator& rng) {
     return scene;
 }
 
-// The median was 4 mm.
+// The median was 1 mm, one in ten ended 11 mm away.
 TEST(RestingContacts, SmallTraysEndWhereSmallStepsEnd) {
     reference::Generator rng(64);
     std::vector<double> errors;

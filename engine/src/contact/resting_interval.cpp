@@ -124,6 +124,11 @@ double gap_interval(const Group& g, const Link& link, double h) {
     return rate < 0.0 ? h + std::max(0.0, course.at(h)) / -rate : kNever;
 }
 
+// Whether the friction between two balls lasts as long as the interval.
+bool slips_on(const Group& g, const Link& link) {
+    return slip_ended(g, link) < length(contact_slip(g, link, false));
+}
+
 double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
     double interval = kNever;
@@ -154,10 +159,8 @@ double link_interval(const Group& g, const Link& link, double h) {
         // The friction between two balls changes with their slip, until that is gone.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval =
-            std::min(interval, share < 1.0
-                                   ? allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2)
-                                   : allowed_interval(h, change * h * h / 12.0, kFrictionError, 3));
+        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kFrictionError,
+                                                       slips_on(g, link) ? 3 : 2));
     }
     interval = std::min(interval, gap_interval(g, link, h));
     if (link.distance == 0.0) return interval;
@@ -178,11 +181,6 @@ double first_attempt(const Group& g) {
             h = std::min(h, (slips ? 1.0 : 2.0) * speed / strength + after_stop(speed));
     }
     return h;
-}
-
-// Whether the friction between two balls lasts as long as the interval.
-bool slips_on(const Group& g, const Link& link) {
-    return slip_ended(g, link) < length(contact_slip(g, link, false));
 }
 
 void unguide(Group& g) {
