@@ -106,7 +106,7 @@ void nothing_leaves(int count, std::uint64_t seed) {
 
 // 5 % of balls with spin rolled through the wall, and 22 % of those that slid along a plastic one flew out.
 TEST(RoundWalls, NothingLeaves) {
-    nothing_leaves(600, 1);
+    nothing_leaves(300, 1);
 }
 
 TEST(RoundWalls, NothingLeavesTenThousandTables) {
@@ -163,9 +163,9 @@ TEST(RoundWalls, ALosslessGrazeBounces) {
         EXPECT_NEAR(record.tracks[0].segments.back().v.norm(), 3.0, 3e-12) << graze;
         if (graze < 1e-6) continue;
         ASSERT_EQ(count(record, EventType::kBallJaw), 50) << graze;
-        // The rounding of the first angle, relative to it.
+        // The first place is rounded, and so is the square of the angle.
         const double chord = 2.0 * orbit * std::sin(graze) / 3.0;
-        EXPECT_NEAR(record.events.back().time / (50.0 * chord), 1.0, 1e-15 / (graze * graze)) << graze;
+        EXPECT_NEAR(record.events.back().time / (50.0 * chord), 1.0, 5e-15 / (graze * graze)) << graze;
     }
 }
 

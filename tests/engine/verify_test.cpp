@@ -201,7 +201,7 @@ TEST(Verify, LooksBetweenEvents) {
 }
 
 // Behind an arc with ends nothing touches, so only the passage itself can be seen: a ball that leaves a table
-// of two half circles, in one piece of its motion. A ball that comes in from behind only overlaps the wall.
+// of two half circles, in one piece of its motion. From behind a ball may come in.
 TEST(Verify, SeesABallPassARoundWall) {
     for (const bool out : {true, false}) {
         Scene scene = empty_scene();
@@ -214,10 +214,11 @@ TEST(Verify, SeesABallPassARoundWall) {
                 {"w", {0.0, 0.0}, 0.5, scene.balls.R, "", "inside", from, from + 180.0});
         scene.effects.push_back({"cushions", true, {}});
         const std::optional<Violation> violation = verify(record, plan_of(scene));
-        ASSERT_TRUE(violation) << out;
-        EXPECT_EQ(violation->law, "U3") << violation->message;
-        const bool passes = violation->message.find("ball ball passes through a round wall") != std::string::npos;
-        EXPECT_EQ(passes, out) << violation->message;
+        ASSERT_EQ(violation.has_value(), out);
+        if (!out) continue;
+        EXPECT_EQ(violation->law, "U3");
+        EXPECT_NE(violation->message.find("ball ball passes through a round wall"), std::string::npos)
+            << violation->message;
     }
 }
 

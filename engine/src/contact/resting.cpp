@@ -122,7 +122,7 @@ void mark_open(Group& g) {
                      turns = across != 0.0 ? across * across / -link.distance : 0.0;
         const bool stays =
             link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide + turns, e));
-        link.open = (rate > g.noise && !stays) || (link.gap > 2.0 * kGapLeft && !link.begins);
+        link.open = rate > g.noise && !stays;
     }
 }
 

@@ -335,7 +335,8 @@ void solve_interval(Group& g) {
         } else if (later < std::max(gone_before, (1.0 + kSoon) * h) && longer < kLonger) {
             h = later * (1.0 + 0.5 * kSame);
             ++longer;
-        } else if (const double rest = time_of_rest(g, h); rest < h * (1.0 - kSame) && longer < kLonger) {
+        } else if (const double rest = std::max(shortest, time_of_rest(g, h));
+                   rest < h * (1.0 - kSame) && longer < kLonger) {
             h = rest * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
