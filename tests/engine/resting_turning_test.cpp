@@ -43,13 +43,14 @@ double error_of(const Scene& scene, double step, double frequency) {
     const std::vector<SteppedBall> reference = RestingSteps(scene, step, frequency).run();
     double worst = 0.0;
     for (std::size_t i = 0; i < reference.size(); ++i)
-        worst = std::max(worst, length(planar(record.state_at(static_cast<int>(i), record.duration).position) -
-                                       reference[i].r));
+        worst = std::max(
+            worst,
+            length(planar(record.state_at(static_cast<int>(i), record.duration).position) - reference[i].r));
     return worst;
 }
 
-// A smooth round wall does no work, so a ball that rolls along it stops after v / (mu_r g). It stopped up to a
-// tenth late, because every re-contact took the rolling resistance of an interval away.
+// A smooth round wall does no work, so a ball that rolls along it stops after v / (mu_r g). It stopped up to
+// a tenth late, because every re-contact took the rolling resistance of an interval away.
 TEST(RestingContacts, AWallRunnerStopsWhereRollingResistanceStopsIt) {
     for (const double v : {0.2, 0.5, 1.0}) {
         for (const double mu_r : {0.008, 0.02, 0.05}) {
@@ -141,7 +142,8 @@ Scene small_tray(reference::Generator& rng) {
     const Vec2 turned(to.x() * std::cos(angle) - to.y() * std::sin(angle),
                       to.x() * std::sin(angle) + to.y() * std::cos(angle));
     for (std::size_t k = 0; k < places.size(); ++k)
-        add_spinning(scene, places[k], k == pusher ? Vec2(turned * (speed / length(to))) : Vec2(Vec2::Zero()));
+        add_spinning(scene, places[k],
+                     k == pusher ? Vec2(turned * (speed / length(to))) : Vec2(Vec2::Zero()));
     return scene;
 }
 

@@ -82,8 +82,9 @@ Scene random_scene(reference::Generator& rng, Round& round, int kind) {
         for (const BallStart& other : scene.ball) fits = fits && length(planar(other.position) - r) > 2.0 * R;
         const Vec3 w(rng.uniform(-150.0, 150.0), rng.uniform(-150.0, 150.0), 0.0);
         const double vx = rng.uniform(-1.5, 1.5), vy = rng.uniform(-1.5, 1.5);
-        if (fits) add_ball(scene, std::to_string(k), r.x(), r.y(), kind > 0 ? vx : 0.0, kind > 0 ? vy : 0.0,
-                           kind > 0 ? Vec3(Vec3::Zero()) : w);
+        if (fits)
+            add_ball(scene, std::to_string(k), r.x(), r.y(), kind > 0 ? vx : 0.0, kind > 0 ? vy : 0.0,
+                     kind > 0 ? Vec3(Vec3::Zero()) : w);
     }
     return scene;
 }
@@ -99,7 +100,8 @@ void nothing_leaves(int count, std::uint64_t seed) {
         const Record record = run_verified(scene);
         for (std::size_t i = 0; i < scene.ball.size(); ++i) {
             const BallState end = record.state_at(static_cast<int>(i), record.duration);
-            EXPECT_GE(round.room(planar(end.position)), scene.balls.R - 1e-9) << "scene " << k << ", ball " << i;
+            EXPECT_GE(round.room(planar(end.position)), scene.balls.R - 1e-9)
+                << "scene " << k << ", ball " << i;
         }
     }
 }
@@ -127,7 +129,8 @@ TEST(RoundWalls, AreMetByABallThatStartsWithSpinAlone) {
                  Vec3(-123.65359461114068, -119.42662797918973, 0.0));
         const Record record = run_verified(scene);
         EXPECT_GE(count(record, EventType::kBallJaw), 1);
-        EXPECT_LE(length(planar(record.state_at(0, record.duration).position)), kRadius - scene.balls.R + 1e-12);
+        EXPECT_LE(length(planar(record.state_at(0, record.duration).position)),
+                  kRadius - scene.balls.R + 1e-12);
     }
 }
 

@@ -22,8 +22,8 @@ class RestingSteps {
     RestingSteps(const Scene& scene, double step, double frequency)
         : scene_(scene), step_(step), stiffness_(frequency * frequency) {
         for (const BallStart& b : scene.ball)
-            balls_.push_back({planar(b.position), planar(b.velocity),
-                              scene.balls.R * Vec2(b.spin.y(), -b.spin.x())});
+            balls_.push_back(
+                {planar(b.position), planar(b.velocity), scene.balls.R * Vec2(b.spin.y(), -b.spin.x())});
         force_.resize(balls_.size());
     }
 

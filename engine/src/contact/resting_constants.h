@@ -48,8 +48,8 @@ inline constexpr double kGapLeft = 1e-7;
 inline constexpr double kGapKept = 0.5 * kGapLeft;
 // [last intervals] A contact with a gap may close it in this time, or slower, without an impulse.
 inline constexpr double kSlackTime = 4.0;
-// [of the speeds] Where nothing takes energy, a contact rests only if it closes more slowly: the energy of its
-// bounce is then less than --verify sees.
+// [of the speeds] Where nothing takes energy, a contact rests only if it closes more slowly: the energy of
+// its bounce is then less than --verify sees.
 inline constexpr double kLosslessShare = 5e-7;
 
 // How long an interval is (contact/resting_interval.cpp)
@@ -87,8 +87,6 @@ inline constexpr double kGrowth = 4.0;
 inline constexpr double kReduced = 0.9;
 // [-] The same for a gap that would not stay within its room.
 inline constexpr double kShorter = 0.7;
-// [ulp] A change of a speed that is its rounding.
-inline constexpr double kChangeUlp = 8.0;
 
 // The solution over an interval (contact/resting_newton.cpp, resting_response.cpp, resting_step.cpp)
 

@@ -113,15 +113,11 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
-// [s] How long a gap stays within its room.
-double gap_interval(const Group& g, const Link& link, double h) {
-    const GapCourse course(g, link, h);
-    const auto [least, most] = course.range(h);
-    if (least < std::min(link.gap, -kOverlapGrowth) - kNoGap) return kShorter * h;
-    if (link.J > 0.0 && most > std::max(link.gap, kGapLeft)) return kShorter * h;
-    // If all continues evenly.
-    const double rate = end_rate(g, link);
-    return rate < 0.0 ? h + std::max(0.0, course.at(h)) / -rate : kNever;
+// Whether a gap stays within its room until h.
+bool stays(const Group& g, const Link& link, double h) {
+    const auto [least, most] = GapCourse(g, link, h).range(h);
+    return least >= std::min(link.gap, -kOverlapGrowth) - kNoGap &&
+           !(link.J > 0.0 && most > std::max(link.gap, kGapLeft));
 }
 
 // Whether the friction between two balls lasts as long as the interval.
@@ -131,18 +127,19 @@ bool slips_on(const Group& g, const Link& link) {
 
 double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
-    double interval = kNever;
+    double interval = stays(g, link, h) ? kNever : kShorter * h;
     const Body& b = g.bodies[link.i];
     if (link.line != nullptr) {
         Segment s;
         s.r = g.group.balls[link.i].r;
         s.v = Vec3(b.v.x(), b.v.y(), 0.0);
         s.a = (b.v_end - b.v) / h;
-        interval = time_to_line_end(*link.line, s);
+        interval = std::min(interval, time_to_line_end(*link.line, s));
     }
     if (link.arc != nullptr)
-        interval = time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center, b.v,
-                                                    (b.v_end - b.v) / h, kNever, false, true});
+        interval = std::min(
+            interval, time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center,
+                                                       b.v, (b.v_end - b.v) / h, kNever, false, true}));
     if (!(link.J > 0.0)) {
         const double rate = gap_rate(g, link);
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
@@ -152,7 +149,7 @@ double link_interval(const Group& g, const Link& link, double h) {
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
-        return std::min(interval, gap_interval(g, link, h));
+        return interval;
     }
     const double force = link.J / h;
     if (link.j >= 0 && !g.smooth) {
@@ -162,7 +159,6 @@ double link_interval(const Group& g, const Link& link, double h) {
         interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kFrictionError,
                                                        slips_on(g, link) ? 3 : 2));
     }
-    interval = std::min(interval, gap_interval(g, link, h));
     if (link.distance == 0.0) return interval;
     const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
     // [rad] How far the normal turns at most.
@@ -188,8 +184,8 @@ void unguide(Group& g) {
     for (Link& link : g.links) link.guide.reset();
 }
 
-// Gives friction its mean of the interval, for second order: the direction of the middle on the cloth, and the
-// mean of start and end between balls.
+// Gives friction its mean of the interval, for second order: the direction of the middle on the cloth, and
+// the mean of start and end between balls.
 bool guide(Group& g) {
     bool any = false;
     unguide(g);
@@ -286,20 +282,6 @@ void write_segments(Group& g, double h) {
     }
 }
 
-bool accelerates(const Group& g) {
-    constexpr double kRounding = kChangeUlp * kEpsilon;
-    return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
-        return length(b.v_end - b.v) > kRounding * length(b.v) ||
-               length(b.s_end - b.s) > kRounding * length(b.s);
-    });
-}
-
-// Whether all gaps stay within their room until h.
-bool gaps_stay(const Group& g, double h) {
-    return std::all_of(g.links.begin(), g.links.end(),
-                       [&](const Link& link) { return link.open || gap_interval(g, link, h) >= h; });
-}
-
 }  // namespace
 
 double slip_gone(const Group& g, const Body& b, double h) {
@@ -340,10 +322,11 @@ void solve_interval(Group& g) {
             h = rest * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
-            // If all moves straight and evenly, continue until something ends it.
-            if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             guide_friction(g, h);
-            if (h <= shortest || gaps_stay(g, h)) break;
+            const bool all_stay = std::all_of(g.links.begin(), g.links.end(), [&](const Link& link) {
+                return link.open || stays(g, link, h);
+            });
+            if (h <= shortest || all_stay) break;
             unguide(g);
             h = std::max(shortest, kShorter * h);
             longer = kLonger;

@@ -21,12 +21,10 @@ double ease_of(const Group& g, const Link& link) {
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
 
-// The rate that must not be negative: that of a gap at an instant; over an interval, the one that leaves the gap
-// which the contact keeps, or else no overlap.
+// The rate that must not be negative: at an instant that of a gap, beyond the rate at which it may close;
+// over an interval the one that leaves the gap which the contact keeps.
 double wanted_rate(const Group& g, const Link& link, double h, bool stabilise) {
-    if (h == 0.0) return end_rate(g, link) + link.slack;
-    if (stabilise) return end_rate(g, link) + h * link.turning;
-    return end_rate(g, link) - std::max(0.0, -gap_rate(g, link) - 2.0 * std::max(0.0, link.gap) / h);
+    return end_rate(g, link) + (h == 0.0 ? link.slack : stabilise ? h * link.turning : 0.0);
 }
 
 // The friction impulse between two balls opposes their slip at the end. With the upward slip X without it,
@@ -62,11 +60,11 @@ struct Turn {
     double turning;
 };
 
-// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error is gone after
-// two intervals. It keeps the gap at which its present rate would end evenly, within its room: a normal that
-// turns needs room on both sides, because the gap's acceleration changes. Overlaps end, and the other gaps of
-// the group may close by as much: without room the whole row would be pressed, and would push out balls at
-// its side.
+// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error is gone
+// after two intervals. It keeps the gap at which its present rate would end evenly, within its room: a normal
+// that turns needs room on both sides, because the gap's acceleration changes. Overlaps end, and the other
+// gaps of the group may close by as much: without room the whole row would be pressed, and would push out
+// balls at its side.
 Turn turn_of(const Group& g, const Link& link, double h) {
     const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
     const double rate = dot(link.first, v), D = link.distance;
@@ -79,8 +77,7 @@ Turn turn_of(const Group& g, const Link& link, double h) {
         return (0.5 * (turned - rate_end) + (gap_end - kept) / h) / h;
     };
     const double level_end = dot(link.first, v_end);
-    const Turn level{link.first,
-                     correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
+    const Turn level{link.first, correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
     if (D == 0.0) return level;
     const Vec2 moved = (0.5 * h) * (v + v_end);
     // Far from a solution.
@@ -92,8 +89,8 @@ Turn turn_of(const Group& g, const Link& link, double h) {
     const double sign = std::copysign(1.0, D), far = length(middle), far_end = length(to);
     const Vec2 n = (sign / far) * middle, n_end = (sign / far_end) * to;
     const double turn = cross(moved, n) / D, turn_squared = turn * turn;
-    const double room = 2.0 * h * std::abs(turn * cross(v_end - v, n)) +
-                        std::abs(D) * turn_squared * turn_squared / 32.0;
+    const double room =
+        2.0 * h * std::abs(turn * cross(v_end - v, n)) + std::abs(D) * turn_squared * turn_squared / 32.0;
     const double gap_end = link.gap + 2.0 * dot(moved, n) * far / (length(from) + far_end);
     const double turning = correction(room, gap_end, dot(n, v_end), dot(n_end - n, v_end));
     // A change that rounds to no gap would only stop balls at rest from leaning on each other.
@@ -110,7 +107,7 @@ bool update(Group& g, double h, bool stabilise, int times) {
     g.smooth = times >= kFallsFrom;
     for (Body& b : g.bodies) {
         const double slid = std::min(1.0, slip_gone(g, b, h) / h);
-        if (!moves(b.u) || std::abs(slid - b.slid) * g.motion.roll * h <= left) continue;
+        if (!moves(b.u) || std::abs(slid - b.slid) * h <= left) continue;
         changed = true;
         b.slid = slid;
     }

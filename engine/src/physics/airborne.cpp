@@ -15,8 +15,8 @@ constexpr double kBounceApex = 0.0045;
 // [bounce_end] Speed at which a slow contact separates. Such contacts occur about 1000 times a second, and
 // raise the energy by at most 1.3e-5 J/kg.
 constexpr double kPartingShare = 0.1;
-// [-] A contact with less restitution is slow only if it would be with this one: a plastic contact at metres a
-// second has its friction.
+// [-] A contact with less restitution is slow only if it would be with this one: a plastic contact at metres
+// a second has its friction.
 constexpr double kSlowRestitution = 0.5;
 
 }  // namespace

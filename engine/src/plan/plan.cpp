@@ -140,8 +140,9 @@ constexpr double kLeastInCluster = 0.05;
 void warn_of_clusters(Plan& plan) {
     const double e_b = plan.e_b();
     if (plan.clusters == ClusterModel::kCompliant && plan.sizes.size() > 2 && e_b < kLeastInCluster)
-        plan.warnings.push_back(fmt::format(
-            "balls.e_b is {:.4g}, but where three or more balls touch it counts as {}", e_b, kLeastInCluster));
+        plan.warnings.push_back(
+            fmt::format("balls.e_b is {:.4g}, but where three or more balls touch it counts as {}", e_b,
+                        kLeastInCluster));
 }
 
 // Limits beyond which a value is probably in the wrong unit. [m], [m/s]
