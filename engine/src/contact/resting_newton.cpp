@@ -107,7 +107,7 @@ bool update(Group& g, double h, bool stabilise, int times) {
     g.smooth = times >= kFallsFrom;
     for (Body& b : g.bodies) {
         const double slid = std::min(1.0, slip_gone(g, b, h) / h);
-        if (!moves(b.u) || std::abs(slid - b.slid) * h <= left) continue;
+        if (!moves(b.u) || std::abs(slid - b.slid) * g.motion.roll * h <= left) continue;
         changed = true;
         b.slid = slid;
     }
