@@ -197,8 +197,8 @@ Scene scene_after(const Scene& scene, const Record& record) {
         BallState end = record.state_at(static_cast<int>(i), record.duration);
         // If the record ends during a cluster, the next shot begins after it.
         if (end.state == MotionState::kColliding) {
-            const Segment& after = record.tracks[i].segments.back();
-            end = {after.state, after.r, after.v, after.w};
+            const Segment& freed = record.tracks[i].segments.back();
+            end = {freed.state, freed.r, freed.v, freed.w};
         }
         if (is_gone(end.state)) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);

@@ -20,17 +20,12 @@
 #include "scene/sections.h"
 
 namespace carom {
-namespace {
 
-using detail::Distribution;
-using detail::fail;
-using detail::KeyPath;
-using detail::ListItem;
-
-struct Rule {
+/// One rule of a variation. It is named, because Variation::Parts holds it.
+struct VariationRule {
     std::string key;
-    KeyPath path;
-    Distribution distribution;
+    detail::KeyPath path;
+    detail::Distribution distribution;
     std::string unit;  // "" if it is not a number of the scene
     // The number or rack value of this key, if it can be set without the file.
     std::optional<SceneNumber> number;
@@ -44,6 +39,13 @@ struct Rule {
         return distribution.draw(random);
     }
 };
+
+namespace {
+
+using detail::Distribution;
+using detail::fail;
+using detail::KeyPath;
+using detail::ListItem;
 
 const ListItem* listed(const DrawnValue& value) {
     const auto* const* item = std::get_if<const ListedValue*>(&value);
@@ -130,10 +132,10 @@ void check_known(toml::table file, const std::string& name, const KeyPath& path)
     }
 }
 
-Rule parse_rule(toml::table& file, const std::string& name, const std::string& text) {
+VariationRule parse_rule(toml::table& file, const std::string& name, const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == text.npos || equals == 0) fail("expected KEY=DISTRIBUTION, such as cue.speed=uniform(2,4)");
-    Rule rule;
+    VariationRule rule;
     rule.key = text.substr(0, equals);
     rule.path = find_path(file, rule.key);
     const toml::node* const own = value_in(file, rule.path).node();
@@ -212,7 +214,7 @@ struct Variation::Parts {
     std::string path;
     toml::table file;
     Scene base;
-    std::vector<Rule> rules;
+    std::vector<VariationRule> rules;
     std::vector<std::string> keys;
     std::uint64_t seed = 0;
     std::uint64_t fingerprint = 0;
@@ -255,7 +257,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     print.add(seed);
     for (const std::string& text : rules) {
         try {
-            Rule rule = parse_rule(parts->file, parts->path, text);
+            VariationRule rule = parse_rule(parts->file, parts->path, text);
             for (const Rule& other : parts->rules)
                 if (rule.path.overlaps(other.path)) fail("{} already varies this value", other.key);
             find_number(parts->base, rule);
