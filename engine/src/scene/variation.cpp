@@ -153,7 +153,7 @@ bool is_number_alone(const KeyPath& path) {
 }
 
 /// Finds what a rule varies in the scene itself.
-void find_number(const Scene& scene, Rule& rule) {
+void find_number(const Scene& scene, VariationRule& rule) {
     const std::string& name = rule.path.name;
     if (rule.path.section == "rack") {
         for (const Field<Rack>& f : kRackFields)
@@ -258,7 +258,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     for (const std::string& text : rules) {
         try {
             VariationRule rule = parse_rule(parts->file, parts->path, text);
-            for (const Rule& other : parts->rules)
+            for (const VariationRule& other : parts->rules)
                 if (rule.path.overlaps(other.path)) fail("{} already varies this value", other.key);
             find_number(parts->base, rule);
             parts->quick = parts->quick && (rule.number || rule.rack != nullptr);
@@ -357,7 +357,7 @@ std::optional<Change> Variation::put(std::span<const DrawnValue> values, Scene& 
     Change change = Change::kNumbers;
     std::optional<Rack> rack;
     for (std::size_t k = 0; k < values.size(); ++k) {
-        const Rule& rule = parts_->rules[k];
+        const VariationRule& rule = parts_->rules[k];
         if (rule.rack != nullptr) {
             if (!rack) rack = parts_->rack;
             if (!put_in_rack(*rule.rack, values[k], *rack)) return std::nullopt;
