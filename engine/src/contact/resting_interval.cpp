@@ -128,10 +128,10 @@ bool slips_on(const Group& g, const Link& link) {
 double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
     const Body& b = g.bodies[link.i];
-    double interval =
-        std::min(stays(g, link, h) ? kNever : kShorter * h,
-                 time_past_end(g.around.geometry, link.contact,
-                               {planar(g.group.balls[link.i].r), b.v, (b.v_end - b.v) / h, kNever, false, true}));
+    double interval = std::min(
+        stays(g, link, h) ? kNever : kShorter * h,
+        time_past_end(g.around.geometry, link.contact,
+                      {planar(g.group.balls[link.i].r), b.v, (b.v_end - b.v) / h, kNever, false, true}));
     if (!(link.J > 0.0)) {
         const double rate = gap_rate(g, link);
         // A contact that opens is released once its rate can be distinguished from rounding, and before its

@@ -68,8 +68,7 @@ void Resolver::free_balls(int a, int b) {
         const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
-    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls),
-                        plan_.e_b()};
+    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls), plan_.e_b()};
     const Touch<Vec3> touch =
         touch_ball<Vec3>({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
     const Vec3& n = touch.n;

@@ -240,7 +240,8 @@ void check_version(const JsonValue& version) {
     const std::int64_t found = version.integer(1, 1000000);
     if (found >= kOldestVersion && found <= kRecordVersion) return;
     version.fail("this program reads versions " + std::to_string(kOldestVersion) + " to " +
-                 std::to_string(kRecordVersion) + "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
+                 std::to_string(kRecordVersion) +
+                 "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
 }
 
 /// Warnings about a file that was read all the same.
