@@ -21,8 +21,7 @@ export class CaromError extends Error {
 }
 
 export type BallState =
-  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out" |
-  "colliding";
+  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out";
 export const STATES: readonly BallState[];
 export const STATUSES: readonly ("at_rest" | "time" | "events" | "endless" | "invalid" | "failed")[];
 

@@ -249,7 +249,6 @@ void end_transition(RestingBall& member, MotionState state, double R) {
         case MotionState::kFalling:
         case MotionState::kAirborne:
         case MotionState::kOut:
-        case MotionState::kColliding:
             break;
     }
 }
