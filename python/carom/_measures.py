@@ -54,8 +54,8 @@ class Fall(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """The share of successes if an input is off by `by` [unit]: less, and more; of `shots` each. NaN if no scene
-    is valid there, as with a ball inside a cushion."""
+    """The share of successes if an input is off by `by` [unit]: less, and more; of `shots` each. NaN if no
+    scene is valid there, as with a ball inside a cushion."""
 
     input: str
     by: float

@@ -126,8 +126,8 @@ def parts_of(value):
 
 
 ODD = (
-    None, True, -1, 0, 1.5, 10**400, 2**64, 1e308, float("nan"), float("inf"), "", "x", "\ud800", "\x00", [], {},
-    [[]], "9" * 30)
+    None, True, -1, 0, 1.5, 10**400, 2**64, 1e308, float("nan"), float("inf"), "", "x", "\ud800", "\x00",
+    "9" * 30, [], {}, [[]])
 
 
 def spoiled(system, draw):

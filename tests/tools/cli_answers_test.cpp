@@ -1,10 +1,14 @@
 // Answers that were wrong when the program was tried from outside: refusals, figures that disagree, clocks.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/file_lock.h"
@@ -14,6 +18,13 @@ namespace carom::test {
 namespace {
 
 using Json = nlohmann::json;
+
+std::vector<std::string> split(const std::string& line) {
+    std::vector<std::string> words;
+    std::istringstream in(line);
+    for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+    return words;
+}
 
 class CliAnswers : public ::testing::Test {
   protected:
@@ -77,14 +88,15 @@ TEST_F(CliAnswers, ANumberThatWouldReplaceAFitIsRefused) {
                  "--shots", "1000"},
                 why);
     }
-    refused({"fit", draw(), samples, "--vary", "balls.mu_b"}, "balls.mu_b_fit.0");
+    const ProcessResult fitted = carom({"fit", three_cushion(), samples, "--vary", "balls.e_c_fit.0"});
+    EXPECT_EQ(fitted.status, 0) << fitted.err;
+    const std::string drawn = tracks(draw(), "");
+    refused({"fit", draw(), drawn, "--vary", "balls.mu_b"}, "balls.mu_b_fit.0");
     // The key that the message names works, although only the preset has the fit.
     EXPECT_EQ(carom({"sweep", three_cushion(), "--vary", "balls.e_c_fit.0=uniform(0.8,0.9)", "--count", "2",
                      "-o", folder_.file("b.csv")})
                   .status,
               0);
-    const ProcessResult fitted = carom({"fit", three_cushion(), samples, "--vary", "balls.e_c_fit.0"});
-    EXPECT_EQ(fitted.status, 0) << fitted.err;
     EXPECT_EQ(carom({"sweep", three_cushion(), "--vary", "balls.mu_b=uniform(0.04,0.06)", "--count", "2",
                      "-o", folder_.file("c.csv")})
                   .status,
@@ -103,7 +115,7 @@ TEST_F(CliAnswers, AFitWhoseTracksAreOffIsRefusedWithoutDeviations) {
     }
     for (const auto& [factor, unit] :
          {std::pair{"1000", "mm"}, std::pair{"39.3701", "inches"}, std::pair{"100", "cm"}}) {
-        const ProcessResult result = fit(std::string("$3 *= ") + factor + "; $4 *= " + factor, "balls.mu_s");
+        const ProcessResult result = fit(std::string("$4 *= ") + factor + "; $5 *= " + factor, "balls.mu_s");
         EXPECT_EQ(result.status, 1) << result.out;
         EXPECT_TRUE(contains(result.err, std::string("the places look like ") + unit)) << result.err;
     }
@@ -182,6 +194,60 @@ offset = [0, 0]
         }
 }
 
+TEST_F(CliAnswers, BallsOfUnlikeRadiusHaveDerivatives) {
+    const double radii[] = {0.0238, 0.022, 0.026, 0.031, 0.034};
+    for (const double radius : radii) {
+        const std::string scene = folder_.write("u.toml", fmt::format(R"([table]
+cushion = []
+[[ball]]
+id = "cue"
+position = [0.698, 1.66]
+[[ball]]
+id = "2"
+position = [0.553, 1.467]
+radius = {}
+[cue]
+speed = 0.7114577200945122
+aim_deg = -128.159
+offset = [0.19765366965763176, 0.11671920235418225]
+elevation_deg = 0.0
+)",
+                                                                      radius));
+        const ProcessResult result = carom({"sensitivity", scene, "--shots", "1", "--json"});
+        ASSERT_EQ(result.status, 0) << radius << ": " << result.err;
+        const Json told = Json::parse(result.out);
+        ASSERT_EQ(told.at("inputs").at(1).at("input"), "cue.speed");
+        const std::string table = folder_.file(fmt::format("{}.csv", radius));
+        constexpr double kSpeed = 0.7114577200945122, kStep = 1e-5;
+        ASSERT_EQ(carom({"sweep", scene, "--vary",
+                         fmt::format("cue.speed=list({},{})", kSpeed - kStep, kSpeed + kStep), "--count",
+                         "64", "-o", table, "--measure", "x(2)", "--measure", "y(2)"})
+                      .status,
+                  0);
+        // The rows of the two speeds, in the order of draws.
+        std::map<double, std::pair<double, double>> ends;
+        std::vector<std::string> lines = lines_of(read_file(table));
+        const std::vector<std::string> names = split(lines.front());
+        const auto column = [&names](const std::string& name) {
+            return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+        };
+        for (std::size_t i = 1; i < lines.size(); ++i) {
+            const std::vector<std::string> row = split(lines[i]);
+            ends[std::stod(row.at(column("cue.speed")))] = {std::stod(row.at(column("x(2)"))),
+                                                            std::stod(row.at(column("y(2)")))};
+        }
+        ASSERT_EQ(ends.size(), 2u);
+        const auto [less, more] = std::pair(*ends.begin(), *ends.rbegin());
+        const Json& ball = told.at("balls").at(1);
+        EXPECT_EQ(ball.at("ball"), "2");
+        const double step = more.first - less.first;
+        EXPECT_NEAR(ball.at("derivatives").at(1).at(0).get<double>(),
+                    (more.second.first - less.second.first) / step, 1e-4);
+        EXPECT_NEAR(ball.at("derivatives").at(1).at(1).get<double>(),
+                    (more.second.second - less.second.second) / step, 1e-4);
+    }
+}
+
 TEST_F(CliAnswers, AMoveIntoACushionIsImpossible) {
     const std::string scene = folder_.write("rail.toml", R"([[ball]]
 id = "cue"
@@ -220,17 +286,17 @@ TEST_F(CliAnswers, ATableComesWithItsOwnBalls) {
 }
 
 TEST_F(CliAnswers, TheNoteNamesWhatAsksForTheElevation) {
-    const auto note = [this](const std::string& more) {
-        return carom({"check", folder_.write("n.toml", "[[ball]]\nid = \"cue\"\nposition = [0.06, 1.0]\n" +
-                                                           more + "[cue]\nspeed = 3\naim_deg = 0\n")})
-            .err;
-    };
-    EXPECT_EQ(note(""), "");
-    // A ball behind the cue ball, and the rail behind both.
-    const std::string behind = "[[ball]]\nid = \"2\"\nposition = [0.0287, 1.048]\n";
-    EXPECT_TRUE(contains(note(behind), "in ball 2 at")) << note(behind);
-    const std::string right = "[[ball]]\nid = \"3\"\nposition = [0.0287, 0.952]\n";
-    EXPECT_TRUE(contains(note(right), "in ball 3 at")) << note(right);
+    // A ball behind the cue ball asks for more than the rail behind both.
+    for (const char* place : {"0.14, 1.0", "0.13, 1.01", "0.1, 0.99"}) {
+        const std::string scene = folder_.write(
+            "n.toml", "[[ball]]\nid = \"cue\"\nposition = [0.2, 1.0]\n[[ball]]\nid = \"2\"\nposition = [" +
+                          std::string(place) + "]\n[cue]\nspeed = 3\naim_deg = 0\noffset = [0, 0]\n");
+        const ProcessResult result = carom({"check", scene});
+        EXPECT_TRUE(contains(result.err, "the cue would be in ball 2 at")) << result.err;
+    }
+    const std::string rail = folder_.write(
+        "r.toml", "[[ball]]\nid = \"cue\"\nposition = [0.06, 1.0]\n[cue]\nspeed = 3\naim_deg = 0\n");
+    EXPECT_TRUE(contains(carom({"check", rail}).err, "the cue would be in cushion c3 at"));
 }
 
 TEST_F(CliAnswers, ThePointOfThreeCushionIsJudgedWithItsState) {
