@@ -52,12 +52,7 @@ std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& 
 /// A player's cue ball and the balls touching it; empty if none does.
 std::vector<std::string> touching(const Facts& facts, int shooter) {
     const int own = index_of(facts.record, own_ball(shooter));
-    std::vector<std::string> list;
-    for (int i = 0; i < static_cast<int>(facts.record.tracks.size()); ++i) {
-        const double gap =
-            length(facts.rest(i) - facts.rest(own)) - facts.record.size(i).R - facts.record.size(own).R;
-        if (i != own && gap <= kTouchTolerance) list.push_back(facts.id(i));
-    }
+    std::vector<std::string> list = facts.touching(own, facts.record.duration);
     if (!list.empty()) list.insert(list.begin(), facts.id(own));
     return list;
 }

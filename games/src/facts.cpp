@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "carom/engine/tolerances.h"
+
 namespace carom::games::detail {
 
 bool is_in(std::string_view ball, const std::vector<std::string>& list) {
@@ -73,6 +75,47 @@ bool Facts::fell_as_called() const {
 bool Facts::first_is_one_of(const std::vector<std::string>& ids) const {
     return std::any_of(shot.first_hits.begin(), shot.first_hits.end(),
                        [&](int ball) { return is_in(id(ball), ids); });
+}
+
+std::vector<std::string> Facts::touching(int ball, double time) const {
+    const auto place = [&](int of) { return planar(record.state_at(of, time).position); };
+    std::vector<std::string> list;
+    for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i) {
+        const double gap = length(place(i) - place(ball)) - record.size(i).R - record.size(ball).R;
+        if (i != ball && gap <= kTouchTolerance) list.push_back(id(i));
+    }
+    return list;
+}
+
+bool Facts::jumps() const {
+    const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(shot.struck)].segments;
+    const double first = shot.first_hits.empty() ? record.duration : shot.first_time;
+    const auto apart = [&](int ball, double time) {
+        return Vec2(
+            planar(record.state_at(shot.struck, time).position - record.state_at(ball, time).position));
+    };
+    for (std::size_t k = 0; k < segments.size() && segments[k].start < first; ++k) {
+        if (segments[k].state != MotionState::kAirborne) continue;
+        // In the air, the way over the table is straight.
+        const double start = segments[k].start,
+                     next = k + 1 < segments.size() ? segments[k + 1].start : record.duration,
+                     end = std::min(next, first);
+        for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
+            if (ball == shot.struck || !(end > start)) continue;
+            const Vec2 from = apart(ball, start), way = apart(ball, end) - from;
+            const double reach = record.size(shot.struck).R + record.size(ball).R;
+            const double share = -dot(from, way) / std::max(dot(way, way), 1e-300);
+            if (share > 0.0 && share < 1.0 && length(from + share * way) < reach) return true;
+            const bool hit =
+                std::find(shot.first_hits.begin(), shot.first_hits.end(), ball) != shot.first_hits.end();
+            if (!hit || next < first) continue;
+            // It hits this ball from the air: where does it come down?
+            std::size_t down = k;
+            while (down + 1 < segments.size() && segments[down].state == MotionState::kAirborne) ++down;
+            if (dot(apart(ball, segments[down].start), way) > 0.0) return true;
+        }
+    }
+    return false;
 }
 
 std::vector<Lying> Facts::lying(double cue_gap, double gap, const std::vector<std::string>& left_out) const {

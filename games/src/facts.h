@@ -39,6 +39,11 @@ class Facts {
     bool first_is_one_of(const std::vector<std::string>& ids) const;
     /// Of all balls that were on the table.
     std::vector<std::string> ids() const { return ids_of(record.tracks); }
+    /// The balls that touch this one at a time.
+    std::vector<std::string> touching(int ball, double time) const;
+    /// Whether the cue ball, before it hits a ball, flies over any part of one; or over the one that it hits,
+    /// and comes down on its far side.
+    bool jumps() const;
     /// The balls that lie on the table at the end, except `left_out`. The cue ball keeps `cue_gap`, the
     /// others `gap` away.
     std::vector<Lying> lying(double cue_gap, double gap, const std::vector<std::string>& left_out = {}) const;

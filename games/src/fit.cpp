@@ -9,12 +9,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/tangents.h"
+#include "fit_doubts.h"
 
 namespace carom::games {
 namespace {
@@ -38,6 +40,9 @@ constexpr double kDone = 1e-9, kStill = 1e-4;
 // [-] Correlation at which two numbers are told to look alike; share of the largest eigenvalue below which a
 // direction is not determined at all.
 constexpr double kAlike = 0.99, kNothing = 1e-12;
+// A number that is none of the scene, and by how much it may differ from 0 [s].
+constexpr const char* kClock = "clock";
+constexpr double kClockRange = 60.0;
 
 double median(std::vector<double> list) {
     if (list.empty()) return 0.0;
@@ -54,6 +59,7 @@ struct Trial {
     Record record;
     VectorXd residuals;         ///< two per point; 0 if the point does not count
     std::vector<bool> counted;  ///< per point
+    double clock = 0.0;         ///< [s] of the stroke, on the clock of the tracks
 };
 
 class Fitter {
@@ -65,20 +71,29 @@ class Fitter {
         if (options.vary.empty()) throw std::invalid_argument("there is nothing to vary; name a number");
         if (2 * points.size() < options.vary.size())
             throw std::invalid_argument("there are more numbers to vary than tracked coordinates");
-        for (const std::string& key : options.vary) numbers_.emplace_back(scene, key);
+        for (std::size_t k = 0; k < options.vary.size(); ++k) {
+            if (options.vary[k] == kClock) {
+                clock_ = k;
+                continue;
+            }
+            keys_.push_back(options.vary[k]);
+            numbers_.push_back(check_varies(scene, keys_.back()));
+        }
         for (const TrackPoint& point : points) last_ = std::max(last_, point.time);
     }
 
     Fit run() {
         Fit result;
         std::vector<double> values;
-        for (const SceneNumber& number : numbers_) values.push_back(number.value(scene_));
+        for (std::size_t k = 0; k < count(); ++k) values.push_back(value_at_start(k));
         result.start = values;
         Trial now = *simulate_at(values, true);
         MatrixXd slopes = slopes_of(now);
+        result.trouble = doubt_of_scale(scale_of(coordinates_of(now)));
+        const bool refused = !result.trouble.empty();
         double damping = kDamping;
-        while (shots_ < options_.most_shots && !result.converged) {
-            const double noise = noise_of(now);
+        while (shots_ < options_.most_shots && !result.converged && !refused) {
+            const double noise = noise_of(now, slopes);
             const VectorXd weights = weights_of(now, noise);
             const MatrixXd normal = slopes.transpose() * weights.asDiagonal() * slopes;
             const VectorXd pull = slopes.transpose() * weights.asDiagonal() * now.residuals;
@@ -116,25 +131,43 @@ class Fitter {
                                  ? fmt::format("no end after {} shots", shots_)
                                  : "no step brings it closer: the order of events may be another one";
         finish(now, slopes, result);
+        if (result.converged) {
+            const auto [moved, columns] = moved_of(now, slopes);
+            result.trouble = doubt_of(moved, columns, result.noise, clock_.has_value());
+            result.converged = result.trouble.empty();
+        }
+        if (!result.converged) result.covariance.setConstant(std::numeric_limits<double>::infinity());
         return result;
     }
 
   private:
+    /// How many numbers vary, the clock among them.
+    std::size_t count() const { return options_.vary.size(); }
+    /// The place of a number of the scene among all that vary.
+    std::size_t place_of(std::size_t number) const { return number + (clock_ && number >= *clock_ ? 1 : 0); }
+    double value_at_start(std::size_t k) const {
+        if (k == clock_) return 0.0;
+        return numbers_[k - (clock_ && k > *clock_ ? 1 : 0)].value(scene_);
+    }
+
     /// Nothing if the values are out of their ranges or make no valid scene, unless they must.
     std::optional<Trial> simulate_at(const std::vector<double>& values, bool must) {
         Scene scene = scene_;
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            if (!must && !contains(numbers_[k].row().range, values[k])) return std::nullopt;
-            numbers_[k].put(scene, values[k]);
+        const double clock = clock_ ? values[*clock_] : 0.0;
+        if (!(std::abs(clock) <= kClockRange)) return std::nullopt;
+        for (std::size_t k = 0; k < numbers_.size(); ++k) {
+            const double value = values[place_of(k)];
+            if (!must && !contains(numbers_[k].row().range, value)) return std::nullopt;
+            numbers_[k].put(scene, value);
         }
         try {
             validate(scene);
             ++shots_;
             Plan plan = make_plan(scene, isa_);
             SimulateOptions options;
-            options.until = last_ + 1e-6;
+            options.until = std::max(0.0, last_ - clock) + 1e-6;
             Record record = simulate(plan, options);
-            Trial trial{values, scene, std::move(plan), std::move(record), {}, {}};
+            Trial trial{values, scene, std::move(plan), std::move(record), {}, {}, clock};
             compare(trial);
             return trial;
         } catch (const SceneError&) {
@@ -147,7 +180,7 @@ class Fitter {
         trial.residuals = VectorXd::Zero(static_cast<Eigen::Index>(2 * points_.size()));
         trial.counted.assign(points_.size(), false);
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const BallState state = trial.record.state_at(points_[i].ball, points_[i].time);
+            const BallState state = trial.record.state_at(points_[i].ball, time_of(trial, i));
             trial.counted[i] = !is_gone(state.state);
             if (trial.counted[i])
                 trial.residuals.segment<2>(static_cast<Eigen::Index>(2 * i)) =
@@ -155,20 +188,73 @@ class Fitter {
         }
     }
 
+    /// Of a point, since the stroke. Before it, all is as at the start.
+    double time_of(const Trial& trial, std::size_t point) const {
+        return std::max(0.0, points_[point].time - trial.clock);
+    }
+    Vec2 velocity_of(const Trial& trial, std::size_t point) const {
+        if (points_[point].time < trial.clock) return Vec2::Zero();
+        return planar(trial.record.state_at(points_[point].ball, time_of(trial, point)).velocity);
+    }
+
     MatrixXd slopes_of(const Trial& trial) const {
-        const Tangents tangents(trial.plan, trial.record, options_.vary);
-        MatrixXd slopes = MatrixXd::Zero(trial.residuals.size(), static_cast<Eigen::Index>(numbers_.size()));
-        for (std::size_t i = 0; i < points_.size(); ++i)
-            for (std::size_t k = 0; trial.counted[i] && k < numbers_.size(); ++k)
-                slopes.block<2, 1>(static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(k)) =
-                    planar(tangents.state_at(points_[i].ball, points_[i].time, k).position);
+        const Tangents tangents(trial.plan, trial.record, keys_);
+        MatrixXd slopes = MatrixXd::Zero(trial.residuals.size(), static_cast<Eigen::Index>(count()));
+        const auto at = [&slopes](std::size_t point, std::size_t k) {
+            return slopes.block<2, 1>(static_cast<Eigen::Index>(2 * point), static_cast<Eigen::Index>(k));
+        };
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (!trial.counted[i]) continue;
+            for (std::size_t k = 0; k < numbers_.size(); ++k)
+                at(i, place_of(k)) =
+                    planar(tangents.state_at(points_[i].ball, time_of(trial, i), k).position);
+            if (clock_) at(i, *clock_) = -velocity_of(trial, i);
+        }
         return slopes;
     }
 
-    static double noise_of(const Trial& trial) {
+    /// All coordinates that count, and their rows among the residuals.
+    std::vector<Coordinate> coordinates_of(const Trial& trial,
+                                           std::vector<Eigen::Index>* rows = nullptr) const {
+        std::vector<Coordinate> list;
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (!trial.counted[i]) continue;
+            const Vec2 velocity = velocity_of(trial, i);
+            for (const int axis : {0, 1}) {
+                const auto row = static_cast<Eigen::Index>(2 * i) + axis;
+                const double seen = points_[i].place[axis];
+                list.push_back({points_[i].ball, axis, points_[i].time, trial.residuals[row], velocity[axis],
+                                seen + trial.residuals[row], seen});
+                if (rows != nullptr) rows->push_back(row);
+            }
+        }
+        return list;
+    }
+
+    /// The coordinates that the numbers move, with their slopes; all of them if they move none. The others,
+    /// such as those of balls that still lie, say nothing about the fit, and may be exact.
+    std::pair<std::vector<Coordinate>, MatrixXd> moved_of(const Trial& trial, const MatrixXd& slopes) const {
+        std::vector<Eigen::Index> rows, moving;
+        const std::vector<Coordinate> all = coordinates_of(trial, &rows);
+        std::vector<Coordinate> moved;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            bool moves = false;
+            for (std::size_t k = 0; k < count(); ++k) {
+                const double value = std::abs(value_at_start(k)), size = value > 0.0 ? value : 1.0;
+                moves = moves || std::abs(slopes(rows[i], static_cast<Eigen::Index>(k))) * size > kUnmoved;
+            }
+            if (moves) moved.push_back(all[i]), moving.push_back(rows[i]);
+        }
+        if (moved.empty()) moved = all, moving = rows;
+        MatrixXd columns(static_cast<Eigen::Index>(moving.size()), slopes.cols());
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            columns.row(static_cast<Eigen::Index>(i)) = slopes.row(moving[i]);
+        return {std::move(moved), std::move(columns)};
+    }
+
+    double noise_of(const Trial& trial, const MatrixXd& slopes) const {
         std::vector<double> sizes;
-        for (Eigen::Index i = 0; i < trial.residuals.size(); ++i)
-            if (trial.counted[static_cast<std::size_t>(i / 2)]) sizes.push_back(std::abs(trial.residuals[i]));
+        for (const Coordinate& c : moved_of(trial, slopes).first) sizes.push_back(std::abs(c.residual));
         return std::max(kLeastNoise, kMedian * median(std::move(sizes)));
     }
 
@@ -195,8 +281,8 @@ class Fitter {
     /// Units of the numbers that make the diagonal of the normal matrix 1, or 0 if nothing depends on one.
     VectorXd units_of(const MatrixXd& normal) const {
         VectorXd units = VectorXd::Zero(normal.rows());
-        for (std::size_t k = 0; k < numbers_.size(); ++k) {
-            const double value = std::abs(numbers_[k].value(scene_)), size = value > 0.0 ? value : 1.0;
+        for (std::size_t k = 0; k < count(); ++k) {
+            const double value = std::abs(value_at_start(k)), size = value > 0.0 ? value : 1.0;
             const auto i = static_cast<Eigen::Index>(k);
             const double slope = std::sqrt(normal(i, i));
             if (slope * size > kUnmoved) units[i] = 1.0 / slope;
@@ -215,9 +301,9 @@ class Fitter {
         result.values = now.values;
         result.scene = now.scene;
         result.shots = shots_;
-        result.noise = noise_of(now);
-        std::size_t within = 0, coordinates = 0;
-        double squares = 0.0, pulls = 0.0;
+        result.noise = noise_of(now, slopes);
+        std::size_t coordinates = 0;
+        double squares = 0.0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             const Vec2 r = now.residuals.segment<2>(static_cast<Eigen::Index>(2 * i));
             result.residuals.push_back(r);
@@ -226,17 +312,22 @@ class Fitter {
             for (const double x : r) {
                 ++coordinates;
                 squares += x * x;
-                const double pulled = std::min(std::abs(x), kHuber * result.noise);
-                pulls += pulled * pulled;
-                within += std::abs(x) <= kHuber * result.noise ? 1 : 0;
                 result.outliers += std::abs(x) > kOutlier * result.noise ? 1 : 0;
             }
         }
         result.rms = coordinates > 0 ? std::sqrt(squares / static_cast<double>(coordinates)) : 0.0;
         // Huber's covariance: (sum of squared pulls / (n - k)) / (share within)^2 times the inverse.
-        const double n = static_cast<double>(coordinates), k = static_cast<double>(numbers_.size());
-        const double share = static_cast<double>(within) / std::max(1.0, n);
-        const double variance = pulls / std::max(1.0, n - k) / (share * share);
+        std::vector<Coordinate> moved = moved_of(now, slopes).first;
+        double within = 0.0, pulls = 0.0;
+        for (Coordinate& c : moved) {
+            const double pull = std::clamp(c.residual, -kHuber * result.noise, kHuber * result.noise);
+            within += pull == c.residual ? 1.0 : 0.0;
+            pulls += pull * pull;
+            c.residual = pull;
+        }
+        const double n = static_cast<double>(moved.size()), k = static_cast<double>(count());
+        const double share = within / std::max(1.0, n);
+        const double variance = pulls / std::max(1.0, n - k) / (share * share) * correlation_factor(moved);
         covariance_of(slopes, variance, result);
     }
 
@@ -282,7 +373,9 @@ class Fitter {
     const std::vector<TrackPoint>& points_;
     const FitOptions& options_;
     kernel::Isa isa_;
+    std::vector<std::string> keys_;  // of the numbers of the scene
     std::vector<SceneNumber> numbers_;
+    std::optional<std::size_t> clock_;  // its place among all that vary
     double last_ = 0.0;
     int shots_ = 0;
 };

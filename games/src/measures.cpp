@@ -48,6 +48,25 @@ bool truth(const MeasureValue& value) {
     return !texts.empty() && !(texts.size() == 1 && texts[0].empty());
 }
 
+/// The texts that a measure can give, besides "": what they are, and all of them.
+struct Known {
+    const char* what;
+    Texts texts;
+};
+std::optional<Known> known_texts(std::string_view measure, const Scene& scene) {
+    const auto ids = [](const auto& parts, Texts texts = {}) {
+        for (const auto& part : parts) texts.push_back(part.id);
+        return texts;
+    };
+    for (const char* name : {"pocketed", "off_table", "first_hit"})
+        if (measure == name) return Known{"ball", ids(scene.ball)};
+    if (measure == "pockets") return Known{"pocket", ids(scene.table.pockets)};
+    if (measure == "pocket_of") return Known{"pocket", ids(scene.table.pockets, {"out"})};
+    if (measure == "cushions")
+        return Known{"cushion or jaw", ids(scene.table.jaws, ids(scene.table.cushions))};
+    return std::nullopt;
+}
+
 bool is_number(const Node& node) {
     if (node.kind == Node::Kind::kValue) return std::holds_alternative<double>(node.value);
     if (node.kind != Node::Kind::kMeasure) return true;
@@ -181,10 +200,31 @@ class Reader {
             const bool order = word[0] == '<' || word[0] == '>';
             if (order && !(is_number(left) && is_number(right)))
                 fail("expected numbers beside " + std::string(word));
+            check_texts(left, right);
+            check_texts(right, left);
             return pair(Node::Kind::kCompare, word, std::move(left), std::move(right));
         }
-        if (take("in")) return pair(Node::Kind::kIn, "in", std::move(left), sum());
+        if (take("in")) {
+            Node right = sum();
+            check_texts(left, right);
+            return pair(Node::Kind::kIn, "in", std::move(left), std::move(right));
+        }
         return left;
+    }
+    /// Refuses a text that the measure beside it never gives: the expression would never hold.
+    void check_texts(const Node& text, const Node& measure) const {
+        if (text.kind != Node::Kind::kValue || measure.kind != Node::Kind::kMeasure || is_number(measure))
+            return;
+        const auto known = known_texts(measure.row->info.name, scene_);
+        if (!known) return;
+        const std::string whole = text_of(text.value);
+        for (std::size_t begin = 0; begin <= whole.size() && !whole.empty();) {
+            const std::size_t end = std::min(whole.find(';', begin), whole.size());
+            const std::string one = whole.substr(begin, end - begin);
+            if (std::find(known->texts.begin(), known->texts.end(), one) == known->texts.end())
+                throw MeasureError("\"" + text_ + "\": the scene has no " + known->what + " \"" + one + "\"");
+            begin = end + 1;
+        }
     }
     Node near(const std::string& ball) {
         Node place;
@@ -196,6 +236,9 @@ class Reader {
         while (take(",")) numbers.push_back(signed_number());
         need(")");
         if (numbers.size() != 2 && numbers.size() != 3) fail("expected (X, Y) or (X, Y, METRES)");
+        if (numbers.size() == 3 && !(numbers[2] >= 0.0))
+            throw MeasureError("\"" + text_ +
+                               "\": no ball is nearer than 0 m; expected METRES of at least 0");
         Node limit;
         limit.value = numbers.size() == 3 ? numbers[2] : kNear;
         place.arguments.numbers = {numbers[0], numbers[1]};

@@ -54,6 +54,8 @@ constexpr FoulRules kFoulRules[] = {
     {Foul::kOpeningNotRed, "", "UMB, starting position", ""},
     {Foul::kWrongBallPocketed, "", "", "WPBSA 3, penalties"},
     {Foul::kTwoBallsAtOnce, "", "", "WPBSA 3, penalties"},
+    {Foul::kJumpShot, "", "", "WPBSA 3, penalties"},
+    {Foul::kBehindTheFreeBall, "", "", "WPBSA 3, free ball"},
 };
 
 void check(const State& state) {

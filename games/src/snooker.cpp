@@ -80,17 +80,28 @@ class Stroke {
         penalty_ = std::max(penalty_, value);
     }
     void add_first_fouls();
+    bool touches_on() const;
+    bool snookers_behind_free_ball() const;
 
     const Facts& facts_;
     std::vector<std::string> on_;  // balls on, with the free ball
     std::string free_;             // the free ball, or ""
+    // Balls that touched the cue ball. One that is on counts as hit when the cue ball is played away (3,
+    // touching ball).
+    std::vector<std::string> touching_;
     int penalty_ = kLeastPenalty;
 };
 
 Stroke::Stroke(const Facts& facts) : facts_(facts) {
     const State& state = facts.state;
     on_ = balls_on(state.on, facts.ids());
-    const std::string first = facts.shot.first_hits.empty() ? "" : facts.id(facts.shot.first_hits.front());
+    touching_ = facts.touching(facts.shot.struck, 0.0);
+    const auto could_be_on = std::find_if(touching_.begin(), touching_.end(), [&](const std::string& ball) {
+        return is_in(ball, on_) || (state.free_ball && points_of(ball) > 0);
+    });
+    const std::string first = !facts.shot.first_hits.empty()   ? facts.id(facts.shot.first_hits.front())
+                              : could_be_on != touching_.end() ? *could_be_on
+                                                               : "";
     const std::string nominated = facts.call.ball.empty() ? first : facts.call.ball;
     if (state.on == BallOn::kColour)
         on_ = is_colour(nominated) ? std::vector{nominated} : std::vector<std::string>();
@@ -112,10 +123,44 @@ Stroke::Stroke(const Facts& facts) : facts_(facts) {
     const Vec2 start = planar(facts.record.state_at(facts.shot.struck, 0.0).position);
     if (state.in_hand == InHand::kD && !in_area(facts.record.table, InHand::kD, start))
         add(Foul::kPlacedOutside, 0);
+    if (facts.jumps() && !touches_on()) add(Foul::kJumpShot, 0);
+    if (fouls.empty() && snookers_behind_free_ball()) add(Foul::kBehindTheFreeBall, 0);
+}
+
+bool Stroke::touches_on() const {
+    return std::any_of(touching_.begin(), touching_.end(),
+                       [this](const auto& ball) { return is_in(ball, on_); });
+}
+
+/// Whether the free ball, of all balls that are not on the nearest that does, hides all that are on for the
+/// other player. With only pink and black left that is no foul.
+bool Stroke::snookers_behind_free_ball() const {
+    if (free_.empty() || points() > 0 || facts_.gone(free_)) return false;
+    std::vector<std::string> left;
+    for (const std::string& ball : facts_.ids())
+        if (points_of(ball) > 0 && !facts_.gone(ball)) left.push_back(ball);
+    const std::vector<std::string> on = balls_on(lowest_on(left), left);
+    if (is_in(free_, on) || (left.size() == 2 && is_in("pink", left) && is_in("black", left))) return false;
+    const auto lying = [this](const std::string& ball) {
+        const int i = index_of(facts_.record, ball);
+        return Lying{planar(facts_.record.state_at(i, facts_.record.duration).position),
+                     facts_.record.size(i).R, 0.0};
+    };
+    const Lying cue = lying(facts_.id(facts_.shot.struck));
+    std::vector<Lying> targets;
+    for (const std::string& ball : on) targets.push_back(lying(ball));
+    const auto away = [&](const std::string& ball) { return length(lying(ball).place - cue.place); };
+    const auto hides = [&](const std::string& ball) {
+        return snookered_at(cue.place, cue.R, targets, std::array{lying(ball)});
+    };
+    return hides(free_) && std::none_of(left.begin(), left.end(), [&](const std::string& ball) {
+               return !is_in(ball, on) && ball != free_ && away(ball) < away(free_) && hides(ball);
+           });
 }
 
 void Stroke::add_first_fouls() {
     const std::vector<int>& hits = facts_.shot.first_hits;
+    if (touches_on()) return;
     if (hits.empty()) {
         add(Foul::kNoBallHit, 0);
         return;

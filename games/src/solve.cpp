@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -43,7 +44,7 @@ constexpr double kAimOff = 0.2, kSpeedOff = 0.05, kTipOff = 0.05, kPlaceOff = 0.
 
 struct Candidate {
     std::vector<double> values;
-    std::size_t shots = 0, successes = 0;
+    std::size_t shots = 0, successes = 0, invalid = 0;
     double score() const {
         return shots == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(shots);
     }
@@ -69,7 +70,7 @@ class Solver {
             if (choice.key.rfind("hit.", 0) == 0)
                 hit_ = ball_of(choice.key.substr(4));
             else
-                SceneNumber(scene, choice.key);
+                check_varies(scene, choice.key);
         }
         // What every shot sets, whether it is chosen or not.
         keys_ = {"cue.aim_deg", "cue.speed", "cue.offset.side", "cue.offset.height", "cue.elevation_deg"};
@@ -108,12 +109,12 @@ class Solver {
         // Shots that the search has not seen.
         const auto each = std::max<std::size_t>(
             100, static_cast<std::size_t>(kReport * static_cast<double>(options_.shots)) / kinds.size());
-        for (Candidate& kind : kinds) kind.shots = kind.successes = 0;
         fresh_ = true;
-        play(kinds, each);
-        sort(kinds);
         std::vector<Solution> solutions;
-        for (const Candidate& kind : kinds) solutions.push_back(solution(kind));
+        for (const Candidate& kind : kinds) solutions.push_back(improved(solution(kind.values, each), each));
+        std::stable_sort(solutions.begin(), solutions.end(), [](const Solution& a, const Solution& b) {
+            return a.successes * b.shots > b.successes * a.shots;
+        });
         return solutions;
     }
 
@@ -174,7 +175,11 @@ class Solver {
     }
 
     int ball_of(const std::string& id) const {
-        if (const int ball = index_of(scene_.ball, id); ball >= 0) return ball;
+        const int ball = index_of(scene_.ball, id);
+        if (ball >= 0 && static_cast<std::size_t>(ball) == struck_)
+            throw std::invalid_argument("hit." + id +
+                                        ": the cue strikes this ball; name the ball that it is to hit");
+        if (ball >= 0) return ball;
         throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
     }
 
@@ -285,13 +290,16 @@ class Solver {
         BatchArrays out;
         out.status = status.data();
         simulate_many(scene_, rows, batch, isa_, how, out);
-        for (std::size_t i = 0; i < rows; ++i) candidates[owner[i]].successes += held[i];
+        for (std::size_t i = 0; i < rows; ++i) {
+            candidates[owner[i]].successes += held[i];
+            candidates[owner[i]].invalid += status[i] == ShotStatus::kInvalid ? 1 : 0;
+        }
         for (Candidate& candidate : candidates) candidate.shots = std::max(candidate.shots, shots);
         played_ += rows;
         if (options_.progress) options_.progress(std::min(played_, options_.shots));
     }
 
-    /// Shots from which one figure beside the success is taken.
+    /// Shots from which the cost of an error is taken.
     std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
     double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
 
@@ -374,61 +382,93 @@ class Solver {
         return kept;
     }
 
-    Solution solution(const Candidate& candidate) {
-        Solution found;
-        found.values = candidate.values;
-        found.shots = candidate.shots;
-        found.successes = candidate.successes;
-        found.scene = scene_;
-        const std::vector<double> row = meant(candidate.values);
-        for (std::size_t k = 0; k < chosen_; ++k) SceneNumber(scene_, keys_[k]).put(found.scene, row[k]);
+    /// A shot of which one error would make a better one is replaced by that one, so that no figure for an
+    /// input that is off is better than the one for the input that is on, beyond their intervals.
+    Solution improved(Solution found, std::size_t shots) {
+        constexpr int kMost = 20;
+        for (int k = 0; k < kMost; ++k) {
+            const Share on = share_of(found.successes, found.shots);
+            std::optional<std::vector<double>> better;
+            double most = on.high;
+            for (const Solution::Cost& cost : found.costs)
+                for (const double way : {-1.0, 1.0}) {
+                    const auto& part = way < 0.0 ? cost.less : cost.more;
+                    const double low = part ? share_of(*part, cost.shots).low : 0.0;
+                    const auto values = low > most ? moved(found.values, cost, way) : std::nullopt;
+                    if (values) better = values, most = low;
+                }
+            if (!better) return found;
+            Solution next = solution(*better, shots);
+            if (next.successes <= found.successes) return found;
+            found = std::move(next);
+        }
+        return found;
+    }
+    /// The choices with one input off, if they may be chosen.
+    std::optional<std::vector<double>> moved(std::vector<double> values, const Solution::Cost& cost,
+                                             double way) const {
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            const Choice& choice = options_.choices[k];
+            if (choice.key != cost.input && !(cost.input == "aim" && choice.key == "cue.aim_deg")) continue;
+            values[k] += way * cost.by;
+            if (values[k] >= choice.low && values[k] <= choice.high) return values;
+        }
+        return std::nullopt;
+    }
 
-        // Which ball falls where, and what an error costs, of the same shots.
-        const std::size_t shots = detail_shots();
+    /// All figures of a shot come from the same errors.
+    Solution solution(const std::vector<double>& values, std::size_t shots) {
+        std::vector<Candidate> meant_so(1, Candidate{values});
         std::map<std::pair<int, int>, std::size_t> falls;
         std::mutex guard;
-        std::vector<Candidate> again(1);
-        again[0].values = candidate.values;
-        play(again, shots, [&](std::size_t, const Record& record) {
+        play(meant_so, shots, [&](std::size_t, const Record& record) {
             const std::lock_guard lock(guard);
             for (const Event& event : record.events)
                 if (event.type == EventType::kBallPocket) ++falls[{event.a, event.b}];
         });
-        for (const auto& [fall, count] : falls)
-            found.falls.push_back(
-                {fall.first, fall.second, static_cast<double>(count) / static_cast<double>(shots)});
+        const Candidate& candidate = meant_so[0];
+        Solution found;
+        found.values = values;
+        found.shots = candidate.shots;
+        found.successes = candidate.successes;
+        found.scene = scene_;
+        const std::vector<double> row = meant(values);
+        for (std::size_t k = 0; k < chosen_; ++k) SceneNumber(scene_, keys_[k]).put(found.scene, row[k]);
+        for (const auto& [fall, count] : falls) found.falls.push_back({fall.first, fall.second, count});
         std::stable_sort(found.falls.begin(), found.falls.end(),
-                         [](const auto& a, const auto& b) { return a.share > b.share; });
+                         [](const auto& one, const auto& two) { return one.count > two.count; });
+        add_costs(candidate, found.costs);
+        return found;
+    }
+    void add_costs(const Candidate& candidate, std::vector<Solution::Cost>& costs) {
         for (std::size_t k = 0; k < options_.choices.size(); ++k) {
             const std::string& key = options_.choices[k].key;
-            const bool place = key.find(".position.") != key.npos, tip = key.rfind("cue.offset", 0) == 0;
-            if (key == "cue.aim_deg" || key.rfind("hit.", 0) == 0) continue;
-            const bool speed = key == "cue.speed";
+            const bool place = key.find(".position.") != key.npos, tip = key.rfind("cue.offset", 0) == 0,
+                       speed = key == "cue.speed";
             if (!place && !tip && !speed) continue;
             const double by = speed ? kSpeedOff * candidate.values[k] : place ? kPlaceOff : kTipOff;
-            found.costs.push_back(cost(candidate, key, by,
-                                       speed   ? "m/s"
-                                       : place ? "m"
-                                               : "ball radii",
-                                       [&, k](Candidate& c, double off) { c.values[k] += off; }));
+            costs.push_back(cost(candidate, key, by,
+                                 speed   ? "m/s"
+                                 : place ? "m"
+                                         : "ball radii",
+                                 [&, k](Candidate& c, double off) { c.values[k] += off; }));
         }
-        found.costs.push_back(
+        costs.push_back(
             cost(candidate, "aim", kAimOff, "degrees", [this](Candidate&, double off) { turned_ = off; }));
-        return found;
     }
     template <class Off>
     Solution::Cost cost(const Candidate& candidate, const std::string& input, double by, const char* unit,
                         Off&& off) {
-        std::array<double, 2> share{};
-        for (const int side : {0, 1}) {
-            std::vector<Candidate> moved(1);
-            moved[0].values = candidate.values;
-            off(moved[0], side == 0 ? -by : by);
-            play(moved, detail_shots());
+        const std::size_t shots = std::min(detail_shots(), candidate.shots);
+        Solution::Cost cost{input, by, unit, shots, {}, {}};
+        for (const bool less : {true, false}) {
+            std::vector<Candidate> moved(1, Candidate{candidate.values});
+            off(moved[0], less ? -by : by);
+            play(moved, shots);
             turned_ = 0.0;
-            share[static_cast<std::size_t>(side)] = moved[0].score();
+            if (moved[0].invalid < shots) (less ? cost.less : cost.more) = moved[0].successes;
         }
-        return {input, by, unit, share[0], share[1]};
+        return cost;
     }
     const Scene& scene_;
     const Measure& want_;

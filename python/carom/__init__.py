@@ -14,7 +14,7 @@ from carom._carom import VERSION as __version__
 from carom._errors import SceneError
 from carom._fit import FitResult, fit
 from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
-from carom._program import accuracy, margin
+from carom._program import accuracy, margin, sensitivity
 from carom._record import Event, EventColumn, Record, TablePlan, event_columns
 from carom._scene import Scene, tables
 from carom._render import render
@@ -53,6 +53,7 @@ __all__ = [
     "plot",
     "render",
     "scenes",
+    "sensitivity",
     "simulate",
     "simulate_many",
     "solve",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
@@ -45,7 +46,7 @@ class Hand(NamedTuple):
 
 
 class Fall(NamedTuple):
-    """How often a ball fell into a pocket, per shot."""
+    """How often a ball fell into a pocket, per shot: of the shots of the solution."""
 
     ball: str
     pocket: str
@@ -53,13 +54,15 @@ class Fall(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """The share of successes if an input is off by `by` [unit]: less, and more."""
+    """The share of successes if an input is off by `by` [unit]: less, and more; of `shots` each. NaN if no
+    scene is valid there, as with a ball inside a cushion."""
 
     input: str
     by: float
     unit: str
     less: float
     more: float
+    shots: int
 
 
 class Solution(NamedTuple):
@@ -113,11 +116,30 @@ def _checked_hand(hand: Hand) -> tuple[float, float, float, float]:
     return hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg
 
 
+#: A range as `carom solve --vary` takes it.
+_UNIFORM = re.compile(r"uniform\(([^,]+),([^,]+)\)")
+
+
+def _range(key: str, ends: Sequence[float] | str) -> tuple[float, float]:
+    """The smallest and the largest value that a key may have."""
+    if isinstance(ends, str):
+        text = _UNIFORM.fullmatch(ends.strip())
+        parts: Sequence[float | str] = text.groups() if text else ()
+    else:
+        parts = ends
+    try:
+        low, high = map(float, parts)
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"vary: {key}: expected the smallest and the largest value, or \"uniform(a,b)\"") from None
+    return low, high
+
+
 @checked
 def solve(
     scene: SceneLike,
     want: str,
-    vary: Mapping[str, Sequence[float]] | None = None,
+    vary: Mapping[str, Sequence[float] | str] | None = None,
     *,
     hand: Hand = Hand(),
     game: GameName | None = None,
@@ -131,8 +153,8 @@ def solve(
     """Finds the shots that most surely do what is wanted, under the errors of a hand: `carom solve`.
 
     want: an expression over `measures()`: '"1" in pocketed and not scratch'
-    vary: what the search may choose, by key: the smallest and the largest value. "hit.1" aims at ball 1: 0 is
-        full, 1 and -1 its edges. The default is aim, speed and height of the tip
+    vary: what the search may choose, by key: the smallest and the largest value, or "uniform(a,b)". "hit.1"
+        aims at ball 1: 0 is full, 1 and -1 its edges. The default is aim, speed and height of the tip
     hand: the errors
     game: the rules for measures such as "foul"
     layouts: racks that the shot must cope with, if the scene has a rack
@@ -148,10 +170,7 @@ def solve(
     if not 1 <= layouts <= 100000:
         raise ValueError(f"layouts={layouts}: expected 1 to 100000")
     choices = _carom.default_choices() if vary is None else []
-    for key, ends in (vary or {}).items():
-        if len(ends) != 2:
-            raise ValueError(f"vary: {key}: expected the smallest and the largest value")
-        choices.append((key, float(ends[0]), float(ends[1])))
+    choices += [(key, *_range(key, ends)) for key, ends in (vary or {}).items()]
     rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
                         shots, best, seed, threads, exact)
     found = _solutions([key for key, _, _ in choices], rows)

@@ -94,6 +94,24 @@ def margin(
 
 
 @checked
+def sensitivity(
+    scene: SceneLike, *, hand: str = "aim=0.2,speed=3%,tip=0.02", shots: int = 1000, seed: int = 1
+) -> dict[str, Any]:
+    """Tells what small errors of aim, speed, tip and place do to a shot: the report of `carom sensitivity` as
+    data (docs/guide/precise.md).
+
+    hand: standard deviations of the errors, as the command takes them
+    shots: played with these errors
+    seed: of the errors
+
+    Returns the keys of `carom sensitivity --json`. Raises ValueError for bad input or a scene without a cue,
+    and RuntimeError for a shot without derivatives.
+    """
+    options = ["sensitivity", "--hand", hand, "--shots", str(int(shots)), "--seed", str(int(seed))]
+    return _report(options, scene, table=False)
+
+
+@checked
 def accuracy(
     scene: SceneLike,
     *,

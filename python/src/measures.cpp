@@ -90,12 +90,13 @@ std::pair<games::MeasureValue, bool> measured(const NativeRecord& r, const Nativ
 }
 
 using ChoiceRow = std::tuple<std::string, double, double>;
+/// Shares: NaN if no scene is valid there.
+using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more), scene, and of an exact one the miss [m] and why it is no smaller.
+/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is no smaller.
 using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
                                std::vector<std::tuple<std::string, std::string, double>>,
-                               std::vector<std::tuple<std::string, double, std::string, double, double>>,
-                               NativeScene, std::pair<double, std::string>>;
+                               std::vector<CostRow>, NativeScene, std::pair<double, std::string>>;
 
 /// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
 using HandRow = std::tuple<double, double, double, double>;
@@ -138,10 +139,17 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         std::vector<std::tuple<std::string, std::string, double>> falls;
         for (const games::Solution::Fall& fall : solution.falls)
             falls.emplace_back(scene.ball[static_cast<std::size_t>(fall.ball)].id,
-                               scene.table.pockets[static_cast<std::size_t>(fall.pocket)].id, fall.share);
-        std::vector<std::tuple<std::string, double, std::string, double, double>> costs;
-        for (const games::Solution::Cost& cost : solution.costs)
-            costs.emplace_back(cost.input, cost.by, cost.unit, cost.less, cost.more);
+                               scene.table.pockets[static_cast<std::size_t>(fall.pocket)].id,
+                               games::share_of(fall.count, solution.shots).value);
+        std::vector<CostRow> costs;
+        for (const games::Solution::Cost& cost : solution.costs) {
+            const auto share = [&cost](const std::optional<std::size_t>& part) {
+                return part ? games::share_of(*part, cost.shots).value
+                            : std::numeric_limits<double>::quiet_NaN();
+            };
+            costs.emplace_back(cost.input, cost.by, cost.unit, share(cost.less), share(cost.more),
+                               cost.shots);
+        }
         const std::string text = scene_text(solution.scene);
         const games::Share share = games::share_of(solution.successes, solution.shots);
         rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,

@@ -50,7 +50,8 @@ std::string ball_at(const Scene& s, const Vec2& p) {
 }
 
 TEST(EightBall, TouchesExactlyAndMirrorsBitForBit) {
-    for (const char* table : {"", "[table]\npreset = \"seven_foot\"\n", "[table]\npreset = \"carom\"\n"}) {
+    for (const char* table : {"", "[table]\npreset = \"seven_foot\"\n",
+                              "[table]\npreset = \"carom\"\n[balls]\npreset = \"pool\"\n"}) {
         const Scene s = rack("gap = 0\n", table);
         ASSERT_EQ(s.ball.size(), 15u);
         EXPECT_EQ(touching_pairs(s, 2 * kR), 30) << table;

@@ -166,7 +166,8 @@ std::string outline_of(const Table& table, double dx, double dy) {
 }
 
 constexpr char kBreak[] =
-    "[rack]\ngame = \"nine_ball\"\n[[ball]]\nposition = [0.5, 0.4]\n[cue]\nspeed = 6\naim_deg = 86\n";
+    "[balls]\npreset = \"pool\"\n[rack]\ngame = \"nine_ball\"\n[[ball]]\nposition = [0.5, 0.4]\n[cue]\nspeed "
+    "= 6\naim_deg = 86\n";
 
 // The facings reach behind the noses; they moved the rack.
 TEST(Outlines, LieByTheirNoses) {

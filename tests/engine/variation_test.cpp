@@ -65,7 +65,7 @@ TEST_F(VariationTest, OfATextIsThatOfAFileWithIt) {
 TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
     const Variation v = vary({"cue.speed=list(2.5)", "cue.offset.side=list(-0.1)", "cue.offset.1=list(0.3)",
                               "ball.cue.position.x=list(0.7)", "ball.ball.2.position=list([0.5, 1.5])",
-                              "ball.ball.2.velocity=list([0.5, 0])", "balls.mu_b=list(0.07)",
+                              "ball.ball.2.velocity=list([0.5, 0])", "balls.mu_b_fit.0=list(0.07)",
                               "physics.cushion=list(\"stronge\")", "table.pocket.p1.radius=list(0.07)",
                               "table.cushion.c2.to.y=list(4)", "stop.events=integer(7,7)"});
     const VariedShot shot = v.shot(5);
@@ -185,16 +185,16 @@ TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
                  "cue.elevation_deg=normal(80,10)"},
                 60);
     expect_same({"ball.cue.position.y=uniform(-0.1,2.5)", "ball.cue.position.0=uniform(0,1.3)",
-                 "balls.mu_s=uniform(0,1.2)", "balls.mu_b=list(0, 0.5, 1.5)", "balls.e_c=uniform(0.5,1.1)"},
+                 "balls.mu_s=uniform(0,1.2)", "balls.f_c=list(0, 0.5, 1.5)", "balls.e_c=uniform(0.5,1.1)"},
                 60);
     expect_same({"physics.gravity=list(0,9.81)", "physics.tolerance=uniform(1e-9,1e-5)",
                  "stop.time=uniform(-1,5)", "stop.events=integer(1,9)"},
                 60);
     expect_same({"physics.cushion=list(\"stronge\",\"smooth\")", "cue.speed=uniform(1,2)"}, 0);
     expect_same({"balls.radius=uniform(0.028,0.029)"}, 0);
-    expect_same({"ball.ball.2.mass=uniform(0.16,0.18)", "balls.mu_b=list(0)",
-                 "physics.ball_ball=list(\"inelastic\")"},
-                0);
+    expect_same(
+        {"ball.ball.2.mass=uniform(0.16,0.18)", "balls.f_c=list(0)", "physics.ball_ball=list(\"inelastic\")"},
+        0);
     expect_same({"table.pocket.p1.radius=uniform(0.05,0.07)"}, 0);
     text_ =
         "[balls]\nmu_r = 0.02\n[table]\ncloth = \"club\"\n[[ball]]\nposition = [0.6, 0.5]\n[rack]\ngame = "

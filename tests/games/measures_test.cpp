@@ -43,7 +43,7 @@ TEST(Measures, TellWhatAShotDid) {
     is("any_pocketed and not scratch", "1");
     is("scratch", "0");
     is("\"1\" in pocketed", "1");
-    is("\"2\" in pocketed or 1 > 2", "0");
+    is("\"cue\" in pocketed or 1 > 2", "0");
     is("first_hit == \"1\"", "1");
     is("pocket_of(1) == \"p3\" and duration < 4", "1");
     is("cushions", "");

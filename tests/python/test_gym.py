@@ -484,7 +484,8 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
         ({"xy": np.zeros((3, 2))}, r"xy has the shape \(3, 2\)"),
         ({"xy": [[0.5, 0.5], [0.5, 0.51]]}, "table 0 cannot be played: "),
         ({"xy": each[0], "scene": scene}, "give one"),
-        ({"scene": "draw.toml"}, "expected scene to be a carom.Scene"),
+        ({"scene": "none.toml"}, "none.toml: cannot be read"),
+        ({"scene": 5}, "scene: "),
         ({"scene": carom.Scene.load(SOURCE / "scenes/eight_ball_break.toml")}, "the scene has a ball"),
     )
     wrong = [

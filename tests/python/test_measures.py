@@ -125,8 +125,13 @@ def test_solve_finds_the_pot(draw_scene):
     assert told["solutions"][0]["values"] == best.values
     assert told["solutions"][0]["interval"] == list(best.interval)
     assert len(repr(best).splitlines()) <= 10
+    assert sum(fall.share for fall in best.falls if fall.ball == "1") >= best.success - 1e-12
+    texts = {"cue.aim_deg": "uniform(120,150)", "cue.speed": "uniform(2, 2.5)"}
+    again = carom.solve(draw_scene, '"1" in pocketed and not scratch', texts, shots=3000)
+    assert again[0].values == best.values
     refused(ValueError, lambda **more: carom.solve(draw_scene, "scratch", **more),
             ({"vary": {"cue.speed": [1]}}, "vary: cue.speed: expected the smallest"),
+            ({"vary": {"cue.speed": "1,2"}}, "vary: cue.speed: expected the smallest"),
             ({"vary": {"cue.speed": (2, 1)}}, "expected a range from a to b"),
             ({"vary": {"cue.sped": (1, 2)}}, "cue.sped"),
             ({"shots": 10}, "shots=10: expected 1000 to"),

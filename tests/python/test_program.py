@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
 import carom
 import numpy as np
 import pytest
+from conftest import SOURCE, carom_program
 
 
 def test_margin_is_a_dict_of_arrays(draw_scene):
@@ -38,3 +40,12 @@ def test_the_command_is_the_program():
     done = subprocess.run([sys.executable, "-c", "from carom._program import main; main()", "--version"],
                           capture_output=True, text=True, check=True)
     assert carom.__version__ in done.stdout
+
+
+def test_sensitivity_is_that_of_the_program(draw_scene):
+    report = carom.sensitivity(draw_scene, shots=20, seed=3)
+    assert report == json.loads(carom_program(
+        "sensitivity", SOURCE / "scenes/draw.toml", "--shots", 20, "--seed", 3, "--json"))
+    assert {row["input"] for row in report["inputs"]} >= {"cue.aim_deg", "cue.speed"}
+    with pytest.raises(ValueError, match="--hand"):
+        carom.sensitivity(draw_scene, hand="aim=x")

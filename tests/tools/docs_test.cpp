@@ -230,6 +230,32 @@ std::vector<std::string> unchecked_numbers(const std::string& page) {
     return found;
 }
 
+/// The shares and counts that a page's sentences promise ("four of five", "81 %", "6 scripts") and that no
+/// comment of their paragraph has. As in unchecked_numbers, code does not count.
+std::vector<std::string> unchecked_promises(const std::string& page) {
+    static const std::string number =
+        "(one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|[0-9][0-9.]*)";
+    static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)"),
+        promise("\\b" + number + " (of|in) " + number + "\\b|[0-9][0-9.]* %|\\b" + number +
+                    " (lessons|scripts|presets|games|environments)\\b",
+                std::regex::icase);
+    std::vector<std::string> found;
+    bool fenced = false;
+    for (const Paragraph& paragraph : paragraphs_of(page)) {
+        const bool fence = contains(paragraph.text, "```");
+        if (fence || fenced || paragraph.text.find_first_of("#|") == 0) {
+            fenced = fenced != fence && !contains(paragraph.text.substr(3), "```");
+            continue;
+        }
+        std::string said;
+        for (const std::string& comment : paragraph.comments) said += comment;
+        const std::string text = std::regex_replace(paragraph.text, left_out, "");
+        for (std::sregex_iterator it(text.begin(), text.end(), promise), end; it != end; ++it)
+            if (!contains(said, it->str())) found.push_back(it->str() + " in: " + text);
+    }
+    return found;
+}
+
 TEST(Figures, AFalseOneIsSeen) {
     const auto run = [](const std::string& command) { return command == "c" ? "gain 2.02" : "nothing"; };
     EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\n\nA gain of 2.02\nis small.\n", run).size(), 0u);
@@ -248,6 +274,16 @@ TEST(Figures, AFalseOneIsSeen) {
         unchecked_numbers("# 3\n\nNone.\n\n```\n7\n```\n\n<!-- figure: 2 s ; c -->\n`x 9` 2 s.\n").size(),
         0u);
     EXPECT_EQ(unchecked_numbers("<!-- figure: 2 s ; c -->\nIn 2 s, 3 balls.\n").size(), 1u);
+    EXPECT_EQ(unchecked_promises("It pots four of five.\n\nFive lessons, in `81 %`, within 3 s.\n").size(),
+              2u);
+    EXPECT_EQ(unchecked_promises("<!-- figure: 81 % ; c -->\nIt pots 81 %, not 82 %.\n").size(), 1u);
+}
+
+TEST(Figures, EveryShareAndCountThatAGuidePromisesHasItsSource) {
+    for (const std::string& name : pages())
+        if (name == "README.md" || starts_with(name, "docs/guide/"))
+            for (const std::string& text : unchecked_promises(read_page(name)))
+                ADD_FAILURE() << name << ": " << text;
 }
 
 TEST(Figures, EveryNumberOfTheHardCasesHasItsSource) {

@@ -53,6 +53,53 @@ test("with() makes another scene and keeps the first", () => {
   assert.throws(() => scene.with({"cue.speed": -1}), CaromError);
 });
 
+test("a wrong type is a TypeError that names the argument", () => {
+  const scene = draw(), shot = simulate(scene), state = games.start("nine_ball");
+  const carambole = Scene.parse(sceneText("nine_ball_break.toml"));
+  const verdict = games.judge(state, simulate(carambole));
+  const wrong = {
+    toml: [() => Scene.parse(-1), () => Scene.parse(undefined), () => Scene.parse(new Uint8Array(3))],
+    name: [() => Scene.parse("", 7), () => Scene.parse("", null)],
+    changes: [() => scene.with(null), () => scene.with("cue.speed"), () => scene.with([1])],
+    "cue.speed": [() => scene.with({"cue.speed": null}), () => scene.with({cue: {speed: undefined}}),
+      () => simulateMany(scene, {"cue.speed": "123"}), () => simulateMany(scene, {"cue.speed": 3})],
+    "cue.speed\\[1\\]": [() => simulateMany(scene, {"cue.speed": [1, "2"]}),
+      () => simulateMany(scene, {"cue.speed": [1, null]})],
+    scene: [() => simulate(5), () => simulate({handle: 64}), () => simulate(shot),
+      () => simulateMany(null, {}), () => games.legal(state, shot)],
+    until: [() => simulate(scene, {until: "1"}), () => simulate(scene, {until: NaN})],
+    events: [() => simulate(scene, {events: null})],
+    hash: [() => simulateMany(scene, {}, {hash: 1})],
+    ball: [() => shot.stateAt(0.5, 0), () => shot.stateAt(null, 0), () => shot.stateAt([0], 0),
+      () => games.judge(state, shot, {ball: 1})],
+    time: [() => shot.stateAt(0, "0"), () => shot.stateAt(0)],
+    times: [() => shot.states("0"), () => shot.states(null)],
+    "times\\[1\\]": [() => shot.states([0, NaN]), () => shot.states([0, "1"])],
+    game: [() => games.start(3), () => games.start()],
+    first: [() => games.start("nine_ball", {first: 0.5})],
+    state: [() => games.legal(undefined, scene), () => games.judge("nine_ball", shot)],
+    shot: [() => games.judge(state, scene)],
+    safety: [() => games.judge(state, shot, {safety: "no"})],
+    option: [() => verdict.next({option: -1}), () => verdict.mayPlace(0, 0, 0.5)],
+    x: [() => verdict.mayPlace("0", 0)],
+    place: [() => verdict.next({place: 3}), () => verdict.next({place: [1]})],
+  };
+  for (const [name, calls] of Object.entries(wrong))
+    for (const call of calls)
+      assert.throws(call, {name: "TypeError", message: new RegExp(`^${name} is `)}, call.toString());
+  assert.throws(() => new Scene(), TypeError);
+});
+
+test("a value that is no number is told by its key", () => {
+  const scene = draw();
+  for (const value of [NaN, Infinity, -Infinity]) {
+    const message = new RegExp(`^cue.speed is ${value}; expected a finite number$`);
+    assert.throws(() => scene.with({cue: {speed: value}}), {name: "CaromError", kind: "argument", message});
+    assert.throws(() => scene.with({"cue.speed": value}), {message});
+  }
+  assert.throws(() => scene.with({cue: {offset: [0, NaN]}}), {message: /^cue.offset\[1\] is NaN/});
+});
+
 test("the quick path and the file give the same bits", () => {
   const scene = Scene.parse(sceneText("eight_ball_break.toml"));
   const quick = scene.with({"cue.speed": 6.1, "cue.offset.side": 0.05, "ball.cue.position.x": 0.5});

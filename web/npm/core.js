@@ -18,6 +18,44 @@ export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed
 export const STATUSES = ["at_rest", "time", "events", "endless", "invalid", "failed"];
 
 let wasm = null;
+/** Whether the module's last result has an object that nothing holds yet. */
+let unclaimed = false;
+
+/** How a message names a value of a wrong type. */
+function told(value) {
+  if (typeof value === "string") return `the text ${JSON.stringify(value.slice(0, 40))}`;
+  if (Array.isArray(value)) return "a list";
+  if (typeof value === "function") return "a function";
+  if (value === null || typeof value !== "object") return String(value);
+  return `an object ${value.constructor?.name ?? ""}`.trim();
+}
+
+/** A number that is not checked would be a pointer in the module.
+ * @throws TypeError with the argument's name */
+function expect(holds, name, value, wanted) {
+  if (!holds) throw new TypeError(`${name} is ${told(value)}; expected ${wanted}`);
+}
+const expectText = (name, value) => expect(typeof value === "string", name, value, "a text");
+const expectNumber = (name, value) =>
+  expect(typeof value === "number" && !Number.isNaN(value), name, value, "a number");
+const expectWhole = (name, value) =>
+  expect(Number.isInteger(value) && value >= 0 && value < 2 ** 31, name, value, "a whole number, 0 or more");
+const expectTruth = (name, value) => expect(typeof value === "boolean", name, value, "true or false");
+const expectObject = (name, value) =>
+  expect(value !== null && typeof value === "object" && !Array.isArray(value) && !ArrayBuffer.isView(value),
+    name, value, "an object");
+const expectOf = (Class, name, value) =>
+  expect(value instanceof Class, name, value, `an object ${Class.name} of this package`);
+
+/** A list of numbers as Float64Array. @param mayBeNaN  a shot with such a number has the status "invalid" */
+function numbersOf(name, list, mayBeNaN) {
+  expect(Array.isArray(list) || (ArrayBuffer.isView(list) && !(list instanceof DataView)), name, list,
+    "a list of numbers");
+  for (let i = 0; i < list.length; ++i)
+    if (typeof list[i] !== "number" || (!mayBeNaN && Number.isNaN(list[i])))
+      expect(false, `${name}[${i}]`, list[i], "a number");
+  return Float64Array.from(list);
+}
 
 /** The few functions of a system that the module asks for: a clock, and no files. */
 function system() {
@@ -90,7 +128,8 @@ function lastText() {
 /** Calls a function of the module. @returns its text. @throws CaromError */
 function call(name, ...values) {
   if (wasm === null) throw new Error("carom: call init() first, and await it");
-  if (lend(values, (args) => wasm[name](...args)) === 0) return lastText();
+  unclaimed = lend(values, (args) => wasm[name](...args)) === 0;
+  if (unclaimed) return lastText();
   throw new CaromError(JSON.parse(lastText() || '{"kind": "memory", "message": "out of memory"}'));
 }
 
@@ -102,6 +141,8 @@ class Held {
   #handle;
   #free;
   constructor(free) {
+    if (!unclaimed) throw new TypeError("carom makes its objects itself; call Scene.parse() or simulate()");
+    unclaimed = false;
     this.#handle = wasm.carom_handle();
     this.#free = free;
     lost.register(this, [free, this.#handle], this);
@@ -119,12 +160,27 @@ class Held {
   }
 }
 
+/** Fails for what a scene file cannot hold. */
+function expectValue(key, value) {
+  if (Array.isArray(value)) {
+    value.forEach((part, i) => expectValue(`${key}[${i}]`, part));
+    return;
+  }
+  expect(["number", "boolean", "string"].includes(typeof value), key, value, "a value of a scene file");
+  // A slider or a division gives it; JSON would write null.
+  if (typeof value === "number" && !Number.isFinite(value))
+    throw new CaromError({kind: "argument", message: `${key} is ${value}; expected a finite number`, file: "",
+      line: 0, column: 0});
+}
+
 /** {cue: {speed: 4}} as {"cue.speed": 4}: the keys of a scene file, with dots. */
 function flat(changes, before = "", out = {}) {
+  const DEEPEST = 20;
   for (const [key, value] of Object.entries(changes)) {
     const nested = value !== null && typeof value === "object" && !Array.isArray(value);
-    if (nested) flat(value, `${before}${key}.`, out);
-    else out[before + key] = value;
+    if (!nested) expectValue(before + key, out[before + key] = value);
+    else if (before.split(".").length > DEEPEST) throw new TypeError(`${before}${key} is nested too deep`);
+    else flat(value, `${before}${key}.`, out);
   }
   return out;
 }
@@ -144,10 +200,13 @@ export class Scene extends Held {
   constructor() { super("carom_free_scene"); }
 
   static parse(toml, name = "scene.toml") {
+    expectText("toml", toml);
+    expectText("name", name);
     call("carom_scene_parse", toml, name);
     return new Scene();
   }
   with(changes) {
+    expectObject("changes", changes);
     call("carom_scene_change", this.handle, JSON.stringify(flat(changes)));
     return new Scene();
   }
@@ -180,7 +239,7 @@ export class Shot extends Held {
   get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }
 
   states(times) {
-    const list = typeof times === "number" ? Float64Array.of(times) : Float64Array.from(times);
+    const list = typeof times === "number" ? numbersOf("times", [times]) : numbersOf("times", times);
     const count = list.length * this.balls.length;
     const numbers = wasm.carom_allocate(72 * count + 8), states = wasm.carom_allocate(count + 8);
     try {
@@ -194,6 +253,8 @@ export class Shot extends Held {
     }
   }
   stateAt(ball, time) {
+    expect(typeof ball === "string" || Number.isInteger(ball), "ball", ball, "the id or the index of a ball");
+    expectNumber("time", time);
     const i = typeof ball === "string" ? this.balls.indexOf(ball) : ball;
     if (!(i >= 0 && i < this.balls.length)) throw new RangeError(`no ball is called ${ball}`);
     const {numbers, states} = this.states(time);
@@ -207,6 +268,10 @@ export class Shot extends Held {
 }
 
 export function simulate(scene, {until = -1, seconds = 60, events = 1e6} = {}) {
+  expectOf(Scene, "scene", scene);
+  expectNumber("until", until);
+  expectNumber("seconds", seconds);
+  expectNumber("events", events);
   return new Shot(call("carom_simulate", scene.handle, until, seconds, events), scene);
 }
 
@@ -216,12 +281,16 @@ const ARRAYS = {status: [Uint8Array, 0], duration: [Float64Array, 0], events: [B
   cushions: [Int32Array, 1], hash: [BigUint64Array, 0]};
 
 export function simulateMany(scene, columns, {hash = false} = {}) {
-  const keys = Object.keys(columns), shots = keys.length > 0 ? columns[keys[0]].length : 0;
+  expectOf(Scene, "scene", scene);
+  expectObject("columns", columns);
+  expectTruth("hash", hash);
+  const keys = Object.keys(columns), lists = keys.map((key) => numbersOf(key, columns[key], true));
+  const shots = keys.length > 0 ? lists[0].length : 0;
   const values = new Float64Array(keys.length * shots);
   keys.forEach((key, i) => {
-    if (columns[key].length !== shots)
-      throw new RangeError(`${key} has ${columns[key].length} values, and ${keys[0]} has ${shots}`);
-    values.set(columns[key], i * shots);
+    if (lists[i].length !== shots)
+      throw new RangeError(`${key} has ${lists[i].length} values, and ${keys[0]} has ${shots}`);
+    values.set(lists[i], i * shots);
   });
   const {arrays, ...result} = JSON.parse(
     call("carom_simulate_many", scene.handle, JSON.stringify(keys), shots, values, hash ? 1 : 0));
@@ -244,10 +313,15 @@ export class Verdict extends Held {
     this.#shot = shot;
   }
   mayPlace(x, y, option = 0) {
+    expectNumber("x", x);
+    expectNumber("y", y);
+    expectWhole("option", option);
     return call("carom_game_may_place", this.#shot.handle, this.handle, option, x, y) === "true";
   }
   next({option = 0, place = null} = {}) {
-    const [x, y] = place || [NaN, NaN];
+    expectWhole("option", option);
+    expect(place === null || place.length === 2, "place", place, "[x, y] or null");
+    const [x, y] = place === null ? [NaN, NaN] : numbersOf("place", place);
     call("carom_game_next", this.#shot.handle, this.handle, option, x, y);
     return new Scene();
   }
@@ -255,9 +329,25 @@ export class Verdict extends Held {
 
 /** Rules of games: "eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three". */
 export const games = {
-  start: (game, {first = 0, target = 0} = {}) => JSON.parse(call("carom_game_new", game, first, target)),
-  legal: (state, scene) => JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle)),
-  judge: (state, shot, announced = {}) =>
-    new Verdict(
-      call("carom_game_judge", shot.handle, JSON.stringify(state), JSON.stringify(announced)), shot),
+  start(game, {first = 0, target = 0} = {}) {
+    expectText("game", game);
+    expectWhole("first", first);
+    expectWhole("target", target);
+    return JSON.parse(call("carom_game_new", game, first, target));
+  },
+  legal(state, scene) {
+    expectObject("state", state);
+    expectOf(Scene, "scene", scene);
+    return JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle));
+  },
+  judge(state, shot, announced = {}) {
+    expectObject("state", state);
+    expectOf(Shot, "shot", shot);
+    expectObject("announced", announced);
+    for (const [key, value] of Object.entries(announced))
+      if (key === "ball" || key === "pocket") expectText(key, value);
+      else if (key === "safety" || key === "pushOut") expectTruth(key, value);
+    return new Verdict(
+      call("carom_game_judge", shot.handle, JSON.stringify(state), JSON.stringify(announced)), shot);
+  },
 };

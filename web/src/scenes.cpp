@@ -1,10 +1,12 @@
 // Scenes: read, changed, described.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -18,14 +20,17 @@
 namespace carom::web {
 namespace {
 
-/// Replaces the value of a key, or adds it.
-void keep(std::vector<NewValue>& changed, const NewValue& value) {
-    const auto same = std::find_if(changed.begin(), changed.end(),
-                                   [&](const NewValue& known) { return known.key == value.key; });
-    if (same == changed.end())
-        changed.push_back(value);
-    else
-        same->value = value.value;
+/// Replaces the values of keys, or adds them.
+void keep(std::vector<NewValue>& changed, const std::vector<NewValue>& values) {
+    std::unordered_map<std::string, std::size_t> places;
+    for (std::size_t i = 0; i < changed.size(); ++i) places.emplace(changed[i].key, i);
+    for (const NewValue& value : values) {
+        const auto [place, added] = places.try_emplace(value.key, changed.size());
+        if (added)
+            changed.push_back(value);
+        else
+            changed[place->second].value = value.value;
+    }
 }
 
 /// The file of a scene with all its changes. Racked balls cannot be changed in a file; then every ball is
@@ -64,7 +69,7 @@ WebScene changed(const WebScene& before, const Json& changes) {
     // JSON writes numbers, truth values, texts and lists as TOML does.
     for (const auto& [key, value] : changes.items()) values.push_back({key, value.dump()});
     if (put_numbers(after, changes)) {
-        for (const NewValue& value : values) keep(after.changed, value);
+        keep(after.changed, values);
         return after;
     }
     std::string text;

@@ -96,10 +96,17 @@ std::string met(const Scene& scene, const Cue& cue, double elevation_deg) {
 CueRoom room_for(const Scene& scene, const Cue& cue) {
     CueRoom room{met(scene, cue, cue.elevation_deg), cue.elevation_deg};
     if (room.in.empty()) return room;
+    std::string last = room.in;
     for (int k = 0; k <= kElevations; ++k) {
         const double elevation = kElevationStep * k;
-        if (elevation <= cue.elevation_deg || !met(scene, cue, elevation).empty()) continue;
+        if (elevation <= cue.elevation_deg) continue;
+        if (const std::string in = met(scene, cue, elevation); !in.empty()) {
+            last = in;
+            continue;
+        }
         room.clears_deg = elevation;
+        // What asks for this elevation, not what asks for the least.
+        room.in = last;
         return room;
     }
     room.clears_deg.reset();

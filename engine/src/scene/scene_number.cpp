@@ -209,4 +209,26 @@ SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
     }
 }
 
+void check_replaces_no_fit(const Scene& scene, std::string_view key) {
+    constexpr std::string_view kSection = "balls.";
+    if (!key.starts_with(kSection)) return;
+    const std::string_view name = key.substr(kSection.size());
+    for (const Field<BallParams>& f : kBallFields) {
+        const char* replaced = f.options.instead_of;
+        if (replaced == nullptr || name != replaced ||
+            std::holds_alternative<std::monostate>(f.get(scene.balls)))
+            continue;
+        throw std::invalid_argument(
+            fmt::format("{}: balls.{}, {}, is in force and would be replaced by one number; vary balls.{}.0, "
+                        "balls.{}.1 or balls.{}.2",
+                        key, f.key, f.options.shape, f.key, f.key, f.key));
+    }
+}
+
+SceneNumber check_varies(const Scene& scene, std::string_view key) {
+    SceneNumber number(scene, key);
+    check_replaces_no_fit(scene, key);
+    return number;
+}
+
 }  // namespace carom

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,13 @@ BallStart read_ball(const Section& s, const BallSize& common, const std::optiona
     check_id(s, ball.id);
     ball.position.z() = size.R + ball.height;
     return ball;
+}
+
+/// The ball preset that belongs to a table preset.
+const char* balls_of_table(std::string_view table) {
+    for (const char* own : {"carom", "snooker", "english_pool", "pyramid"})
+        if (table.starts_with(own)) return own;
+    return "pool";
 }
 
 /// The keys of a section whose rows are in two tables.
@@ -76,6 +84,7 @@ void apply_method(const Section& s, Rack& rack) {
 
 void read_balls(const Section& top, Scene& scene) {
     const auto s = balls_section(top);
+    scene.ball_preset = balls_of_table(top.peek("table", "preset").value_or(""));
     if (s) s->read(kBallPresetFields, scene);
     use_balls(scene, scene.ball_preset);
     if (!s) return;

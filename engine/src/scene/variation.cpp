@@ -96,8 +96,21 @@ bool is_whole(const DrawnValue& value) {
     return item != nullptr ? item->node->is_integer() : std::holds_alternative<std::int64_t>(value);
 }
 
+/// Writes a fit that a preset brings into the file, where one of its numbers is to be varied.
+void write_fit(toml::table& balls, const std::string& name, const BallParams& params) {
+    for (const Field<BallParams>& f : kBallFields) {
+        if (f.options.instead_of == nullptr || name != f.key || balls.contains(name)) continue;
+        const FieldValue value = f.get(params);
+        const auto* numbers = std::get_if<std::vector<double>>(&value);
+        if (numbers == nullptr) return;
+        toml::array list;
+        for (const double number : *numbers) list.push_back(number);
+        balls.insert(name, std::move(list));
+    }
+}
+
 /// The path that a key names in the file. If its section is missing and holds only settings, adds it, empty.
-KeyPath find_path(toml::table& file, std::string_view key) {
+KeyPath find_path(toml::table& file, std::string_view key, const Scene* base = nullptr) {
     std::vector<std::string> ids;
     for (std::size_t i = 0; const Node ball = file["ball"][i]; ++i)
         ids.push_back(ball["id"].value_or(std::string("cue")));
@@ -114,6 +127,7 @@ KeyPath find_path(toml::table& file, std::string_view key) {
     const Node holder = holder_in(file, path);
     if (!holder.is_table()) fail("the scene file does not contain this part");
     if (!path.element) return path;
+    if (base != nullptr && path.section == "balls") write_fit(*holder.as_table(), path.name, base->balls);
     if (!holder[path.name].is_array())
         fail("the scene file does not contain this array; add it, then vary one of its numbers");
     if (!value_in(file, path)) fail("the array in the scene file is shorter");
@@ -132,14 +146,15 @@ void check_known(toml::table file, const std::string& name, const KeyPath& path)
     }
 }
 
-VariationRule parse_rule(toml::table& file, const std::string& name, const std::string& text) {
+VariationRule parse_rule(toml::table& file, const Scene& base, const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == text.npos || equals == 0) fail("expected KEY=DISTRIBUTION, such as cue.speed=uniform(2,4)");
     VariationRule rule;
     rule.key = text.substr(0, equals);
-    rule.path = find_path(file, rule.key);
+    check_replaces_no_fit(base, rule.key);
+    rule.path = find_path(file, rule.key, &base);
     const toml::node* const own = value_in(file, rule.path).node();
-    if (own == nullptr) check_known(file, name, rule.path);
+    if (own == nullptr) check_known(file, base.file, rule.path);
     rule.distribution = detail::parse_distribution(std::string_view(text).substr(equals + 1), own);
     return rule;
 }
@@ -257,7 +272,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     print.add(seed);
     for (const std::string& text : rules) {
         try {
-            VariationRule rule = parse_rule(parts->file, parts->path, text);
+            VariationRule rule = parse_rule(parts->file, parts->base, text);
             for (const VariationRule& other : parts->rules)
                 if (rule.path.overlaps(other.path)) fail("{} already varies this value", other.key);
             find_number(parts->base, rule);

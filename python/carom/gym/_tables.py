@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom import _carom
-from carom._scene import Scene
+from carom._scene import as_scene
 from carom._simulate import Shots, simulate_many
 from carom.games import Noise
 from carom.gym._games import Game, Judged, States, failed
@@ -161,9 +161,11 @@ def _repeated(
     raise ValueError(f"options: {name} has the shape {values.shape}; expected {shape} or {(n, *shape)}")
 
 
-def _places_of(scene: Any, game: Game) -> NDArray[np.float64]:
-    if not isinstance(scene, Scene):
-        raise ValueError(f"options: expected scene to be a carom.Scene, not {scene!r}")
+def _places_of(given: Any, game: Game) -> NDArray[np.float64]:
+    try:
+        scene = as_scene(given)
+    except TypeError as error:
+        raise ValueError(f"options: scene: {error}") from None
     stranger = [ball for ball in scene.ids if ball not in game.ids]
     if stranger:
         balls = ", ".join(game.ids)

@@ -6,77 +6,20 @@ plays it. Neither needs pooltool. lab/notes/2026-11-pooltool.md measures what ag
 
 from __future__ import annotations
 
-import json
-import math
 import os
-from typing import Any, NoReturn
-
-import numpy as np
+from typing import Any
 
 from carom._arguments import checked
-from carom._errors import SceneError
 from carom._record import Record
 from carom._scene import Scene
 from carom.io import _system
 from carom.io._system import POCKETS, STATES
+from carom.io._tree import Tree, read_tree
 
 __all__ = ["load", "save", "table"]
 
 #: The friction between balls in pooltool, a + b exp(-c u). It belongs to pooltool's models, not to its files.
 FRICTION = (0.009951, 0.108, 1.088)
-_READS = "pooltool writes JSON if the name of the file ends in .json, and MessagePack for .msgpack"
-
-
-class _Tree:
-    """A part of the file, with its path for messages."""
-
-    def __init__(self, file: str, value: Any, path: str = "") -> None:
-        self.file, self.value, self.path = file, value, path
-
-    def fail(self, what: str) -> NoReturn:
-        wanted = "expected a System as pooltool 0.6.0 saves it"
-        raise SceneError(f"{self.path or 'the file'} {what}; {wanted}", self.file)
-
-    def at(self, key: str) -> _Tree:
-        part = _Tree(self.file, None, f"{self.path}.{key}" if self.path else key)
-        if not isinstance(self.value, dict) or key not in self.value:
-            part.fail("is missing")
-        part.value = self.value[key]
-        return part
-
-    def items(self) -> list[tuple[str, _Tree]]:
-        """The members of an object, those with numbers as names sorted by number."""
-        if not isinstance(self.value, dict):
-            self.fail("is not an object")
-
-        def place(name: str) -> tuple[int, int, str]:
-            number = name.rstrip("t")
-            return (0, int(number), "") if number.isdecimal() else (1, 0, name)
-
-        order = sorted(self.value, key=place)
-        return [(name, self.at(name)) for name in order]
-
-    def parts(self) -> list[_Tree]:
-        if not isinstance(self.value, list):
-            self.fail("is not a list")
-        return [_Tree(self.file, value, f"{self.path}[{i}]") for i, value in enumerate(self.value)]
-
-    def number(self) -> float:
-        number = isinstance(self.value, (int, float)) and not isinstance(self.value, bool)
-        if not number or not math.isfinite(self.value):
-            self.fail("is not a number")
-        return float(self.value)
-
-    def numbers(self, count: int) -> list[float]:
-        parts = self.parts()
-        if len(parts) != count:
-            self.fail(f"has {len(parts)} numbers instead of {count}")
-        return [part.number() for part in parts]
-
-    def text(self) -> str:
-        if not isinstance(self.value, str):
-            self.fail("is not a string")
-        return str(self.value)
 
 
 @checked
@@ -94,52 +37,13 @@ def load(path: str | os.PathLike[str]) -> Scene:
     Raises SceneError if the file is not such a System, or if carom refuses its contents.
     """
     name = os.fspath(path)
-    root = _Tree(name, _unpacked(name) if name.endswith(".msgpack") else _parsed(name))
+    root = read_tree(name)
     balls = _balls(root)
     tree = {"table": _table(root.at("table"), balls), **balls}
     cue = _cue(root)
     if cue is not None:
         tree["cue"] = cue
     return Scene.from_dict(tree, name)
-
-
-def _parsed(name: str) -> Any:
-    try:
-        with open(name, encoding="utf-8") as file:
-            return json.load(file)
-    except OSError as error:
-        raise SceneError(f"cannot be read: {error.strerror}", name) from None
-    except json.JSONDecodeError as error:
-        what = f"is not JSON: {error.msg}; {_READS}"
-        raise SceneError(what, name, error.lineno, error.colno) from None
-    except UnicodeDecodeError:
-        raise SceneError(f"is not JSON because it is not UTF-8; {_READS}", name) from None
-
-
-def _unpacked(name: str) -> Any:
-    """What msgpack-numpy wrote: arrays and numbers of numpy are maps with their type and bytes."""
-    try:
-        import msgpack
-    except ImportError:
-        what = "is MessagePack, which needs the package msgpack; install it, or save as .json in pooltool"
-        raise SceneError(what, name) from None
-
-    def plain(item: dict[Any, Any]) -> Any:
-        if b"nd" not in item:
-            return item
-        kind = np.dtype(item[b"type"])
-        if kind.kind not in "biuf":
-            raise ValueError(f"an array of type {kind}")
-        array = np.frombuffer(item[b"data"], kind)
-        return array.reshape(item[b"shape"]).tolist() if item[b"nd"] else array[0].item()
-
-    try:
-        with open(name, "rb") as file:
-            return msgpack.unpackb(file.read(), object_hook=plain, strict_map_key=False)
-    except OSError as error:
-        raise SceneError(f"cannot be read: {error.strerror}", name) from None
-    except (ValueError, KeyError, TypeError, IndexError, msgpack.UnpackException) as error:
-        raise SceneError(f"is not MessagePack as pooltool saves it: {error}", name) from None
 
 
 #: Measures of pooltool's table specifications, and where carom has them.
@@ -154,7 +58,7 @@ def table(specs: dict[str, Any]) -> dict[str, Any]:
 
     Raises SceneError if a measure is missing or is not a number.
     """
-    root = _Tree("specification", specs)
+    root = Tree("specification", specs)
 
     def measure(key: str) -> float:
         return root.at(key).number()
@@ -174,7 +78,7 @@ def table(specs: dict[str, Any]) -> dict[str, Any]:
     return {"preset": "nine_foot", **whole, "rail_width": measure("cushion_width")}
 
 
-def _table(table: _Tree, balls: dict[str, Any]) -> dict[str, Any]:
+def _table(table: Tree, balls: dict[str, Any]) -> dict[str, Any]:
     cushions, jaws = [], []
     ball_radius = balls["ball"][0].get("radius", balls["balls"].get("radius"))
     segments = table.at("cushion_segments")
@@ -183,6 +87,8 @@ def _table(table: _Tree, balls: dict[str, Any]) -> dict[str, Any]:
         cushions.append({"from": [x1, y1], "to": [x2, y2], "height": height})
     for _, part in segments.at("circular").items():
         (x, y, height), radius = part.at("center").numbers(3), part.at("radius").number()
+        if not ball_radius + radius > 0.0:
+            part.at("radius").fail("is not the radius of a jaw")
         # At this height carom's normal, from the nose to the ball, is as steep as pooltool's, from the
         # circle's centre.
         height = ball_radius + (height - ball_radius) * ball_radius / (ball_radius + radius)
@@ -195,7 +101,7 @@ def _table(table: _Tree, balls: dict[str, Any]) -> dict[str, Any]:
     return {"cushion": cushions} | ({"jaw": jaws} if jaws else {}) | ({"pocket": holes} if holes else {})
 
 
-def _balls(root: _Tree) -> dict[str, Any]:
+def _balls(root: Tree) -> dict[str, Any]:
     """The sections ball, balls and physics."""
     struck = _struck(root)
     balls, common = [], None
@@ -229,10 +135,12 @@ def _balls(root: _Tree) -> dict[str, Any]:
     return {"ball": balls, **common}
 
 
-def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]:
+def _parameters(params: Tree) -> tuple[float, float, dict[str, dict[str, Any]]]:
     """Radius, mass, and the parameters that all balls must share."""
     radius = params.at("R").number()
     restitution = params.at("e_b").number()
+    if not 0.0 <= restitution <= 1.0:
+        params.at("e_b").fail("is not between 0 and 1")
     scale = 2 * restitution / (1 + restitution)
     balls = {
         "mu_s": params.at("u_s").number(),
@@ -254,7 +162,7 @@ def _parameters(params: _Tree) -> tuple[float, float, dict[str, dict[str, Any]]]
     return radius, params.at("m").number(), {"balls": balls, "physics": physics}
 
 
-def _struck(root: _Tree) -> bool:
+def _struck(root: Tree) -> bool:
     """Whether the shot begins with the cue: in a simulated System, whether it did; otherwise, whether it
     would."""
     events = [event.at("event_type").text() for event in root.at("events").parts()]
@@ -264,7 +172,7 @@ def _struck(root: _Tree) -> bool:
     return not moves and root.at("cue").at("V0").number() > 0
 
 
-def _cue(root: _Tree) -> dict[str, Any] | None:
+def _cue(root: Tree) -> dict[str, Any] | None:
     if not _struck(root):
         return None
     cue = root.at("cue")

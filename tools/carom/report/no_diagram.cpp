@@ -10,7 +10,9 @@
 namespace carom::tools {
 
 std::string diagram_format(const std::string&) {
-    throw UsageError("this build of carom has no diagrams; install libcairo2-dev and build it again");
+    throw UsageError(
+        "this build of carom has no diagrams: pip's leaves cairo out, and others were built without "
+        "libcairo2-dev; build carom from its sources, with libcairo2-dev");
 }
 
 std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {

@@ -46,6 +46,14 @@ class SceneNumber {
     std::function<double(Scene&)> get_;
 };
 
+/// Checks a key whose number a search, a fit or a sweep varies.
+/// @throws std::invalid_argument for a key of SceneNumber's, and for one such as balls.e_c while
+/// balls.e_c_fit is in force: to vary it would replace the fit, and the shot would become another one. The
+/// message names the key that works.
+SceneNumber check_varies(const Scene& scene, std::string_view key);
+/// The second part of that: for keys that may name other things than numbers, too.
+void check_replaces_no_fit(const Scene& scene, std::string_view key);
+
 /// Validates a scene that was valid before this change of its numbers: checks only the rules that the change
 /// can break. Allocates no memory unless it throws.
 /// @throws SceneError, perhaps another one than validate() would

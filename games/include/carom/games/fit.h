@@ -20,14 +20,15 @@ struct TrackPoint {
 };
 
 struct FitOptions {
-    std::vector<std::string> vary;  ///< keys as SceneNumber takes them
-    int most_shots = 100;           ///< simulated until it gives up
+    /// Keys as SceneNumber takes them; and clock, the time of the stroke on the clock of the tracks [s].
+    std::vector<std::string> vary;
+    int most_shots = 100;  ///< simulated until it gives up
 };
 
 struct Fit {
     std::vector<double> values, start;  ///< in the order of FitOptions::vary
     /// Of the values, if the model is right; its rows and columns are infinite for what the tracks do not
-    /// determine.
+    /// determine, and all of them if the fit is refused. Neighbours in time that err alike enlarge it.
     Eigen::MatrixXd covariance;
     double deviation(std::size_t k) const;
     double noise = 0.0;        ///< [m] typical residual of a coordinate, without outliers
@@ -35,8 +36,9 @@ struct Fit {
     std::size_t points = 0;    ///< that count: not those of a ball in a pocket
     std::size_t outliers = 0;  ///< coordinates farther away than three times the noise
     int shots = 0;             ///< simulated
+    /// Whether it came to an end, and its residuals are noise.
     bool converged = false;
-    /// Why it stopped, if it did not converge.
+    /// Why not.
     std::string trouble;
     /// What the tracks cannot tell apart, a sentence each.
     std::vector<std::string> warnings;

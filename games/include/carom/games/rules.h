@@ -104,6 +104,8 @@ enum class Foul : std::uint8_t {
     kOpeningNotRed,
     kWrongBallPocketed,
     kTwoBallsAtOnce,
+    kJumpShot,           ///< the cue ball passed over a ball before it hit one
+    kBehindTheFreeBall,  ///< the nominated free ball snookers the other player
 };
 constexpr auto names_of(Foul) {
     return std::array{"cue ball pocketed",
@@ -119,7 +121,9 @@ constexpr auto names_of(Foul) {
                       "wrong cue ball",
                       "opening shot not at the red",
                       "wrong ball pocketed",
-                      "two balls hit at once"};
+                      "two balls hit at once",
+                      "jump shot",
+                      "snooker behind the free ball"};
 }
 /// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
 const char* rule_of(Game game, Foul foul);

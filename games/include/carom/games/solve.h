@@ -66,18 +66,20 @@ struct Solution {
     std::vector<double> values;  ///< in the order of the choices
     Scene scene;                 ///< the shot as it is meant
     std::size_t shots = 0, successes = 0;
-    /// How often each ball fell into each pocket, per shot, the most frequent first.
+    /// In how many of these shots each ball fell into each pocket, the most frequent first.
     struct Fall {
         int ball, pocket;
-        double share;
+        std::size_t count;
     };
     std::vector<Fall> falls;
-    /// Share of successes if one input is off by `by` this way or that.
+    /// Successes of the first of these shots if one input is off by `by` this way or that.
     struct Cost {
         std::string input;
         double by;
         const char* unit;
-        double less, more;
+        std::size_t shots;  ///< each way
+        /// Nothing if no scene is valid there, as with a ball inside a cushion.
+        std::optional<std::size_t> less, more;
     };
     std::vector<Cost> costs;
 };

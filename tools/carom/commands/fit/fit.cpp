@@ -83,7 +83,7 @@ int run(const FitArgs& args) {
         throw UsageError(fmt::format("--vary {}", error.what()));
     }
     for (const std::string& warning : fit.warnings) message(warning);
-    if (!fit.converged) message("the fit did not converge: " + fit.trouble);
+    if (!fit.converged) message("the fit is refused: " + fit.trouble);
     write_report(args.output,
                  fmt::format("# Fitted by carom to {}\n{}", harmless(args.tracks), scene_text(fit.scene)));
     write_report(args.csv, residuals_csv(fit, points));
@@ -117,7 +117,10 @@ void add_fit(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML): the shot, with first guesses").required = true;
     command.argument("TRACKS", args.tracks, "Places of the balls (CSV): t,ball,x,y in s and m").required =
         true;
-    command.option("--vary", &args.vary, "KEY,...", "What is fitted, as in balls.mu_s,balls.mu_r,cue.speed")
+    command
+        .option("--vary", &args.vary, "KEY,...",
+                "What is fitted, as in balls.mu_s,balls.mu_r,cue.speed; clock is the time of the "
+                "stroke on the clock of the tracks")
         .required = true;
     command.option("--most-shots", &args.shots, "N", "Shots after which it gives up").in(1, 1e6);
     command.option("-o,--output", &args.output, "FILE.toml",

@@ -62,7 +62,11 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
     const auto fail = [&](std::size_t column, const std::string& what) {
         throw UsageError(fmt::format("{}:{}:{}: {}", harmless(path), line_number, column, what));
     };
-    for (std::string_view rest = text; !rest.empty();) {
+    std::string_view rest = text;
+    // Spreadsheets begin a file of UTF-8 with a byte-order mark.
+    if (constexpr std::string_view kMark = "\xEF\xBB\xBF"; rest.starts_with(kMark))
+        rest.remove_prefix(kMark.size());
+    while (!rest.empty()) {
         const std::size_t end = std::min(rest.find('\n'), rest.size());
         std::string_view line = rest.substr(0, end);
         rest.remove_prefix(std::min(end + 1, rest.size()));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "base/console.h"
@@ -34,19 +35,20 @@ Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
     for (const Solution::Fall& fall : solution.falls)
         falls.push_back({{"ball", solution.scene.ball[static_cast<std::size_t>(fall.ball)].id},
                          {"pocket", pocket_of(solution.scene, fall.pocket)},
-                         {"per_shot", fall.share}});
-    for (const Solution::Cost& cost : solution.costs)
-        costs.push_back({{"input", cost.input},
-                         {"off_by", cost.by},
-                         {"unit", cost.unit},
-                         {"success", {cost.less, cost.more}}});
-    return {{"success", share.value},
-            {"interval", {share.low, share.high}},
-            {"shots", solution.shots},
-            {"values", values},
-            {"falls", falls},
-            {"costs", costs},
-            {"scene", scene_text(solution.scene)}};
+                         {"count", fall.count},
+                         {"per_shot", share_of(fall.count, solution.shots).value}});
+    for (const Solution::Cost& cost : solution.costs) {
+        Json row{{"input", cost.input}, {"off_by", cost.by}, {"unit", cost.unit}, {"shots", cost.shots}};
+        for (const auto& part : {cost.less, cost.more}) {
+            row["successes"].push_back(part ? Json(*part) : Json());
+            row["success"].push_back(part ? Json(share_of(*part, cost.shots).value) : Json());
+        }
+        costs.push_back(row);
+    }
+    return {{"success", share.value},  {"interval", {share.low, share.high}},
+            {"shots", solution.shots}, {"successes", solution.successes},
+            {"values", values},        {"falls", falls},
+            {"costs", costs},          {"scene", scene_text(solution.scene)}};
 }
 
 }  // namespace
@@ -136,19 +138,27 @@ std::string falls_text(const Solution& solution) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(6, solution.falls.size()); ++i) {
         const Solution::Fall& fall = solution.falls[i];
-        if (fall.share < 0.02) break;
-        text += fmt::format("{}{} into {} {:.0f} %", i == 0 ? "   falls " : ", ",
+        const double share = share_of(fall.count, solution.shots).value;
+        if (share < 0.02) break;
+        text += fmt::format("{}{} into {} {:.1f} %", i == 0 ? "   falls " : ", ",
                             solution.scene.ball[static_cast<std::size_t>(fall.ball)].id,
-                            pocket_of(solution.scene, fall.pocket), 100.0 * fall.share);
+                            pocket_of(solution.scene, fall.pocket), 100.0 * share);
     }
-    return text.empty() ? "" : text + "\n";
+    return text.empty() ? "" : text + fmt::format("  of the same {}\n", counted(solution.shots, "shot"));
 }
 
 std::string costs_text(const Solution& solution) {
+    const auto part = [](const std::optional<std::size_t>& successes, std::size_t shots) {
+        if (!successes) return std::string("impossible");
+        const Share share = share_of(*successes, shots);
+        return fmt::format("{:.0f} % ({:.0f} to {:.0f})", 100.0 * share.value, 100.0 * share.low,
+                           100.0 * share.high);
+    };
     std::string text;
     for (const Solution::Cost& cost : solution.costs)
-        text += fmt::format("   {} off by {:.3g} {}: {:.0f} % or {:.0f} %\n", cost.input, cost.by, cost.unit,
-                            100.0 * cost.less, 100.0 * cost.more);
+        text += fmt::format("   {} off by {:.3g} {}: -: {}, +: {}; of {} each\n", cost.input, cost.by,
+                            cost.unit, part(cost.less, cost.shots), part(cost.more, cost.shots),
+                            counted(cost.shots, "shot"));
     return text;
 }
 

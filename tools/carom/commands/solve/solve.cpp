@@ -73,6 +73,23 @@ std::string told(const Solution& solution, const std::vector<Choice>& choices, i
     return text + falls_text(solution) + costs_text(solution);
 }
 
+/// An earlier exact shot with the same values, if there is one: two shots that differ in kind may lead to it.
+std::optional<std::size_t> same_before(const std::vector<games::Exact>& exact, std::size_t i) {
+    // [of a value] The shots are exact to less.
+    constexpr double kSame = 1e-4;
+    if (!exact[i].solution) return std::nullopt;
+    const std::vector<double>& values = exact[i].solution->values;
+    for (std::size_t k = 0; k < i; ++k) {
+        if (!exact[k].solution) continue;
+        const std::vector<double>& other = exact[k].solution->values;
+        if (std::equal(values.begin(), values.end(), other.begin(), other.end(), [](double a, double b) {
+                return std::abs(a - b) <= kSame * std::max({1.0, std::abs(a), std::abs(b)});
+            }))
+            return k;
+    }
+    return std::nullopt;
+}
+
 int run(const SolveArgs& args) {
     const Plan plan = plan_scene(args.scene);
     std::vector<Choice> choices;
@@ -112,7 +129,9 @@ int run(const SolveArgs& args) {
         text += told(found[i], choices, static_cast<int>(i) + 1);
         if (exact.empty()) continue;
         const games::Refined& refined = exact[i].refined;
-        if (exact[i].solution)
+        if (const auto first = same_before(exact, i))
+            text += fmt::format("   exactly there: as in {}.\n", *first + 1);
+        else if (exact[i].solution)
             text += fmt::format("   exactly there, within {:.1g} mm after {}:\n", 1e3 * refined.miss,
                                 counted(static_cast<std::size_t>(refined.shots), "shot")) +
                     told(*exact[i].solution, exact[i].choices, static_cast<int>(i) + 1);

@@ -28,6 +28,27 @@ std::string hash_line(std::string_view text) {
     return fmt::format("{:016x}\n", hash.value());
 }
 
+/// The folder of another sweep that is writing this table now, or "".
+std::string other_sweep(const std::string& path, const std::string& own) {
+    const fs::path table = file_of(path);
+    const std::string start = table.filename().string() + ".";
+    std::error_code error;
+    const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(start) || !name.ends_with(".parts") || name == fs::path(own).filename())
+            continue;
+        const std::string lock = (entry.path() / "lock").string();
+        if (!fs::exists(lock, error)) continue;
+        try {
+            const FileLock free(lock, true);
+        } catch (const std::exception&) {
+            return entry.path().string();
+        }
+    }
+    return "";
+}
+
 }  // namespace
 
 TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::string_view header,
@@ -45,6 +66,10 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
         throw std::runtime_error(folder + ": cannot make this folder: " + error.message());
     folder_ = folder;
     lock_.emplace(folder_ + "/lock", true);
+    // Two sweeps that write one table would each believe that their rows are in it.
+    if (const std::string other = other_sweep(path, folder_); !other.empty())
+        throw std::runtime_error(
+            fmt::format("{}: another sweep is writing this table (see {}); give each its own", path, other));
     while (take_up())
         if (found) found(found_);
 }

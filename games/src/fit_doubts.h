@@ -1,0 +1,38 @@
+// Whether the residuals of a fit are noise: if they are not, its standard deviations mean nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace carom::games {
+
+/// A coordinate that counts.
+struct Coordinate {
+    int ball, axis;
+    double time;      ///< [s]
+    double residual;  ///< [m] simulated minus seen
+    double velocity;  ///< [m/s] of the ball along it
+    double place;     ///< [m] simulated
+    double seen;      ///< [m]
+};
+
+/// How many times larger the coordinates of the seen places are than those of the shot: 1000 if they are in
+/// mm.
+double scale_of(const std::vector<Coordinate>& coordinates);
+/// Why places of this scale are refused, or "".
+std::string doubt_of_scale(double scale);
+
+/// Why a fit that ended is refused, or "".
+/// @param moved  the coordinates that the varied numbers move
+/// @param slopes  their derivatives to these numbers
+/// @param noise  [m] typical residual
+/// @param clock  whether the clock was varied
+std::string doubt_of(const std::vector<Coordinate>& moved, const Eigen::MatrixXd& slopes, double noise,
+                     bool clock);
+
+/// The factor by which the variance grows because neighbours in time err alike.
+double correlation_factor(std::vector<Coordinate> moved);
+
+}  // namespace carom::games
