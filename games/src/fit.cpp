@@ -30,8 +30,6 @@ constexpr double kHuber = 1.345, kMedian = 1.4826;
 constexpr double kLeastNoise = 1e-9;
 // [m] A number whose whole size moves the balls by less moves nothing but rounding.
 constexpr double kUnmoved = 1e-9;
-// [noise] An outlier.
-constexpr double kOutlier = 3.0;
 // Damping: at first, and its factors after a step that helps and one that does not.
 constexpr double kDamping = 1e-4, kLess = 0.1, kMoreDamped = 10.0, kMostDamping = 1e12;
 // [-] A step is the last if it lowers the loss by less than this share, or moves all by less than this many

@@ -17,8 +17,8 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 // [m] Residuals below this are rounding.
 constexpr double kExact = 1e-6;
-// [noise] An outlier; [-] the share of outliers that are no longer few.
-constexpr double kOutlier = 3.0, kFew = 0.2;
+// [-] The share of outliers that are no longer few.
+constexpr double kFew = 0.2;
 // [-] Share of the squared residuals that another clock or scale explains, if it is to be told. Of noise it
 // explains 1/n.
 constexpr double kExplained = 0.5;

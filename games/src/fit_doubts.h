@@ -8,6 +8,9 @@
 
 namespace carom::games {
 
+/// [of the noise] A residual above this is an outlier.
+inline constexpr double kOutlier = 3.0;
+
 /// A coordinate that counts.
 struct Coordinate {
     int ball, axis;
