@@ -43,6 +43,7 @@ VectorXd rest_of(const MatrixXd& columns, const VectorXd& residuals) {
 double scale_of(const std::vector<Coordinate>& coordinates) {
     const auto middle = [&coordinates](double Coordinate::*of) {
         std::vector<double> sizes;
+        sizes.reserve(coordinates.size());
         for (const Coordinate& c : coordinates) sizes.push_back(std::abs(c.*of));
         if (sizes.empty()) return 0.0;
         const auto half = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);

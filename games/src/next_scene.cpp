@@ -76,7 +76,7 @@ Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted) 
                     places.push_back({far, x, y});
         std::sort(places.begin(), places.end());
         for (const auto& [far, x, y] : places)
-            if (const Vec2 place = wanted + step * Vec2(x, y); may_place(record, option, place)) return place;
+            if (Vec2 place = wanted + step * Vec2(x, y); may_place(record, option, place)) return place;
     }
     throw std::invalid_argument("there is no free place for the cue ball");
 }

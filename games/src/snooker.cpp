@@ -148,6 +148,7 @@ bool Stroke::snookers_behind_free_ball() const {
     };
     const Lying cue = lying(facts_.id(facts_.shot.struck));
     std::vector<Lying> targets;
+    targets.reserve(on.size());
     for (const std::string& ball : on) targets.push_back(lying(ball));
     const auto away = [&](const std::string& ball) { return length(lying(ball).place - cue.place); };
     const auto hides = [&](const std::string& ball) {

@@ -111,6 +111,7 @@ class Solver {
             100, static_cast<std::size_t>(kReport * static_cast<double>(options_.shots)) / kinds.size());
         fresh_ = true;
         std::vector<Solution> solutions;
+        solutions.reserve(kinds.size());
         for (const Candidate& kind : kinds) solutions.push_back(improved(solution(kind.values, each), each));
         std::stable_sort(solutions.begin(), solutions.end(), [](const Solution& a, const Solution& b) {
             return a.successes * b.shots > b.successes * a.shots;

@@ -71,10 +71,10 @@ Vec2 spot_on_long_string(const Table& table, const Vec2& spot, double R, std::sp
 }
 
 Vec2 spot_snooker(const Table& table, std::string_view colour, double R, std::span<const Lying> others) {
-    const Vec2 own = snooker_spot(table, colour);
+    Vec2 own = snooker_spot(table, colour);
     if (is_free(own, R, others)) return own;
     for (const std::string_view other : kColours) {
-        const Vec2 spot = snooker_spot(table, other);
+        Vec2 spot = snooker_spot(table, other);
         if (is_free(spot, R, others)) return spot;
     }
     const Vec2 up(0.0, 1.0);

@@ -51,7 +51,7 @@ double Detector::closing(const PredictedEvent& c) const {
 
 Vec2 Detector::place(const PredictedEvent& c) const {
     const Segment& s = balls_.segment(c.contact.ball);
-    const Vec2 here = planar(position_at(s, c.time - s.start));
+    Vec2 here = planar(position_at(s, c.time - s.start));
     const int other = c.contact.other;
     switch (c.contact.with) {
         case With::kBall: {

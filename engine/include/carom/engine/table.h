@@ -198,6 +198,7 @@ int index_of(const std::vector<Part>& list, std::string_view id) {
 template <class Part>
 std::vector<std::string> ids_of(const std::vector<Part>& list) {
     std::vector<std::string> ids;
+    ids.reserve(list.size());
     for (const Part& part : list) ids.push_back(part.id);
     return ids;
 }
