@@ -405,7 +405,9 @@ TEST(Discs, TouchAtTheSumOfTheirRadii) {
         ASSERT_EQ(record.events.size(), 1u);
         EXPECT_NEAR(record.events[0].time, 0.5 - (discs ? kSmallR + 0.04 : 2.0 * std::sqrt(kSmallR * 0.04)),
                     1e-14);
-        if (discs) EXPECT_EQ(details_of(record, 0).cut, 0.0);
+        if (discs) {
+            EXPECT_EQ(details_of(record, 0).cut, 0.0);
+        }
         // Equal masses change their velocities.
         EXPECT_NEAR(record.state_at(0, 1.0).velocity.x(), 0.0, 1e-14);
         EXPECT_NEAR(record.state_at(1, 1.0).velocity.x(), 1.0, 1e-14);
