@@ -179,7 +179,8 @@ offset = [0, 0]
                                             "--json"};
     const ProcessResult result = carom(asked);
     ASSERT_EQ(result.status, 0) << result.err;
-    for (const Json& solution : Json::parse(result.out).at("solutions")) {
+    const Json found = Json::parse(result.out);
+    for (const Json& solution : found.at("solutions")) {
         // All falls of the only ball, in the same shots.
         std::size_t fell = 0;
         for (const Json& fall : solution.at("falls")) fell += fall.at("count").get<std::size_t>();
