@@ -6,7 +6,9 @@ add_library(carom_flags INTERFACE)
 target_compile_features(carom_flags INTERFACE cxx_std_20)
 target_compile_options(carom_flags INTERFACE
   -ffp-contract=off
-  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  # A switch over an enumeration has no default: a new enumerator does not compile until each one handles it.
+  -Werror=switch)
 # At -O3, gcc 14.2 (Debian 13) removes stores that a function reads through a reference: a spotted ball then
 # lay on another one. Versions 12 and 13 do not.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 14)

@@ -50,6 +50,15 @@ carom_missing() {
     done
 }
 
+# Installs the packages of tools/package.json in build/npm, once for each version of that file.
+carom_npm() {
+    cmp -s tools/package.json build/npm/installed.json && return
+    mkdir -p build/npm
+    cp tools/package.json build/npm
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix build/npm >&2 || return
+    cp tools/package.json build/npm/installed.json
+}
+
 # Runs apt-get as root, directly or with sudo. Fails if neither is possible.
 carom_apt() {
     if [ "$(id -u)" -eq 0 ]; then

@@ -12,19 +12,14 @@
 #include "handles.h"
 #include "text.h"
 
+using namespace carom::c;
+
 namespace {
 
-using carom::c::asked;
-using carom::c::BadArgument;
-using carom::c::cue_of;
-using carom::c::guarded;
-using carom::c::need;
-using carom::c::put_text;
 namespace games = carom::games;
 
 const carom::BallStart& ball_of(const carom::Scene& scene, const std::string& id) {
-    for (const carom::BallStart& ball : scene.ball)
-        if (ball.id == id) return ball;
+    if (const int ball = index_of(scene.ball, id); ball >= 0) return scene.ball[ball];
     throw BadArgument("the scene has no ball \"" + id + "\"");
 }
 
@@ -32,7 +27,7 @@ carom_aim aim_of(const games::Aim& aim) {
     carom_aim out{};
     out.found = aim.cue ? 1 : 0;
     if (aim.cue)
-        for (const auto& [theirs, ours] : carom::c::kCueNumbers) out.cue.*theirs = *aim.cue.*ours;
+        for (const auto& [theirs, ours] : kCueNumbers) out.cue.*theirs = *aim.cue.*ours;
     out.geometric_deg = aim.geometric_deg;
     out.cut_deg = aim.cut_deg;
     put_text(out.cushion, aim.cushion);

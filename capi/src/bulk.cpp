@@ -14,14 +14,9 @@
 #include "guard.h"
 #include "handles.h"
 
-namespace {
+using namespace carom::c;
 
-using carom::c::BadArgument;
-using carom::c::check_index;
-using carom::c::chosen_isa;
-using carom::c::guarded;
-using carom::c::made;
-using carom::c::need;
+namespace {
 
 static_assert(CAROM_SHOT_AT_REST == static_cast<int>(carom::ShotStatus::kAtRest));
 static_assert(CAROM_SHOT_TIME == static_cast<int>(carom::ShotStatus::kTime));
@@ -112,45 +107,22 @@ const uint8_t* carom_batch_status(const carom_batch* batch) {
     return reinterpret_cast<const uint8_t*>(array_of(batch, &carom::Batch::status));
 }
 
-const double* carom_batch_duration(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::duration);
-}
-
-const int64_t* carom_batch_events(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::events);
-}
-
-const int32_t* carom_batch_first_hit(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::first_hit);
-}
-
-const int32_t* carom_batch_contacts(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::contacts);
-}
-
-const int32_t* carom_batch_approach_cushions(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::approach_cushions);
-}
-
-const double* carom_batch_x(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::x);
-}
-
-const double* carom_batch_y(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::y);
-}
-
-const int32_t* carom_batch_pocket(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::pocket);
-}
-
-const int32_t* carom_batch_fell(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::fell);
-}
-
-const int32_t* carom_batch_cushions(const carom_batch* batch) {
-    return array_of(batch, &carom::Batch::cushions);
-}
+// The arrays of a batch, by the names that they have in both interfaces.
+#define CAROM_BATCH_ARRAY(type, name)                          \
+    const type* carom_batch_##name(const carom_batch* batch) { \
+        return array_of(batch, &carom::Batch::name);           \
+    }
+CAROM_BATCH_ARRAY(double, duration)
+CAROM_BATCH_ARRAY(int64_t, events)
+CAROM_BATCH_ARRAY(int32_t, first_hit)
+CAROM_BATCH_ARRAY(int32_t, contacts)
+CAROM_BATCH_ARRAY(int32_t, approach_cushions)
+CAROM_BATCH_ARRAY(double, x)
+CAROM_BATCH_ARRAY(double, y)
+CAROM_BATCH_ARRAY(int32_t, pocket)
+CAROM_BATCH_ARRAY(int32_t, fell)
+CAROM_BATCH_ARRAY(int32_t, cushions)
+#undef CAROM_BATCH_ARRAY
 
 const uint64_t* carom_batch_hash(const carom_batch* batch) {
     return batch != nullptr && !batch->batch.hash.empty() ? batch->batch.hash.data() : nullptr;

@@ -14,14 +14,10 @@
 #include "guard.h"
 #include "handles.h"
 
+using namespace carom::c;
+
 namespace {
 
-using carom::c::asked;
-using carom::c::BadArgument;
-using carom::c::check_index;
-using carom::c::guarded;
-using carom::c::made;
-using carom::c::need;
 namespace games = carom::games;
 
 static_assert(CAROM_SUM_TO_THREE == static_cast<int>(games::Game::kSumToThree));
@@ -205,7 +201,7 @@ carom_status carom_next_shot(const carom_record* record, const carom_verdict* ve
         check_record(*record, *verdict);
         std::optional<carom::Vec2> put;
         if (place != nullptr) put = carom::Vec2(place[0], place[1]);
-        const carom::Cue strike = carom::c::cue_of(games::cue_ball(of.state), *cue);
+        const carom::Cue strike = cue_of(games::cue_ball(of.state), *cue);
         s.scene = asked([&] { return games::next_scene(record->scene, record->record, of, strike, put); });
     });
 }
@@ -216,8 +212,8 @@ carom_status carom_noisy_cue(const carom_cue* cue, const double deviations[5], u
         need({cue, deviations, out});
         const games::Noise sd = {deviations[0], deviations[1], deviations[2], deviations[3], deviations[4]};
         const carom::Cue struck =
-            asked([&] { return games::with_noise(carom::c::cue_of("cue", *cue), sd, seed, index); });
-        for (const auto& [theirs, ours] : carom::c::kCueNumbers) out->*theirs = struck.*ours;
+            asked([&] { return games::with_noise(cue_of("cue", *cue), sd, seed, index); });
+        for (const auto& [theirs, ours] : kCueNumbers) out->*theirs = struck.*ours;
     });
 }
 

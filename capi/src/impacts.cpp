@@ -8,13 +8,10 @@
 #include "carom/kernel/tolerance.h"
 #include "guard.h"
 
-namespace {
-
+using namespace carom::c;
 using namespace carom::kernel;
-using carom::c::BadArgument;
-using carom::c::chosen_isa;
-using carom::c::guarded;
-using carom::c::need;
+
+namespace {
 
 /// [-] Impacts that are transposed and solved together; their data fit into the first-level cache.
 constexpr std::size_t kBlock = 64;

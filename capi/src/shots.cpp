@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "carom/engine/next_scene.h"
 #include "carom/engine/simulate.h"
@@ -17,15 +18,9 @@
 #include "handles.h"
 #include "text.h"
 
-namespace {
+using namespace carom::c;
 
-using carom::c::BadArgument;
-using carom::c::check_index;
-using carom::c::chosen_isa;
-using carom::c::cue_of;
-using carom::c::guarded;
-using carom::c::made;
-using carom::c::need;
+namespace {
 
 /// The field of a ball parameter.
 const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
@@ -37,12 +32,6 @@ const carom::Field<carom::BallParams>& ball_field(std::string_view name) {
     }
     throw BadArgument("unknown ball parameter \"" + std::string(name) + "\"; use " +
                       known.replace(known.rfind(", "), 2, " or "));
-}
-
-carom::BallStart* find_ball(carom::Scene& scene, const std::string& id) {
-    const auto it = std::find_if(scene.ball.begin(), scene.ball.end(),
-                                 [&](const carom::BallStart& ball) { return ball.id == id; });
-    return it == scene.ball.end() ? nullptr : &*it;
 }
 
 }  // namespace
@@ -101,11 +90,12 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
         start.position = {rvw[0], rvw[1], rvw[2]};
         start.velocity = {rvw[3], rvw[4], rvw[5]};
         start.spin = {rvw[6], rvw[7], rvw[8]};
-        if (carom::BallStart* ball = find_ball(scene->scene, start.id)) {
-            start.own = ball->own;  // its own radius and mass
-            *ball = start;
+        std::vector<carom::BallStart>& balls = scene->scene.ball;
+        if (const int i = index_of(balls, start.id); i >= 0) {
+            start.own = balls[i].own;  // its own radius and mass
+            balls[i] = start;
         } else {
-            scene->scene.ball.push_back(start);
+            balls.push_back(start);
         }
     });
 }
@@ -113,7 +103,7 @@ carom_status carom_scene_set_ball(carom_scene* scene, const char* id, const doub
 void carom_cue_init(carom_cue* cue) {
     if (cue == nullptr) return;
     const carom::Cue c;
-    for (const auto& [theirs, ours] : carom::c::kCueNumbers) cue->*theirs = c.*ours;
+    for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = c.*ours;
 }
 
 carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom_cue* cue) {
@@ -129,7 +119,7 @@ carom_status carom_scene_set_cue(carom_scene* scene, const char* id, const carom
 }
 
 size_t carom_scene_text(const carom_scene* scene, char* text, size_t size) {
-    return carom::c::written(text, size, [&] {
+    return written(text, size, [&] {
         need({scene});
         return carom::scene_text(scene->scene);
     });

@@ -16,13 +16,9 @@
 #include "handles.h"
 #include "text.h"
 
-namespace {
+using namespace carom::c;
 
-using carom::c::BadArgument;
-using carom::c::check_index;
-using carom::c::guarded;
-using carom::c::made;
-using carom::c::need;
+namespace {
 
 constexpr double kDegrees = 57.295779513082321;
 
@@ -72,16 +68,16 @@ carom_part part_of(const carom::Table& table, carom_partner kind, size_t index) 
             return part_of(of(table.jaws, "jaw"));
         case CAROM_POCKET:
             return part_of(of(table.pockets, "pocket"), 0.0);
-        default:
-            throw BadArgument("a part is a cushion, a jaw or a pocket");
+        case CAROM_NO_PARTNER:
+        case CAROM_BALL:
+            break;
     }
+    throw BadArgument("a part is a cushion, a jaw or a pocket");
 }
 
 /// A record that was read, with the scene that was played.
 void keep(carom_record& r, carom::Record record, const carom::Scene& scene) {
-    if (!std::equal(
-            scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
-            [](const carom::BallStart& ball, const carom::BallTrack& track) { return ball.id == track.id; }))
+    if (!same_balls(scene, record))
         throw BadArgument("the scene and the record have different balls; give the scene that was played");
     r.record = std::move(record);
     r.scene = scene;
@@ -113,7 +109,7 @@ carom_status carom_scene_cue(const carom_scene* scene, carom_cue* cue, const cha
     return guarded([&] {
         need({scene, cue});
         if (!scene->scene.cue) throw BadArgument("the scene has no cue; set one with carom_scene_set_cue");
-        for (const auto& [theirs, ours] : carom::c::kCueNumbers) cue->*theirs = *scene->scene.cue.*ours;
+        for (const auto& [theirs, ours] : kCueNumbers) cue->*theirs = *scene->scene.cue.*ours;
         if (ball != nullptr) *ball = scene->scene.cue->ball.c_str();
     });
 }
@@ -222,7 +218,7 @@ carom_status carom_record_write(const carom_record* record, const char* path) {
 }
 
 size_t carom_record_text(const carom_record* record, char* text, size_t size) {
-    return carom::c::written(text, size, [&] {
+    return written(text, size, [&] {
         need({record});
         return carom::record_json(record->record);
     });

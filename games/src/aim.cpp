@@ -154,14 +154,12 @@ double cut_angle_deg(const Vec2& cue, const Vec2& ghost, const Vec2& towards) {
 namespace detail {
 
 const BallStart& ball_of(const Scene& scene, std::string_view id) {
-    for (const BallStart& ball : scene.ball)
-        if (ball.id == id) return ball;
+    if (const int ball = index_of(scene.ball, id); ball >= 0) return scene.ball[ball];
     throw std::invalid_argument("there is no ball \"" + std::string(id) + "\" in the scene");
 }
 
 const Pocket& pocket_of(const Scene& scene, std::string_view id) {
-    for (const Pocket& pocket : scene.table.pockets)
-        if (pocket.id == id) return pocket;
+    if (const int p = index_of(scene.table.pockets, id); p >= 0) return scene.table.pockets[p];
     throw std::invalid_argument("there is no pocket \"" + std::string(id) + "\" on the table");
 }
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "carom/engine/printable.h"
-#include "carom/engine/simulate.h"
 #include "carom/engine/variation.h"
 
 namespace carom::games {
@@ -53,17 +52,6 @@ std::string method_of(const std::string& rack) {
                     in_quotes(rack), kLargestGap));
 }
 
-/// Speed that the ball gets from one metre per second of the cue, hit in its centre.
-double ball_speed(const Scene& scene, kernel::Isa isa) {
-    Scene alone = scene;
-    for (const BallStart& ball : scene.ball)
-        if (ball.id == scene.cue->ball) alone.ball = {ball};
-    alone.cue->speed = 1.0;
-    alone.cue->side = alone.cue->height = 0.0;
-    alone.stop.events = 1;
-    return simulate(make_plan(alone, isa)).state_at(0, 0.0).velocity.norm();
-}
-
 }  // namespace
 
 std::vector<Scene> racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed) {
@@ -79,25 +67,29 @@ std::vector<Scene> racks_of(const std::string& text, const std::string& name, in
     return racks;
 }
 
-BreakSearch break_search(const BreakOptions& options, kernel::Isa isa) {
+BreakSearch break_search(const BreakOptions& options) {
     const BreakGame& game = game_of(options.game);
     if (!(options.speed_max >= 1.0 && options.speed_max <= 20.0))
         throw std::invalid_argument("the largest speed of a break must be 1 to 20 m/s");
     const std::string text = fmt::format(
         "[table]\npreset = \"{}\"\n[balls]\nradius_sd = {}\n[rack]\ngame = \"{}\"\n{}{}"
-        "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[cue]\npreset = \"break\"\nspeed = 5\noffset = [0, "
+        "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[cue]\npreset = \"break\"\nball_speed = {}\noffset = "
+        "[0, "
         "0]\n",
-        options.table, options.radius_sd, options.game, game.rack, method_of(options.rack));
+        options.table, options.radius_sd, options.game, game.rack, method_of(options.rack),
+        options.speed_max);
     const std::string name = "break of " + options.game;
     BreakSearch search;
     search.scene = parse_scene(text, name);
     search.want = game.want;
     search.game = game.game;
-    search.ball_speed = ball_speed(search.scene, isa);
     search.layouts = racks_of(text, name, options.layouts, options.seed);
     const Table& table = search.scene.table;
     const double side = options.box ? 0.25 * table.width : search.scene.balls.R;
-    const double fastest = options.speed_max / search.ball_speed;
+    // The cue that gives the ball its largest speed.
+    const double fastest = search.scene.cue->speed;
+    search.ball_speed = options.speed_max / fastest;
+    search.scene.cue->speed = 5.0;
     search.choices = {
         {"ball.cue.position.x", table.corner.x() + side + 1e-4, table.corner.x() + table.width - side - 1e-4},
         {"ball.cue.position.y", table.corner.y() + 0.1 * table.length,

@@ -27,17 +27,17 @@ std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& 
     const auto lies = [&](const std::string& other) {
         for (const Respot& done : respots)
             if (done.ball == other) return done.place;
-        return planar(facts.record.state_at(index_of(facts.record, other), facts.record.duration).position);
+        return facts.rest(other);
     };
     std::vector<std::string> on_table;
     for (const std::string& ball : facts.ids())
         if (!is_in(ball, balls)) on_table.push_back(ball);
     for (const std::string& ball : balls) {
-        const double R = facts.record.size(index_of(facts.record, ball)).R;
+        const double R = facts.radius(ball);
         Vec2 place = own_spot(facts.record.table, ball, shooter);
         for (int tries = 0; tries < 3; ++tries) {
             const auto masked = std::find_if(on_table.begin(), on_table.end(), [&](const std::string& other) {
-                const Lying there = {lies(other), facts.record.size(index_of(facts.record, other)).R, 0.0};
+                const Lying there = {lies(other), facts.radius(other), 0.0};
                 return !is_free(place, R, std::span(&there, 1));
             });
             if (masked == on_table.end()) break;
@@ -52,12 +52,10 @@ std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& 
 /// A player's cue ball and the balls touching it; empty if none does.
 std::vector<std::string> touching(const Facts& facts, int shooter) {
     const int own = index_of(facts.record, own_ball(shooter));
-    const auto place = [&](int ball) {
-        return planar(facts.record.state_at(ball, facts.record.duration).position);
-    };
     std::vector<std::string> list;
     for (int i = 0; i < static_cast<int>(facts.record.tracks.size()); ++i) {
-        const double gap = length(place(i) - place(own)) - facts.record.size(i).R - facts.record.size(own).R;
+        const double gap =
+            length(facts.rest(i) - facts.rest(own)) - facts.record.size(i).R - facts.record.size(own).R;
         if (i != own && gap <= kTouchTolerance) list.push_back(facts.id(i));
     }
     if (!list.empty()) list.insert(list.begin(), facts.id(own));
@@ -144,8 +142,7 @@ Verdict judge_sum_to_three(const Facts& facts) {
     for (int ball = 0; ball < static_cast<int>(facts.record.tracks.size()); ++ball) {
         if (!facts.shot.gone(ball)) continue;
         std::vector<Lying> others = facts.lying(0.0, 0.0);
-        for (const Respot& done : next.respots)
-            others.push_back({done.place, facts.record.size(index_of(facts.record, done.ball)).R, 0.0});
+        for (const Respot& done : next.respots) others.push_back({done.place, facts.radius(done.ball), 0.0});
         const Table& table = facts.record.table;
         const Vec2 spot = facts.id(ball) == "cue" ? head_spot(table) : foot_spot(table);
         next.respots.push_back(

@@ -31,7 +31,7 @@ std::vector<std::string> targets(const State& state, const std::vector<std::stri
 }
 
 Respot eight_on_its_spot(const Facts& facts) {
-    const double R = facts.record.size(index_of(facts.record, kEight)).R;
+    const double R = facts.radius(kEight);
     return {kEight, spot_on_long_string(facts.record.table, foot_spot(facts.record.table), R,
                                         facts.lying(kSpotGap, 0.0))};
 }

@@ -9,6 +9,10 @@ bool is_in(std::string_view ball, const std::vector<std::string>& list) {
     return std::find(list.begin(), list.end(), ball) != list.end();
 }
 
+bool is_in(std::string_view ball, const std::vector<Respot>& respots) {
+    return std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; });
+}
+
 int number_of(std::string_view ball) {
     int number = 0;
     const char* end = ball.data() + ball.size();
@@ -71,18 +75,11 @@ bool Facts::first_is_one_of(const std::vector<std::string>& ids) const {
                        [&](int ball) { return is_in(id(ball), ids); });
 }
 
-std::vector<std::string> Facts::ids() const {
-    std::vector<std::string> list;
-    for (const BallTrack& track : record.tracks) list.push_back(track.id);
-    return list;
-}
-
 std::vector<Lying> Facts::lying(double cue_gap, double gap, const std::vector<std::string>& left_out) const {
     std::vector<Lying> balls;
     for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i) {
         if (shot.gone(i) || is_in(id(i), left_out)) continue;
-        balls.push_back({planar(record.state_at(i, record.duration).position), record.size(i).R,
-                         i == shot.struck ? cue_gap : gap});
+        balls.push_back({rest(i), record.size(i).R, i == shot.struck ? cue_gap : gap});
     }
     return balls;
 }

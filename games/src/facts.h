@@ -21,6 +21,10 @@ class Facts {
     Shot shot;
 
     const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
+    double radius(std::string_view ball) const { return record.size(index_of(record, ball)).R; }
+    /// Where a ball rests.
+    Vec2 rest(int ball) const { return planar(record.state_at(ball, record.duration).position); }
+    Vec2 rest(std::string_view ball) const { return rest(index_of(record, ball)); }
     bool fell(std::string_view ball) const;
     bool left(std::string_view ball) const;
     bool gone(std::string_view ball) const { return fell(ball) || left(ball); }
@@ -33,7 +37,8 @@ class Facts {
     /// Whether one of the balls hit first is in the list: if two are hit at once, the shooter has the
     /// benefit.
     bool first_is_one_of(const std::vector<std::string>& ids) const;
-    std::vector<std::string> ids() const;  ///< of all balls that were on the table
+    /// Of all balls that were on the table.
+    std::vector<std::string> ids() const { return ids_of(record.tracks); }
     /// The balls that lie on the table at the end, except `left_out`. The cue ball keeps `cue_gap`, the
     /// others `gap` away.
     std::vector<Lying> lying(double cue_gap, double gap, const std::vector<std::string>& left_out = {}) const;
@@ -48,6 +53,7 @@ class Facts {
 };
 
 bool is_in(std::string_view ball, const std::vector<std::string>& list);
+bool is_in(std::string_view ball, const std::vector<Respot>& respots);
 /// The number of a numbered ball, or 0.
 int number_of(std::string_view ball);
 /// [-] Object balls that a break must drive to a cushion if nothing falls (WPA 2.3, 3.3).

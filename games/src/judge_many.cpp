@@ -16,9 +16,7 @@ namespace {
 Call lucky_call(const State& state, const Record& record) {
     const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
     if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
-    std::vector<std::string> ids;
-    for (const BallTrack& track : record.tracks) ids.push_back(track.id);
-    const std::vector<std::string> callable = legal(state, ids).callable;
+    const std::vector<std::string> callable = legal(state, ids_of(record.tracks)).callable;
     for (const Event& event : record.events) {
         if (!falls(event)) continue;
         const std::string& ball = record.tracks[static_cast<std::size_t>(event.a)].id;

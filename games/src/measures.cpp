@@ -1,10 +1,10 @@
+// Expressions over measures: read once, evaluated for many shots.
 #include "carom/games/measures.h"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,265 +14,16 @@
 #include <utility>
 #include <vector>
 
-#include "carom/engine/event_details.h"
-#include "carom/engine/frozen.h"
-#include "carom/games/judge_many.h"
-#include "carom/games/shot.h"
-#include "carom/games/spots.h"
+#include "measure_rows.h"
 
 namespace carom::games {
-namespace {
 
-using Texts = std::vector<std::string>;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// [m] The distance of `near` if none is given.
-constexpr double kNear = 0.1;
-
-/// The arguments of a measure, checked against the scene.
-struct Arguments {
-    int ball = -1;
-    std::vector<double> numbers;
-    std::optional<Game> game;
-};
-
-/// A record, and what several measures read from it.
-struct PlayedShot {
-    explicit PlayedShot(const Record& played) : record(played) {}
-    const Shot& shot() const {
-        if (!shot_) shot_ = shot_of(record);
-        return *shot_;
-    }
-    int struck() const {
-        for (const Event& event : record.events)
-            if (event.type == EventType::kCueStrike) return event.a;
-        return -1;
-    }
-    const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
-
-    const Record& record;
-
-  private:
-    mutable std::optional<Shot> shot_;
-};
-
-Texts listed(const PlayedShot& played, EventType type, bool partner) {
-    Texts texts;
-    for (const Event& event : played.record.events)
-        if (event.type == type)
-            texts.push_back(partner ? played.record.partner_id(event) : played.id(event.a));
-    return texts;
-}
-
-double count(const PlayedShot& played, EventType type, bool struck) {
-    const int ball = played.struck();
-    return static_cast<double>(
-        std::count_if(played.record.events.begin(), played.record.events.end(), [&](const Event& event) {
-            return event.type == type && (struck ? event.a == ball : event.a != ball);
-        }));
-}
-
-/// The events in which the struck ball is driven to a cushion or a jaw.
-std::vector<std::size_t> driven(const PlayedShot& played) {
-    std::vector<std::size_t> events;
-    const int ball = played.struck();
-    for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
-        const Event& event = played.record.events[i];
-        const EventKind& of = kind(event.type);
-        const bool wall = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
-        if (!wall || event.a != ball || of.phase == EventPhase::kRelease) continue;
-        const auto& segments = played.record.tracks[static_cast<std::size_t>(ball)].segments;
-        if (!still_frozen(played.record.table, event, segments, played.record.size(ball).R))
-            events.push_back(i);
-    }
-    return events;
-}
-
-std::optional<std::size_t> cushion(const PlayedShot& played, double number) {
-    const std::vector<std::size_t> events = driven(played);
-    const auto index = static_cast<std::size_t>(number) - 1;
-    return index < events.size() ? std::optional(events[index]) : std::nullopt;
-}
-
-/// Sums or compares over the pieces of a ball's motion: f(segment, seconds for which it applies).
-template <class F>
-void pieces(const Record& record, int ball, F&& f) {
-    const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(ball)].segments;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        const double end = i + 1 < segments.size() ? segments[i + 1].start : record.duration;
-        const double lasts = std::min(end - segments[i].start, segments[i].duration);
-        if (lasts > 0.0 && !is_gone(segments[i].state)) f(segments[i], lasts);
-    }
-}
-
-/// Length of the parabola of a segment in the plane [m], by its closed form.
-double length_of(const Segment& s, double time) {
-    const double v2 = s.v.x() * s.v.x() + s.v.y() * s.v.y(), a2 = s.a.squaredNorm();
-    const double va = s.v.x() * s.a.x() + s.v.y() * s.a.y();
-    if (a2 == 0.0) return std::sqrt(v2) * time;
-    // With tau from the vertex, the speed is sqrt(h^2 + a^2 tau^2).
-    const double a = std::sqrt(a2), shift = va / a2, h2 = std::max(0.0, v2 - va * va / a2);
-    const auto whole = [&](double tau) {
-        const double speed = std::sqrt(h2 + a2 * tau * tau);
-        return 0.5 * (tau * speed + (h2 > 0.0 ? h2 / a * std::asinh(a * tau / std::sqrt(h2)) : 0.0));
-    };
-    return whole(time + shift) - whole(shift);
-}
-
-BallState last(const PlayedShot& played, int ball) {
-    return played.record.state_at(ball, played.record.duration);
-}
-
-double distance(const PlayedShot& played, const Arguments& of) {
-    const BallState s = last(played, of.ball);
-    if (is_gone(s.state)) return kNone;
-    return std::hypot(s.position.x() - of.numbers[0], s.position.y() - of.numbers[1]);
-}
-
-Texts fouls(const PlayedShot& played, const Arguments& of, bool opening) {
-    const State state = opening ? new_game(*of.game) : state_of_turn(*of.game, Group::kOpen);
-    Texts texts;
-    for (const Foul foul : judge(state, played.record).fouls) texts.emplace_back(name(foul));
-    return texts;
-}
-
-struct Row {
-    MeasureInfo info;
-    MeasureValue (*value)(const PlayedShot&, const Arguments&);
-};
-
-// Names of arguments: BALL, X, Y, R, K (a number from 1), GAME.
-const Row kRows[] = {
-    {{"pocketed", "", "list", "balls that fell, in order"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return listed(p, EventType::kBallPocket, false);
-     }},
-    {{"pockets", "", "list", "pockets they fell into, in the same order"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return listed(p, EventType::kBallPocket, true);
-     }},
-    {{"balls_pocketed", "", "", "number of balls that fell, except the struck ball"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return count(p, EventType::kBallPocket, false);
-     }},
-    {{"any_pocketed", "", "truth", "whether a ball other than the struck one fell"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return double(count(p, EventType::kBallPocket, false) > 0.0);
-     }},
-    {{"pocket_of", "BALL", "text", "pocket that holds the ball; out if it left the table, else empty"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         for (const Event& event : p.record.events) {
-             if (event.a == of.ball && event.type == EventType::kBallPocket)
-                 return Texts{p.record.partner_id(event)};
-             if (event.a == of.ball && event.type == EventType::kBallOut) return Texts{"out"};
-         }
-         return Texts{};
-     }},
-    {{"off_table", "", "list", "balls that left the table"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return listed(p, EventType::kBallOut, false);
-     }},
-    {{"scratch", "", "truth", "whether the struck ball fell or left the table"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         return double(count(p, EventType::kBallPocket, true) + count(p, EventType::kBallOut, true) > 0.0);
-     }},
-    {{"first_hit", "", "list", "ball that the struck ball hits first; several if it hits them at once"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         Texts texts;
-         for (const int ball : p.shot().first_hits) texts.push_back(p.id(ball));
-         return texts;
-     }},
-    {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         Texts texts;
-         for (const std::size_t i : driven(p)) texts.push_back(p.record.partner_id(p.record.events[i]));
-         return texts;
-     }},
-    {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).point.x() : kNone;
-     }},
-    {{"cushion_y", "K", "m", "y where it does"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).point.y() : kNone;
-     }},
-    {{"cushion_diamond", "K", "", "the place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).diamond : kNone;
-     }},
-    {{"driven", "", "",
-      "number of balls driven to a rail, pocketed or off the table, except the struck ball"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         const std::vector<int> balls = p.shot().driven_after(p.shot().first_time);
-         return double(balls.size()) - double(std::count(balls.begin(), balls.end(), p.struck()));
-     }},
-    {{"past_head_string", "", "",
-      "number of balls that fell or crossed the head string, except the struck ball"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue {
-         const Record& record = p.record;
-         const double back = -head_string(record.table);
-         double balls = 0.0;
-         for (int i = 0; i < static_cast<int>(record.tracks.size()); ++i)
-             if (i != p.struck() && (record.tracks[static_cast<std::size_t>(i)].pocket >= 0 ||
-                                     farthest(record, i, Vec2(0.0, -1.0), record.duration) > back))
-                 ++balls;
-         return balls;
-     }},
-    {{"legal_break", "GAME", "truth", "whether the shot is a fair break of the game"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         return double(fouls(p, of, true).empty());
-     }},
-    {{"break_foul", "GAME", "list", "fouls of the shot as a break of the game"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return fouls(p, of, true); }},
-    {{"foul", "GAME", "list", "fouls of the shot in the middle of a game; in eight-ball with an open table"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return fouls(p, of, false); }},
-    {{"x", "BALL", "m", "final x"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.x(); }},
-    {{"y", "BALL", "m", "final y"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return last(p, of.ball).position.y(); }},
-    {{"distance", "BALL, X, Y", "m", "from the ball's final position to (X, Y); empty if it is gone"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue { return distance(p, of); }},
-    {{"travel", "BALL", "m", "length of the ball's path on the table"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         double sum = 0.0;
-         pieces(p.record, of.ball, [&sum](const Segment& s, double time) { sum += length_of(s, time); });
-         return sum;
-     }},
-    {{"max_speed", "BALL", "m/s", "largest speed of the ball"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         double most = 0.0;
-         // Speed is convex in each piece, so that it is largest at an end.
-         pieces(p.record, of.ball, [&](const Segment& s, double time) {
-             for (const double tau : {0.0, time}) {
-                 const double up = flies(s.state) ? s.v.z() - p.record.gravity * tau : 0.0;
-                 most = std::max(most, std::hypot(velocity_at(s, tau).x(), velocity_at(s, tau).y(), up));
-             }
-         });
-         return most;
-     }},
-    {{"rest_time", "BALL", "s", "when the ball comes to rest or falls"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         double end = 0.0;
-         pieces(p.record, of.ball, [&end](const Segment& s, double time) {
-             if (s.state != MotionState::kStationary) end = s.start + time;
-         });
-         return end;
-     }},
-    {{"air_time", "BALL", "s", "how long the ball is in the air"},
-     [](const PlayedShot& p, const Arguments& of) -> MeasureValue {
-         double sum = 0.0;
-         pieces(p.record, of.ball, [&sum](const Segment& s, double time) {
-             if (s.state == MotionState::kAirborne) sum += time;
-         });
-         return sum;
-     }},
-    {{"duration", "", "s", "duration of the shot"},
-     [](const PlayedShot& p, const Arguments&) -> MeasureValue { return p.record.duration; }},
-};
-
-}  // namespace
+using detail::Arguments;
+using detail::kNone;
+using detail::measure_rows;
+using detail::MeasureRow;
+using detail::PlayedShot;
+using detail::Texts;
 
 /// A value, an operation, or a measure with its arguments.
 struct Measure::Node {
@@ -280,7 +31,7 @@ struct Measure::Node {
     Kind kind = Kind::kValue;
     std::string word;  ///< the operator
     MeasureValue value;
-    const Row* row = nullptr;
+    const MeasureRow* row = nullptr;
     Arguments arguments;
     std::vector<Node> parts;
 };
@@ -288,6 +39,8 @@ struct Measure::Node {
 namespace {
 
 using Node = Measure::Node;
+// [m] The distance of `near` if none is given.
+constexpr double kNear = 0.1;
 
 bool truth(const MeasureValue& value) {
     if (const double* number = std::get_if<double>(&value)) return *number != 0.0 && !std::isnan(*number);
@@ -497,14 +250,13 @@ class Reader {
         return number;
     }
 
-    const Row* row(std::string_view name) const {
-        for (const Row& row : kRows)
+    const MeasureRow* row(std::string_view name) const {
+        for (const MeasureRow& row : measure_rows())
             if (name == row.info.name) return &row;
         return nullptr;
     }
     int index(const std::string& id) const {
-        for (std::size_t i = 0; i < scene_.ball.size(); ++i)
-            if (scene_.ball[i].id == id) return static_cast<int>(i);
+        if (const int ball = index_of(scene_.ball, id); ball >= 0) return ball;
         fail("the scene has no ball \"" + id + "\"");
     }
 
@@ -618,7 +370,7 @@ MeasureValue value_of(const Node& node, const PlayedShot& played) {
 std::span<const MeasureInfo> measures() {
     static const std::vector<MeasureInfo> list = [] {
         std::vector<MeasureInfo> all;
-        for (const Row& row : kRows) all.push_back(row.info);
+        for (const MeasureRow& row : measure_rows()) all.push_back(row.info);
         return all;
     }();
     return list;

@@ -1,5 +1,6 @@
 // From a verdict to the next shot.
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -13,11 +14,6 @@
 
 namespace carom::games {
 namespace {
-
-bool is_back(const Option& option, const std::string& ball) {
-    return std::any_of(option.respots.begin(), option.respots.end(),
-                       [&](const Respot& r) { return r.ball == ball; });
-}
 
 /// The ball of an option. @throws std::invalid_argument if the record has none: the option belongs to another
 /// record
@@ -60,12 +56,29 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
         const std::string& id = record.tracks[static_cast<std::size_t>(ball)].id;
         const BallState end = record.state_at(ball, record.duration);
-        if (ball != index && !is_gone(end.state) && !is_back(option, id))
+        if (ball != index && !is_gone(end.state) && !detail::is_in(id, option.respots))
             others.push_back({planar(end.position), record.size(ball).R, 0.0});
     }
     for (const Respot& back : option.respots)
         others.push_back({back.place, record.size(ball_of(record, back.ball)).R, 0.0});
     return is_free(place, R, others);
+}
+
+Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted) {
+    const double step = record.size(ball_of(record, cue_ball(option.state))).R / 4.0;
+    // Rings of a lattice: whole numbers, whose distances have the same order on every processor.
+    for (int ring = 0; ring * step <= record.table.width + record.table.length; ++ring) {
+        std::vector<std::array<int, 3>> places;  // square of the distance, x, y
+        for (int x = -ring; x <= ring; ++x)
+            for (int y = -ring; y <= ring; ++y)
+                if (const int far = x * x + y * y;
+                    far <= ring * ring && (ring == 0 || far > (ring - 1) * (ring - 1)))
+                    places.push_back({far, x, y});
+        std::sort(places.begin(), places.end());
+        for (const auto& [far, x, y] : places)
+            if (const Vec2 place = wanted + step * Vec2(x, y); may_place(record, option, place)) return place;
+    }
+    throw std::invalid_argument("there is no free place for the cue ball");
 }
 
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
@@ -76,7 +89,8 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
     const std::string cue = cue_ball(option.state);
     const int index = ball_of(record, cue);
     for (const Respot& back : option.respots) ball_of(record, back.ball);
-    if (!place && !is_back(option, cue) && is_gone(record.state_at(index, record.duration).state))
+    if (!place && !detail::is_in(cue, option.respots) &&
+        is_gone(record.state_at(index, record.duration).state))
         throw std::invalid_argument("the cue ball is in hand; give its place");
     if (place && !may_place(record, option, *place))
         throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +
@@ -89,14 +103,13 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
         const double R = scene.size_of(start).R;
         const auto back = std::find_if(option.respots.begin(), option.respots.end(),
                                        [&](const Respot& r) { return r.ball == start.id; });
-        const auto there = std::find_if(rest.ball.begin(), rest.ball.end(),
-                                        [&](const BallStart& ball) { return ball.id == start.id; });
+        const int there = index_of(rest.ball, start.id);
         if (place && start.id == cue)
             next.ball.push_back(placed(start, R, *place));
         else if (back != option.respots.end())
             next.ball.push_back(placed(start, R, back->place));
-        else if (there != rest.ball.end())
-            next.ball.push_back(*there);
+        else if (there >= 0)
+            next.ball.push_back(rest.ball[there]);
     }
     return next;
 }

@@ -28,7 +28,7 @@ std::vector<std::string> lowest(const std::vector<std::string>& balls) {
 /// 2.6: the nine is respotted; no other ball is.
 std::vector<Respot> nine_back(const Facts& facts) {
     if (!facts.gone(kNine)) return {};
-    const double R = facts.record.size(index_of(facts.record, kNine)).R;
+    const double R = facts.radius(kNine);
     return {{kNine, spot_on_long_string(facts.record.table, foot_spot(facts.record.table), R,
                                         facts.lying(kSpotGap, 0.0))}};
 }

@@ -4,7 +4,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "carom/engine/frozen.h"
@@ -62,12 +61,6 @@ std::vector<int> Shot::driven_after(double time) const {
     std::sort(balls.begin(), balls.end());
     balls.erase(std::unique(balls.begin(), balls.end()), balls.end());
     return balls;
-}
-
-int index_of(const Record& record, std::string_view id) {
-    for (std::size_t i = 0; i < record.tracks.size(); ++i)
-        if (record.tracks[i].id == id) return static_cast<int>(i);
-    return -1;
 }
 
 double farthest(const Record& record, int ball, const Vec2& along, double time) {

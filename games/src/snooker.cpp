@@ -160,9 +160,8 @@ std::vector<Respot> Stroke::respots() const {
     const Table& table = facts_.record.table;
     for (const bool own_spots : {true, false}) {
         for (const std::string& colour : back) {
-            const bool done = std::any_of(respots.begin(), respots.end(),
-                                          [&](const Respot& r) { return r.ball == colour; });
-            const double R = facts_.record.size(index_of(facts_.record, colour)).R;
+            const bool done = is_in(colour, respots);
+            const double R = facts_.radius(colour);
             if (done || (own_spots && !is_free(snooker_spot(table, colour), R, others))) continue;
             respots.push_back({colour, spot_snooker(table, colour, R, others)});
             others.push_back({respots.back().place, R, kSpotGap});
@@ -183,20 +182,16 @@ bool is_snookered(const Facts& facts, const State& next, const std::vector<Respo
     std::vector<Lying> on, not_on;
     const auto add = [&](const std::string& ball, const Vec2& place) {
         if (!facts.struck(ball))
-            (is_in(ball, on_ids) ? on : not_on)
-                .push_back({place, facts.record.size(index_of(facts.record, ball)).R, 0.0});
+            (is_in(ball, on_ids) ? on : not_on).push_back({place, facts.radius(ball), 0.0});
     };
     for (const Respot& r : respots) add(r.ball, r.place);
     for (const std::string& ball : on_table) {
-        const bool back =
-            std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; });
-        if (!back)
-            add(ball,
-                planar(facts.record.state_at(index_of(facts.record, ball), facts.record.duration).position));
+        const bool back = is_in(ball, respots);
+        if (!back) add(ball, facts.rest(ball));
     }
     const double R = facts.record.size(facts.shot.struck).R;
     if (next.in_hand != InHand::kD) {
-        const Vec2 cue = planar(facts.record.state_at(facts.shot.struck, facts.record.duration).position);
+        const Vec2 cue = facts.rest(facts.shot.struck);
         return snookered_at(cue, R, on, not_on);
     }
     constexpr int kAcross = 12;  // lattice steps from the middle of the D to its edge
@@ -261,9 +256,7 @@ Verdict judge_snooker(const Facts& facts) {
         const std::vector<Respot> respots = stroke.respots();
         std::vector<std::string> on_table;
         for (const std::string& ball : facts.ids())
-            if (!facts.gone(ball) ||
-                std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; }))
-                on_table.push_back(ball);
+            if (!facts.gone(ball) || is_in(ball, respots)) on_table.push_back(ball);
         next.on = stroke.next_on(on_table);
         verdict.fouls = stroke.fouls;
         const State other = other_players(next, next.in_hand);

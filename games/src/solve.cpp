@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "base/draws.h"
-#include "base/splitmix64.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/math.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/strike.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::games {
 namespace {
@@ -61,8 +61,7 @@ class Solver {
         : scene_(scene), want_(want), isa_(isa), options_(options) {
         if (!scene.cue)
             throw std::invalid_argument("the scene has no [cue]; add one, so that a ball is struck");
-        for (std::size_t i = 0; i < scene.ball.size(); ++i)
-            if (scene.ball[i].id == scene.cue->ball) struck_ = i;
+        struck_ = static_cast<std::size_t>(std::max(0, index_of(scene.ball, scene.cue->ball)));
         if (options.choices.empty()) throw std::invalid_argument("there is nothing to choose; give a range");
         for (const Choice& choice : options.choices) {
             if (!(choice.low <= choice.high) || !std::isfinite(choice.high - choice.low))
@@ -175,8 +174,7 @@ class Solver {
     }
 
     int ball_of(const std::string& id) const {
-        for (std::size_t i = 0; i < scene_.ball.size(); ++i)
-            if (scene_.ball[i].id == id) return static_cast<int>(i);
+        if (const int ball = index_of(scene_.ball, id); ball >= 0) return ball;
         throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
     }
 

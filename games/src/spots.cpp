@@ -1,7 +1,6 @@
 #include "carom/games/spots.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -10,40 +9,6 @@
 #include <string>
 
 namespace carom::games {
-namespace {
-
-// From the rules of the WPBSA, section 1, for a playing area of 3.569 m; other tables are scaled.
-constexpr double kFullLength = 3.569, kBaulk = 0.737, kRadiusOfD = 0.292, kBlackFromTop = 0.324;
-
-Vec2 on_axis(const Table& table, double y) {
-    return {table.corner.x() + table.width / 2.0, table.corner.y() + y};
-}
-
-}  // namespace
-
-Vec2 head_spot(const Table& table) {
-    return on_axis(table, table.length / 4.0);
-}
-
-Vec2 center_spot(const Table& table) {
-    return on_axis(table, table.length / 2.0);
-}
-
-Vec2 snooker_spot(const Table& table, std::string_view colour) {
-    const double scale = table.length / kFullLength;
-    const Vec2 brown = on_axis(table, kBaulk * scale), aside(kRadiusOfD * scale, 0.0);
-    if (colour == "yellow") return brown + aside;
-    if (colour == "green") return brown - aside;
-    if (colour == "brown") return brown;
-    if (colour == "blue") return center_spot(table);
-    if (colour == "pink") return foot_spot(table);
-    if (colour == "black") return on_axis(table, table.length - kBlackFromTop * scale);
-    throw std::invalid_argument("\"" + std::string(colour) + "\" is not a snooker colour");
-}
-
-double radius_of_d(const Table& table) {
-    return kRadiusOfD * table.length / kFullLength;
-}
 
 double head_string(const Table& table) {
     return table.corner.y() + table.length / 4.0;

@@ -12,30 +12,13 @@
 #include <vector>
 
 #include "carom/kernel/impact.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::reference {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014), so that a seed means the same impacts with every standard
-/// library. The engine has a SplitMix64 of its own for racks: the kernel may not include the engine, and its
-/// public headers, which both may include, are no place for random numbers.
-class Generator {
-  public:
-    explicit Generator(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t next() {
-        std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-        return z ^ (z >> 31);
-    }
-    /// Uniform in [0, 1), 53 bits.
-    double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
-
-  private:
-    std::uint64_t state_;
-};
+using Generator = SplitMix64;
 
 struct Impact {
     kernel::Ball ball1, ball2;

@@ -4,7 +4,7 @@ the client.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 
-Everything runs on one thread, alternating; medians over the rounds. Needs numpy and pyarrow.
+Everything runs on one thread, alternating; medians over the rounds. Needs pyarrow.
 """
 
 import argparse
@@ -16,9 +16,7 @@ import sys
 import tempfile
 import time
 
-import numpy as np
 from carom import _carom, sweep
-from carom._simulate import Shots
 
 CASES = [
     ("draw", ["cue.aim_deg=normal(2)", "cue.speed=uniform(1,4)"], 250_000),
@@ -37,10 +35,8 @@ def batch(plan, hashes):
     """CPU seconds of the engine alone, the plain batch, including its random draws."""
     scene = sweep._plan.Scene.loads(plan.scene, plan.name)
     native = _carom.make_sweep(scene._native, list(plan.vary), plan.seed)
-    shots = Shots.empty(plan.shots, len(scene.ids), hashes=hashes)
-    draws = [(k, np.empty(plan.shots)) for k in range(len(plan.vary))]
     start = time.process_time()
-    native.play(0, plan.shots, 1, shots._native(), draws, [], [], 1)
+    native.play(0, plan.shots, 1, int(hashes), sweep._columns.NEVER)
     return time.process_time() - start
 
 

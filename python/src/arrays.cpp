@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "base/splitmix64.h"
 #include "carom/games/aim.h"
+#include "carom/kernel/splitmix64.h"
 #include "native.h"
 
 namespace carom::python {

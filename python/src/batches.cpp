@@ -6,24 +6,25 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "batches.h"
 #include "carom/engine/batch.h"
-#include "carom/engine/sweep_columns.h"
 #include "carom/engine/variation.h"
-#include "carom/games/measures.h"
+#include "carom/games/sweep.h"
 #include "measures.h"
 #include "native.h"
 
@@ -68,26 +69,14 @@ std::vector<Failure> many(const NativeScene& native, std::size_t shots, const st
                           });
 }
 
-struct NativeSweep {
-    explicit NativeSweep(Variation of) : variation(std::move(of)), columns(sweep_columns(variation)) {}
-    NativeSweep(NativeSweep&&) = default;  // measures cannot be copied
-    Variation variation;
-    std::vector<SweepColumn> columns;  ///< those of the measures last
-    std::vector<games::Measure> measures;
-};
-
-NativeSweep make_sweep(const NativeScene& scene, const std::vector<std::string>& rules, std::uint64_t seed,
-                       const std::vector<std::string>& measures, const std::optional<std::string>& game) {
+games::Sweep make_sweep(const NativeScene& scene, const std::vector<std::string>& rules, std::uint64_t seed,
+                        const std::vector<std::string>& measures, const std::optional<std::string>& game) {
     try {
-        NativeSweep sweep(Variation::from_text(scene.source, scene.scene->file, rules, seed));
-        for (const std::string& text : measures) {
-            const games::Measure& measure =
-                sweep.measures.emplace_back(measure_of(text, sweep.variation.base(), game));
-            sweep.columns.push_back(
-                {text, measure.is_number() ? ValueKind::kNumber : ValueKind::kText, "", true});
-        }
-        return sweep;
+        return {Variation::from_text(scene.source, scene.scene->file, rules, seed), measures,
+                game_or_none(game)};
     } catch (const VariationError& error) {
+        throw nb::value_error(error.what());
+    } catch (const games::MeasureError& error) {
         throw nb::value_error(error.what());
     }
 }
@@ -101,71 +90,93 @@ nb::any array_of(std::vector<T>&& list) {
         nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner)));
 }
 
-/// A column: its array, and its texts if the array holds indices of texts.
-std::pair<nb::any, std::vector<std::string>> column_of(ValueKind kind, ColumnValues&& values) {
-    if (kind == ValueKind::kNumber) return {array_of(std::move(values.numbers)), {}};
-    if (kind == ValueKind::kWhole) return {array_of(std::move(values.wholes)), {}};
-    return {array_of(std::move(values.places)), std::move(values.texts)};
-}
+struct ColumnValues {
+    // Of texts, the index of each in `texts`, -1 for none.
+    std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::int32_t>> values;
+    std::vector<std::string> texts;  // each once
+    std::vector<std::uint8_t> missing;
+};
 
-/// The column of one measure: its values in the order of the shots. Shots without a result have none.
-ColumnValues measure_column(const games::Measure& measure, std::span<const games::MeasureValue> measured,
-                            std::size_t first, std::size_t step, const ShotStatus* status) {
-    ColumnValues column;
-    std::map<std::string, std::int32_t> known;
-    for (std::size_t at = first, shot = 0; at < measured.size(); at += step, ++shot) {
-        if (measure.is_number()) {
-            column.numbers.push_back(has_result(status[shot]) ? std::get<double>(measured[at])
-                                                              : std::numeric_limits<double>::quiet_NaN());
-        } else if (!has_result(status[shot])) {
-            column.places.push_back(-1);
-        } else {
-            const auto [place, is_new] = known.try_emplace(games::text_of(measured[at]), column.texts.size());
-            if (is_new) column.texts.push_back(place->first);
-            column.places.push_back(place->second);
+ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& column,
+                       const games::SweptShots& shots) {
+    ColumnValues of;
+    std::unordered_map<std::string, std::int32_t> known;
+    const auto add = [&](auto& list, auto none, const auto& read) {
+        for (std::size_t shot = 0; shot < shots.count; ++shot) {
+            const games::SweepValue value = sweep.value(column, shots, shot);
+            list.push_back(value.index() == 0 ? none : read(value));
+            // NaN differs from itself.
+            of.missing.push_back(value.index() == 0 || list.back() != list.back());
         }
-    }
-    return column;
-}
-
-/// @return why shots have no result, and the columns
-std::pair<std::vector<Failure>, std::vector<std::pair<nb::any, std::vector<std::string>>>> sweep_shots(
-    const NativeSweep& sweep, std::uint64_t first, std::size_t shots, int threads, const ShotArrays& out,
-    std::uint64_t hash_every) {
-    const kernel::Isa isa = chosen_isa();
-    const Variation& variation = sweep.variation;
-    const std::size_t measures = sweep.measures.size();
-    std::vector<games::MeasureValue> measured(shots * measures);
-    std::vector<ColumnValues> values;
-    std::vector<Failure> failures = played(
-        out, variation.base().ball.size(), threads, [&](BatchOptions& options, const BatchArrays& into) {
-            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
-            if (measures > 0)
-                options.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
-                    for (std::size_t m = 0; m < measures; ++m)
-                        measured[shot * measures + m] = sweep.measures[m].in_table(record);
-                };
-            std::vector<std::string> draws;
-            auto messages = simulate_many(variation, first, shots, isa, options, into, draws);
-            values = sweep_values(variation, first, shots, draws, into, messages);
-            for (std::size_t m = 0; m < measures; ++m)
-                values.push_back(measure_column(sweep.measures[m], measured, m, measures, into.status));
-            return messages;
+    };
+    if (column.kind == ValueKind::kNumber)
+        add(of.values.emplace<0>(), std::nan(""), [](const auto& value) { return std::get<double>(value); });
+    else if (column.kind == ValueKind::kWhole)
+        add(of.values.emplace<1>(), std::int64_t{0},
+            [](const auto& value) { return std::get<std::int64_t>(value); });
+    else
+        add(of.values.emplace<2>(), -1, [&](const auto& value) {
+            const auto& text = std::get<std::string>(value);
+            const auto [place, is_new] = known.try_emplace(text, static_cast<std::int32_t>(known.size()));
+            if (is_new) of.texts.push_back(text);
+            return place->second;
         });
-    std::vector<std::pair<nb::any, std::vector<std::string>>> columns;
-    for (std::size_t k = 0; k < values.size(); ++k)
-        columns.push_back(column_of(sweep.columns[k].kind, std::move(values[k])));
-    return {std::move(failures), std::move(columns)};
+    return of;
 }
 
-/// Name, kind, unit, and whether shots without a result have none.
-std::vector<std::tuple<std::string, std::string, std::string, bool>> column_rows(const NativeSweep& sweep) {
-    std::vector<std::tuple<std::string, std::string, std::string, bool>> rows;
-    for (const SweepColumn& column : sweep.columns) {
+/// Its array, which holds the indices of texts if it has any; its texts; and for each shot whether its value
+/// is missing, unless none can be.
+using SweepArrays = std::tuple<nb::any, std::optional<std::vector<std::string>>, nb::any>;
+
+SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& of) {
+    nb::any missing = nb::borrow<nb::any>(nb::none());
+    if (column.of_result || column.kind == ValueKind::kNumber) missing = array_of(std::move(of.missing));
+    std::optional<std::vector<std::string>> texts;
+    if (column.kind == ValueKind::kText) texts = std::move(of.texts);
+    nb::any values = std::visit([](auto& list) { return array_of(std::move(list)); }, of.values);
+    return {std::move(values), std::move(texts), std::move(missing)};
+}
+
+/// @param hash_every  0: no hashes  @param stop  one flag: the batch ends with BatchStopped once it is not 0
+/// @return the columns, the status of each shot, and the hashes
+std::tuple<std::vector<SweepArrays>, nb::any, nb::any> sweep_shots(const games::Sweep& sweep,
+                                                                   std::uint64_t first, std::size_t count,
+                                                                   int threads, std::uint64_t hash_every,
+                                                                   const Flat<const std::uint8_t>& stop) {
+    const kernel::Isa isa = chosen_isa();
+    Batch batch(count, sweep.variation().base().ball.size(), hash_every > 0);
+    std::vector<ColumnValues> values;
+    try {
+        interruptible([&](const std::function<bool()>& interrupted) {
+            BatchOptions options;
+            options.threads = threads;
+            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
+            const volatile std::uint8_t* const flag = stop.data();
+            options.stop = [&interrupted, flag] { return *flag != 0 || interrupted(); };
+            const games::SweptShots shots = sweep.play(first, count, isa, options, batch.arrays());
+            for (const games::SweepColumn& column : sweep.columns())
+                values.push_back(values_of(sweep, column, shots));
+        });
+    } catch (const games::MeasureError& error) {
+        throw nb::value_error(error.what());
+    }
+    std::vector<SweepArrays> columns;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        columns.push_back(arrays_of(sweep.columns()[k], std::move(values[k])));
+    std::vector<std::uint8_t> status(count);
+    std::transform(batch.status.begin(), batch.status.end(), status.begin(),
+                   [](ShotStatus s) { return static_cast<std::uint8_t>(s); });
+    return {std::move(columns), array_of(std::move(status)), array_of(std::move(batch.hash))};
+}
+
+/// Name, kind and unit.
+std::vector<std::tuple<std::string, std::string, std::string>> column_rows(const games::Sweep& sweep) {
+    std::vector<std::tuple<std::string, std::string, std::string>> rows;
+    for (const games::SweepColumn& column : sweep.columns()) {
         const char* const kind = column.kind == ValueKind::kNumber  ? "float64"
                                  : column.kind == ValueKind::kWhole ? "int64"
                                                                     : "text";
-        rows.emplace_back(column.name, kind, column.unit, column.of_result);
+        rows.emplace_back(column.name, kind, column.unit);
     }
     return rows;
 }
@@ -176,10 +187,10 @@ void add_batches(nb::module_& m) {
     m.def("simulate_many", many, nb::arg("scene"), nb::arg("shots"), nb::arg("columns"), nb::arg("absent"),
           nb::arg("until").none(), nb::arg("max_events").none(), nb::arg("threads"),
           nb::arg("out").noconvert(), nb::arg("times").noconvert(), nb::arg("paths").noconvert());
-    nb::class_<NativeSweep>(m, "Sweep")
+    nb::class_<games::Sweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
         .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
-             nb::arg("out").noconvert(), nb::arg("hash_every"));
+             nb::arg("hash_every"), nb::arg("stop").noconvert());
     m.def("make_sweep", make_sweep, nb::arg("scene"), nb::arg("rules"), nb::arg("seed"),
           nb::arg("measures") = std::vector<std::string>(), nb::arg("game") = nb::none());
 }

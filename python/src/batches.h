@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -51,29 +52,38 @@ using Column = std::pair<std::string, Flat<const double>>;
 /// A shot without a result, and why it has none.
 using Failure = std::pair<std::size_t, std::string>;
 
-/// Plays a batch without the GIL. Ctrl-C ends it.
+/// Runs without the GIL. Ctrl-C ends it, if `run` asks the function that it is given whether to stop.
+template <class Run>
+auto interruptible(Run&& run) {
+    SignalWatch watch;
+    try {
+        const nb::gil_scoped_release no_gil;
+        return run([&watch] { return watch.stopped(); });
+    } catch (const BatchStopped&) {
+        if (PyErr_Occurred() == nullptr) throw;
+        throw nb::python_error();
+    } catch (const std::invalid_argument& error) {
+        throw nb::value_error(error.what());
+    }
+}
+
+/// Plays a batch into the caller's arrays.
 template <class Play>
 std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int threads, Play&& play) {
     const BatchArrays out = batch_arrays(arrays);
-    SignalWatch watch;
-    BatchOptions options;
-    options.threads = threads;
-    options.stop = [&watch] { return watch.stopped(); };
-    std::vector<Failure> failures;
-    try {
-        const nb::gil_scoped_release no_gil;
+    return interruptible([&](std::function<bool()> stop) {
+        BatchOptions options;
+        options.threads = threads;
+        options.stop = std::move(stop);
+        std::vector<Failure> failures;
         for (Batch::Message& message : play(options, out)) {
             constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             out.duration[message.shot] = kNone;
             std::fill_n(out.x + message.shot * balls * 2, 2 * balls, kNone);
             failures.emplace_back(message.shot, std::move(message.text));
         }
-    } catch (const BatchStopped&) {
-        throw nb::python_error();
-    } catch (const std::invalid_argument& error) {
-        throw nb::value_error(error.what());
-    }
-    return failures;
+        return failures;
+    });
 }
 
 /// The same for shots that differ in the numbers of columns. @param play takes the scene, the columns, the

@@ -109,11 +109,16 @@ bool may_place(const NativeRecord& record, const OptionRow& option, const Place&
     return games::may_place(*record.record, option_of(option), {place.first, place.second});
 }
 
+Place free_place(const NativeRecord& record, const OptionRow& option, const Place& wanted) {
+    const Vec2 place = games::free_place(*record.record, option_of(option), {wanted.first, wanted.second});
+    return {place.x(), place.y()};
+}
+
 /// The table before the next shot, with `cue`: a section of a scene file, or nothing.
 NativeScene next_table(const NativeRecord& record, const NativeScene* other, const OptionRow& option,
                        const std::optional<Place>& place, const std::string& cue) {
     const Scene& scene = scene_of(record, other);
-    return parsed_with(cue, games::table_after(scene, *record.record, option_of(option), vec2(place)));
+    return with_cue(cue, games::table_after(scene, *record.record, option_of(option), vec2(place)));
 }
 
 std::vector<std::pair<std::string, Place>> spots(const NativeRecord& record) {
@@ -137,6 +142,7 @@ void add_games_rules(nb::module_& m) {
     m.def("judge", judge);
     m.def("cue_ball", [](const StateRow& state) { return std::string(games::cue_ball(state_of(state))); });
     m.def("may_place", may_place);
+    m.def("free_place", free_place);
     m.def("next_table", next_table, nb::arg("record"), nb::arg("scene").none(), nb::arg("option"),
           nb::arg("place").none(), nb::arg("cue"));
     m.def("spots", spots);

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "batches.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
 #include "carom/games/break.h"
@@ -33,6 +35,8 @@ std::optional<games::Game> game_or_none(const std::optional<std::string>& game) 
     return game ? std::optional(value_of<games::Game>("game", *game)) : std::nullopt;
 }
 
+namespace {
+
 games::Measure measure_of(const std::string& text, const Scene& scene,
                           const std::optional<std::string>& game) {
     try {
@@ -41,8 +45,6 @@ games::Measure measure_of(const std::string& text, const Scene& scene,
         throw nb::value_error(error.what());
     }
 }
-
-namespace {
 
 using Rows = std::vector<std::tuple<std::string, std::string, std::string>>;
 
@@ -116,29 +118,23 @@ games::SolveOptions options_of(const HandRow& hand, std::size_t shots, std::size
 
 std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, kernel::Isa isa,
                                games::SolveOptions options, bool exact = false) {
-    SignalWatch watch;
-    options.stop = [&watch] { return watch.stopped(); };
-    std::vector<games::Solution> solutions;
     std::vector<games::Refined> refined;
-    try {
-        const nb::gil_scoped_release no_gil;
+    const std::vector<games::Solution> solutions = interruptible([&](std::function<bool()> stop) {
+        options.stop = std::move(stop);
         if (exact && want.places().empty())
             throw std::invalid_argument(
                 "exact=True: no place is wanted; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
-        solutions = games::solve(scene, want, isa, options);
-        for (std::size_t i = 0; exact && i < solutions.size(); ++i) {
-            games::Exact moved = games::exact(solutions[i], want, isa, options);
-            if (moved.solution) solutions[i] = std::move(*moved.solution);
+        std::vector<games::Solution> best = games::solve(scene, want, isa, options);
+        for (std::size_t i = 0; exact && i < best.size(); ++i) {
+            games::Exact moved = games::exact(best[i], want, isa, options);
+            if (moved.solution) best[i] = std::move(*moved.solution);
             refined.push_back(std::move(moved.refined));
         }
-    } catch (const BatchStopped&) {
-        throw nb::python_error();
-    } catch (const std::invalid_argument& error) {
-        throw nb::value_error(error.what());
-    }
+        return best;
+    });
     std::vector<SolutionRow> rows;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
-        games::Solution& solution = solutions[i];
+        const games::Solution& solution = solutions[i];
         std::vector<std::tuple<std::string, std::string, double>> falls;
         for (const games::Solution::Fall& fall : solution.falls)
             falls.emplace_back(scene.ball[static_cast<std::size_t>(fall.ball)].id,
@@ -178,7 +174,7 @@ std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRo
     games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
-        search = games::break_search(wanted, chosen_isa());
+        search = games::break_search(wanted);
     } catch (const std::invalid_argument& error) {
         throw nb::value_error(error.what());
     }

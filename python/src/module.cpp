@@ -67,7 +67,6 @@ NB_MODULE(_carom, m) {
     add_games(m);
     add_arrays(m);
     add_judged(m);
-    add_games_aim(m);
     add_games_rules(m);
     add_tangents(m);
 }

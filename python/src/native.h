@@ -57,8 +57,8 @@ E value_of(const char* what, const std::string& text) {
 
 /// The scene that was played, or `other`. @throws nb::value_error if there is none, or one with other balls
 const Scene& scene_of(const NativeRecord& record, const NativeScene* other);
-/// A scene built in code with one more section of a file, or "". @throws SceneError
-NativeScene parsed_with(const std::string& section, const Scene& scene);
+/// A scene built in code, with a cue as the section of a file, or "". @throws SceneError
+NativeScene with_cue(const std::string& section, Scene scene);
 
 /// The instruction set that CAROM_ISA names, else the fastest one for every kernel. @throws nb::value_error
 kernel::Isa chosen_isa();
@@ -90,7 +90,6 @@ void add_frames(nb::module_& m);
 void add_games(nb::module_& m);
 void add_arrays(nb::module_& m);
 void add_judged(nb::module_& m);
-void add_games_aim(nb::module_& m);
 void add_games_rules(nb::module_& m);
 void add_tangents(nb::module_& m);
 

@@ -83,7 +83,7 @@ void orientations(const NativeRecord& r, const Flat<const double>& times, const 
 /// nothing.
 /// @throws nb::value_error for another scene's balls, SceneError
 NativeScene scene_after_record(const NativeRecord& r, const NativeScene* other, const std::string& cue) {
-    return parsed_with(cue, scene_after(scene_of(r, other), *r.record));
+    return with_cue(cue, scene_after(scene_of(r, other), *r.record));
 }
 
 std::vector<std::tuple<double, std::string, std::string, std::string>> event_list(const NativeRecord& r) {
@@ -122,12 +122,6 @@ std::tuple<double, double, double> color(const NativeRecord& r, int ball) {
     return {red, green, blue};
 }
 
-std::vector<std::string> track_ids(const NativeRecord& r) {
-    std::vector<std::string> list;
-    for (const BallTrack& track : r.record->tracks) list.push_back(track.id);
-    return list;
-}
-
 std::vector<std::string> event_names() {
     std::vector<std::string> names;
     for (const EventKind& kind : kEventKinds) names.emplace_back(kind.name);
@@ -140,23 +134,24 @@ const Scene& scene_of(const NativeRecord& r, const NativeScene* other) {
     const Scene* scene = other != nullptr ? other->scene.get() : r.scene.get();
     if (scene == nullptr)
         throw nb::value_error("a record from a file has no physics; give the scene that was played");
-    if (!std::equal(scene->ball.begin(), scene->ball.end(), r.record->tracks.begin(), r.record->tracks.end(),
-                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+    if (!same_balls(*scene, *r.record))
         throw nb::value_error("the scene and the record have different balls");
     return *scene;
 }
 
-NativeScene parsed_with(const std::string& section, const Scene& scene) {
-    // Sections of a file may come in any order; keys without a section come first.
-    const std::string text = section + scene_text(scene);
-    return {std::make_shared<const Scene>(parse_scene(text, scene.file)), text};
+NativeScene with_cue(const std::string& section, Scene scene) {
+    // Sections of a file may come in any order.
+    std::string source = section + scene_text(scene);
+    if (!section.empty()) scene.cue = parse_cue(section, scene);
+    validate(scene);
+    return {std::make_shared<const Scene>(std::move(scene)), std::move(source)};
 }
 
 void add_records(nb::module_& m) {
     nb::class_<NativeRecord>(m, "Record")
         .def_prop_ro("duration", [](const NativeRecord& r) { return r.record->duration; })
         .def_prop_ro("stopped", [](const NativeRecord& r) { return words(r.record->stopped).word; })
-        .def_prop_ro("ids", track_ids)
+        .def_prop_ro("ids", [](const NativeRecord& r) { return ids_of(r.record->tracks); })
         .def_prop_ro("balls", ball_count)
         .def_prop_ro("table", table_of)
         .def_prop_ro("fps", [](const NativeRecord& r) { return r.record->render.fps; })

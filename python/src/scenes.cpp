@@ -33,12 +33,6 @@ std::string changed(const NativeScene& scene,
     }
 }
 
-std::vector<std::string> ids(const NativeScene& scene) {
-    std::vector<std::string> list;
-    for (const BallStart& ball : scene.scene->ball) list.push_back(ball.id);
-    return list;
-}
-
 void positions(const NativeScene& scene, const Flat<double>& out) {
     double* at = out.data();
     for (const BallStart& ball : scene.scene->ball) at = std::copy_n(ball.position.data(), 2, at);
@@ -78,7 +72,7 @@ void add_scenes(nb::module_& m) {
         .def_prop_ro("source", [](const NativeScene& s) { return s.source; })
         .def_prop_ro("file", [](const NativeScene& s) { return s.scene->file; })
         .def_prop_ro("text", [](const NativeScene& s) { return scene_text(*s.scene); })
-        .def_prop_ro("ids", ids)
+        .def_prop_ro("ids", [](const NativeScene& s) { return ids_of(s.scene->ball); })
         .def_prop_ro("balls", [](const NativeScene& s) { return s.scene->ball.size(); })
         .def_prop_ro("table",
                      [](const NativeScene& s) {

@@ -89,7 +89,7 @@ void add_tangents(nb::module_& m) {
         .def_ro("converged", &games::Fit::converged)
         .def_ro("trouble", &games::Fit::trouble)
         .def_ro("warnings", &games::Fit::warnings)
-        .def_prop_ro("scene", [](const games::Fit& f) { return parsed_with("", f.scene); });
+        .def_prop_ro("scene", [](const games::Fit& f) { return with_cue("", f.scene); });
     m.def("fit", fit, nb::arg("scene"), nb::arg("times"), nb::arg("balls"), nb::arg("places"),
           nb::arg("vary"), nb::arg("most_shots"));
 }

@@ -2,34 +2,19 @@
 #include <gtest/gtest.h>
 #include <climits>
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "carom/carom.h"
 #include "carom/games/noise.h"
+#include "owned.h"
 
 namespace carom::test {
 namespace {
 
-using ScenePtr = std::unique_ptr<carom_scene, void (*)(carom_scene*)>;
-using RecordPtr = std::unique_ptr<carom_record, void (*)(carom_record*)>;
 using VerdictPtr = std::unique_ptr<carom_verdict, void (*)(carom_verdict*)>;
-
-ScenePtr parsed(const std::string& text) {
-    carom_scene* scene = nullptr;
-    EXPECT_EQ(carom_scene_parse(text.c_str(), "scene", &scene), CAROM_OK) << carom_last_error();
-    return {scene, carom_scene_free};
-}
-
-RecordPtr played(const carom_scene* scene) {
-    carom_record* record = nullptr;
-    EXPECT_EQ(carom_simulate(scene, -1.0, &record), CAROM_OK) << carom_last_error();
-    return {record, carom_record_free};
-}
 
 VerdictPtr judged(const carom_game_state& state, const carom_record* record,
                   const carom_call* call = nullptr) {

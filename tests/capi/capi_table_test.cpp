@@ -4,29 +4,25 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <vector>
 
-#include "carom/carom.h"
 #include "carom/engine/record.h"
+#include "owned.h"
 
 namespace carom::test {
 namespace {
 
 struct Shot {
-    explicit Shot(const std::string& text) {
-        EXPECT_EQ(carom_scene_parse(text.c_str(), "scene", &scene), CAROM_OK) << carom_last_error();
-        EXPECT_EQ(carom_simulate(scene, -1.0, &record), CAROM_OK) << carom_last_error();
-    }
-    ~Shot() {
-        carom_record_free(record);
-        carom_scene_free(scene);
-    }
-    Shot(const Shot&) = delete;
-    Shot& operator=(const Shot&) = delete;
-    carom_scene* scene = nullptr;
-    carom_record* record = nullptr;
+    explicit Shot(const std::string& text)
+        : scene_(parsed(text)), record_(played(scene_.get())), scene(scene_.get()), record(record_.get()) {}
+
+  private:
+    ScenePtr scene_;
+    RecordPtr record_;
+
+  public:
+    carom_scene* const scene;
+    carom_record* const record;
 };
 
 constexpr double kRadius = 0.028575;

@@ -325,23 +325,5 @@ TEST(Airborne, NoneComesDownInAWall) {
     EXPECT_GT(met, static_cast<int>(count / 10));
 }
 
-// A run that stopped goes on with the same bits, from any event.
-TEST(Airborne, ResumesWithTheSameBits) {
-    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-        const Scene scene = seed % 2 == 0 ? mixed_scene(seed) : flying_scene(seed);
-        if (scene.ball.empty() || !is_valid(scene)) continue;
-        const Plan whole = plan_of(scene);
-        const Record all = simulate(whole);
-        // After every event, or after every hundredth if a pile trembles.
-        const auto events = static_cast<std::int64_t>(all.events.size());
-        for (std::int64_t after = 0; after < events; after += std::max<std::int64_t>(1, events / 100)) {
-            Scene cut = scene;
-            cut.stop.events = after;
-            const Record first_part = simulate(plan_of(cut));
-            EXPECT_EQ(resume(whole, first_part).hash(), all.hash()) << seed << " after " << after;
-        }
-    }
-}
-
 }  // namespace
 }  // namespace carom

@@ -525,8 +525,8 @@ TEST(Airborne, PlasticBallsHaveFriction) {
     scene.balls.e_b = 0.0;
     scene.balls.mu_b = 0.3;
     const double R = scene.balls.R;
-    add_ball(scene, "a", Vec3(0.0, 0.0, 0.5), Vec3(2.0, 0.0, 0.0), Vec3(0.0, 0.0, 100.0));
-    add_ball(scene, "b", Vec3(0.1, 0.0, 0.5));
+    add_high_ball(scene, "a", 0.0, 0.0, 0.5, Vec3(2.0, 0.0, 0.0), Vec3(0.0, 0.0, 100.0));
+    add_high_ball(scene, "b", 0.1, 0.0, 0.5);
     scene.stop.events = 1;
     const Record record = run_verified(scene);
     ASSERT_EQ(count(record, EventType::kBallBall), 1);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -246,7 +245,7 @@ TEST(Substeps, AreSummedOrMarchedAsPublished) {
     EXPECT_NEAR(one.duration, other.duration, 1e-8);
 }
 
-TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
+TEST(Unequal, ModelsWithAFormulaTakeThem) {
     const std::string big =
         "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\n[[ball]]\nid = \"b\"\nradius = 0.03\n";
     const std::string heavy =
@@ -260,27 +259,45 @@ TEST(Unequal, ModelsWithoutAFormulaAreErrorsAtTheBall) {
         EXPECT_EQ(error_of(two + "[balls]\nmu_b = 0\n"), "");
     }
     EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
-    EXPECT_EQ(
-        error_of(big + "[physics]\nball_ball = \"inelastic\"\n"),
-        "s.toml:4:1: balls \"a\" and \"b\" differ in size: friction between balls of different radius acts "
-        "on a tilted line of centres, for which the model inelastic has no formula; use physics.ball_ball = "
-        "\"mathavan\" or set balls.mu_b = 0");
-    const auto refused = [](const std::string& why) {
-        return "s.toml:4:1: balls \"a\" and \"b\" differ in size: the model mathavan " + why +
-               "; use physics.ball_ball = \"two_step\"";
-    };
-    EXPECT_EQ(error_of(heavy + "[balls]\nmass = 1e-7\n"), refused("accepts mass ratios up to 1000000"));
-    EXPECT_EQ(
-        error_of(big + "[balls]\nmu_s = 1\nmu_b = 1\n"),
-        refused("has no solution with balls.mu_s = 1 and a friction of 1 between balls of these sizes"));
     // The overlap is that of two spheres on one cloth.
-    const std::string near =
-        "[balls]\nmu_b = 0\n[[ball]]\nposition = [0.3, 0.5]\nradius = 0.04\n[[ball]]\nid = \"b\"\n"
-        "radius = 0.02\nposition = [0.3, ";
-    EXPECT_EQ(error_of(near + "0.5566]\n"), "");
-    EXPECT_NE(error_of(near + "0.5565]\n").find("overlap"), std::string::npos);
-    EXPECT_NE(error_of("[[ball]]\nradius = 0.018\n").find("not below the top of a ball"), std::string::npos);
-    EXPECT_NE(error_of("[[ball]]\nradius = 0\n").find("ball.radius = 0 is out of range"), std::string::npos);
+    EXPECT_EQ(
+        error_of("[balls]\nmu_b = 0\n[[ball]]\nposition = [0.3, 0.5]\nradius = 0.04\n[[ball]]\nid = \"b\"\n"
+                 "radius = 0.02\nposition = [0.3, 0.5566]\n"),
+        "");
+}
+
+// The friction between unlike balls is that of their slip on the tilted line of centres, as a vector in
+// space.
+TEST(Unequal, FrictionFallsWithTheSlipOfBothSurfaces) {
+    reference::Generator rng(6);
+    BallParams falls = make_ball_params("pool_classic");
+    falls.mu_b = 0.01;
+    falls.mu_b_more = 0.1;
+    falls.mu_b_fall = 1.0;
+    const BallBallSettings exact = settings();
+    const auto any = [&rng](double most) {
+        return Vec3(rng.uniform(-most, most), rng.uniform(-most, most), 0.0);
+    };
+    for (int i = 0; i < 200; ++i) {
+        const BallSize size1{rng.uniform(0.02, 0.04), 0.17}, size2{rng.uniform(0.02, 0.04), 0.2};
+        const Vec3 r1(0.0, 0.0, size1.R), r2(0.6 * contact_distance(size1.R, size2.R, false),
+                                             0.8 * contact_distance(size1.R, size2.R, false), size2.R);
+        Velocities a{any(1.0) + Vec3(0.9, 1.2, 0.0), any(30.0)}, b{any(0.3), any(30.0)};
+        a.w.z() = rng.uniform(-30.0, 30.0);
+        b.w.z() = rng.uniform(-30.0, 30.0);
+        const Vec3 n = (r2 - r1) / (size1.R + size2.R), v = a.v - b.v;
+        const Vec3 slip = v - v.dot(n) * n + (size1.R * a.w + size2.R * b.w).cross(n);
+        BallParams constant = falls;
+        constant.mu_b = falls.ball_friction()(slip.norm());
+        constant.mu_b_more = 0.0;
+        Velocities a1 = a, b1 = b;
+        const PairImpact one = collide({kMathavan, exact, falls}, size1, size2, r1, r2, a, b);
+        const PairImpact two = collide({kMathavan, exact, constant}, size1, size2, r1, r2, a1, b1);
+        ASSERT_EQ(one.status, two.status);
+        // Measured: 6.4e-8 m/s, in an impact of many stretches. The slip of equal balls gives 1e-3 m/s.
+        EXPECT_LE((a.v - a1.v).norm() + (b.v - b1.v).norm(), 1e-6);
+        EXPECT_LE(size1.R * (a.w - a1.w).norm() + size2.R * (b.w - b1.w).norm(), 1e-6);
+    }
 }
 
 TEST(Unequal, RecordsKeepTheSizes) {

@@ -10,12 +10,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/engine_cases.h"
 #include "support/pages.h"
 #include "support/random_scenes.h"
@@ -433,7 +432,7 @@ TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
         Variation::from_text(read_source("scenes/draw.toml"), "draw", {"cue.aim_deg=normal(2)"}, 5);
     constexpr std::size_t kShots = 40, kFirst = 7;
     std::vector<std::uint64_t> all(kShots), some(kShots, 1);
-    std::vector<std::string> values;
+    std::vector<DrawnValue> values;
     BatchArrays out;
     out.hash = all.data();
     simulate_many(variation, kFirst, kShots, kIsa, {}, out, values);
@@ -466,7 +465,7 @@ TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
         for (const int threads : {1, 3}) {
             BatchOptions options;
             options.threads = threads;
-            std::vector<std::string> values;
+            std::vector<DrawnValue> values;
             const auto messages = simulate_many(variation, kFirst, kShots, kIsa, options, out, values);
             ASSERT_EQ(values.size(), 2 * kShots);
             std::size_t message = 0;

@@ -39,7 +39,7 @@ TEST(Breaks, FirstEventsAgreeUpToWhereTheReferenceIsItsOwn) {
                                            k.at("depth").get<double>()});
         scene.balls = balls_from(c.at("params"));
         scene.physics.cushion = cushion_model("mathavan_2010");
-        scene.physics.cloth_slip = ClothSlipSign::kAsPublished;
+        scene.physics.cloth_slip = kernel::ClothSlip::kAsPublished;
         scene.physics.clusters = ClusterModel::kSequential;
         scene.physics.substeps = 1000;
         scene.stop.time = c.at("final_t").get<double>();

@@ -195,7 +195,7 @@ double looks_per_impact(const Scene& scene) {
     const SimulateOptions options;
     RunBuffers::Memory memory;
     Run run(plan, options, memory);
-    const Record record = run.simulate(nullptr);
+    const Record record = run.simulate();
     const auto impacts = std::count_if(record.events.begin(), record.events.end(),
                                        [](const Event& e) { return balls_collide(e.type); });
     EXPECT_GT(impacts, 500);

@@ -1,9 +1,7 @@
 // The detector alone: no impact is resolved, no shot simulated. Positions of balls are set by hand.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "contact/detect.h"
 #include "loop/detector.h"
@@ -147,11 +145,8 @@ PredictedEvent by_hand(const Parts& parts) {
                 offer(time_to_ball(p, path(j), contact_distance(R, parts.balls.radius(j), false)),
                       {i, With::kBall, j});
         if (!p.moves) continue;
-        for (std::size_t k = 0; k < g.cushions.size(); ++k) {
-            const CushionLine& c = g.cushions[k];
-            offer(time_to_line(p, c.from, c.direction, c.length, R),
-                  {i, With::kCushion, static_cast<int>(k)});
-        }
+        for (std::size_t k = 0; k < g.cushions.size(); ++k)
+            offer(time_to_line(p, g.cushions[k], R), {i, With::kCushion, static_cast<int>(k)});
         for (std::size_t k = 0; k < g.noses.size(); ++k)
             offer(time_to_circle(p, g.noses[k].center, R + g.noses[k].radius),
                   {i, With::kNose, static_cast<int>(k)});

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
-#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"
@@ -66,7 +65,7 @@ const Case kCases[] = {
          s.balls.mu_sp = 1e-4;
          for (BallStart& b : s.ball) b.spin.z() = 30.0;
      }},
-    {"throw", "carom::pair_friction", "model inelastic, mu_b = 0.05",
+    {"throw", "carom::effects::pair_friction", "model inelastic, mu_b = 0.05",
      [](Scene& s) {
          s.physics.ball_ball = ball_ball_model("inelastic");
          s.balls.mu_b = 0.05;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/engine_cases.h"
-#include "support/scene_files.h"
+#include "support/files.h"
 
 namespace carom::test {
 namespace {

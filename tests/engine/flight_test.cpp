@@ -22,14 +22,18 @@ Flight flight(const Vec3& r, const Vec3& v, const Vec3& a, double horizon = 10.0
     return {r, v, a, horizon, kNoise};
 }
 
+Nose round_nose(const Vec2& center, double radius, double height) {
+    return {center, radius, height, EventType::kBallJaw, 0};
+}
+
 TEST(Flight, TimesOfTheReference) {
-    const double height = 1.28 * kR, reach = nose_reach(kR, height, 0.0);
+    const double height = 1.28 * kR;
     // A straight nose x = 0.3 m ahead, from the cloth; the line is long.
-    const double nose = flight_to_line(flight({-0.3, 0.0, kR}, {2.5, 0.0, 0.75}, kDown), {0.0, -9.0, height},
-                                       {0.0, 1.0}, 18.0, reach);
+    const double nose = flight_to_line(flight({-0.3, 0.0, kR}, {2.5, 0.0, 0.75}, kDown),
+                                       {{0.0, -9.0}, {0.0, 1.0}, 18.0, height}, kR);
     EXPECT_NEAR(nose, 0.109808536582193, 1e-13);
-    const double jaw = flight_to_circle(flight({-0.2, 0.03, kR}, {2.0, 0.0, 0.5}, kDown), {0.0, 0.0, height},
-                                        0.02095, reach);
+    const double jaw = flight_to_nose(flight({-0.2, 0.03, kR}, {2.0, 0.0, 0.5}, kDown),
+                                      round_nose({0.0, 0.0}, 0.02095, height), kR);
     EXPECT_NEAR(jaw, 0.0796166938261909, 1e-13);
     const double lies = flight_to_ball(flight({0.4, 0.01, 0.0}, {-2.0, 0.0, -0.9}, {0.0, 0.0, kG}), 2.0 * kR);
     EXPECT_NEAR(lies, 0.172267943523958, 1e-13);
@@ -103,10 +107,10 @@ TEST(Flight, RandomFlightsAgainstSampling) {
         };
         const Vec3 to = from + Vec3(0.0, 0.3, 0.0);
         if (to_line(0.0) > 0.0 && length3(r - from) > reach && length3(r - to) > reach) {
-            const double t = flight_to_line(f, from, {0.0, 1.0}, 0.3, reach);
+            const double t = flight_to_line(f, {planar(from), {0.0, 1.0}, 0.3, height}, kR);
             // The ends are separate points: a path that comes in over one of them meets that end.
-            const double end1 = flight_to_circle(f, from, 0.0, reach),
-                         end2 = flight_to_circle(f, to, 0.0, reach);
+            const double end1 = flight_to_nose(f, round_nose(planar(from), 0.0, height), kR),
+                         end2 = flight_to_nose(f, round_nose(planar(to), 0.0, height), kR);
             const double end = std::min(end1, end2);
             if (t < end || end == kNever) line.judge(t, to_line, std::min(f.horizon, end));
         }
@@ -125,12 +129,12 @@ TEST(Flight, RandomFlightsAgainstSampling) {
             }
         }
         if (to_circle(0.0) > 0.0 && length(planar(r)) > 0.02) {
-            const double t = flight_to_circle(f, {0.0, 0.0, height}, 0.02, reach);
+            const double t = flight_to_nose(f, round_nose({0.0, 0.0}, 0.02, height), kR);
             if (t < over || t == kNever) circle.judge(t, to_circle, over);
         }
         const auto to_point = [&](double t) { return length3(at(t) - Vec3(0.0, 0.0, height)) - reach; };
         if (to_point(0.0) > 0.0)
-            point.judge(flight_to_circle(f, {0.0, 0.0, height}, 0.0, reach), to_point, f.horizon);
+            point.judge(flight_to_nose(f, round_nose({0.0, 0.0}, 0.0, height), kR), to_point, f.horizon);
     }
     for (const auto& [name, found] : {std::pair{"ball", ball}, std::pair{"line", line},
                                       std::pair{"circle", circle}, std::pair{"point", point}}) {

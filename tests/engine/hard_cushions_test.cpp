@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
 #include "carom/engine/ball_ball.h"
@@ -221,7 +220,7 @@ Scene frozen_between_jaws(reference::Generator& random) {
 
 // The mirror image of a scene has the mirror image of its run, for 1e-4 s after the first jaw: velocities
 // differed by metres per second. In a few of the 500 two resting contacts begin one after the other at that
-// instant: they leave up to 3.1e-4 m/s (lab/notes/2026-11-resting_steps.md).
+// instant: they leave up to 3.1e-4 m/s.
 TEST(TwoAtOnce, MirrorImagesAgree) {
     reference::Generator random(18);
     int with_two = 0, more_than_rounding = 0;

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "carom/engine/cushion.h"
 #include "reference/random_impacts.h"
 #include "support/hard_scenes.h"
 

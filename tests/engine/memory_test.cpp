@@ -8,8 +8,8 @@
 #include <new>
 #include <string>
 
-#include "base/splitmix64.h"
 #include "carom/engine/batch.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/gas.h"
 
 namespace {

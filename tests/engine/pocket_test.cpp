@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <string>
 
-#include "carom/engine/cushion.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "contact/pocket_edge.h"
@@ -167,21 +166,6 @@ TEST(Pocket, AHardShotBesideTheRailRattles) {
     EXPECT_EQ(slow, 24);
     EXPECT_EQ(hard, 0);
     EXPECT_EQ(at_once, 24);
-}
-
-TEST(Pocket, ARunThatStopsInTheFallGoesOnTheSame) {
-    const Plan plan = make_plan(at_corner(7.0, 2.0, 0.0), kernel::Isa::kScalar);
-    const Record whole = simulate(plan);
-    int stopped = 0;
-    for (const Event& e : whole.events) {
-        if (e.type != EventType::kBallEdge) continue;
-        SimulateOptions options;
-        options.until = e.time + 1e-3;
-        const Record part = simulate(plan, options);
-        stopped += part.tracks[0].segments.back().state == MotionState::kFalling;
-        EXPECT_EQ(resume(plan, part).hash(), whole.hash());
-    }
-    EXPECT_GT(stopped, 0);
 }
 
 // Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the

@@ -1,15 +1,12 @@
 // Racks: which ball is where, how exactly, and that seeds reproduce.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/scene.h"
-#include "support/scene_errors.h"
 
 namespace {
 
@@ -411,37 +408,6 @@ TEST(Rack, RadiiVaryAndMassesFollow) {
             EXPECT_EQ(again.ball[i].position, s.ball[i].position);
         }
     }
-}
-
-TEST(Rack, RefusesWhatHasNoPlace) {
-    const auto error = [](const std::string& keys) { return carom::test::error_of("[rack]\n" + keys); };
-    EXPECT_EQ(error("game = \"nine_ball\"\nspot_ball = 10\n"),
-              "s.toml:3:13: rack.spot_ball = 10 is not in this rack; choose 1 to 9");
-    EXPECT_EQ(error("game = \"snooker\"\nposition = [0.5, 0.5]\n"),
-              "s.toml:3:12: rack.position moves a rack, but the balls of this game have spots of their own; "
-              "leave it out");
-    EXPECT_TRUE(
-        error("game = \"scatter\"\ncount = 4000\n").starts_with("s.toml:3:9: there is no room for ball "));
-    EXPECT_EQ(
-        error("game = \"scatter\"\njitter = 0.001\n"),
-        "s.toml:3:10: rack.jitter is for balls that lie together, and a scatter spreads them; leave it out");
-    EXPECT_EQ(error("method = \"template\"\ngap = 0\n"),
-              "s.toml:3:7: rack.gap opens contacts, and a template closes them; leave out rack.gap or "
-              "rack.method");
-    EXPECT_EQ(error("game = \"line\"\nmethod = \"triangle\"\n"),
-              "s.toml:3:10: rack.method is for balls racked in rows; leave it out or choose another game");
-    EXPECT_EQ(
-        carom::test::error_of("[balls]\nradius_sd = 1e-5\n[[ball]]\n"),
-        "s.toml:2:13: balls.radius_sd is of racked balls, and there is no [rack]; leave it out, or give "
-        "a ball its own radius");
-    EXPECT_EQ(carom::test::error_of(unlike("1e-5", "game = \"triangle\"\nrows = 11\n")),
-              "s.toml:5:8: at most 55 balls of unlike size can be racked, not 66; leave some out");
-    EXPECT_EQ(carom::test::error_of("[balls]\nradius = 0.01\nradius_sd = 1e-4\n[rack]\n"),
-              "s.toml:3:13: balls.radius_sd = 0.0001 is more than a 200th of the radius, 0.01 m; make it "
-              "smaller");
-    EXPECT_EQ(carom::test::error_of("[table]\ncushion = []\n[rack]\ngame = \"scatter\"\n"),
-              "s.toml:4:8: a scatter needs the rectangle between the cushions of a table; choose one by its "
-              "preset");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(Shots, EventListsAndFinalPositions) {
         scene.table = table_from(data.at("tables").at(c.at("table").get<std::string>()));
         scene.balls = balls_from(c.at("params"));
         scene.physics.gravity = c.at("params").at("g").get<double>();
-        scene.physics.cloth_slip = ClothSlipSign::kAsPublished;
+        scene.physics.cloth_slip = kernel::ClothSlip::kAsPublished;
         scene.physics.substeps = 20000;
         scene.physics.clusters = ClusterModel::kSequential;
         scene.physics.pocket = PocketModel::kAtOnce;

@@ -105,8 +105,6 @@ TEST(Stop, TheTimeOfTheCallStopsItToo) {
         EXPECT_EQ(record.duration, kStop) << c.name;
         EXPECT_EQ(record.stopped, StopReason::kTime) << c.name;
         EXPECT_EQ(verify(record, plan), std::nullopt) << c.name;
-        EXPECT_EQ(resume(plan, record).hash(), simulate(plan).hash()) << c.name;
-        EXPECT_EQ(resume(plan, record).duration, 100.0) << c.name;
     }
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "carom/engine/ball_ball.h"
 #include "carom/kernel/tolerance.h"
 #include "physics/cluster.h"
 #include "reference/random_impacts.h"
@@ -95,7 +94,7 @@ TEST(UnlikeCluster, AlikeBallsAsOnTheirOwnPath) {
             const ClusterSettings s = settings(mu_b, 0.2, 0.95);
             ClusterMap map;
             ASSERT_GT(map.compliant(one, contacts_of(one), s, 1.0), 0);
-            ASSERT_GT(map.compliant_unlike(other, contacts_of(other), s, 1.0), 0);
+            ASSERT_GT(map.compliant_in_space(other, contacts_of(other), s, 1.0, true), 0);
             double& worst = mu_b == 0.0 ? frictionless : rough;
             worst = std::max(worst, difference(one, other));
         }
@@ -144,8 +143,9 @@ TEST(UnlikeCluster, TwoBallsAreThePairKernel) {
             ClusterMap map;
             ClusterSettings s = settings(p.mu_b, p.mu_s1, p.e_b);
             s.R = p.R;
-            ASSERT_GT(
-                odd ? map.compliant_unlike(balls, contacts, s, V) : map.compliant(balls, contacts, s, V), 0);
+            ASSERT_GT(odd ? map.compliant_in_space(balls, contacts, s, V, true)
+                          : map.compliant(balls, contacts, s, V),
+                      0);
             differences.push_back(std::max((balls[0].v - Vec3(want.v1[0], want.v1[1], 0.0)).norm(),
                                            (balls[1].v - Vec3(want.v2[0], want.v2[1], 0.0)).norm()) /
                                   V);
@@ -176,7 +176,7 @@ TEST(UnlikeCluster, MomentumAndEnergy) {
                      e = k % 3 == 0 ? 1.0 : 0.9;
         std::vector<ClusterBall> after = balls;
         ClusterMap map;
-        ASSERT_GT(map.compliant_unlike(after, contacts, settings(mu_b, mu_s, e), V), 0) << k;
+        ASSERT_GT(map.compliant_in_space(after, contacts, settings(mu_b, mu_s, e), V, true), 0) << k;
         EXPECT_LE(energy(after), energy(balls) * (1.0 + 1e-13)) << k;
         if (mu_b == 0.0 && e == 1.0) {
             EXPECT_NEAR(energy(after) / energy(balls), 1.0, 1e-6) << k;
@@ -198,7 +198,7 @@ TEST(UnlikeCluster, ARowWithGapsIsAChainOfPairs) {
     const std::vector<ClusterContact> contacts = contacts_of(balls);
     std::vector<ClusterBall> after = balls;
     ClusterMap map;
-    ASSERT_GT(map.compliant_unlike(after, contacts, settings(0.0, 0.0, 1.0), 1.0), 0);
+    ASSERT_GT(map.compliant_in_space(after, contacts, settings(0.0, 0.0, 1.0), 1.0, true), 0);
     double v = 1.0;
     for (std::size_t b = 0; b + 1 < balls.size(); ++b) {
         const double m1 = balls[b].mass, m2 = balls[b + 1].mass;
@@ -219,7 +219,7 @@ TEST(UnlikeCluster, MirrorImagesHaveMirrorResults) {
     std::vector<ClusterContact> contacts = contacts_of(balls);
     ASSERT_EQ(contacts.size(), 2u);
     contacts[0].gap = contacts[1].gap = 0.0;
-    ASSERT_GT(map.compliant_unlike(balls, contacts, settings(0.05, 0.2, 0.95), 2.0), 0);
+    ASSERT_GT(map.compliant_in_space(balls, contacts, settings(0.05, 0.2, 0.95), 2.0, true), 0);
     EXPECT_NEAR(balls[0].v.x(), 0.0, 1e-15);
     EXPECT_NEAR(balls[1].v.x(), -balls[2].v.x(), 1e-14);
     EXPECT_NEAR(balls[1].v.y(), balls[2].v.y(), 1e-14);

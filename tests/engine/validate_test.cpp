@@ -2,9 +2,7 @@
 // and for random mistakes, compared with the route through a text.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -13,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
-#include "support/scene_files.h"
+#include "carom/kernel/splitmix64.h"
+#include "support/files.h"
 
 namespace carom::test {
 namespace {

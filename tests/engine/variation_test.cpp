@@ -1,7 +1,6 @@
 // Many scenes from one file: keys, distributions, and that a shot depends only on what it should.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
-#include "carom/engine/sweep_columns.h"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +34,8 @@ offset = [0.2, 0.1]
 
 class VariationTest : public testing::Test {
   protected:
+    /// The value of one key in a shot, as tables write it.
+    static std::string drawn(const VariedShot& shot, std::size_t key) { return text_of(shot.values[key]); }
     Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
         return Variation(folder_.write("s.toml", text_), rules, seed);
     }
@@ -83,9 +84,9 @@ TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
     EXPECT_EQ(s.table.cushions[1].to.y(), 4.0);
     EXPECT_EQ(s.stop.events, 7);
     EXPECT_EQ(v.base().cue->speed, 4.0);
-    EXPECT_EQ(shot.values[0], "2.5");
-    EXPECT_EQ(shot.values[4], "[ 0.5, 1.5 ]");
-    EXPECT_EQ(shot.values[7], "stronge");
+    EXPECT_EQ(drawn(shot, 0), "2.5");
+    EXPECT_EQ(drawn(shot, 4), "[ 0.5, 1.5 ]");
+    EXPECT_EQ(drawn(shot, 7), "stronge");
 }
 
 TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
@@ -94,9 +95,9 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
                     other_seed = vary({speed}, 2);
     std::set<std::string> seen;
     for (std::uint64_t i = 0; i < 1000; ++i) {
-        const std::string value = alone.shot(i).values[0];
-        EXPECT_EQ(value, among.shot(i).values[1]);
-        EXPECT_NE(value, other_seed.shot(i).values[0]);
+        const std::string value = drawn(alone.shot(i), 0);
+        EXPECT_EQ(value, drawn(among.shot(i), 1));
+        EXPECT_NE(value, drawn(other_seed.shot(i), 0));
         seen.insert(value);
     }
     EXPECT_EQ(seen.size(), 1000u);
@@ -104,8 +105,8 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_NE(alone.fingerprint(), among.fingerprint());
     EXPECT_NE(alone.fingerprint(), other_seed.fingerprint());
     // A fixed value: changing the generator would change every published sweep.
-    EXPECT_EQ(alone.shot(0).values[0], "1.1117882243348463");
-    EXPECT_EQ(std::stod(alone.shot(7).values[0]), alone.shot(7).scene->cue->speed);
+    EXPECT_EQ(drawn(alone.shot(0), 0), "1.1117882243348463");
+    EXPECT_EQ(std::stod(drawn(alone.shot(7), 0)), alone.shot(7).scene->cue->speed);
 }
 
 TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
@@ -122,53 +123,6 @@ TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
     EXPECT_EQ(breaks.unit(1), "");
 }
 
-TEST_F(VariationTest, ColumnsOfASweepHaveTheirKindsAndValues) {
-    const Variation v = vary({"cue.speed=list(0x2,2.5)", "stop.events=list(0b11,0o17)",
-                              "physics.cushion=list(\"none\",\"smooth\")", "cue.aim_deg=uniform(80,90)",
-                              "cue.elevation_deg=integer(0,1)"});
-    const std::vector<ValueKind> kinds = {ValueKind::kNumber, ValueKind::kWhole, ValueKind::kText,
-                                          ValueKind::kNumber, ValueKind::kWhole};
-    const std::vector<SweepColumn> columns = sweep_columns(v);
-    std::string names;
-    for (const SweepColumn& column : columns) names += column.name + " " + column.unit + ",";
-    EXPECT_EQ(
-        names,
-        "shot ,cue.speed m/s,stop.events ,physics.cushion ,cue.aim_deg degrees,cue.elevation_deg degrees,"
-        "outcome ,duration s,events ,first_contact ,contacts ,cushions ,pocketed ,cue.x m,cue.y m,cue.pocket "
-        ",ball.2.x m,ball.2.y m,ball.2.pocket ,message ,");
-    for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_EQ(columns[1 + k].kind, kinds[k]) << k;
-    constexpr std::size_t kShots = 3;
-    ShotStatus status[kShots] = {ShotStatus::kAtRest, ShotStatus::kFailed, ShotStatus::kEvents};
-    double duration[kShots] = {1.5, 0, 2}, place[2 * kShots] = {1, 2, 0, 0, 3, 4};
-    std::int64_t events[kShots] = {7, 0, 8};
-    std::int32_t hit[kShots] = {1, -1, -1}, none[kShots] = {0, 0, 0};
-    std::int32_t pocket[2 * kShots] = {0, -1, -1, -1, kOffTable, 0}, fell[2 * kShots] = {0, -1, -1, -1, 1, 0};
-    BatchArrays out{status, duration, events, hit,  none,    none,   place,
-                    place,  1,        pocket, fell, nullptr, nullptr};
-    const std::vector<std::string> draws = {"0x2", "0b11", "none", "80.5", "0",    "2.5", "0o17", "smooth",
-                                            "81",  "1",    "2.5",  "0b11", "none", "82",  "0"};
-    const Batch::Message why[] = {{1, "it fell over"}};
-    const std::vector<ColumnValues> values = sweep_values(v, 40, kShots, draws, out, why);
-    ASSERT_EQ(values.size(), columns.size());
-    const auto text = [&](std::size_t column, std::size_t shot) {
-        const std::int32_t at = values[column].places[shot];
-        return at < 0 ? std::string("(none)") : values[column].texts[static_cast<std::size_t>(at)];
-    };
-    EXPECT_EQ(values[0].wholes, (std::vector<std::int64_t>{40, 41, 42}));
-    EXPECT_EQ(values[1].numbers, (std::vector<double>{2, 2.5, 2.5}));
-    EXPECT_EQ(values[2].wholes, (std::vector<std::int64_t>{3, 15, 3}));
-    EXPECT_EQ(values[3].places, (std::vector<std::int32_t>{0, 1, 0}));
-    EXPECT_EQ(values[8].wholes, (std::vector<std::int64_t>{7, 0, 8}));
-    EXPECT_TRUE(std::isnan(values[7].numbers[1]) && std::isnan(values[14].numbers[1]));
-    EXPECT_EQ(values[16].numbers[2], 4.0);
-    std::string said;
-    for (std::size_t shot = 0; shot < kShots; ++shot)
-        for (const std::size_t column : {6, 9, 12, 15, 18, 19}) said += text(column, shot) + "|";
-    const std::string pot = v.base().table.pockets[0].id;
-    EXPECT_EQ(said, "at_rest|ball.2|cue|" + pot + "|||" + "failed|(none)|(none)|(none)|(none)|it fell over|" +
-                        "events||ball.2;cue|out|" + pot + "||");
-}
-
 TEST_F(VariationTest, NormalIsAroundTheNumberOfTheScene) {
     const Variation v = vary({"cue.speed=normal(0.1)"});
     double sum = 0.0;
@@ -181,7 +135,7 @@ TEST_F(VariationTest, InvalidValuesAreNoScene) {
     int bad = 0;
     for (std::uint64_t i = 0; i < 200; ++i) {
         const VariedShot shot = v.shot(i);
-        const double y = std::stod(shot.values[0]);
+        const double y = std::stod(drawn(shot, 0));
         EXPECT_EQ(shot.scene.has_value(), std::hypot(0.035, y - 2.0) >= 2 * 0.028575) << y;
         if (shot.scene) continue;
         ++bad;
@@ -203,11 +157,12 @@ TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
         const Variation v = vary(rules);
         Scene scene = v.base();
-        std::vector<std::string> values;
+        std::vector<DrawnValue> values(rules.size());
         int made = 0;
         for (std::uint64_t i = 0; i < 60; ++i) {
             const VariedShot shot = v.shot(i);
-            const std::optional<Change> change = v.put(i, scene, values);
+            v.draw(i, values);
+            const std::optional<Change> change = v.put(values, scene);
             if (!change) continue;
             ++made;
             EXPECT_EQ(values, shot.values);
@@ -263,11 +218,10 @@ TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {
                              "stop.events=list(5, 1.5)", "cue.speed=list(1, \"fast\")"}) {
         const Variation v = vary({rule});
         Scene scene = v.base();
-        std::vector<std::string> values;
         int left = 0;
         for (std::uint64_t i = 0; i < 60; ++i) {
             const VariedShot shot = v.shot(i);
-            const bool made = v.put(i, scene, values).has_value();
+            const bool made = v.put(shot.values, scene).has_value();
             EXPECT_EQ(made, shot.scene.has_value()) << rule << ' ' << shot.error;
             if (made) {
                 EXPECT_EQ(without_places(scene), without_places(*shot.scene));
@@ -289,19 +243,20 @@ TEST_F(VariationTest, GridsMakeAProductWhoseLastIsFastest) {
         const VariedShot shot = v.shot(i);
         ASSERT_TRUE(shot.scene) << shot.error;
         EXPECT_EQ(shot.scene->cue->speed, 1.0 + 0.5 * static_cast<double>(i / 2 % 7)) << i;
-        EXPECT_EQ(shot.values[2], i % 2 == 0 ? "stronge" : "han_2005");
+        EXPECT_EQ(drawn(shot, 2), i % 2 == 0 ? "stronge" : "han_2005");
     }
     // What is drawn beside a grid is drawn anew in its second round.
-    EXPECT_NE(v.shot(0).values[1], v.shot(14).values[1]);
+    EXPECT_NE(drawn(v.shot(0), 1), drawn(v.shot(14), 1));
     EXPECT_EQ(vary({"cue.speed=uniform(1,2)"}).grid(), 0u);
     // The ends are exact, and whole steps are whole numbers.
     const Variation tenths = vary({"cue.speed=grid(0.1,0.7,7)", "stop.events=grid(9,3,3)"});
-    EXPECT_EQ(tenths.shot(18).values, (std::vector<std::string>{"0.7", "9"}));
+    EXPECT_EQ(drawn(tenths.shot(18), 0) + " " + drawn(tenths.shot(18), 1), "0.7 9");
     EXPECT_EQ(tenths.shot(20).scene->stop.events, 3);
     EXPECT_EQ(tenths.kind(1), ValueKind::kWhole);
     Scene scene = tenths.base();
-    std::vector<std::string> values;
-    ASSERT_TRUE(tenths.put(19, scene, values));
+    std::vector<DrawnValue> values(2);
+    tenths.draw(19, values);
+    ASSERT_TRUE(tenths.put(values, scene));
     EXPECT_EQ(values, tenths.shot(19).values);
 }
 
@@ -310,7 +265,7 @@ TEST_F(VariationTest, AllShotsHaveTheSameBalls) {
     const Variation v = vary({"rack.count=integer(2,4)"});
     for (std::uint64_t i = 0; i < 50; ++i) {
         const VariedShot shot = v.shot(i);
-        EXPECT_EQ(shot.scene.has_value(), shot.values[0] == "3");
+        EXPECT_EQ(shot.scene.has_value(), drawn(shot, 0) == "3");
         if (shot.scene) continue;
         EXPECT_NE(shot.error.find("its balls differ from those"), std::string::npos);
     }
@@ -333,7 +288,8 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"quue.speed=uniform(1,2)", "unknown section or key \"quue\""},
         {"que.speed=normal(1)", "; did you mean cue?"},
         {"rack.seed=integer(1,2)", "the scene has no [rack]"},
-        {"ball.1.position.x=uniform(0,1)", "the scene has no such [[ball]]"},
+        {"ball.1.position.x=uniform(0,1)",
+         "there is no such ball; write ball.ID.position.x with one of these ids: cue, ball.2"},
         {"ball.cue.spin.z=uniform(0,1)", "does not contain this array"},
         {"cue.offset.2=uniform(0,1)", "the array in the scene file is shorter"},
         {"cue.offset.left=uniform(0,1)", "\"left\" is not an element of an array"},
@@ -452,9 +408,7 @@ TEST(NewValues, SayWhatIsWrong) {
     EXPECT_EQ(error_of("cue.speed", "").rfind("cue.speed: expected one value, not 0", 0), 0u);
     EXPECT_EQ(error_of("cue.speed", "x = 1").rfind("cue.speed: cannot read the values of value(x = 1)", 0),
               0u);
-    EXPECT_EQ(
-        error_of("ball.9.position", "[0, 0]").rfind("ball.9.position: the scene has no such [[ball]]", 0),
-        0u);
+    EXPECT_EQ(error_of("ball.9.position", "[0, 0]").rfind("ball.9.position: there is no such ball;", 0), 0u);
     EXPECT_EQ(error_of("speed", "1"), "speed: name a value in its section, such as cue.speed");
     EXPECT_THROW(with_values("[", "s.toml", {}), SceneError);
 }

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "carom/engine/math.h"
 #include "carom/games/shot.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {

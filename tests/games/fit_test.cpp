@@ -5,17 +5,16 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "base/draws.h"
-#include "base/splitmix64.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::games {
 namespace {

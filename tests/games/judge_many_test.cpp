@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "carom/engine/simulate.h"
 #include "carom/games/shot.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {

@@ -12,7 +12,7 @@
 
 #include "carom/games/shot.h"
 #include "support/engine_cases.h"
-#include "support/scene_files.h"
+#include "support/files.h"
 
 namespace carom::test {
 namespace {

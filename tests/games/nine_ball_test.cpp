@@ -2,8 +2,10 @@
 // its rule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <climits>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -155,6 +157,26 @@ TEST(NineBall, NumbersThatWouldOverflowAreRefused) {
             (state.*numbers)[1] = value;
             EXPECT_THROW(judge(state, record), std::invalid_argument);
         }
+}
+
+// Of a lattice with steps of a quarter of a radius, by trying all of it.
+TEST(NineBall, TheFreePlaceIsTheNearestOne) {
+    const Record record = nine_table(1).hit("cue", "2").record();
+    const games::Option option = judge(playing(), record).options.front();
+    ASSERT_EQ(option.state.in_hand, games::InHand::kAnywhere);
+    const double step = record.size(games::index_of(record, "cue")).R / 4.0;
+    const Vec2 taken = planar(record.state_at(games::index_of(record, "1"), 0.0).position);
+    for (const Vec2& wanted :
+         {taken, Vec2(taken + Vec2(0.3 * step, 0.0)), Vec2(0.4, 0.4), Vec2(-0.05, 0.1)}) {
+        double least = HUGE_VAL;
+        for (int x = -30; x <= 30; ++x)
+            for (int y = -30; y <= 30; ++y)
+                if (games::may_place(record, option, wanted + step * Vec2(x, y)))
+                    least = std::min(least, step * std::hypot(x, y));
+        const Vec2 place = games::free_place(record, option, wanted);
+        EXPECT_TRUE(games::may_place(record, option, place));
+        EXPECT_NEAR((place - wanted).norm(), least, 1e-12);
+    }
 }
 
 // An option that respots a ball, with a record or a scene that does not have it: nothing is read out of

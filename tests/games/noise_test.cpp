@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/splitmix64.h"
 #include "carom/engine/strike.h"
 #include "carom/engine/variation.h"
+#include "carom/kernel/splitmix64.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "carom/engine/variation.h"
 #include "support/engine_cases.h"
 
 namespace carom::test {
@@ -51,6 +50,7 @@ TEST(Solve, FindsAPotFromAnyDirection) {
 TEST(Solve, HitAimsAtItsBall) {
     const Scene scene = scene_named("draw");
     SolveOptions options = small();
+    options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
     options.hand = {0.0, 0.0, 0.0, 0.0};
     const Solution full =
@@ -93,8 +93,9 @@ TEST(Solve, AMapShowsTheInputThatMustBeMet) {
 TEST(Solve, LayoutsOfUnlikeBalls) {
     games::BreakOptions wanted;
     wanted.radius_sd = 1e-4;
-    const games::BreakSearch asked = games::break_search(wanted, kernel::best_isa());
+    const games::BreakSearch asked = games::break_search(wanted);
     SolveOptions options = small();
+    options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
     options.hand = {0.0, 0.0, 0.0, 0.0};
     options.layouts = asked.layouts;

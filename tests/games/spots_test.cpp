@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/splitmix64.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::test {
 namespace {

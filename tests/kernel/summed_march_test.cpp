@@ -1,7 +1,6 @@
 // The summed march against the published one: the bound that march.h states, steps, bits.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
 #include "carom/kernel/march.h"

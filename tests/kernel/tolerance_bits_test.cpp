@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -42,7 +41,7 @@ void expect_same(const ImpactResult& a, const ImpactResult& b, int& differing) {
 
 TEST(ToleranceBits, EveryInstructionSetAgrees) {
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
-        const std::vector<Impact> impacts = mixed(61, 20000, slip);
+        const std::vector<Impact> impacts = mixed(61, 6000, slip);
         for (double tolerance : {1e-3, 1e-6, 1e-10, 1e-13}) {
             Lanes expected(impacts);
             tolerance_batch_function(Isa::kScalar)(expected.batch(), tolerance, expected.results());
@@ -190,11 +189,11 @@ bool all_finite(const ImpactResult& r) {
 }
 
 // Bit patterns of every exponent, in every field or in some: it ends, and what it computes is finite.
-TEST(ToleranceBits, AnyInputHasAnAnswer) {
-    Generator rng(64);
+void expect_answers(std::uint64_t seed, int count) {
+    Generator rng(seed);
     const double tolerances[] = {1e-1, 1e-3, 1e-6, 1e-10, 1e-13};
     std::vector<Impact> impacts;
-    for (int n = 0; n < 2000000; ++n) {
+    for (int n = 0; n < count; ++n) {
         Impact i{};
         if (n % 4 != 0)
             i = n % 2 == 0 ? random_impact(rng) : hard_random_impact(rng, 1.0, 1.0, ClothSlip::kConsistent);
@@ -221,7 +220,7 @@ TEST(ToleranceBits, AnyInputHasAnAnswer) {
             ASSERT_EQ(std::memcmp(r.v1, i.ball1.v, sizeof r.v1), 0);
             ASSERT_EQ(std::memcmp(r.w2, i.ball2.w, sizeof r.w2), 0);
         }
-        if (impacts.size() < 200000) impacts.push_back(i);
+        if (n % 10 == 0) impacts.push_back(i);
     }
     Lanes lanes(impacts);
     tolerance_batch_function(best_isa())(lanes.batch(), 1e-6, lanes.results());
@@ -229,6 +228,14 @@ TEST(ToleranceBits, AnyInputHasAnAnswer) {
         const ImpactResult r = lanes.result(n);
         ASSERT_TRUE(r.status != ImpactStatus::kOk || all_finite(r)) << "lane " << n;
     }
+}
+
+TEST(ToleranceBits, AnyInputHasAnAnswer) {
+    expect_answers(64, 200000);
+}
+
+TEST(ToleranceBits, TwoMillionInputsHaveAnAnswer) {
+    expect_answers(67, 2000000);
 }
 
 }  // namespace

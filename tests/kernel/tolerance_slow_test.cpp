@@ -2,6 +2,7 @@
 // hard ones.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <vector>
 
 #include "reference/random_impacts.h"
@@ -20,6 +21,12 @@ TEST(ToleranceSlow, FortyThousandAsPublished) {
     std::vector<Impact> impacts = reference::random_impacts(2027, 40000);
     for (Impact& i : impacts) i.params.cloth_slip = ClothSlip::kAsPublished;
     expect_bound(impacts, {1e-3, 1e-6, 1e-10});
+}
+
+TEST(ToleranceSlow, WithoutRestitution) {
+    std::vector<Impact> impacts = reference::random_impacts(2031, 20000);
+    for (std::size_t n = 0; n < impacts.size(); ++n) impacts[n].params.e_b = n % 2 == 0 ? 0.0 : 1e-7;
+    expect_bound(impacts, {1e-3, 1e-6, 1e-10, 1e-12});
 }
 
 TEST(ToleranceSlow, HardConsistent) {

@@ -1,7 +1,6 @@
 // Impacts of balls of different radius and mass, by tolerance and marched.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -134,6 +133,30 @@ Impact unlike(Generator& rng) {
     return i;
 }
 
+// Of one radius and masses up to a factor of ten apart: ball 1 at the origin, ball 2 along y, both with
+// random velocities and spins.
+Impact of_one_radius(Generator& rng) {
+    Impact i{};
+    i.params = {0.0286,
+                0.17,
+                rng.uniform(0.0, 0.4),
+                rng.uniform(0.0, 0.4),
+                rng.uniform(0.01, 0.2),
+                rng.uniform(),
+                ClothSlip::kConsistent,
+                std::pow(10.0, rng.uniform(-1.0, 1.0))};
+    i.ball2.r[1] = 2.0 * i.params.R;
+    for (int k = 0; k < 3; ++k) {
+        i.ball1.v[k] = k < 2 ? rng.uniform(-1.0, 1.0) : 0.0;
+        i.ball1.w[k] = rng.uniform(-40.0, 40.0);
+        i.ball2.w[k] = rng.uniform(-40.0, 40.0);
+    }
+    i.ball1.v[1] = rng.uniform(0.3, 2.0);
+    return i;
+}
+
+constexpr Impact (*kKinds[])(Generator&) = {unlike, of_one_radius};
+
 double energy(const Impact& i, const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
               const double (&w2)[3]) {
     const Two t = two_of(i);
@@ -158,8 +181,8 @@ Impact swapped(const Impact& i) {
 TEST(UnlikeImpact, AsForcesOnTwoSpheres) {
     for (const ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         Generator rng(81);
-        for (int n = 0; n < 300; ++n) {
-            Impact i = unlike(rng);
+        for (int n = 0; n < 120; ++n) {
+            Impact i = kKinds[n % 4 == 0](rng);
             i.params.cloth_slip = slip;
             if (n % 3 == 1) i.ball1.w[0] = i.ball1.w[1] = i.ball1.w[2] = i.ball2.w[0] = i.ball2.w[1] = 0.0;
             const ImpactResult r = solve(i, 1e-9);
@@ -229,8 +252,8 @@ TEST(UnlikeImpact, KeepsTheToleranceWhereSlipsVanish) {
 // Energy is never gained, momentum is kept without a cloth, and so is the difference of the spins' changes.
 TEST(UnlikeImpact, MomentumAndEnergy) {
     Generator rng(83);
-    for (int n = 0; n < 3000; ++n) {
-        Impact i = unlike(rng);
+    for (int n = 0; n < 5000; ++n) {
+        Impact i = kKinds[n % 5 >= 3](rng);
         if (n % 2 == 0) i.params.e_b = 1.0;
         for (const double tolerance : {1e-3, 1e-6, 1e-10}) {
             const ImpactResult r = solve(i, tolerance);
@@ -258,8 +281,8 @@ TEST(UnlikeImpact, MomentumAndEnergy) {
 // The mirror image of an impact has the mirror image of its result, to the bit; so has the other order.
 TEST(UnlikeImpact, MirrorAndOrder) {
     Generator rng(84);
-    for (int n = 0; n < 500; ++n) {
-        const Impact i = unlike(rng);
+    for (int n = 0; n < 1000; ++n) {
+        const Impact i = kKinds[n % 2](rng);
         const ImpactResult r = solve(i, 1e-6);
         ImpactResult other = solve(swapped(i), 1e-6);
         std::swap(other.v1, other.v2);
@@ -297,6 +320,20 @@ TEST(UnlikeImpact, ContinuousWhereTheBallsAreAlike) {
             i.ball2.r[2] = i.params.R * i.params.radius_ratio;
             const double moved = difference(solve(i, 1e-11), wanted, i.params.R) / approach_speed(i);
             EXPECT_LT(moved, 40.0 * std::fabs(more) + 2e-11) << n;
+        }
+    }
+}
+
+TEST(UnlikeImpact, ContinuousAtEqualMasses) {
+    Generator rng(73);
+    for (int n = 0; n < 500; ++n) {
+        Impact i = of_one_radius(rng);
+        i.params.mass_ratio = 1.0;
+        const ImpactResult equal = solve(i, 1e-11);
+        for (const double more : {-1e-6, 1e-6, 1e-9}) {
+            i.params.mass_ratio = 1.0 + more;
+            const double moved = difference(solve(i, 1e-11), equal, i.params.R) / approach_speed(i);
+            EXPECT_LT(moved, 8.0 * std::fabs(more) + 2e-11);
         }
     }
 }
@@ -413,6 +450,42 @@ TEST(UnlikeImpact, RefusedWhereFrictionCouldHold) {
     ImpactResult r{};
     collide_inelastic(i.ball1, i.ball2, i.params, r);
     EXPECT_EQ(r.status, ImpactStatus::kBadParameter);
+}
+
+TEST(UnlikeImpact, MassesAreRefusedWhereNothingIsClaimed) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    Generator rng(74);
+    Impact i = of_one_radius(rng);
+    i.params.mu_s1 = i.params.mu_s2 = 0.2;
+    for (double ratio : {0.0, -1.0, 0.9e-6, 1.1e6, 1e300, nan}) {
+        i.params.mass_ratio = ratio;
+        EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kBadParameter) << ratio;
+    }
+    for (double ratio : {1.0 / kLargestMassRatio, 0.0999, 0.1, 10.0, 10.01, kLargestMassRatio}) {
+        i.params.mass_ratio = ratio;
+        EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kOk) << ratio;
+    }
+    // Friction on the cloth up to 1, as between equal balls.
+    i.params.mass_ratio = 1.5;
+    i.params.mu_s1 = i.params.mu_s2 = 0.9;
+    EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kOk);
+    i.params.mu_s1 = i.params.mu_s2 = 1.1;
+    EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kBadParameter);
+    ImpactResult r{};
+    collide_inelastic(i.ball1, i.ball2, i.params, r);
+    EXPECT_EQ(r.status, ImpactStatus::kBadParameter);
+    collide_elastic(i.ball1, i.ball2, i.params, r);
+    EXPECT_EQ(r.status, ImpactStatus::kBadParameter);
+}
+
+TEST(UnlikeImpact, EveryInstructionSetAgrees) {
+    for (const Impact& i : impacts_of_masses_that_differ(75, 3000, ClothSlip::kConsistent)) {
+        for (double tolerance : {1e-3, 1e-10}) {
+            const ImpactResult scalar = solve(i, tolerance, Isa::kScalar);
+            for (Isa isa : isas())
+                EXPECT_TRUE(same_velocities(solve(i, tolerance, isa), scalar)) << name(isa);
+        }
+    }
 }
 
 }  // namespace

@@ -96,13 +96,6 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
         assert np.array_equal(env.record().states(0.0)[env.record().ids.index("cue"), 0, :2], wanted[4])
 
 
-def test_rings_cover_the_plane_once():
-    rings = np.concatenate([match._ring(k) for k in range(6)])
-    assert len(np.unique(rings, axis=0)) == len(rings) and (np.diff((rings * rings).sum(1)) >= 0).all()
-    assert {tuple(p) for p in rings} == {
-        (i, j) for i in range(-5, 6) for j in range(-5, 6) if i * i + j * j <= 25}
-
-
 def test_calls_are_numbers_of_the_action():
     env = match.env("EightBall", called=True)
     assert env.action_space("player_0").shape == (7,)

@@ -126,7 +126,7 @@ def test_replace_says_what_is_wrong(draw_scene):
         draw_scene.replace,
         ({"cue.speed": -1}, r"draw.toml: cue.speed = -1 is out of range"),
         ({"ball.nobody.position": [0, 0]},
-         r"draw.toml: ball.nobody.position: the scene has no such \[\[ball\]\]"),
+         r"draw.toml: ball.nobody.position: there is no such ball"),
         ({"cue.sped": 1}, "unknown key"),
     )
 

@@ -1,22 +1,17 @@
 #include "support/crowded_scenes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "carom/engine/ball_ball.h"
-#include "carom/engine/cushion.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/math.h"
 #include "carom/kernel/tolerance.h"
 #include "reference/random_impacts.h"
-#include "scene/rack.h"
 #include "support/crowd.h"
 #include "support/families.h"
 #include "support/natural_shots.h"

@@ -89,13 +89,6 @@ inline Table box(double w, double l, double height) {
     return table;
 }
 
-/// An endless cloth with its rack spot at `spot`.
-inline Table cloth_with_foot_spot(const Vec2& spot) {
-    Table table;
-    table.corner = spot;
-    return table;
-}
-
 inline Plan plan_of(const Scene& scene) {
     return make_plan(scene, kernel::best_isa());
 }

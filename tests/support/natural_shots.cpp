@@ -1,7 +1,6 @@
 #include "support/natural_shots.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>

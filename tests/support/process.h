@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/temporary_folder.h"
+#include "support/files.h"
 
 namespace carom::test {
 
@@ -41,12 +42,6 @@ class TemporaryFolder : public carom::TemporaryFolder {
         return found;
     }
 };
-
-inline std::string read_file(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) throw std::runtime_error("cannot read " + path);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 struct ProcessOptions {
     std::string input;                                             ///< for its standard input

@@ -231,14 +231,6 @@ inline std::size_t segments_of(const Record& record) {
     return count;
 }
 
-/// Runs, checks, comes to rest, and asserts that it took no more segments than this: earlier versions took
-/// endless, or nearly endless, numbers.
-inline void settles_within(const Scene& scene, std::size_t segments) {
-    const Record record = run_verified(scene);
-    EXPECT_EQ(record.stopped, StopReason::kAtRest);
-    EXPECT_LE(segments_of(record), segments);
-}
-
 /// The scene as text, for a person who must look into it.
 inline std::string dump(const Scene& scene) {
     std::string text;

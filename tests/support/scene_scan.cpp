@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <map>
 #include <optional>
@@ -40,12 +39,6 @@ struct Outcome {
 class GivenUp : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
-
-std::optional<Scene> scene_of(const std::string& family, std::uint64_t seed) {
-    if (family.empty()) return RandomScene(seed).make();
-    if (family == "other") return RandomScene(seed, DrawOrder::kFirstFirst).make();
-    return family_scene(family, seed);
-}
 
 Outcome judge(const Scene& scene) {
     Outcome out;
@@ -161,6 +154,12 @@ void print_families() {
 
 }  // namespace
 
+std::optional<Scene> seeded_scene(const std::string& family, std::uint64_t seed) {
+    if (family.empty() || family == "random") return RandomScene(seed).make();
+    if (family == "other") return RandomScene(seed, DrawOrder::kFirstFirst).make();
+    return family_scene(family, seed);
+}
+
 int scan_scenes(const char* wanted) {
     if (std::string(wanted) == "families") {
         print_families();
@@ -170,10 +169,10 @@ int scan_scenes(const char* wanted) {
     char family_text[64] = "", what[8] = "";
     const int read = std::sscanf(wanted, "%llu:%llu:%63[^:]:%7s", &from, &count, family_text, what);
     const std::string family = family_text, form = what;
-    if (count == 0 || read < 2 || !scene_of(family, from)) return refuse();
+    if (count == 0 || read < 2 || !seeded_scene(family, from)) return refuse();
     if (!form.empty()) {
         if (form != "toml" && form != "least") return refuse();
-        const Scene scene = *scene_of(family, from);
+        const Scene scene = *seeded_scene(family, from);
         std::printf("%s", scene_text(form == "least" ? least(scene) : scene).c_str());
         return 0;
     }
@@ -182,7 +181,7 @@ int scan_scenes(const char* wanted) {
     double total_ms = 0.0;
     for (unsigned long long seed = from; seed < from + count; ++seed) {
         const double start = cpu_ms();
-        const Outcome out = judge(*scene_of(family, seed));
+        const Outcome out = judge(*seeded_scene(family, seed));
         total_ms += cpu_ms() - start;
         ++others[static_cast<int>(out.fault)];
         if (out.fault == Fault::kInvalid) continue;

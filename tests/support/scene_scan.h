@@ -1,7 +1,17 @@
 // Runs ranges of seeded scenes and reports those that do not end well; for work on contacts.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "carom/engine/scene.h"
+
 namespace carom::test {
+
+/// A scene of "random" (also ""), "other" or a family of crowded or natural scenes; none if there is no such
+/// family.
+std::optional<Scene> seeded_scene(const std::string& family, std::uint64_t seed);
 
 /// Runs what the text asks for, and prints a line for each scene that fails, is given up or takes more than
 /// 50 ms of CPU, and a summary.

@@ -83,42 +83,5 @@ TEST_F(CliAccuracyScene, TableAndCsv) {
     EXPECT_GE(lines_of(read_file(folder_.file("a.csv"))).size(), 6u);
 }
 
-TEST_F(CliAccuracyScene, RefusesBadUsage) {
-    const std::string elastic = folder_.write(
-        "e.toml", "[[ball]]\nid = \"1\"\nposition = [0.5, 0.5]\n[physics]\nball_ball = \"elastic\"\n");
-    const struct {
-        std::vector<std::string> arguments;
-        const char* message;
-    } kCases[] = {
-        {{"accuracy"}, "no scene file given"},
-        {{"accuracy", folder_.file("none.toml")}, "none.toml: "},
-        {{"accuracy", scene_, "--target", "0"}, "--target 0: expected"},
-        {{"accuracy", scene_, "--target", "nan"}, "--target nan: expected"},
-        {{"accuracy", scene_, "--tolerance", "1e-20"}, "--tolerance"},
-        {{"accuracy", scene_, "--march", "0"}, "--march"},
-        {{"accuracy", scene_, "--repeat", "0"}, "--repeat"},
-        {{"accuracy", scene_, "--plot", "a.svg"}, "--plot"},
-        {{"accuracy", elastic}, "is a closed formula"},
-        {{"accuracy", "kernel"}, "carom-lab accuracy kernel"},
-        {{"bench", "kernel"}, "run carom-lab bench"},
-        {{"validate"}, "run carom-lab validate"},
-    };
-    for (const auto& c : kCases) {
-        const ProcessResult result = carom(c.arguments);
-        EXPECT_EQ(result.status, 2) << c.message << result.err;
-        EXPECT_EQ(result.out, "") << c.message;
-        EXPECT_NE(result.err.find(c.message), std::string::npos) << c.message << "\n" << result.err;
-        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-    }
-    EXPECT_EQ(folder_.names().size(), 2u);
-    EXPECT_EQ(carom_isa("sse9", {"accuracy", scene_}).status, 2);
-}
-
-TEST_F(CliAccuracyScene, HelpNamesEveryDefault) {
-    const ProcessResult help = carom({"accuracy", "--help"});
-    EXPECT_EQ(help.status, 0);
-    EXPECT_NE(help.out.find("--repeat"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace carom::test

@@ -139,35 +139,6 @@ TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
     EXPECT_TRUE(json["events"]["first_other"]["b"].is_null()) << json["events"];
 }
 
-// 1 means that they differ, so the status without an answer is 2.
-TEST_F(Compare, NoAnswerIs2) {
-    const std::string bad = folder_.write("bad.toml", "[cue]\nsped = 1\n");
-    const std::string stuck = folder_.write("stuck.toml", kStuckScene);
-    const std::string no_record = folder_.write("no.json", "{}");
-    EXPECT_EQ(carom({"simulate", stuck}).status, 1);
-    const struct {
-        std::vector<std::string> arguments;
-        std::string message;
-    } kCases[] = {
-        {{scene_}, "B is required; see carom compare --help"},
-        {{scene_, folder_.file("none.toml")}, "none.toml: cannot be read"},
-        {{bad, scene_}, "bad.toml:2:1: unknown key \"sped\""},
-        {{scene_, no_record}, "no.json"},
-        {{scene_, stuck}, "stuck.toml: "},
-        {{stuck, scene_}, "stuck.toml: "},
-        {{scene_, scene_, "--tolerance", "-1"}, "--tolerance: expected a length in m of at least 0"},
-        {{scene_, scene_, "--tolerance", "nan"}, "--tolerance: expected a length in m of at least 0"},
-        {{scene_, scene_, "--tolerance", "much"}, "much"}};
-    for (const auto& c : kCases) {
-        std::vector<std::string> arguments = c.arguments;
-        arguments.insert(arguments.begin(), "compare");
-        const ProcessResult result = carom(arguments);
-        EXPECT_EQ(result.status, 2) << c.message << "\n" << result.err;
-        EXPECT_EQ(result.out, "") << c.message;
-        EXPECT_TRUE(contains(result.err, c.message)) << result.err;
-    }
-}
-
 TEST_F(Compare, AllScenesThatComeWithCaromEqualThemselves) {
     for (const std::string& scene : shipped_scenes()) {
         const Json same = json_of({scene, scene, "--tolerance", "0"}, 0);

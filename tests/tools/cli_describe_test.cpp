@@ -112,12 +112,6 @@ TEST(Formats, ThePageOfTheCommandLineIsThatOfTheOptions) {
         EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 
-TEST(CliDescribe, RefusesOtherFormats) {
-    const ProcessResult result = carom({"describe", "fish"});
-    EXPECT_EQ(result.status, 2);
-    EXPECT_NE(result.err.find("FORMAT"), std::string::npos) << result.err;
-}
-
 TEST(CliDescribe, MeasuresAndEventsAreListedWithTheirUnits) {
     const std::string measures = carom({"describe", "measures"}).out,
                       events = carom({"describe", "events"}).out;

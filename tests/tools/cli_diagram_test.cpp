@@ -66,18 +66,6 @@ TEST_F(CliDiagram, DrawsRecordsAndSeveralShotsOnAPage) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
     const std::string one = draw("one.svg"), two = draw("two.svg", {folder_.file("r.json")});
     EXPECT_GT(two.size(), one.size());
-    const ProcessResult titles =
-        carom({"diagram", scene_, "-o", folder_.file("t.svg"), "--title", "a", "--title", "b"});
-    EXPECT_EQ(titles.status, 2);
-    EXPECT_TRUE(contains(titles.err, "2 titles for 1 shot")) << titles.err;
-}
-
-TEST_F(CliDiagram, RefusesOtherEndingsAndWritesNothing) {
-    const ProcessResult result = carom({"diagram", scene_, "-o", folder_.file("shot.gif")});
-    EXPECT_EQ(result.status, 2);
-    EXPECT_TRUE(contains(result.err, ".svg, .pdf or .png")) << result.err;
-    EXPECT_EQ(carom({"diagram", folder_.file("none.toml"), "-o", folder_.file("x.svg")}).status, 2);
-    EXPECT_FALSE(std::filesystem::exists(folder_.file("x.svg")));
 }
 
 TEST_F(CliDiagram, ASweepDrawsItsFirstMeasure) {
@@ -99,14 +87,6 @@ TEST_F(CliDiagram, ASweepDrawsItsFirstMeasure) {
                   .status,
               0);
     EXPECT_TRUE(read_file(folder_.file("one.png")).starts_with("\x89PNG\r\n"));
-    const std::vector<std::string> vary = {"--vary", "cue.speed=uniform(2,3)", "--count", "5"};
-    EXPECT_TRUE(contains(sweep("a.svg", vary).err, "--plot draws the first --measure"));
-    std::vector<std::string> text = vary;
-    text.insert(text.end(), {"--measure", "first_hit"});
-    EXPECT_TRUE(contains(sweep("a.svg", text).err, "has to be a number"));
-    EXPECT_TRUE(contains(sweep("a.txt", grid).err, "expected a name that ends with"));
-    EXPECT_TRUE(contains(carom({"sweep", draw_, "-o", "/dev/null", "--vary", "cue.speed=uniform(2,3)"}).err,
-                         "--count is missing"));
 }
 
 }  // namespace

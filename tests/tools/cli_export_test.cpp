@@ -258,20 +258,5 @@ TEST(Export, TheKhronosValidatorSaysNothing) {
     EXPECT_TRUE(contains(result.out, ", 0 issues")) << result.out;
 }
 
-TEST(Export, RefusesWhatItCannotDo) {
-    const TemporaryFolder folder;
-    const std::string scene = folder.write("small.toml", kSmallScene);
-    const auto refused = [&](std::vector<std::string> options, const std::string& message) {
-        options.insert(options.begin(), {"export", scene});
-        const ProcessResult result = carom(options);
-        EXPECT_EQ(result.status, 2) << message;
-        EXPECT_TRUE(contains(result.err, message)) << result.err;
-    };
-    refused({"-o", folder.file("shot.obj")}, "the export is binary glTF; give a name that ends in .glb");
-    refused({"--interpolation", "step"}, "--interpolation");
-    refused({"--fps", "0", "-o", folder.file("a.glb")}, "--fps 0: expected a number greater than 0");
-    EXPECT_EQ(folder.names(), std::vector<std::string>{"small.toml"});
-}
-
 }  // namespace
 }  // namespace carom::test

@@ -2,7 +2,6 @@
 // Missing programs are skipped.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -182,31 +181,6 @@ TEST_F(CliFilm, AnInterruptLeavesNothing) {
         EXPECT_EQ(result.status, 130) << result.err;
         EXPECT_EQ(made(), std::vector<std::string>{"started"});
         std::filesystem::remove(folder_.file("started"));
-    }
-}
-
-TEST_F(CliFilm, WhatGoesNotTogetherIsRefused) {
-    const struct {
-        std::string file;
-        std::vector<std::string> options;
-        std::string message;
-    } kCases[] = {
-        {"shot.mp4", {"--size", "161x90"}, "--size 161x90: .mp4 needs an even width and height"},
-        {"shot.mp4", {"--resume"}, "a film cannot be resumed"},
-        {"shot.webm", {"--at", "0.1"}, "a film needs more than one frame"},
-        {"shot.webp", {"--frame", "3"}, "a film needs more than one frame"},
-        {"shot.webp", {"--png-writer", "libpng"}, "--png-writer applies only to PNG files"},
-        {"shot.gif", {"--fps", "60"}, "--fps 60: .gif allows at most 50 frames per second"},
-        {"shot.avi", {}, "shot.avi"},
-    };
-    for (const auto& c : kCases) {
-        std::vector<std::string> arguments = {"render", scene_, "-o", folder_.file(c.file), "--to", "0.2"};
-        if (contains(c.message, "one frame")) arguments.resize(4);
-        arguments.insert(arguments.end(), c.options.begin(), c.options.end());
-        const ProcessResult result = carom(arguments, with_ffmpeg("exec cat > /dev/null\n"));
-        EXPECT_EQ(result.status, 2) << c.message << result.err;
-        EXPECT_TRUE(contains(result.err, c.message)) << result.err;
-        EXPECT_TRUE(made().empty());
     }
 }
 

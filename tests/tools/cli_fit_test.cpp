@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -38,9 +37,6 @@ class CliFit : public ::testing::Test {
         scene.cue->speed = 2.24;
         return folder_.write("guess.toml", scene_text(scene));
     }
-    std::string refusal(const std::string& text) {
-        return carom({"fit", draw_, folder_.write("bad.csv", text), "--vary", "balls.mu_s"}).err;
-    }
     TemporaryFolder folder_;
     const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
 };
@@ -72,18 +68,6 @@ TEST_F(CliFit, WarnsOfWhatTheTracksCannotTell) {
     const ProcessResult result =
         carom({"fit", guess(), tracks(), "--vary", "balls.mu_s", "--vary", "balls.e_c"});
     EXPECT_TRUE(contains(result.err, "balls.e_c moves nothing that was tracked")) << result.err;
-}
-
-TEST_F(CliFit, Refuses) {
-    EXPECT_TRUE(contains(refusal("t,ball,x\n"), "bad.csv:1:1: there is no column y; "));
-    EXPECT_TRUE(contains(refusal("t,ball,x,y\n0.1,9,1,1\n"), "bad.csv:2:5: the scene has no ball \"9\"; "));
-    EXPECT_TRUE(contains(refusal("t,ball,x,y\n0.1,cue,1,one\n"), "bad.csv:2:11: \"one\" is no coordinate; "));
-    EXPECT_TRUE(contains(refusal("t,ball,x,y\n-1,cue,1,1\n"), "bad.csv:2:1: \"-1\" is no time "));
-    EXPECT_TRUE(
-        contains(refusal("t,ball,x,y\n0.1,cue\n"), "bad.csv:2:8: the line ends before its x; add it"));
-    EXPECT_TRUE(contains(refusal(""), "bad.csv:1:1: there are no places; "));
-    EXPECT_EQ(carom({"fit", draw_, folder_.file("none.csv"), "--vary", "balls.mu_s"}).status, 2);
-    EXPECT_EQ(carom({"fit", draw_, tracks(), "--vary", "balls.mu"}).status, 2);
 }
 
 }  // namespace

@@ -70,39 +70,6 @@ TEST_F(CliGames, AFoulGivesTheCueBallInHand) {
     const Scene next = read_scene(file("n.toml"));
     EXPECT_EQ(next.ball[0].position.x(), 0.5);
     EXPECT_EQ(next.ball[0].position.y(), 0.7);
-    const ProcessResult there =
-        carom({"next", miss, "--state", file("state.json"), "-o", file("no.toml"), "--place", "1.0,2.01"});
-    EXPECT_EQ(there.status, 2);
-    EXPECT_TRUE(contains(there.err, "may not lie there")) << there.err;
-    EXPECT_FALSE(std::filesystem::exists(file("no.toml")));
-}
-
-TEST_F(CliGames, StatesThatAreNoneAreRefused) {
-    const auto refused = [&](const std::string& text, const std::string& why) {
-        std::ofstream(file("bad.json")) << text;
-        const ProcessResult result = carom({"judge", break_, "--state", file("bad.json")});
-        EXPECT_EQ(result.status, 2) << text;
-        EXPECT_TRUE(contains(result.err, why)) << result.err;
-    };
-    refused("", "expected a state of a game");
-    refused("[1]", "expected a state of a game");
-    refused("{}", "game: expected the name of the game");
-    refused(R"({"game": "chess"})", "game: expected one of eight_ball");
-    refused(R"({"game": 7})", "game: expected one of eight_ball");
-    refused(R"({"game": "nine_ball", "turn": 2})", "turn: expected a whole number from 0 to 1");
-    refused(R"({"game": "nine_ball", "turn": 1e300})", "turn: expected a whole number from 0 to 1");
-    refused(R"({"game": "nine_ball", "turn": 99999999999999999999})", "turn: expected a whole number");
-    refused(R"({"game": "nine_ball", "over": 1})", "over: expected true or false");
-    refused(R"({"game": "nine_ball", "points": [1]})", "points: expected one whole number for each player");
-    refused(R"({"game": "nine_ball", "fouls": [1, 4000000000]})", "fouls: expected a whole number from 0");
-    refused(R"({"game": "nine_ball", "group": ["open", "red"]})", "group: expected one of open");
-    refused(R"({"game": "nine_ball", "shots": 3})", "unknown key \"shots\"");
-    refused(R"({"game": "nine_ball", "over": true})", "over");
-    EXPECT_EQ(carom({"judge", break_, "--state", file("none.json")}).status, 2);
-    EXPECT_EQ(carom({"judge", break_}).status, 2);
-    EXPECT_EQ(carom({"judge", break_, "--game", "nine_ball", "--option", "5"}).status, 2);
-    EXPECT_EQ(carom({"next", break_, "--game", "snooker", "-o", file("n.toml")}).status, 2);
-    EXPECT_FALSE(std::filesystem::exists(file("n.toml")));
 }
 
 }  // namespace

@@ -63,16 +63,6 @@ TEST_F(CliRenderOptions, ViewsDiffer) {
     EXPECT_TRUE(picture({"--camera", "follow", "--ball", "cue"}) != follow);
 }
 
-TEST_F(CliRenderOptions, BadViewsAreRefused) {
-    expect_refused(2, "--eye: expected three numbers", {"--eye", "0.6,-0.5", "--target", "0,1,0"});
-    expect_refused(2, "--target: expected three numbers", {"--eye", "0.6,-0.5,1", "--target", "0,1,nan"});
-    expect_refused(2, "--eye needs --target", {"--eye", "0.6,-0.5,1"});
-    expect_refused(2, "--target and --eye are the same point", {"--eye", "0,1,1", "--target", "0,1,1"});
-    expect_refused(2, "--camera and --eye cannot be combined",
-                   {"--eye", "0,1,1", "--target", "0,1,0", "--camera", "rail"});
-    expect_refused(1, "'9'", {"--camera", "follow", "--ball", "9"});
-}
-
 TEST_F(CliRenderOptions, EveryOverlayShows) {
     // On its way to the first hit, whose place the ghost shows.
     const std::string at = "0.1";
@@ -82,8 +72,6 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
         for (const std::string& other : seen) EXPECT_TRUE(with != other) << layer;
         seen.push_back(with);
     }
-    EXPECT_TRUE(picture({"--trails"}, at) == seen[1]);
-    expect_refused(2, "--overlay: ", {"--overlay", "trails,shadow"});
 }
 
 // From a scene, the margin bar counts the simulation too.
@@ -93,7 +81,6 @@ TEST_F(CliRenderOptions, TheMarginOverlayTakesAScene) {
                "--size", "96x54", "-o", folder_.file("m%d.png")});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(folder_.names().size(), 2u + 3u);
-    expect_refused(2, "--from: expected a number of seconds of at least 0", {"--from=-1"});
 }
 
 TEST_F(CliRenderOptions, ASheetIsOnePicture) {
@@ -105,9 +92,6 @@ TEST_F(CliRenderOptions, ASheetIsOnePicture) {
     const std::string bytes = read_file(sheet);
     EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\x01\x2C\0\0\0\x76", 8));  // 300 x 118
     EXPECT_EQ(folder_.names().size(), 3u);                                     // scene, record, sheet
-    expect_refused(2, "--sheet", {"--sheet", "3"});
-    expect_refused(2, "--sheet", {"--sheet", "0x2"});
-    expect_refused(1, "16 pixels", {"--sheet", "100x2"});
 }
 
 TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
@@ -124,15 +108,6 @@ TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
     const ProcessResult last = carom({"render", record_, "--raw", "--at", "0.5", "--size", "64x36"});
     EXPECT_TRUE(last.out == result.out.substr(2 * kFrame));
     EXPECT_EQ(folder_.names().size(), 2u);  // no file
-    expect_refused(2, "--raw cannot be combined", {"--raw", "--resume"});
-    expect_refused(2, "--raw cannot be combined", {"--raw", "--sheet", "2x2"});
-}
-
-TEST_F(CliRenderOptions, AClosedPipeEndsRawFrames) {
-    ProcessOptions options;
-    options.close_output = true;
-    const ProcessResult result = carom({"render", record_, "--raw", "--size", "640x360"}, options);
-    EXPECT_NE(result.status, 0);
 }
 
 TEST_F(CliRenderOptions, AFullDeviceEndsRawFramesWithAMessage) {
@@ -188,9 +163,6 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
         carom({"render", record_, "-o", folder_.file("a%d.png"), "--at", "0.5"}, options);
     ASSERT_EQ(found.status, 0) << found.err;
     EXPECT_TRUE(read_file(folder_.file("e0.png")) == read_file(folder_.file("a0.png")));
-    const ProcessResult unknown = carom({"render", record_, "--gl", "vulkan"});
-    EXPECT_EQ(unknown.status, 2);
-    EXPECT_NE(unknown.err.find("osmesa"), std::string::npos) << unknown.err;
 }
 
 TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
@@ -205,41 +177,11 @@ TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
     expect_refused(1, "libegl1", {}, options);
 }
 
-TEST_F(CliRenderOptions, PlacesThatCannotBeWrittenAreNamed) {
-    const auto refused = [](const ProcessResult& result, const std::string& name) {
-        EXPECT_EQ(result.status, 1);
-        EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
-        EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
-    };
-    // Nobody, not even root, may make a folder in /proc.
-    refused(carom({"render", record_, "--at", "0", "-o", "/proc/frames/%d.png"}), "/proc/frames");
-    refused(carom({"render", record_, "--sheet", "2x2", "-o", "/proc/sheet.png"}), "/proc/sheet.png");
-    refused(carom({"render", record_, "--at", "0", "-o", record_ + "/%d.png"}), record_);
-    if (::geteuid() == 0) return;
+TEST_F(CliRenderOptions, AFolderThatIsReadOnlyIsNamed) {
+    if (::geteuid() == 0) GTEST_SKIP() << "permissions do not stop root";
     const std::string locked = folder_.file("locked");
     ASSERT_EQ(::mkdir(locked.c_str(), 0555), 0);
-    refused(carom({"render", record_, "--at", "0", "-o", locked + "/%d.png"}), locked);
-}
-
-TEST_F(CliRenderOptions, AFileThatCannotGrowLeavesNothing) {
-    // The limit imitates a disk that fills up in the middle of a frame: 8 blocks of 512 bytes.
-    ProcessOptions options;
-    options.file_limit = 8L * 512;
-    const ProcessResult result = carom(
-        {"render", record_, "-o", folder_.file("big%d.png"), "--size", "640x360", "--to", "0.1"}, options);
-    EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_NE(result.err.find("big"), std::string::npos) << result.err;
-    EXPECT_NE(result.err.find("File too large"), std::string::npos) << result.err;
-    EXPECT_EQ(folder_.names().size(), 2u);
-}
-
-TEST_F(CliRenderOptions, ABrokenRecordIsRefused) {
-    const std::string text = read_file(record_);
-    const std::string torn = folder_.write("torn.json", text.substr(0, text.size() / 2));
-    const ProcessResult result = carom({"render", torn, "-o", folder_.file("n%d.png")});
-    EXPECT_EQ(result.status, 2);
-    EXPECT_NE(result.err.find("torn.json"), std::string::npos) << result.err;
-    EXPECT_EQ(folder_.names().size(), 3u);
+    expect_refused(1, locked, {"--at", "0", "-o", locked + "/%d.png"});
 }
 
 }  // namespace

@@ -66,26 +66,15 @@ TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
         for (std::size_t at = svg.find(dot); at != svg.npos; at = svg.find(dot, at + 1)) ++dots;
     const Json ball = Json::parse(result.out).at("balls").at(1);
     EXPECT_EQ(dots, 60u + 60u - ball.at("fell").get<std::size_t>());
-    const ProcessResult other = carom({"sensitivity", kDraw, "--plot", folder.file("errors.gif")});
-    EXPECT_EQ(other.status, 2);
-    EXPECT_TRUE(contains(other.err, ".svg, .pdf or .png")) << other.err;
 }
 
-TEST(CliSensitivity, Refuses) {
-    TemporaryFolder folder;
-    const ProcessResult broken = carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/snooker_break.toml"});
-    EXPECT_EQ(broken.status, 1);
-    EXPECT_TRUE(contains(broken.err, "it is a resting contact")) << broken.err;
+TEST(CliSensitivity, SaysHowRoughItIs) {
+    const TemporaryFolder folder;
     // Off the middle of the rack; a full hit lies at a corner.
     std::string thin = read_file(CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml");
     thin.replace(thin.find("aim_deg = 81.620"), 16, "aim_deg = 81");
     const ProcessResult rough = carom({"sensitivity", folder.write("thin.toml", thin), "--shots", "1"});
     EXPECT_TRUE(contains(rough.out, "Balls that touch make this right to ")) << rough.out << rough.err;
-    const std::string scene = folder.write("still.toml", "[[ball]]\nid = \"1\"\nposition = [0.5, 0.5]\n");
-    const ProcessResult still = carom({"sensitivity", scene});
-    EXPECT_EQ(still.status, 2);
-    EXPECT_TRUE(contains(still.err, "add a [cue]")) << still.err;
-    EXPECT_EQ(carom({"sensitivity", kDraw, "--hand", "aim=x"}).status, 2);
 }
 
 }  // namespace

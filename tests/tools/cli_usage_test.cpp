@@ -10,70 +10,6 @@
 namespace carom::test {
 namespace {
 
-TEST(CliUsage, BadUsageExits2WithOneMessageAndNoOutput) {
-    const TemporaryFolder folder;
-    const std::string scene = folder.write("s.toml", kSmallScene);
-    const struct {
-        std::vector<std::string> arguments;
-        const char* message;
-    } kCases[] = {
-        {{},
-         "no command given: expected simulate, play, next, judge, view, render, diagram, export, compare, "
-         "sweep, break, solve, sensitivity, fit, check, accuracy, margin, impact or describe; see carom "
-         "--help"},
-        {{"accuracy"}, "accuracy: no scene file given; see --help"},
-        {{"fly"}, "fly"},
-        {{"--fast"}, "--fast"},
-        {{"simulate"}, "SCENE is required; see carom simulate --help"},
-        {{"simulate", folder.file("none.toml")}, "none.toml: "},
-        {{"simulate", "/"}, "/: "},
-        {{"simulate", scene, "--verified"}, "--verified"},
-        {{"simulate", scene, "--until", "soon"}, "soon"},
-        {{"simulate", scene, "--until", "-1"}, "--until: expected a number of seconds of at least 0"},
-        {{"simulate", scene, "--until", "nan"}, "--until: expected a number of seconds of at least 0"},
-        {{"simulate", scene, "--samples", folder.file("x.csv")}, "--samples needs --sample-dt S"},
-        {{"simulate", scene, "--sample-dt", "0.1"}, "--sample-dt needs --samples FILE"},
-        {{"simulate", scene, "--samples", folder.file("x.csv"), "--sample-dt", "0"}, "--sample-dt: expected"},
-        {{"simulate", scene, "--samples", folder.file("x.csv"), "--sample-dt", "1e-12"}, "rows"},
-        {{"render", folder.file("none.json")}, "none.json: there is no such file"},
-        {{"render", scene, "-o", folder.file("frame.png")}, "frame.png"},
-        {{"render", scene, "--size", "1280"}, "--size 1280: expected WIDTHxHEIGHT"},
-        {{"render", scene, "--size", "0x5"}, "--size 0x5: expected WIDTHxHEIGHT"},
-        {{"render", scene, "--size", "10x10x10"}, "--size 10x10x10: expected WIDTHxHEIGHT"},
-        {{"render", scene, "--size", "99999999999x1"}, "expected WIDTHxHEIGHT"},
-        {{"render", scene, "--fps", "0"}, "--fps 0: expected a number greater than 0"},
-        {{"render", scene, "--from", "2", "--to", "1"}, "--to is before --from"},
-        {{"render", scene, "--from", "1e6"}, "--from 1000000: the shot ends at"},
-        {{"render", scene, "--to", "1e9"}, "frames"},
-        {{"render", scene, "--frame", "1000000"}, "--frame 1000000: the last frame is"},
-        {{"render", scene, "--at", "1", "--to", "2"}, "--at shows one instant"},
-        {{"render", scene, "--png-level", "1"}, "--png-level"},
-        {{"render", scene, "--png-writer", "paint"}, "paint"},
-        {{"render", scene, "--raw", "--y4m"}, "--raw"},
-        {{"render", scene, "--y4m", "--sheet", "2x2"}, "--y4m cannot be combined"},
-        {{"render", scene, "--camera", "from the moon"}, "from the moon"},
-        {{"margin", scene, "--repeat", "0"}, "--repeat"},
-        {{"margin", scene, "--sweep"}, "--sweep"},
-        {{"compare", scene}, "B is required; see carom compare --help"},
-        {{"compare", scene, scene, "more"}, "more"},
-        {{"check", scene, "more"}, "more"},
-        {{"impact", "--method", "magic"}, "magic"},
-        {{"impact", "--substeps", "0"}, "--substeps"},
-        {{"impact", "--cloth-slip", "wet"}, "wet"},
-    };
-    for (const auto& c : kCases) {
-        const ProcessResult result = carom(c.arguments);
-        std::string shown;
-        for (const std::string& argument : c.arguments) shown += argument + " ";
-        EXPECT_EQ(result.status, 2) << shown << result.err;
-        EXPECT_EQ(result.out, "") << shown;
-        EXPECT_EQ(lines_of(result.err).size(), 1u) << shown << result.err;
-        EXPECT_EQ(result.err.substr(0, 7), "carom: ") << shown << result.err;
-        EXPECT_TRUE(contains(result.err, c.message)) << shown << result.err;
-    }
-    EXPECT_EQ(folder.names(), std::vector<std::string>{"s.toml"});
-}
-
 TEST(CliUsage, VersionAndHelpExit0) {
     EXPECT_EQ(carom({"--version"}).out, "carom " CAROM_VERSION "\n");
     const ProcessResult help = carom({"--help"});
@@ -130,15 +66,6 @@ TEST(CliUsage, AFullDiskIsAnError) {
     EXPECT_EQ(result.err, "carom: standard output: No space left on device\n");
 }
 
-TEST(CliUsage, AClosedPipeEndsQuietly) {
-    const TemporaryFolder folder;
-    ProcessOptions options;
-    options.close_output = true;
-    const ProcessResult result = carom({"check", folder.write("s.toml", kSmallScene)}, options);
-    EXPECT_EQ(result.status, 1);
-    EXPECT_EQ(result.err, "");
-}
-
 TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene);
@@ -191,6 +118,20 @@ TEST(CliCheck, PrintsThePlan) {
                                "cushion_friction", "pockets", "squirt", "clusters", "airborne"}) {
         EXPECT_TRUE(contains(result.out, std::string("\n  ") + effect + " ")) << effect << "\n" << result.out;
     }
+}
+
+TEST(CliCheck, ShowsFrictionBySlipAndBallsOfTheirOwn) {
+    const TemporaryFolder folder;
+    const std::string scene =
+        folder.write("s.toml",
+                     "[balls]\nmu_b_fit = [0.01, 0.1, 1.5]\n[physics]\nball_ball = \"inelastic\"\n"
+                     "clusters = \"sequential\"\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\n"
+                     "[[ball]]\nid = \"b\"\nposition = [0.9, 0.5]\nmass = 0.2\n");
+    const ProcessResult result = carom({"check", scene});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("mu_b at slip u: 0.01 + 0.1 exp(-1.5 u)\n"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("ball b differs: R 0.028575 m, mass 0.2 kg\n"), std::string::npos);
+    EXPECT_NE(result.out.find("closed form"), std::string::npos);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -34,6 +35,11 @@ bool starts_with(const std::string& text, const std::string& start) {
     return text.compare(0, start.size(), start) == 0;
 }
 
+/// Whether a line is a comment with the source of a number.
+bool is_checked_number(const std::string& line) {
+    return starts_with(line, "<!-- figure: ") || starts_with(line, "<!-- constant: ");
+}
+
 std::vector<Block> blocks_of(const std::string& page) {
     std::vector<Block> blocks;
     bool inside = false;
@@ -47,7 +53,7 @@ std::vector<Block> blocks_of(const std::string& page) {
             comment.clear();
         } else if (inside) {
             blocks.back().text += line + '\n';
-        } else if (starts_with(line, "<!-- ") && !starts_with(line, "<!-- figure: ")) {
+        } else if (starts_with(line, "<!-- ") && !is_checked_number(line)) {
             comment = line;
         } else if (!line.empty()) {
             comment.clear();
@@ -143,29 +149,85 @@ std::string reason_not_to_run(const Clone& clone, const std::string& condition) 
     return package + " is not installed";
 }
 
-/// What is wrong with the figures of a page: a comment <!-- figure: TEXT ; COMMAND --> says that TEXT stands
-/// in the paragraph behind it, and that COMMAND prints it. @param run  returns what a command prints
+/// A paragraph of a page with the comments in front of it that say where its numbers come from:
+///     <!-- figure: TEXT ; COMMAND -->         COMMAND prints TEXT
+///     <!-- constant: TEXT ; NAME FILE -->     TEXT begins with the value of NAME in FILE
+struct Paragraph {
+    std::vector<std::string> comments;
+    std::string text;
+};
+
+std::vector<Paragraph> paragraphs_of(const std::string& page) {
+    std::vector<Paragraph> all(1);
+    for (const std::string& line : lines_of(page)) {
+        if (is_checked_number(line)) {
+            if (!all.back().text.empty()) all.emplace_back();
+            all.back().comments.push_back(line);
+        } else if (!line.empty() && !starts_with(line, "<!-- ")) {
+            all.back().text += line + " ";
+        } else if (!all.back().text.empty()) {
+            all.emplace_back();
+        }
+    }
+    return all;
+}
+
+/// The value of a constant in a source, NaN if there is none.
+double constant_of(const std::string& name, const std::string& file) {
+    const std::string source = read_file(std::string(CAROM_SOURCE_DIR "/") + file);
+    std::smatch value;
+    const bool found = std::regex_search(source, value, std::regex("\\b" + name + " = ([0-9.e+-]+)[;,]"));
+    return found ? std::stod(value.str(1)) : std::nan("");
+}
+
+/// What is wrong with the figures of a page. @param run  returns what a command prints
 std::vector<std::string> figure_faults(const std::string& page,
                                        const std::function<std::string(const std::string&)>& run) {
     std::vector<std::string> faults;
-    const std::vector<std::string> lines = lines_of(page);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::string value = comment_value(lines[i], "figure");
-        const std::size_t semicolon = value.find(" ; ");
-        if (value.empty()) continue;
-        const std::string text = value.substr(0, semicolon);
-        std::string paragraph;
-        std::size_t at = i + 1;
-        while (at < lines.size() && (lines[at].empty() || starts_with(lines[at], "<!-- "))) ++at;
-        for (; at < lines.size() && !lines[at].empty(); ++at) paragraph += lines[at] + " ";
-        if (semicolon == value.npos)
-            faults.push_back(lines[i] + ": expected <!-- figure: TEXT ; COMMAND -->");
-        else if (!contains(paragraph, text))
-            faults.push_back(text + " does not stand in the paragraph behind its comment");
-        else if (!contains(run(value.substr(semicolon + 3)), text))
-            faults.push_back(text + " is not what the command prints: " + value.substr(semicolon + 3));
-    }
+    for (const Paragraph& paragraph : paragraphs_of(page))
+        for (const std::string& comment : paragraph.comments) {
+            const std::string figure = comment_value(comment, "figure"),
+                              value = figure.empty() ? comment_value(comment, "constant") : figure;
+            const std::size_t semicolon = value.find(" ; ");
+            const std::string text = value.substr(0, semicolon);
+            if (semicolon == value.npos) {
+                faults.push_back(comment + ": expected <!-- figure: TEXT ; COMMAND -->");
+                continue;
+            }
+            const std::string source = value.substr(semicolon + 3);
+            if (!contains(paragraph.text, text)) {
+                faults.push_back(text + " does not stand in the paragraph behind its comment");
+            } else if (!figure.empty() && !contains(run(source), text)) {
+                faults.push_back(text + " is not what the command prints: " + source);
+            } else if (figure.empty()) {
+                const std::size_t space = source.find(' ');
+                if (std::stod(text) != constant_of(source.substr(0, space), source.substr(space + 1)))
+                    faults.push_back(text + " is not the constant " + source);
+            }
+        }
     return faults;
+}
+
+/// The numbers of a page's sentences that no comment of their paragraph has. Headings, tables, code and
+/// targets of links do not count.
+std::vector<std::string> unchecked_numbers(const std::string& page) {
+    static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)"), number("[0-9][0-9.]*(e-?[0-9]+)?");
+    std::vector<std::string> found;
+    bool fenced = false;
+    for (const Paragraph& paragraph : paragraphs_of(page)) {
+        const bool fence = contains(paragraph.text, "```");
+        if (fence || fenced || paragraph.text.find_first_of("#|") == 0) {
+            fenced = fenced != fence && !contains(paragraph.text.substr(3), "```");
+            continue;
+        }
+        std::string said;
+        for (const std::string& comment : paragraph.comments) said += comment;
+        const std::string text = std::regex_replace(paragraph.text, left_out, "");
+        for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
+            if (!contains(said, it->str().substr(0, it->str().find_last_not_of('.') + 1)))
+                found.push_back(it->str() + " in: " + text);
+    }
+    return found;
 }
 
 TEST(Figures, AFalseOneIsSeen) {
@@ -174,6 +236,23 @@ TEST(Figures, AFalseOneIsSeen) {
     EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\nA gain of 2.03.\n\n2.02\n", run).size(), 1u);
     EXPECT_EQ(figure_faults("<!-- figure: 2.03 ; c -->\nA gain of 2.03.\n", run).size(), 1u);
     EXPECT_EQ(figure_faults("<!-- figure: 2.03 -->\nA gain of 2.03.\n", run).size(), 1u);
+    const auto constant = [&](const std::string& text) {
+        return figure_faults("<!-- constant: " + text +
+                                 " ; kEventCap engine/include/carom/engine/tolerances.h -->\n" + text +
+                                 " is the limit.\n",
+                             run);
+    };
+    EXPECT_EQ(constant("10000 events").size(), 0u);
+    EXPECT_EQ(constant("1000 events").size(), 1u);
+    EXPECT_EQ(
+        unchecked_numbers("# 3\n\nNone.\n\n```\n7\n```\n\n<!-- figure: 2 s ; c -->\n`x 9` 2 s.\n").size(),
+        0u);
+    EXPECT_EQ(unchecked_numbers("<!-- figure: 2 s ; c -->\nIn 2 s, 3 balls.\n").size(), 1u);
+}
+
+TEST(Figures, EveryNumberOfTheHardCasesHasItsSource) {
+    for (const std::string& number : unchecked_numbers(read_page("docs/design/hard_cases.md")))
+        ADD_FAILURE() << number;
 }
 
 class Docs : public testing::TestWithParam<std::string> {};

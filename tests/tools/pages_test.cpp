@@ -104,7 +104,8 @@ std::vector<std::string> dead_links(const Pages& pages, const std::string& name,
 }
 
 std::size_t words_of(const std::string& page) {
-    std::istringstream in(page);
+    static const std::regex comment("<!-- [^\n]*-->");
+    std::istringstream in(std::regex_replace(page, comment, ""));
     std::size_t words = 0;
     for (std::string word; in >> word;)
         words += std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
@@ -172,14 +173,14 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
     }
 }
 
-// A word contains a letter or a digit; the rules of a table do not count. The generated page of the command
-// line counts.
+// A word contains a letter or a digit; the rules of a table and comments do not count. The generated page of
+// the command line counts.
 TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
-    EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n"), 3u);
+    EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n<!-- figure: 1.5 m ; c -->\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"docs/guide", "docs/reference", "docs/design"})
         for (const auto& [name, text] : pages_of(folder)) words += words_of(text);
-    EXPECT_LE(words, 30000u) << "cut, or move what was measured to a note in lab/notes";
+    EXPECT_LE(words, 29800u) << "cut, or move what was measured to a note in lab/notes";
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ import * as path from "node:path";
 import {test} from "node:test";
 import {PACKAGE, SOURCE} from "./support.mjs";
 
-const tsc = process.env.CAROM_TSC || path.join(SOURCE, "build/wasm/node_modules/.bin/tsc");
+const tsc = process.env.CAROM_TSC || path.join(SOURCE, "build/npm/node_modules/.bin/tsc");
 const skip = existsSync(tsc) ? false : `${tsc} is missing; tools/web --test installs it`;
 
 test("the declarations hold for a program that uses all of them", {skip}, () => {

@@ -1,6 +1,4 @@
 // The program carom and its commands.
-#include <fmt/core.h>
-
 #include <initializer_list>
 #include <string>
 
@@ -33,18 +31,7 @@ void add_describe(Options& program);
 
 namespace {
 
-/// Refuses commands that moved to the laboratory. @throws UsageError with the new name
-void refuse_moved(int argc, char** argv) {
-    std::string command = argc > 1 ? argv[1] : "";
-    if (command == "accuracy" && argc > 2 && std::string(argv[2]) == "kernel") command += " kernel";
-    if (command != "bench" && command != "validate" && command != "accuracy kernel") return;
-    throw UsageError(fmt::format(
-        "{0} is now part of carom-lab; build carom's sources with -DCAROM_BUILD_LAB=ON and run carom-lab {0}",
-        command));
-}
-
 int run(int argc, char** argv) {
-    refuse_moved(argc, argv);
     Options program("carom", "carom, a billiards simulator");
     program.version = CAROM_VERSION;
     program.option("-V,--version", {}, "", "Display program version information and exit");

@@ -12,8 +12,6 @@
 namespace carom::web {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Result {
     void* handle = nullptr;
     std::string text;
@@ -58,17 +56,19 @@ void give(void* handle, std::string text) {
     result() = {handle, std::move(text)};
 }
 
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 int give_error() noexcept {
     try {
-        give(nullptr, error_json().dump(-1, ' ', false, Json::error_handler_t::replace));
+        give(nullptr, dumped(error_json()));
     } catch (...) {
         result().handle = nullptr;
         result().text.clear();
     }
     return 1;
 }
-
-}  // namespace carom::web
 
 CAROM_WEB void* carom_allocate(std::size_t size) {
     return std::malloc(size);
@@ -77,14 +77,16 @@ CAROM_WEB void carom_release(void* memory) {
     std::free(memory);
 }
 CAROM_WEB void* carom_handle() {
-    return carom::web::result().handle;
+    return result().handle;
 }
 CAROM_WEB const char* carom_text() {
-    return carom::web::result().text.data();
+    return result().text.data();
 }
 CAROM_WEB std::size_t carom_text_size() {
-    return carom::web::result().text.size();
+    return result().text.size();
 }
 CAROM_WEB int carom_version() {
-    return carom::web::guarded([] { carom::web::give(nullptr, CAROM_VERSION); });
+    return guarded([] { give(nullptr, CAROM_VERSION); });
 }
+
+}  // namespace carom::web

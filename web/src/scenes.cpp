@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -16,8 +17,6 @@
 
 namespace carom::web {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Replaces the value of a key, or adds it.
 void keep(std::vector<NewValue>& changed, const NewValue& value) {
@@ -100,7 +99,10 @@ Json described(const Scene& scene) {
                {"aim_deg", c.aim_deg}, {"elevation_deg", c.elevation_deg},
                {"side", c.side},       {"height", c.height}};
     }
-    const BallParams& b = scene.balls;
+    // By the keys of [balls].
+    Json material;
+    for (const Field<BallParams>& f : kBallFields)
+        if (f.kind == Key::Kind::kNumber) material[f.key] = std::get<double>(f.get(scene.balls));
     return {{"balls", balls},
             {"cue", cue},
             {"table",
@@ -111,46 +113,26 @@ Json described(const Scene& scene) {
               {"corner", place(scene.table.corner)},
               {"pockets", pockets}}},
             {"ballPreset", scene.ball_preset},
-            {"material",
-             {{"radius", b.R},
-              {"mass", b.m},
-              {"mu_s", b.mu_s},
-              {"mu_r", b.mu_r},
-              {"mu_sp", b.mu_sp},
-              {"mu_b", b.mu_b},
-              {"e_b", b.e_b},
-              {"e_c", b.e_c},
-              {"f_c", b.f_c}}}};
+            {"material", material}};
 }
 
 /// What a page needs to draw the scene: the shape of the table, and the look of each ball.
 Json look(const Scene& scene) {
     std::vector<Vec2> places;
-    std::vector<std::string> ids;
-    for (const BallStart& ball : scene.ball) {
-        places.push_back(ball.position.head<2>());
-        ids.push_back(ball.id);
-    }
+    for (const BallStart& ball : scene.ball) places.push_back(ball.position.head<2>());
     const render::TableMesh mesh =
         render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
     return {{"shape", tools::table_shape(scene.table, mesh)},
-            {"styles", tools::ball_styles(ids, scene.table.preset)}};
-}
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+            {"styles", tools::ball_styles(ids_of(scene.ball), scene.table.preset)}};
 }
 
 }  // namespace
-}  // namespace carom::web
-
-using carom::web::WebScene;
 
 CAROM_WEB int carom_scene_parse(const char* text, std::size_t size, const char* name, std::size_t name_size) {
-    return carom::web::guarded([&] {
+    return guarded([&] {
         const std::string source(text, size);
         const std::string file(name, name_size);
-        carom::web::give(new WebScene{carom::parse_scene(source, file), source, {}}, "");
+        give(new WebScene{parse_scene(source, file), source, {}}, "");
     });
 }
 CAROM_WEB void carom_free_scene(WebScene* scene) {
@@ -158,23 +140,23 @@ CAROM_WEB void carom_free_scene(WebScene* scene) {
 }
 /// @param changes JSON: an object of keys with dots, and their values
 CAROM_WEB int carom_scene_change(const WebScene* scene, const char* changes, std::size_t size) {
-    return carom::web::guarded([&] {
-        const auto json = carom::web::Json::parse(carom::web::text_at(changes, size));
-        carom::web::give(new WebScene(carom::web::changed(*scene, json)), "");
+    return guarded([&] {
+        const auto json = Json::parse(text_at(changes, size));
+        give(new WebScene(changed(*scene, json)), "");
     });
 }
 CAROM_WEB int carom_scene_source(const WebScene* scene) {
-    return carom::web::guarded([&] { carom::web::give(nullptr, carom::web::source_of(*scene)); });
+    return guarded([&] { give(nullptr, source_of(*scene)); });
 }
 /// Every value written out, and every ball placed on its own.
 CAROM_WEB int carom_scene_text(const WebScene* scene) {
-    return carom::web::guarded([&] { carom::web::give(nullptr, carom::scene_text(scene->scene)); });
+    return guarded([&] { give(nullptr, scene_text(scene->scene)); });
 }
 CAROM_WEB int carom_scene_describe(const WebScene* scene) {
-    return carom::web::guarded(
-        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::described(scene->scene))); });
+    return guarded([&] { give(nullptr, dumped(described(scene->scene))); });
 }
 CAROM_WEB int carom_scene_look(const WebScene* scene) {
-    return carom::web::guarded(
-        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::look(scene->scene))); });
+    return guarded([&] { give(nullptr, dumped(look(scene->scene))); });
 }
+
+}  // namespace carom::web

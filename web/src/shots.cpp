@@ -16,14 +16,9 @@
 namespace carom::web {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// JSON has no NaN: null.
 Json number(double x) {
@@ -106,69 +101,52 @@ Json many_json(const Batch& batch) {
 }
 
 }  // namespace
-}  // namespace carom::web
-
-using carom::web::guarded;
-using carom::web::WebScene;
-using carom::web::WebShot;
 
 /// @param until   [s] of the shot; negative: the scene's own end
 /// @param seconds of computing, and most_events: beyond them the call fails
 CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds, double most_events) {
     return guarded([&] {
-        using carom::web::Clock;
         const auto start = Clock::now();
-        carom::SimulateOptions options;
+        SimulateOptions options;
         if (until >= 0.0) options.until = until;
         options.progress = [&](std::size_t events, double) {
             const bool late = std::chrono::duration<double>(Clock::now() - start).count() > seconds;
             if (!late && static_cast<double>(events) <= most_events) return;
-            throw carom::web::TooLong("the shot has " + std::to_string(events) + " events so far, which " +
-                                      (late ? "takes too long" : "is too many") +
-                                      "; give it an end in [stop], or allow more");
+            throw TooLong("the shot has " + std::to_string(events) + " events so far, which " +
+                          (late ? "takes too long" : "is too many") +
+                          "; give it an end in [stop], or allow more");
         };
         auto shot = std::make_unique<WebShot>();
         shot->scene = scene->scene;
-        carom::RunBuffers buffers;
-        const carom::Plan plan = carom::make_plan(shot->scene, carom::web::kIsa);
-        carom::simulate(plan, buffers, shot->outcome, shot->record, options);
+        RunBuffers buffers;
+        const Plan plan = make_plan(shot->scene, kIsa);
+        simulate(plan, buffers, shot->outcome, shot->record, options);
         // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
-        const carom::web::Json brief = {shot->record.duration, shot->record.events.size()};
-        carom::web::give(shot.release(), brief.dump());
+        const Json brief = {shot->record.duration, shot->record.events.size()};
+        give(shot.release(), brief.dump());
     });
 }
 CAROM_WEB int carom_shot_hash(const WebShot* shot) {
-    return guarded([&] { carom::web::give(nullptr, shot->record.hash()); });
+    return guarded([&] { give(nullptr, shot->record.hash()); });
 }
 CAROM_WEB int carom_shot_outcome(const WebShot* shot) {
-    return guarded([&] {
-        carom::web::give(nullptr, carom::web::dumped(carom::web::outcome_json(shot->record, shot->outcome)));
-    });
+    return guarded([&] { give(nullptr, dumped(outcome_json(shot->record, shot->outcome))); });
 }
 CAROM_WEB void carom_free_shot(WebShot* shot) {
     delete shot;
 }
 CAROM_WEB int carom_shot_record(const WebShot* shot) {
-    return guarded([&] { carom::web::give(nullptr, carom::record_json(shot->record)); });
+    return guarded([&] { give(nullptr, record_json(shot->record)); });
 }
 CAROM_WEB int carom_shot_events(const WebShot* shot) {
-    return guarded(
-        [&] { carom::web::give(nullptr, carom::web::dumped(carom::web::events_json(shot->record))); });
+    return guarded([&] { give(nullptr, dumped(events_json(shot->record))); });
 }
-/// States of all balls at `count` times: nine numbers for each ball, and its carom::MotionState.
+/// States of all balls at `count` times: nine numbers for each ball, and its MotionState.
 CAROM_WEB int carom_shot_states(const WebShot* shot, std::size_t count, const double* times, double* numbers,
                                 std::uint8_t* states) {
     return guarded([&] {
-        const auto balls = static_cast<int>(shot->record.tracks.size());
-        for (std::size_t i = 0; i < count; ++i) {
-            for (int ball = 0; ball < balls; ++ball) {
-                const carom::BallState state = shot->record.state_at(ball, times[i]);
-                for (const carom::Vec3& v : {state.position, state.velocity, state.spin})
-                    for (const double x : v) *numbers++ = x;
-                *states++ = static_cast<std::uint8_t>(state.state);
-            }
-        }
-        carom::web::give(nullptr, "");
+        shot->record.states_at({times, count}, numbers, states);
+        give(nullptr, "");
     });
 }
 
@@ -177,18 +155,19 @@ CAROM_WEB int carom_shot_states(const WebShot* shot, std::size_t count, const do
 CAROM_WEB int carom_simulate_many(const WebScene* scene, const char* keys, std::size_t size,
                                   std::size_t shots, const double* values, int hash) {
     return guarded([&] {
-        std::vector<carom::BatchColumn> columns;
-        for (const auto& key : carom::web::Json::parse(carom::web::text_at(keys, size)))
+        std::vector<BatchColumn> columns;
+        for (const auto& key : Json::parse(text_at(keys, size)))
             columns.push_back({key.get<std::string>(), std::span(values + columns.size() * shots, shots)});
-        carom::BatchOptions options;
+        BatchOptions options;
         options.threads = 1;
         options.hash = hash != 0;
-        auto batch = std::make_unique<carom::Batch>(
-            carom::simulate_many(scene->scene, shots, columns, carom::web::kIsa, options));
-        std::string text = carom::web::dumped(carom::web::many_json(*batch));
-        carom::web::give(batch.release(), std::move(text));
+        auto batch = std::make_unique<Batch>(simulate_many(scene->scene, shots, columns, kIsa, options));
+        std::string text = dumped(many_json(*batch));
+        give(batch.release(), std::move(text));
     });
 }
-CAROM_WEB void carom_free_batch(carom::Batch* batch) {
+CAROM_WEB void carom_free_batch(Batch* batch) {
     delete batch;
 }
+
+}  // namespace carom::web

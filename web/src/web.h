@@ -6,9 +6,9 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,7 +52,11 @@ class TooLong : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+using Json = nlohmann::ordered_json;
+
 void give(void* handle, std::string text);
+/// Bytes that are not UTF-8 become the replacement character.
+std::string dumped(const Json& json);
 /// Describes the exception that is being handled. @returns 1
 int give_error() noexcept;
 
@@ -65,10 +69,6 @@ int guarded(Work&& work) noexcept {
     } catch (...) {
         return give_error();
     }
-}
-
-inline std::string_view text_at(const char* text, std::size_t size) {
-    return {text, size};
 }
 
 }  // namespace carom::web

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/splitmix64.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom {
 

@@ -202,12 +202,13 @@ struct Work {
         const bool some = player.last != &player.whole;
         if (!has_result(status) || some)
             clear(out, shot, balls, has_result(status) ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-        if (!has_result(status)) {
+        if (has_result(status)) {
+            keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
+            if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
+        } else {
             add_message(shot, player.last->message());
-            return;
         }
-        keep(out, shot, player.last->outcome(), balls, some ? &player.present : nullptr);
-        if (options.judge) options.judge(shot, player.last->outcome(), player.last->record());
+        if (options.done) options.done(shot, has_result(status) ? std::string() : player.last->message());
     }
 
     void play_all() noexcept {
@@ -300,15 +301,13 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
 
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
-                                          const BatchArrays& out, std::vector<std::string>& values) {
+                                          const BatchArrays& out, std::vector<DrawnValue>& values) {
     check_shots(shots);
     const std::size_t keys = variation.keys().size();
     values.assign(shots * keys, {});
     const auto play = [&](Player& player, std::size_t shot, const SimulateOptions& how) {
-        std::vector<std::string> drawn;
-        const ShotStatus status = player.whole.play(variation, first + shot, drawn, how);
-        std::move(drawn.begin(), drawn.end(), values.begin() + static_cast<std::ptrdiff_t>(shot * keys));
-        return status;
+        const std::span drawn = std::span(values).subspan(shot * keys, keys);
+        return player.whole.play(variation, first + shot, drawn, how);
     };
     Work work(variation.base(), shots, play, isa, options, out);
     work.number = first;

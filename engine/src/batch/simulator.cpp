@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <exception>
+#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace carom {
 
@@ -40,11 +40,11 @@ ShotStatus Simulator::play(const Scene& scene, const SimulateOptions& options) {
     return run(false, options);
 }
 
-ShotStatus Simulator::play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
+ShotStatus Simulator::play(const Variation& variation, std::uint64_t index, std::span<DrawnValue> values,
                            const SimulateOptions& options) {
-    if (const auto change = variation.put(index, scene(), values)) return play(*change, options);
+    variation.draw(index, values);
+    if (const auto change = variation.put(values, scene())) return play(*change, options);
     VariedShot shot = variation.shot(index);
-    values = std::move(shot.values);
     return shot.scene ? play(*shot.scene, options) : refuse(std::move(shot.error));
 }
 

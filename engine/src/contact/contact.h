@@ -41,4 +41,21 @@ inline int event_detail(const Contact& c) {
     return c.with == With::kNose ? c.other : -1;
 }
 
+/// The contact of an event: the inverse of event_partner() and event_detail().
+inline Contact contact_of(const Event& event) {
+    switch (kind(event.type).partner) {
+        case Partner::kBall:
+            return {event.a, With::kBall, event.b};
+        case Partner::kCushion:
+        case Partner::kJaw:
+            return event.detail >= 0 ? Contact{event.a, With::kNose, event.detail}
+                                     : Contact{event.a, With::kCushion, event.b};
+        case Partner::kPocket:
+            return {event.a, With::kPocket, event.b};
+        case Partner::kNone:
+            break;
+    }
+    return {event.a};
+}
+
 }  // namespace carom

@@ -5,15 +5,12 @@
 
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 
 namespace carom {
 
 namespace {
-
-// [ulp of the coordinates and the length] A foot point closer to the end of a cushion than this is at the
-// end: four roundings of position, end and projection.
-constexpr double kEndUlp = 4.0;
 
 constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
 
@@ -261,31 +258,19 @@ double time_to_enter(double foot, double rate, double pull, double end, double h
 
 }  // namespace
 
-double end_rounding(const Vec2& r, double line_length) {
-    return kEndUlp * kEpsilon * (std::abs(r.x()) + std::abs(r.y()) + line_length);
-}
-
-bool past_end(double left, double rate, double pull, double rounding) {
-    if (std::abs(left) > rounding) return left < 0.0;
-    return rate < 0.0 || (rate == 0.0 && pull < 0.0);
-}
-
-double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R) {
+double time_to_line(const Path& ball, const CushionLine& line, double R) {
     if (!ball.moves) return kNever;
-    const Vec2 normal(-direction.y(), direction.x());
-    const Vec2 offset = ball.r - from;
-    const double d0 = dot(normal, offset), d1 = dot(normal, ball.v), d2 = dot(normal, ball.a);
-    const double noise = kNoise * (length(ball.v) + ball.surface);
-    const double rounding = end_rounding(ball.r, line_length);
+    const Vec2 r = in_frame(line, ball.r - line.from), v = in_frame(line, ball.v), a = in_frame(line, ball.a);
+    const double reach = reach_of(line, R, false), noise = kNoise * (length(ball.v) + ball.surface);
+    const double rounding = end_rounding(ball.r, line.length);
     const auto foot_inside = [&](double t) {
-        const double v = dot(direction, ball.v), pull = dot(direction, ball.a), rate = v + t * pull;
-        const double foot = dot(direction, offset) + t * (v + 0.5 * t * pull);
-        return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
+        return between_ends(r.x() + t * (v.x() + 0.5 * t * a.x()), v.x() + t * a.x(), a.x(), line.length,
+                            rounding);
     };
     double best = kNever;
     for (const double side : {1.0, -1.0}) {
-        const double h0 = side * d0 - R, h1 = side * d1, h2 = side * d2;
-        const bool here = side * d0 >= 0.0;  // the ball is on this side now
+        const double h0 = side * r.y() - reach, h1 = side * v.y(), h2 = side * a.y();
+        const bool here = side * r.y() >= 0.0;  // the ball is on this side now
         double t = kNever;
         // The ball overlaps the nose and moves into it, or is pressed against it.
         if (here && h0 <= 0.0 && h1 < -noise)
@@ -302,11 +287,10 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
         // A ball that touches the nose at its end can move around it onto the cushion: it closes once the
         // foot enters.
-        const double enter = time_to_enter(dot(direction, offset), dot(direction, ball.v),
-                                           dot(direction, ball.a), line_length, ball.horizon);
+        const double enter = time_to_enter(r.x(), v.x(), a.x(), line.length, ball.horizon);
         if (enter == kNever) continue;
         const double h = h0 + enter * (h1 + 0.5 * enter * h2), rate = h1 + enter * h2;
-        if (h > 0.0 || !(h + R > 0.0)) continue;
+        if (h > 0.0 || !(h + reach > 0.0)) continue;
         double closing = kNever;
         if (rate < -noise)
             closing = enter;
@@ -317,16 +301,15 @@ double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, d
     return best;
 }
 
-bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window) {
-    const Vec2 normal(-direction.y(), direction.x());
-    const double height = dot(normal, ball.r - from);
-    const double sign = height < 0.0 ? -1.0 : 1.0;
-    return least(sign * height, sign * dot(normal, ball.v), 0.5 * sign * dot(normal, ball.a), window) >
-           R * (1.0 + kApartShare);
+bool stays_off_line(const Path& ball, const CushionLine& line, double R, double window) {
+    const double side = cross(line.direction, ball.r - line.from), sign = side < 0.0 ? -1.0 : 1.0;
+    return least(sign * side, sign * cross(line.direction, ball.v),
+                 0.5 * sign * cross(line.direction, ball.a),
+                 window) > reach_of(line, R, false) * (1.0 + kApartShare);
 }
 
 double time_to_nose(const Path& ball, const Nose& nose, double R) {
-    const double reach = R + nose.radius - nose.inset;
+    const double reach = turn_around(nose, R);
     if (!nose.is_arc()) return time_to_circle(ball, nose.center, reach);
     if (!ball.moves) return kNever;
     const Relative m{ball.r - nose.center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
@@ -349,16 +332,27 @@ double time_to_nose(const Path& ball, const Nose& nose, double R) {
     return kNever;
 }
 
-double time_to_arc_end(const ArcSpan& span, const Path& ball) {
-    const double slack = end_rounding(ball.r, 0.0);
-    const auto leaves = [&](const Vec2& end, double sign) {
-        const double left = sign * cross(end, ball.r), rate = sign * cross(end, ball.v),
-                     pull = sign * cross(end, ball.a);
-        if (past_end(left, rate, pull, slack)) return 0.0;
+double time_past_end(const Geometry& geometry, const Contact& contact, const Path& ball) {
+    const auto leaves = [](double left, double rate, double pull, double rounding) {
+        if (past_end(left, rate, pull, rounding)) return 0.0;
         return first_descent_quadratic(left, rate, pull, kNever);
     };
-    const double first = leaves(span.from, 1.0), second = leaves(span.to, -1.0);
-    return span.wide ? std::max(first, second) : std::min(first, second);
+    if (contact.with == With::kCushion) {
+        const CushionLine& line = geometry.cushions[contact.other];
+        const double foot = dot(line.direction, ball.r - line.from), rate = dot(line.direction, ball.v),
+                     pull = dot(line.direction, ball.a), rounding = end_rounding(ball.r, line.length);
+        return std::min(leaves(foot, rate, pull, rounding),
+                        leaves(line.length - foot, -rate, -pull, rounding));
+    }
+    if (contact.with != With::kNose || geometry.noses[contact.other].span.whole) return kNever;
+    const Nose& nose = geometry.noses[contact.other];
+    const Vec2 out = ball.r - nose.center;
+    const double rounding = end_rounding(out, 0.0);
+    const auto passes = [&](const Vec2& end, double sign) {
+        return leaves(sign * cross(end, out), sign * cross(end, ball.v), sign * cross(end, ball.a), rounding);
+    };
+    const double first = passes(nose.span.from, 1.0), second = passes(nose.span.to, -1.0);
+    return nose.span.wide ? std::max(first, second) : std::min(first, second);
 }
 
 double time_to_pocket(const Path& ball, const Vec2& center, double radius) {

@@ -12,6 +12,7 @@
 
 #include "carom/engine/geometry.h"
 #include "carom/engine/vec.h"
+#include "contact/contact.h"
 #include "contact/roots.h"
 
 namespace carom {
@@ -25,10 +26,6 @@ struct Path {
     double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the centre's speed
 };
 
-/// [ulp of the speeds of centres and surfaces] Lower closing speeds are rounding errors of the projection,
-/// not an approach.
-inline constexpr double kClosingUlp = 8.0;
-
 /// Time until the distance between two centres decreases to `reach` (R1 + R2) while closing; kNever if not
 /// within both horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
@@ -40,21 +37,13 @@ double time_to_circle(const Path& ball, const Vec2& center, double reach);
 /// from behind passes through it.
 double time_to_nose(const Path& ball, const Nose& nose, double R);
 
-/// Time until a ball has passed an end of a partial arc; `ball.r` is relative to its centre.
-double time_to_arc_end(const ArcSpan& span, const Path& ball);
+/// Time until a ball of radius R touches a straight nose, from either side, with the foot point between the
+/// ends. The ends are separate circles.
+double time_to_line(const Path& ball, const CushionLine& line, double R);
 
-/// Time until the distance of the centre from a straight segment decreases to R, from either side, with the
-/// foot point between the ends. The ends are separate circles.
-/// @param direction unit vector, from -> to
-double time_to_line(const Path& ball, const Vec2& from, const Vec2& direction, double line_length, double R);
-
-/// Rounding error [m] of the distance between a foot point and the end of a cushion, for a centre at r.
-double end_rounding(const Vec2& r, double line_length);
-
-/// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding its direction
-/// of motion decides, so that a ball that leaves over the end is not mistaken for one that arrives: the
-/// condition that ends a contact here cannot begin it. Beyond the end, the end point or the jaw takes over.
-bool past_end(double left, double rate, double pull, double rounding);
+/// Time until a ball that moves along a cushion or around an arc passes an end of it; 0 if it passes it now,
+/// kNever if the part of this contact has no ends.
+double time_past_end(const Geometry& geometry, const Contact& contact, const Path& ball);
 
 /// Time until the centre enters the circle of a pocket; 0 if it is inside.
 double time_to_pocket(const Path& ball, const Vec2& center, double radius);
@@ -128,6 +117,6 @@ inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reac
 #endif
 
 /// The same for a straight line, on either side.
-bool stays_off_line(const Path& ball, const Vec2& from, const Vec2& direction, double R, double window);
+bool stays_off_line(const Path& ball, const CushionLine& line, double R, double window);
 
 }  // namespace carom

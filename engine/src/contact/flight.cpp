@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "carom/engine/tolerances.h"
+#include "contact/touch.h"
 
 namespace carom {
 
@@ -115,20 +116,21 @@ double flight_to_ball(const Flight& f, double reach) {
     return first_contact(at, reach, length3(f.a), 4.0 * kEpsilon * reach, f.noise, 0.0, f.horizon);
 }
 
-double flight_to_line(const Flight& f, const Vec3& from, const Vec2& direction, double line_length,
-                      double reach) {
+double flight_to_line(const Flight& f, const CushionLine& line, double R) {
     // In the plane perpendicular to the line: the horizontal distance and the height.
-    const auto across = [&](const Vec3& x) { return Vec2(cross(direction, planar(x)), x.z()); };
-    const Flight g{f.r - from, f.v, f.a, f.horizon, f.noise};
+    const auto across = [&](const Vec3& x) { return Vec2(cross(line.direction, planar(x)), x.z()); };
+    const Flight g{f.r - Vec3(line.from.x(), line.from.y(), line.height), f.v, f.a, f.horizon, f.noise};
     const Window window =
-        over(dot(direction, planar(g.r)), dot(direction, planar(g.v)), line_length, f.horizon);
+        over(dot(line.direction, planar(g.r)), dot(line.direction, planar(g.v)), line.length, f.horizon);
+    const double reach = reach_of(line, R, true);
     const Vec2 pull = across(g.a);
     const auto at = [&](double t) { return of_length(across(place(g, t)), across(speed(g, t)), pull); };
     return first_contact(at, reach, length(pull), place_rounding(f, reach), f.noise, window.from, window.to);
 }
 
-double flight_to_circle(const Flight& f, const Vec3& center, double radius, double reach) {
-    const Vec3 from = f.r - center;
+double flight_to_nose(const Flight& f, const Nose& nose, double R) {
+    const double radius = nose.radius, reach = reach_of(nose, R, true);
+    const Vec3 from = f.r - Vec3(nose.center.x(), nose.center.y(), nose.height);
     const Flight g{from, f.v, f.a, std::min(f.horizon, time_over_disc(planar(from), planar(f.v), radius)),
                    f.noise};
     const auto at = [&](double t) {
@@ -143,12 +145,11 @@ double flight_to_circle(const Flight& f, const Vec3& center, double radius, doub
     return first_contact(at, reach, curving, rounding, f.noise, 0.0, g.horizon);
 }
 
-double flight_over_line(const Flight& f, const Vec2& from, const Vec2& direction, double line_length) {
-    const Vec2 r = planar(f.r) - from, v = planar(f.v);
-    const double height = cross(direction, r), rate = cross(direction, v);
-    if (!(height * rate < 0.0)) return kNever;
-    const double t = -height / rate, foot = dot(direction, r) + t * dot(direction, v);
-    return t <= f.horizon && foot >= 0.0 && foot <= line_length ? t : kNever;
+double flight_over_line(const Flight& f, const CushionLine& line) {
+    const Vec2 r = in_frame(line, planar(f.r) - line.from), v = in_frame(line, planar(f.v));
+    if (!(r.y() * v.y() < 0.0)) return kNever;
+    const double t = -r.y() / v.y(), foot = r.x() + t * v.x();
+    return t <= f.horizon && foot >= 0.0 && foot <= line.length ? t : kNever;
 }
 
 double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon) {

@@ -5,6 +5,7 @@
 // first contact, and the iteration converges quadratically. Uses only + - * / and square roots.
 #pragma once
 
+#include "carom/engine/geometry.h"
 #include "carom/engine/vec.h"
 #include "contact/roots.h"
 
@@ -21,19 +22,16 @@ struct Flight {
 /// the horizon.
 double flight_to_ball(const Flight& relative, double reach);
 
-/// Time until the centre is `reach` away from the line through `from` while closing, with its foot between
-/// the ends.
-/// @param from, direction  of a horizontal line at height z; the direction is a unit vector
-double flight_to_line(const Flight& ball, const Vec3& from, const Vec2& direction, double line_length,
-                      double reach);
+/// Time until a ball of radius R touches a straight nose while closing, with its foot between the ends.
+double flight_to_line(const Flight& ball, const CushionLine& line, double R);
 
-/// Time until the centre is `reach` away from a horizontal circle (radius 0: a point) while closing. Only
-/// from outside the circle: a ball over its disc meets nothing.
-double flight_to_circle(const Flight& ball, const Vec3& center, double radius, double reach);
+/// Time until a ball of radius R touches a round nose (radius 0: a point) while closing. Only from outside
+/// the circle: a ball over its disc meets nothing.
+double flight_to_nose(const Flight& ball, const Nose& nose, double R);
 
 /// Time until a centre above the line passes from one side to the other between its ends; kNever if it does
 /// not.
-double flight_over_line(const Flight& ball, const Vec2& from, const Vec2& direction, double line_length);
+double flight_over_line(const Flight& ball, const CushionLine& line);
 
 /// Time until a centre on a straight path is over a disc about the origin: 0 if it is already.
 double flight_over_disc(const Vec2& r, const Vec2& v, double radius, double horizon);

@@ -10,6 +10,10 @@
 
 namespace carom {
 
+inline bool is_inside(const Pocket& pocket, const Vec2& here) {
+    return length(here - pocket.center) < pocket.radius;
+}
+
 /// The pocket into which a ball at this position falls: the one whose circle contains it most deeply.
 int pocket_under(const Geometry& geometry, const Vec2& here);
 

@@ -7,7 +7,7 @@
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
 #include "contact/resting_group.h"
-#include "contact/roots.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -46,32 +46,22 @@ Link link_of(const Group& g, const RestingContact& c) {
         return static_cast<int>(std::find_if(g.group.balls.begin(), g.group.balls.end(), is_it) -
                                 g.group.balls.begin());
     };
-    Link link{.i = body_of(c.contact.ball), .j = -1, .first = c.n, .n = c.n, .distance = 0.0};
-    const Vec2 here = planar(g.group.balls[link.i].r);
-    const double R = g.bodies[link.i].R;
-    double depth;
-    if (c.contact.with == With::kCushion) {
-        link.line = &g.around.geometry.cushions[c.contact.other];
-        depth = R - link.line->inset - std::abs(cross(link.line->direction, here - link.line->from));
+    const auto at = [&](int body) {
+        return BallAt<Vec3>{g.group.balls[body].r, Vec3::Zero(), g.bodies[body].R};
+    };
+    const bool discs = g.around.balls.discs();
+    Link link{.i = body_of(c.contact.ball), .j = -1, .first = c.n, .n = c.n, .contact = c.contact};
+    const BallAt<Vec3> ball = at(link.i);
+    if (c.contact.with == With::kBall) {
+        link.j = body_of(c.contact.other);
+        const BallAt<Vec3> other = at(link.j);
+        link.distance = contact_distance(ball.R, other.R, discs);
+        link.tilt = discs ? 0.0 : (other.R - ball.R) / link.distance;
+        link.gap = touch_level(ball, other, discs).gap;
     } else {
-        Vec2 center;
-        double sign = 1.0;
-        if (c.contact.with == With::kBall) {
-            link.j = body_of(c.contact.other);
-            const double other = g.bodies[link.j].R;
-            link.distance = contact_distance(R, other, g.around.balls.discs());
-            link.tilt = g.around.balls.discs() ? 0.0 : (other - R) / link.distance;
-            center = planar(g.group.balls[link.j].r);
-        } else {
-            const Nose& nose = g.around.geometry.noses[c.contact.other];
-            link.distance = R + nose.radius - nose.inset;
-            center = nose.center;
-            sign = nose.sign();
-            if (!nose.span.whole) link.arc = &nose;
-        }
-        depth = link.distance - sign * length(center - here);
+        link.distance = part_turn(g.around.geometry, c.contact, ball.R);
+        link.gap = touch_part(g.around.geometry, c.contact, ball).gap;
     }
-    link.gap = -depth;
     link.begins = c.began == g.now;
     return link;
 }
@@ -83,8 +73,8 @@ Link link_of(const Group& g, const RestingContact& c) {
 bool keep_energy(Group& g) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
-        before += (dot(b.v, b.v) + kInertia * dot(b.s, b.s)) / b.ease;
-        after += (dot(b.v_end, b.v_end) + kInertia * dot(b.s_end, b.s_end)) / b.ease;
+        before += kinetic_energy(b.v, b.s, 1.0) / b.ease;
+        after += kinetic_energy(b.v_end, b.s_end, 1.0) / b.ease;
     }
     if (!(after > before)) return false;
     const double share = std::sqrt(before / after);
@@ -211,17 +201,6 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end) {
 }
 
 }  // namespace resting
-
-double time_to_line_end(const CushionLine& line, const Segment& s) {
-    const double x = dot(line.direction, planar(s.r) - line.from);
-    const double v = dot(line.direction, planar(s.v)), a = dot(line.direction, s.a);
-    const double rounding = end_rounding(planar(s.r), line.length);
-    const auto leaves = [rounding](double left, double rate, double pull) {
-        if (past_end(left, rate, pull, rounding)) return 0.0;
-        return first_descent_quadratic(left, rate, pull, kNever);
-    };
-    return std::min(leaves(x, v, a), leaves(line.length - x, -v, -a));
-}
 
 bool holds(double v_n, double a_c, double restitution) {
     if (!(a_c > 0.0)) return false;

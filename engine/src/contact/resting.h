@@ -59,10 +59,6 @@ struct RestingSurroundings {
 /// too much. Contacts that open are marked released; a contact without force that does not open stays.
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now);
 
-/// Time until the foot point of a ball that moves along a cushion passes the end of the cushion; 0 if it
-/// passes it now.
-double time_to_line_end(const CushionLine& line, const Segment& segment);
-
 /// Sets the state of a member after its state transition (its slip, velocity or spin has become zero).
 void end_transition(RestingBall& member, MotionState state, double R);
 

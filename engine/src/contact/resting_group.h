@@ -71,16 +71,15 @@ struct Link {
     int i, j;
     Vec2 first;  ///< the normal at the start of the interval
     Vec2 n;      ///< in its middle: the direction of the impulse
+    Contact contact;
     /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
-    double distance;
-    const CushionLine* line = nullptr;  ///< the straight cushion, if it is one
-    const Nose* arc = nullptr;          ///< the arc, if it is one with ends
-    double gap = 0.0;                   ///< [m]; negative: overlap
-    bool begins = false;                ///< the contact begins now, and so does not end now
-    bool open = false;                  ///< the gap opens by more than rounding
-    double slack = 0.0;                 ///< [m/s] rate at which it may close at an instant: it has a gap
-    double turning = 0.0;               ///< [m/s^2] of the gap at the end, beyond the rate along n
-    double tilt = 0.0;                  ///< of the normal, upwards from i to j: vertical share over level one
+    double distance = 0.0;
+    double gap = 0.0;      ///< [m]; negative: overlap
+    bool begins = false;   ///< the contact begins now, and so does not end now
+    bool open = false;     ///< the gap opens by more than rounding
+    double slack = 0.0;    ///< [m/s] rate at which it may close at an instant: it has a gap
+    double turning = 0.0;  ///< [m/s^2] of the gap at the end, beyond the rate along n
+    double tilt = 0.0;     ///< of the normal, upwards from i to j: vertical share over level one
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
     double friction_z = 0.0;  ///< Z over the J that it was found with

@@ -127,19 +127,11 @@ bool slips_on(const Group& g, const Link& link) {
 
 double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
-    double interval = stays(g, link, h) ? kNever : kShorter * h;
     const Body& b = g.bodies[link.i];
-    if (link.line != nullptr) {
-        Segment s;
-        s.r = g.group.balls[link.i].r;
-        s.v = Vec3(b.v.x(), b.v.y(), 0.0);
-        s.a = (b.v_end - b.v) / h;
-        interval = std::min(interval, time_to_line_end(*link.line, s));
-    }
-    if (link.arc != nullptr)
-        interval = std::min(
-            interval, time_to_arc_end(link.arc->span, {planar(g.group.balls[link.i].r) - link.arc->center,
-                                                       b.v, (b.v_end - b.v) / h, kNever, false, true}));
+    double interval =
+        time_past_end(g.around.geometry, link.contact,
+                      {planar(g.group.balls[link.i].r), b.v, (b.v_end - b.v) / h, kNever, false, true});
+    if (!stays(g, link, h)) interval = std::min(interval, kShorter * h);
     if (!(link.J > 0.0)) {
         const double rate = gap_rate(g, link);
         // A contact that opens is released once its rate can be distinguished from rounding, and before its

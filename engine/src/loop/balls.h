@@ -7,6 +7,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 #include "loop/memory.h"
 #include "physics/motion.h"
 
@@ -62,6 +63,8 @@ class Balls : private Borrowed<BallsMemory> {
         return placed_at(segments_[ball], now_ - segments_[ball].start, plan_.gravity);
     }
 
+    /// The ball in the plane of the cloth, for what it touches there.
+    BallAt<Vec3> at(int ball) const { return {position(ball), velocity(ball), radius(ball)}; }
     double radius(int ball) const { return plan_.sizes[ball].R; }
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }
 

@@ -1,11 +1,11 @@
-// Impacts of a ball with the table: all that it touches at one instant, and its motion after meeting all of
-// that.
+// The parts of the table that a ball touches at one instant.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 
-#include "carom/engine/cushion.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/vec.h"
 #include "contact/contact.h"
@@ -13,20 +13,18 @@
 #include "loop/contact_kinematics.h"
 #include "loop/detector.h"
 #include "loop/resting_contacts.h"
+#include "physics/cushion/bounce.h"
 
 namespace carom {
 
 /// A cushion or a nose that a ball touches.
-struct TableTouch {
+struct TableTouch : NoseTouch {
     ContactKinematics approach;  ///< its a_c is that before the impact
-    Vec2 normal;                 ///< unit, from the part into the table
-    double height = 0.0;         ///< [m] of the nose above the cloth
-    double curving = 0.0;        ///< [m/s^2] separating acceleration of a ball that moves around the nose
-    const CushionModelInfo* model = nullptr;
+    double bend = 0.0;           ///< [m/s^2] Touch::bend
 
     /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.
     double pressing(const Vec2& pull) const {
-        return -(normal.x() * pull.x() + normal.y() * pull.y()) - curving;
+        return -(normal.x() * pull.x() + normal.y() * pull.y()) - bend;
     }
 };
 
@@ -44,9 +42,15 @@ class TableTouches {
     const TableTouch* begin() const { return list_.data(); }
     const TableTouch* end() const { return list_.data() + count_; }
     const TableTouch& operator[](std::size_t k) const { return list_[k]; }
+    /// Without what the loop needs beside them; valid until the next call.
+    std::span<const NoseTouch> noses() {
+        std::copy_n(list_.begin(), count_, noses_.begin());
+        return {noses_.data(), count_};
+    }
 
   private:
     std::array<TableTouch, 4> list_;
+    std::array<NoseTouch, 4> noses_;
     std::size_t count_;
 };
 
@@ -57,13 +61,5 @@ TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& cont
 /// close by more than rounding and are not resting contacts. Parts that join smoothly count as one.
 TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector& detector,
                            const RestingContacts& resting, const Contact& contact);
-
-/// Replaces velocity and spin of a ball by those after it has met all touches at once. One touch: its model.
-/// Two touches: the sum of their impulses, each computed from the incoming state, scaled so that the ball
-/// leaves each part at the speed at which it would leave that part alone. If that would add energy, or with
-/// more than two touches: the mean of the states after each, repeated until none closes
-/// (docs/design/hard_cases.md, "Two contacts at one instant").
-/// @return false if a model has no solution
-bool bounce(const Plan& plan, const TableTouches& touches, Vec3& v, Vec3& w);
 
 }  // namespace carom

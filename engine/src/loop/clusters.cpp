@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "contact/place.h"
+#include "contact/touch.h"
 
 namespace carom {
 
@@ -16,32 +17,14 @@ constexpr double kNearShare = 0.5;
 // [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
 constexpr double kClosesStill = 1e-12;
 
-/// Gap [m] between two balls, the speed [m/s] at which it closes, and the unit vector from the first to the
-/// second.
-struct Gap {
-    double gap, closing;
-    Vec3 n;
-};
-
-Gap gap_in_space(const ClusterBall& p, const ClusterBall& q) {
-    const Vec3 apart = q.r - p.r;
-    const double distance = apart.z() == 0.0 ? length(planar(apart)) : length3(apart);
-    const Vec3 n = apart / distance;
-    return {distance - (p.R + q.R), dot3(n, p.v - q.v), n};
-}
-
-// Whatever height the fall of one of them began at.
-Gap gap_on_cloth(const ClusterBall& p, const ClusterBall& q, bool discs) {
-    const Vec2 apart = planar(q.r) - planar(p.r), closing = planar(p.v) - planar(q.v);
-    if (p.R == q.R || discs) {
-        const double distance = length(apart);
-        const Vec2 n = apart / distance;
-        return {distance - contact_distance(p.R, q.R, true), dot(n, closing), {n.x(), n.y(), 0.0}};
-    }
-    const Vec3 tilted(apart.x(), apart.y(), q.R - p.R);
-    const double distance = length3(tilted);
-    const Vec3 n = tilted / distance;
-    return {distance - (p.R + q.R), n.x() * closing.x() + n.y() * closing.y(), n};
+/// Of balls on the cloth: whatever height the fall of one of them began at, and unlike balls touch above or
+/// below their equators.
+Touch<Vec3> touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
+    const auto at = [&](const ClusterBall& b) {
+        if (in_space) return BallAt<Vec3>{b.r, b.v, b.R};
+        return BallAt<Vec3>{{b.r.x(), b.r.y(), discs ? 0.0 : b.R}, {b.v.x(), b.v.y(), 0.0}, b.R};
+    };
+    return touch_ball(at(p), at(q));
 }
 
 // Falls smoothly from 1 for near balls to 0 at the edge of reach.
@@ -117,9 +100,9 @@ double Clusters::pair_time(int a, int b, double v_n) const {
 
 void Clusters::collect_at(int a, int b, double v_n) {
     const double time = plan_.clusters == ClusterModel::kCompliant ? pair_time(a, b, v_n) : 0.0;
-    const auto reach = [&](const Gap& near) { return time * (std::max(0.0, near.closing) + v_n); };
+    const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
-        Gap near = flights_ ? gap_in_space(p, q) : gap_on_cloth(p, q, plan_.balls.discs());
+        Touch<Vec3> near = touch_of(p, q, flights_, plan_.balls.discs());
         // Whether balls touch is decided only here: a gap within
         // the rounding of the positions counts as touching.
         if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;
@@ -140,7 +123,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
             if (known || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
-            const Gap near = gap_of(here, candidate);
+            const Touch<Vec3> near = gap_of(here, candidate);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
@@ -157,7 +140,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     });
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
-            const Gap near = gap_of(members_[i], members_[j]);
+            const Touch<Vec3> near = gap_of(members_[i], members_[j]);
             if (!passes(members_[i].ball, members_[j].ball) && near.gap <= 2.0 * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});
@@ -214,7 +197,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = plan_.e_b(),
-        .published_cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished,
+        .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
         .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
         .integrate = plan_.contact_phase,
@@ -223,9 +206,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
-        if (in_space_) return map_.compliant_in_space(members_, contacts_, settings, v_n);
-        return unlike_ ? map_.compliant_unlike(members_, contacts_, settings, v_n)
-                       : map_.compliant(members_, contacts_, settings, v_n);
+        return in_space_ || unlike_ ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
+                                    : map_.compliant(members_, contacts_, settings, v_n);
     };
     std::int64_t steps = run();
     if (steps >= 0 && closes_still(v_n)) {

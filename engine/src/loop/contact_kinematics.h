@@ -17,12 +17,4 @@ struct ContactKinematics {
 /// The kinematics of two balls that touch.
 ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two);
 
-/// [m/s^2] Acceleration at which the gap between two balls closes during these motions. Pass the motions
-/// after an impact to see whether the bounce ends: before it, slow rolling balls decelerate and seem to
-/// separate.
-double closing_acceleration(const Vec2& n, const Segment& one, const Segment& two);
-
-/// Coefficient of friction of two touching balls, at their present slip.
-double pair_friction(const Plan& plan, const Balls& balls, int one, int two);
-
 }  // namespace carom

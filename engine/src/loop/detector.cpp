@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/touch.h"
+
 namespace carom {
 
 namespace {
@@ -49,7 +51,7 @@ double Detector::closing(const PredictedEvent& c) const {
 
 Vec2 Detector::place(const PredictedEvent& c) const {
     const Segment& s = balls_.segment(c.contact.ball);
-    Vec2 here = planar(position_at(s, c.time - s.start));
+    const Vec2 here = planar(position_at(s, c.time - s.start));
     const int other = c.contact.other;
     switch (c.contact.with) {
         case With::kBall: {
@@ -57,13 +59,9 @@ Vec2 Detector::place(const PredictedEvent& c) const {
             return 0.5 * (here + planar(position_at(q, c.time - q.start)));
         }
         case With::kPocket:
-            return plan_.geometry.pockets[other].center;
         case With::kNose:
-            return plan_.geometry.noses[other].center;
-        case With::kCushion: {
-            const CushionLine& line = plan_.geometry.cushions[other];
-            return line.from + line.direction * dot(line.direction, here - line.from);
-        }
+        case With::kCushion:
+            return part_place(plan_.geometry, c.contact, here);
         case With::kNothing:
         case With::kOut:
             break;

@@ -5,7 +5,6 @@
 
 #include "contact/pocket_edge.h"
 #include "loop/detector.h"
-#include "physics/nose_reach.h"
 
 namespace carom {
 
@@ -54,7 +53,7 @@ double time_over_jaw(const Path& path, const Vec2& center, double radius) {
 bool Detector::over_pocket(const Vec2& here) const {
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     return std::any_of(pockets.begin(), pockets.end(),
-                       [&here](const Pocket& p) { return length(here - p.center) < p.radius; });
+                       [&here](const Pocket& p) { return is_inside(p, here); });
 }
 
 // A flying ball meets noses at their height. Once over them it is out, and it meets a pocket only at its far
@@ -79,13 +78,11 @@ void Detector::search_table_in_air(int ball) {
         double t = kNever;
         if (contact.with == With::kCushion) {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
-            t = flight_to_line(f, {c.from.x(), c.from.y(), c.height}, c.direction, c.length,
-                               nose_reach(R, c.height, c.inset));
-            if (!table.bed) leaves(flight_over_line(f, c.from, c.direction, c.length));
+            t = flight_to_line(f, c, R);
+            if (!table.bed) leaves(flight_over_line(f, c));
         } else if (contact.with == With::kNose) {
             const Nose& n = plan_.geometry.noses[contact.other];
-            t = flight_to_circle(f, {n.center.x(), n.center.y(), n.height}, n.radius,
-                                 nose_reach(R, n.height, n.inset));
+            t = flight_to_nose(f, n, R);
             if (n.radius > 0.0) leaves(time_over_jaw(p, n.center, n.radius));
         } else {
             t = time_over_pocket(contact.other, p, R);

@@ -50,21 +50,11 @@ void Log::reserve() {
         cluster_ball_.reserve(kRoom);
         cluster_end_.reserve(kRoom);
     }
-    events_.reserve(events_.size() + kRoom);
-}
-
-void Log::resume(const Record& so_far) {
-    so_far_ = &so_far;
-    events_ = so_far.events;
-    for (std::size_t i = 0; i < so_far.tracks.size(); ++i)
-        for (const Segment& s : so_far.tracks[i].segments) balls_.set(static_cast<int>(i), s);
-    balls_.advance_to(so_far.duration);
-    reserve();
+    events_.reserve(kRoom);
 }
 
 void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
-    const std::size_t before = so_far_ != nullptr ? so_far_->clusters.size() : 0;
-    event(EventType::kBallCluster, a, b, static_cast<int>(before + cluster_end_.size()));
+    event(EventType::kBallCluster, a, b, static_cast<int>(cluster_end_.size()));
     cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
     cluster_end_.push_back(cluster_ball_.size());
 }
@@ -140,7 +130,8 @@ void Log::fail(const std::string& why) {
     std::string text = fmt::format("simulation stopped at t = {:.17g} s after {} events: {}\n", balls_.now(),
                                    events_.size(), why);
     const std::size_t count = events_.size();
-    const Record frame = record_so_far();
+    Record frame;
+    begin_record(frame);
     text += "last events:\n";
     for (std::size_t i = count > 8 ? count - 8 : 0; i < count; ++i) {
         const Event& e = events_[i];
@@ -161,19 +152,6 @@ void Log::fail(const std::string& why) {
     throw SimulationError(text, std::make_shared<const Record>(record(StopReason::kEvents)));
 }
 
-// The parts of the record that precede this run or do not depend on it.
-Record Log::record_so_far() const {
-    if (so_far_ != nullptr) {
-        Record record = *so_far_;
-        record.costs.clear();
-        record.start_time = options_.start_time;
-        return record;
-    }
-    Record record;
-    begin_record(record);
-    return record;
-}
-
 // An empty record for this run, in the memory that the record has.
 void Log::begin_record(Record& record) const {
     const Scene& scene = plan_.scene;
@@ -191,19 +169,14 @@ void Log::begin_record(Record& record) const {
 }
 
 Record Log::record(StopReason why) {
-    Record record = record_so_far();
-    finish_record(why, record);
-    return record;
+    Record result;
+    record(why, result);
+    return result;
 }
 
 void Log::record(StopReason why, Record& record) {
     begin_record(record);
-    finish_record(why, record);
-}
-
-void Log::finish_record(StopReason why, Record& record) {
     std::vector<std::size_t> count(record.tracks.size());
-    for (std::size_t i = 0; i < count.size(); ++i) count[i] = record.tracks[i].segments.size();
     for (const BallSegment& s : segments_) ++count[s.ball];
     for (std::size_t i = 0; i < count.size(); ++i) record.tracks[i].segments.reserve(count[i]);
     for (const BallSegment& s : segments_) record.tracks[s.ball].segments.push_back(s.segment);

@@ -25,8 +25,8 @@ struct LogMemory {
         Segment segment;
         int ball;
     };
-    std::vector<Event> events_;  // for a resumed run, from its beginning
-    // Segments and clusters of this run in chronological order.
+    std::vector<Event> events_;
+    // Segments and clusters in chronological order.
     std::vector<BallSegment> segments_;
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
@@ -46,9 +46,6 @@ class Log : private Borrowed<LogMemory> {
 
   public:
     Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemory& memory, Keep keep);
-
-    /// Continues after this record: the balls get its last motions.
-    void resume(const Record& so_far);
 
     /// Starts a new motion of the ball now.
     void begin(int ball, const Segment& segment) {
@@ -103,15 +100,13 @@ class Log : private Borrowed<LogMemory> {
 
     /// The record; the log is empty afterwards.
     Record record(StopReason why);
-    /// The same for a run from the beginning, in the memory of `record`.
+    /// The same in the memory of `record`.
     void record(StopReason why, Record& record);
     void outcome(StopReason why, Outcome& outcome);
 
   private:
     void reserve();
-    Record record_so_far() const;
     void begin_record(Record& record) const;
-    void finish_record(StopReason why, Record& record);
     int met_by(int struck, const Event& event) const;
     bool is_driven(const Event& event);
     std::uint64_t hash() const;
@@ -129,7 +124,6 @@ class Log : private Borrowed<LogMemory> {
     const Geometry& geometry_;
     Keep keep_;
     const int struck_;
-    const Record* so_far_ = nullptr;  // of a resumed run
     std::optional<Costs> costs_;
     std::vector<EventCost> event_costs_;
     double setup_detect_ns_ = 0.0;

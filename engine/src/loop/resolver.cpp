@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "carom/engine/cushion.h"
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/bounce.h"
 #include "physics/motion.h"
 
@@ -18,19 +20,6 @@ namespace {
 
 // [-] An impact with at least this many steps is slow (about 20 us): report progress after it.
 constexpr int kLongImpact = 1000;
-
-kernel::Ball kernel_ball(const Vec3& r, const Vec3& v, const Vec3& w) {
-    return {{r.x(), r.y(), r.z()}, {v.x(), v.y(), v.z()}, {w.x(), w.y(), w.z()}};
-}
-
-/// [m^2/s^2] Twice the energy, per mass.
-double energy_twice(double R, const Velocities& ball) {
-    return ball.v.squaredNorm() + 0.4 * R * R * ball.w.squaredNorm();
-}
-
-Vec3 vec(const double (&x)[3]) {
-    return {x[0], x[1], x[2]};
-}
 
 }  // namespace
 
@@ -105,70 +94,46 @@ void Resolver::ball_ball(int a, int b) {
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
     const double up = plan_.sizes[two].R - plan_.sizes[one].R;
     const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
-    const kernel::ImpactResult result =
-        collide(one, two, kernel_ball(r1, balls_.velocity(one), balls_.spin(one)),
-                kernel_ball(level2, balls_.velocity(two), balls_.spin(two)));
-    if (result.status == kernel::ImpactStatus::kOk) log_.event(EventType::kBallBall, a, b);
-    resting_.strike(one, after_impact(one, r1, vec(result.v1), vec(result.w1)));
-    resting_.strike(two, after_impact(two, r2, vec(result.v2), vec(result.w2)));
-    resting_.go_on();
-}
-
-kernel::ImpactResult Resolver::collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2) {
-    const BallParams& p = plan_.balls;
-    const BallSize &size1 = plan_.sizes[one], &size2 = plan_.sizes[two];
-    const BallBallModelInfo& model = *plan_.ball_ball;
-    const double mu_s = plan_.in_force(Effect::kClothInImpact) ? p.mu_s : 0.0;
-    kernel::ImpactParams params{
-        .R = size1.R,
-        .m = size1.m,
-        .mu_s1 = mu_s,
-        .mu_s2 = mu_s,
-        .mu_b = plan_.in_force(Effect::kThrow) ? pair_friction(plan_, balls_, one, two) : 0.0,
-        .e_b = plan_.e_b(),
-        .cloth_slip = plan_.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
-                          ? kernel::ClothSlip::kAsPublished
-                          : kernel::ClothSlip::kConsistent};
-    kernel::ImpactResult result;
-    const bool equal = size1 == size2;
-    // The cloth answers the tilt of two radii without friction between the balls, too.
-    const bool cloth = params.mu_s1 != 0.0 && size1.R != size2.R;
-    const bool integrated = model.reads_tolerance && (equal || params.mu_b != 0.0 || cloth);
-    if (!equal && integrated) {
-        params.mass_ratio = size2.m / size1.m;
-        params.radius_ratio = size2.R / size1.R;
-    }
+    Velocities ball1{balls_.velocity(one), balls_.spin(one)}, ball2{balls_.velocity(two), balls_.spin(two)};
+    PairImpact impact{};
     {
         const Stopwatch watch(kernel_ns_);
-        if (equal || integrated)
-            model.collide(plan_.impact, b1, b2, params, result);
-        else
-            collide_unequal(size1, size2, b1, b2, params, result);
+        impact = collide({*plan_.ball_ball, plan_.impact, plan_.balls}, plan_.sizes[one], plan_.sizes[two],
+                         r1, level2, ball1, ball2);
     }
     if (cost_ != nullptr) {
-        cost_->steps = result.steps;
-        cost_->method = !integrated                     ? model.name
-                        : plan_.impact.march != nullptr ? "march"
-                                                        : kernel::name(result.method);
+        cost_->steps = impact.steps;
+        cost_->method = impact.method;
     }
-    if (result.steps >= kLongImpact) log_.note_long_round();
-    if (result.status != kernel::ImpactStatus::kOk && result.status != kernel::ImpactStatus::kNotApproaching)
+    if (impact.steps >= kLongImpact) log_.note_long_round();
+    if (impact.status == kernel::ImpactStatus::kOk)
+        log_.event(EventType::kBallBall, a, b);
+    else if (impact.status != kernel::ImpactStatus::kNotApproaching)
         log_.fail(fmt::format("the impact of {} and {} could not be computed: {}", log_.id(one), log_.id(two),
-                              kernel::describe(result.status)));
-    return result;
+                              kernel::describe(impact.status)));
+    resting_.strike(one, after_impact(one, r1, ball1.v, ball1.w));
+    resting_.strike(two, after_impact(two, r2, ball2.v, ball2.w));
+    resting_.go_on();
 }
 
 // A slow cluster may contain another contact that is pressed together, besides the first one. As a resting
 // contact it drives that one too; after a common bounce the two would meet again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
-    const auto segment = [this](const ClusterBall& b) {
-        return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
+    // Before an impact, slow rolling balls decelerate and seem to separate; after it, this shows whether the
+    // bounce ends.
+    const auto pressing = [this](const ClusterBall& p, const ClusterBall& q) {
+        const auto segment = [this](const ClusterBall& b) {
+            return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
+        };
+        const Segment one = segment(p), two = segment(q);
+        return touch_level<Vec3>({one.r, one.v, p.R}, {two.r, two.v, q.R}, plan_.balls.discs())
+            .pressing(one.a - two.a);
     };
     for (const ClusterContact& c : clusters_.contacts()) {
         const ClusterBall &p = clusters_.balls()[c.i], &q = clusters_.balls()[c.j];
         if (c.gap > 0.0 || resting_.has({p.ball, With::kBall, q.ball})) continue;
         ContactKinematics approach = kinematics_of(plan_, balls_, p.ball, q.ball);
-        if (when == Pressed::kAfter) approach.a_c = closing_acceleration(approach.n, segment(p), segment(q));
+        if (when == Pressed::kAfter) approach.a_c = pressing(p, q);
         if (approach.v_n > 0.0 && resting_.try_hold(approach, plan_.balls.e_b)) return true;
     }
     return false;
@@ -231,20 +196,16 @@ void Resolver::cushion(const Contact& contact) {
         return;
     }
     const Vec3 r = balls_.position(ball);
-    Vec3 v = balls_.velocity(ball), w = balls_.spin(ball);
+    Velocities moves{balls_.velocity(ball), balls_.spin(ball)};
     const char* const model = touches[0].model->name;
-    const Velocities came{v, w};
-    const double up = flights_ && plan_.balls.e_h > 0.0 ? hop(touches[0], came) : 0.0;
-    if (!bounce(plan_, touches, v, w))
+    const MotionParams& motion = balls_.motion(ball);
+    const bool hops = flights_ && balls_.segment(ball).state != MotionState::kFalling;
+    if (!bounce(plan_.balls, plan_.sizes[ball], touches.noses(),
+                hops ? std::optional(motion.gravity) : std::nullopt, moves))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another model",
                         model, log_.id(ball)));
-    const MotionParams& motion = balls_.motion(ball);
-    // A planar model may keep more speed than the law in space that throws the ball up: the hop gets at most
-    // the energy that was lost.
-    const double lost = energy_twice(motion.R, came) - energy_twice(motion.R, {v, w});
-    v.z() = std::min(up, std::sqrt(std::max(0.0, lost)));
-    const Segment after = after_impact(ball, r, v, w);
+    const Segment after = after_impact(ball, r, moves.v, moves.w);
     // A ball that rolls in slowly decelerates before the impact, but the spin that it keeps drives it back to
     // the cushion and ends the bounce. So the acceleration after the impact decides.
     for (TableTouch& touch : touches) {

@@ -30,7 +30,6 @@ class Resolver {
     /// Whether the accelerations before or after the impact decide that balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
-    kernel::ImpactResult collide(int one, int two, const kernel::Ball& b1, const kernel::Ball& b2);
     void cushion(const Contact& contact);
     void pocket(const Contact& contact);
     void leave_pocket(const Contact& contact);
@@ -42,7 +41,6 @@ class Resolver {
     void free_balls(int one, int two);
     void cushion_in_air(const Contact& contact);
     void pocket_in_air(const Contact& contact);
-    double hop(const TableTouch& touch, const Velocities& before) const;
     void land(int ball);
     void leave_table(int ball);
     void go_on(int ball, const Vec3& r, Velocities after);

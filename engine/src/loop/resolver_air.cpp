@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/resolver.h"
-#include "physics/nose_reach.h"
 
 namespace carom {
 
@@ -68,22 +68,22 @@ void Resolver::free_balls(int a, int b) {
         const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
-    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.balls};
-    pair.balls.e_b = plan_.e_b();
-    if (!plan_.ball_ball->reads_friction || !plan_.in_force(Effect::kThrow))
-        pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
-    const Vec3 apart = p2.position - p1.position, n = apart / length3(apart);
+    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls),
+                        plan_.e_b()};
+    const Touch<Vec3> touch =
+        touch_ball<Vec3>({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
+    const Vec3& n = touch.n;
+    const double v_n = touch.closing;
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
-    const double v_n = dot3(ball1.v - ball2.v, n);
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
-    const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity);
-    const std::optional<double> e_b = restitution_in_air(pair.balls.e_b, v_n, parting);
+    const std::optional<double> e_b = restitution_in_air(
+        pair.e_b, v_n, parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity));
     const bool slow = !e_b;
-    pair.balls.e_b = e_b.value_or(0.0);
+    pair.e_b = e_b.value_or(0.0);
     {
         const Stopwatch watch(kernel_ns_);
         if (slow)
-            part_slowly(pair, n, lies(one), lies(two), parting, ball1, ball2);
+            part_slowly(pair, n, {lies(one), lies(two)}, plan_.gravity, ball1, ball2);
         else
             hit_ball(pair, n, ball1, ball2);
     }
@@ -108,40 +108,14 @@ void Resolver::cushion_in_air(const Contact& contact) {
     const Placed at = balls_.placed(ball);
     const bool jaw = is_jaw(contact, plan_.geometry);
     const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
-    Vec2 foot;
-    double height = 0.0, radius = 0.0;
-    if (contact.with == With::kNose) {
-        const Nose& nose = plan_.geometry.noses[contact.other];
-        foot = nose.center;
-        height = nose.height;
-        radius = nose.radius;
-    } else {
-        const CushionLine& line = plan_.geometry.cushions[contact.other];
-        foot = line.from + line.direction * dot(line.direction, planar(at.position) - line.from);
-        height = line.height;
-    }
-    const Vec2 out = planar(at.position) - foot;
-    const double distance = length(out), level = distance - radius;
-    const Vec2 away = distance > 0.0 ? Vec2(out / distance) : Vec2(0.0, 0.0);
-    Vec3 n(level * away.x(), level * away.y(), at.position.z() - height);
-    n /= length3(n);
+    const double R = balls_.radius(ball);
+    const Vec3 n = -touch_part(plan_.geometry, contact, BallAt<Vec3>{at.position, at.velocity, R, true}).n;
     Velocities after{at.velocity, balls_.spin(ball)};
-    const bool slow = hit_nose(plan_.balls, balls_.radius(ball), model, n,
-                               parting_speed(balls_.radius(ball), plan_.gravity), after);
+    const bool slow = hit_nose(plan_.balls, R, model, n, parting_speed(R, plan_.gravity), after);
     if (cost_ != nullptr) cost_->method = model.name;
     log_.event(jaw ? EventType::kBallJaw : EventType::kBallCushion, contact);
     if (slow) log_.mark_slow();
     go_on(ball, at.position, after);
-}
-
-/// [m/s] The speed at which a cushion throws up a ball that lay on the cloth.
-double Resolver::hop(const TableTouch& touch, const Velocities& before) const {
-    const int ball = touch.approach.contact.ball;
-    const MotionParams& motion = balls_.motion(ball);
-    if (balls_.segment(ball).state == MotionState::kFalling || touch.model->grip == nullptr) return 0.0;
-    const double up = motion.R - touch.height, reach = nose_reach(motion.R, touch.height, 0.0);
-    const Vec3 n(motion.R / reach * touch.normal.x(), motion.R / reach * touch.normal.y(), up / reach);
-    return hop_speed(plan_.balls, motion, *touch.model, n, before);
 }
 
 void Resolver::pocket_in_air(const Contact& contact) {
@@ -159,7 +133,7 @@ void Resolver::land(int ball) {
     r.z() = motion.R;
     const std::vector<Pocket>& pockets = plan_.geometry.pockets;
     for (std::size_t k = 0; k < pockets.size(); ++k) {
-        if (!(length(planar(r) - pockets[k].center) < pockets[k].radius)) continue;
+        if (!is_inside(pockets[k], planar(r))) continue;
         log_.fall(ball, static_cast<int>(k));
         return;
     }

@@ -8,6 +8,7 @@
 #include "contact/place.h"
 #include "contact/pocket_edge.h"
 #include "contact/resting_constants.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 
 namespace carom {
@@ -21,23 +22,6 @@ EventType with_phase(EventPhase phase, const Contact& contact, const Geometry& g
     return std::find_if(std::begin(kEventKinds), std::end(kEventKinds),
                         [&](const EventKind& k) { return k.phase == phase && k.partner == partner; })
         ->type;
-}
-
-/// The contact of an event: the inverse of Log::event.
-Contact contact_of(const Event& event) {
-    switch (kind(event.type).partner) {
-        case Partner::kBall:
-            return {event.a, With::kBall, event.b};
-        case Partner::kCushion:
-        case Partner::kJaw:
-            return event.detail >= 0 ? Contact{event.a, With::kNose, event.detail}
-                                     : Contact{event.a, With::kCushion, event.b};
-        case Partner::kPocket:
-            return {event.a, With::kPocket, event.b};
-        case Partner::kNone:
-            break;
-    }
-    return {event.a};
 }
 
 bool lies(MotionState state) {
@@ -141,7 +125,6 @@ void RestingContacts::start(int ball) {
     if (in_contact(ball)) solve(ball, Transitions::kNotYet);
 }
 
-// Determined from the log, so that a resumed run decides in the same way.
 bool RestingContacts::chatters(const Contact& contact, double v_n) const {
     // Bounces that lose nothing go on. Only those that take no time have to come to an end.
     const double since = lossless_ ? balls_.now() : balls_.now() - resting::kChatterSpan;
@@ -328,21 +311,11 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
 // the clock.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
-               const bool round = c.contact.with == With::kNose;
-               if (c.contact.with != With::kCushion && !round) return false;
-               Segment s;
-               s.r = balls_.position(c.contact.ball);
-               s.v = balls_.velocity(c.contact.ball);
-               s.a = balls_.segment(c.contact.ball).a;
-               double left = kNever;
-               if (round) {
-                   const Nose& nose = plan_.geometry.noses[c.contact.other];
-                   if (nose.span.whole) return false;
-                   left = time_to_arc_end(nose.span,
-                                          {planar(s.r) - nose.center, planar(s.v), s.a, kNever, false, true});
-               } else {
-                   left = time_to_line_end(plan_.geometry.cushions[c.contact.other], s);
-               }
+               const int ball = c.contact.ball;
+               const double left =
+                   time_past_end(plan_.geometry, c.contact,
+                                 {planar(balls_.position(ball)), planar(balls_.velocity(ball)),
+                                  balls_.segment(ball).a, kNever, false, true});
                if (balls_.now() + left > balls_.now()) return false;
                end(c);
                return true;
@@ -360,59 +333,10 @@ void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const
 }
 
 void RestingContacts::refresh_normal(RestingContact& c) const {
-    const Vec2 here = planar(balls_.position(c.contact.ball));
-    if (c.contact.with == With::kCushion) {
-        const CushionLine& line = plan_.geometry.cushions[c.contact.other];
-        c.n = Vec2(-line.direction.y(), line.direction.x());
-        if (dot(c.n, here - line.from) > 0.0) c.n = -c.n;
-        return;
-    }
-    const Nose* nose = c.contact.with == With::kNose ? &plan_.geometry.noses[c.contact.other] : nullptr;
-    const Vec2 toward = (nose != nullptr ? nose->center : planar(balls_.position(c.contact.other))) - here;
-    c.n = toward / (nose != nullptr ? nose->sign() * length(toward) : length(toward));
-}
-
-void RestingContacts::restore(const Record& so_far) {
-    for (const Event& e : so_far.events) {
-        const EventPhase phase = kind(e.type).phase;
-        const Contact contact = contact_of(e);
-        if (phase == EventPhase::kHold)
-            contacts_.push_back({.contact = contact, .began = e.time});
-        else if (phase == EventPhase::kRelease)
-            std::erase_if(contacts_, [&](const RestingContact& c) { return c.contact == contact; });
-        const bool meets = phase == EventPhase::kImpact || phase == EventPhase::kHold;
-        if (meets && e.time >= so_far.duration - resting::kChatterSpan) note_again(so_far, e, contact);
-    }
-    for (RestingContact& c : contacts_) refresh_normal(c);
-}
-
-// The closing speed of a bounce, from the motions before it. Of several at one instant it is that of the
-// first.
-void RestingContacts::note_again(const Record& so_far, const Event& e, const Contact& contact) {
-    if (contact.with == With::kPocket || contact.with == With::kNothing || contact.with == With::kOut) return;
-    const auto before = [&](int ball, Vec2& r, Vec2& v) {
-        const std::vector<Segment>& segments = so_far.tracks[ball].segments;
-        auto s = std::lower_bound(segments.begin(), segments.end(), e.time,
-                                  [](const Segment& segment, double t) { return segment.start < t; });
-        if (s != segments.begin()) --s;
-        r = planar(position_at(*s, e.time - s->start));
-        v = planar(velocity_at(*s, e.time - s->start));
-    };
-    Vec2 r, v, other = Vec2::Zero(), other_v = Vec2::Zero();
-    before(contact.ball, r, v);
-    if (contact.with == With::kBall) before(contact.other, other, other_v);
-    double sign = 1.0;
-    if (contact.with == With::kNose) {
-        other = plan_.geometry.noses[contact.other].center;
-        sign = plan_.geometry.noses[contact.other].sign();
-    }
-    Vec2 n = sign * (other - r);
-    if (contact.with == With::kCushion) {
-        const CushionLine& line = plan_.geometry.cushions[contact.other];
-        n = Vec2(-line.direction.y(), line.direction.x());
-        if (dot(n, r - line.from) > 0.0) n = -n;
-    }
-    note({e.time, contact, dot(n, v - other_v) / length(n)});
+    const BallAt<Vec3> ball = balls_.at(c.contact.ball);
+    c.n = planar(c.contact.with == With::kBall
+                     ? touch_level(ball, balls_.at(c.contact.other), plan_.balls.discs()).n
+                     : touch_part(plan_.geometry, c.contact, ball).n);
 }
 
 }  // namespace carom

@@ -35,9 +35,6 @@ class RestingContacts : private Borrowed<RestingMemory> {
   public:
     RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory);
 
-    /// Restores the contacts that the events of this record have begun and not ended.
-    void restore(const Record& so_far);
-
     bool has(const Contact& contact) const {
         return !contacts_.empty() && balls_.segment(contact.ball).held && find(contact);
     }
@@ -75,7 +72,6 @@ class RestingContacts : private Borrowed<RestingMemory> {
     bool chatters(const Contact& contact, double v_n) const;
     bool may_lose(const ContactKinematics& approach) const;
     void note(const Bounce& bounce);
-    void note_again(const Record& so_far, const Event& event, const Contact& contact);
     bool has_fallen(const Event& from, const Contact& contact, double v_n) const;
     void end(const RestingContact& contact);
     void solve(int ball, Transitions transitions);

@@ -25,8 +25,7 @@ class Run {
     Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory,
         Keep keep = Keep::kRecord);
 
-    /// @param so_far  the record to continue from, or nullptr
-    Record simulate(const Record* so_far);
+    Record simulate();
     void simulate(Outcome& outcome);
     /// Both, with the record in the memory that it already has.
     void simulate(Outcome& outcome, Record& record);
@@ -34,7 +33,7 @@ class Run {
     const Clusters& clusters() const { return resolver_.clusters(); }
 
   private:
-    StopReason run(const Record* so_far);
+    StopReason run();
     void start_balls();
     void check_digits(int ball, double time);
     void check_creeping(double time);

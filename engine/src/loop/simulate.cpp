@@ -34,32 +34,27 @@ Run::Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& m
       detector_(plan, balls_, resting_, log_.costs(), memory.detector),
       resolver_(plan, balls_, log_, resting_, detector_, memory.clusters) {}
 
-Record Run::simulate(const Record* so_far) {
-    const StopReason why = run(so_far);
+Record Run::simulate() {
+    const StopReason why = run();
     return log_.record(why);
 }
 
 void Run::simulate(Outcome& outcome) {
-    const StopReason why = run(nullptr);
+    const StopReason why = run();
     log_.outcome(why, outcome);
 }
 
 void Run::simulate(Outcome& outcome, Record& record) {
-    const StopReason why = run(nullptr);
+    const StopReason why = run();
     log_.outcome(why, outcome);
     log_.record(why, record);
 }
 
-StopReason Run::run(const Record* so_far) {
+StopReason Run::run() {
     double set_up_ns = 0.0;
     {
         const Stopwatch watch(log_.costs() != nullptr ? &set_up_ns : nullptr);
-        if (so_far != nullptr) {
-            log_.resume(*so_far);
-            resting_.restore(*so_far);
-        } else {
-            start_balls();
-        }
+        start_balls();
         log_.touched().clear();
         for (int i = 0; i < balls_.count(); ++i) log_.touched().push_back(i);
         detector_.update(log_.touched());
@@ -162,7 +157,7 @@ RunBuffers::RunBuffers(RunBuffers&&) noexcept = default;
 RunBuffers& RunBuffers::operator=(RunBuffers&&) noexcept = default;
 
 Record simulate(const Plan& plan, RunBuffers& buffers, const SimulateOptions& options) {
-    return Run(plan, options, buffers.memory()).simulate(nullptr);
+    return Run(plan, options, buffers.memory()).simulate();
 }
 
 void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, const SimulateOptions& options) {
@@ -176,12 +171,7 @@ void simulate(const Plan& plan, RunBuffers& buffers, Outcome& outcome, Record& r
 
 Record simulate(const Plan& plan, const SimulateOptions& options) {
     RunBuffers::Memory memory;
-    return Run(plan, options, memory).simulate(nullptr);
-}
-
-Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options) {
-    RunBuffers::Memory memory;
-    return Run(plan, options, memory).simulate(&so_far);
+    return Run(plan, options, memory).simulate();
 }
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/pocket_edge.h"
+#include "contact/touch.h"
 #include "loop/detector.h"
 
 namespace carom {
@@ -11,10 +12,6 @@ namespace {
 
 Box around(const Vec2& center, double reach) {
     return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
-}
-
-bool is_inside(const Segment& s, const Pocket& pocket) {
-    return length(Vec2(s.r.x(), s.r.y()) - pocket.center) < pocket.radius;
 }
 
 /// Whether all parts are in the same positions.
@@ -85,7 +82,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);
-            if (contact.with == With::kPocket && is_inside(s, plan_.geometry.pockets[contact.other]))
+            if (contact.with == With::kPocket &&
+                is_inside(plan_.geometry.pockets[contact.other], planar(s.r)))
                 first = {s.start, contact};
         }
         return;
@@ -114,14 +112,13 @@ double Detector::time_to(const Contact& contact, const Path& p, double window) c
     switch (contact.with) {
         case With::kCushion: {
             const CushionLine& c = plan_.geometry.cushions[contact.other];
-            const double reach = R - c.inset;
-            if (stays_off_line(p, c.from, c.direction, reach, window) || resting_.has(contact)) return kNever;
-            return time_to_line(p, c.from, c.direction, c.length, reach);
+            if (stays_off_line(p, c, R, window) || resting_.has(contact)) return kNever;
+            return time_to_line(p, c, R);
         }
         case With::kNose: {
             const Nose& n = plan_.geometry.noses[contact.other];
             if (n.is_arc()) return resting_.has(contact) ? kNever : time_to_nose(p, n, R);
-            const double reach = R + n.radius - n.inset;
+            const double reach = turn_around(n, R);
             if (stays_apart(p.r - n.center, p.v, p.a, reach, window) || resting_.has(contact)) return kNever;
             return time_to_circle(p, n.center, reach);
         }

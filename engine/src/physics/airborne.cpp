@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "carom/engine/ball_ball.h"
 #include "carom/engine/math.h"
 
 namespace carom {
@@ -71,34 +70,35 @@ void exchange(const FreePair& pair, const Vec3& impulse, Velocities& ball1, Velo
 }  // namespace
 
 void hit_ball(const FreePair& pair, const Vec3& n, Velocities& ball1, Velocities& ball2) {
-    const auto& [size1, size2, balls] = pair;
+    const BallSize &size1 = pair.size1, &size2 = pair.size2;
     const Vec3 v = ball1.v - ball2.v, a = size1.R * ball1.w + size2.R * ball2.w;
     const double v_n = dot3(v, n);
     if (!(v_n > 0.0)) return;
     const double m_r = size1.m * size2.m / (size1.m + size2.m);
-    const double J_n = (1.0 + balls.e_b) * m_r * v_n;
+    const double J_n = (1.0 + pair.e_b) * m_r * v_n;
     exchange(pair, J_n * n, ball1, ball2);
-    if (!balls.ball_friction().any()) return;
+    if (!pair.friction.any()) return;
     const Vec3 c = (v - v_n * n) + cross3(a, n);
     const double slip = length3(c);
     if (!(slip > 0.0)) return;
-    const double J_t = std::min(balls.ball_friction()(slip) * J_n, 2.0 / 7.0 * m_r * slip);
+    const double J_t = std::min(pair.friction(slip) * J_n, 2.0 / 7.0 * m_r * slip);
     const Vec3 F = (J_t / slip) * c, turn = cross3(n, F);
     exchange(pair, F, ball1, ball2);
     ball1.w -= 2.5 / (size1.m * size1.R) * turn;
     ball2.w -= 2.5 / (size2.m * size2.R) * turn;
 }
 
-void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, double parting,
-                 Velocities& ball1, Velocities& ball2) {
+void part_slowly(const FreePair& pair, const Vec3& n, const Lies& lies, double gravity, Velocities& ball1,
+                 Velocities& ball2) {
+    const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), gravity);
     const double v_n = dot3(ball1.v - ball2.v, n);
     const double level = n.x() * n.x() + n.y() * n.y();
-    const double k1 = (lies1 ? level : 1.0) / pair.size1.m, k2 = (lies2 ? level : 1.0) / pair.size2.m;
+    const double k1 = (lies.one ? level : 1.0) / pair.size1.m, k2 = (lies.two ? level : 1.0) / pair.size2.m;
     // Two balls cannot both lie on the cloth one above the other, nor separate if neither can move.
     if (!(k1 + k2 > 0.0)) return;
     exchange(pair, (v_n + parting) / (k1 + k2) * n, ball1, ball2);
-    if (lies1) ball1.v.z() = 0.0;
-    if (lies2) ball2.v.z() = 0.0;
+    if (lies.one) ball1.v.z() = 0.0;
+    if (lies.two) ball2.v.z() = 0.0;
 }
 
 bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
@@ -120,13 +120,6 @@ bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, 
     ball.v -= j;
     ball.w += 2.5 / R * cross3(n, j);
     return false;
-}
-
-double hop_speed(const BallParams& balls, const MotionParams& motion, const CushionModelInfo& model,
-                 const Vec3& n, Velocities ball) {
-    hit_nose(balls, motion.R, model, n, 0.0, ball);
-    const double up = ball.v.z() < 0.0 ? -balls.e_h * ball.v.z() : ball.v.z();
-    return up < bounce_end(motion.R, motion.gravity) ? 0.0 : up;
 }
 
 }  // namespace carom

@@ -80,10 +80,6 @@ double* on_cache_line(std::vector<double>& numbers) {
     return static_cast<double*>(std::align(kCacheLine, space - kCacheLine, first, space));
 }
 
-}  // namespace
-
-namespace {
-
 double radius(const ClusterBall& ball, const ClusterSettings& settings) {
     return settings.unlike ? ball.R : settings.R;
 }
@@ -198,18 +194,6 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     return steps;
 }
 
-std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
-                                            const std::vector<ClusterContact>& contacts,
-                                            const ClusterSettings& settings, double V) {
-    return in_space(balls, contacts, settings, V, false);
-}
-
-std::int64_t ClusterMap::compliant_unlike(std::vector<ClusterBall>& balls,
-                                          const std::vector<ClusterContact>& contacts,
-                                          const ClusterSettings& settings, double V) {
-    return in_space(balls, contacts, settings, V, true);
-}
-
 namespace {
 
 // A share of the turning below this is none: the distance of the centres would be so long that rounding
@@ -239,9 +223,9 @@ double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
     return shortest;
 }
 
-std::int64_t ClusterMap::in_space(std::vector<ClusterBall>& balls,
-                                  const std::vector<ClusterContact>& contacts,
-                                  const ClusterSettings& settings, double V, bool held) {
+std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
+                                            const std::vector<ClusterContact>& contacts,
+                                            const ClusterSettings& settings, double V, bool held) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
     load(balls, settings, V, 3);

@@ -77,16 +77,12 @@ class ClusterMap {
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V);
 
-    /// The same in space, if a ball flies or may leave the cloth: without the cloth, which reacts next.
-    /// Ignores `turn` and the friction of the cloth.
+    /// The same along normals in space. `held`: balls that differ in size stay on the cloth, so that their
+    /// normals are tilted. Otherwise a ball flies or may leave the cloth, which reacts next: its friction and
+    /// `turn` are ignored.
     std::int64_t compliant_in_space(std::vector<ClusterBall>& balls,
                                     const std::vector<ClusterContact>& contacts,
-                                    const ClusterSettings& settings, double V);
-
-    /// As compliant() for balls that differ in size, and so touch along tilted normals.
-    std::int64_t compliant_unlike(std::vector<ClusterBall>& balls,
-                                  const std::vector<ClusterContact>& contacts,
-                                  const ClusterSettings& settings, double V);
+                                    const ClusterSettings& settings, double V, bool held);
 
     /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that
     /// close no contact (equations 7, 8), nor press a ball that lies (r_z not above its R) into the cloth;
@@ -97,8 +93,6 @@ class ClusterMap {
   private:
     void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V, int axes);
     void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls) const;
-    std::int64_t in_space(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                          const ClusterSettings& settings, double V, bool held);
     double describe_unlike(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            double L, const ClusterSettings& settings, bool held);
     void keep_energy(double before, int axes);

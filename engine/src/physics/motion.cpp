@@ -16,6 +16,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double spin_time(double w_z, const MotionParams& p) {
     return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
 }
+
+// The segment of a ball on which nothing acts, for ever.
+Segment free_of_forces(double t, const Vec3& r, const Vec3& v, const Vec3& w) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = v;
+    s.w = w;
+    s.a = s.dw = Vec2::Zero();
+    s.duration = kInfinity;
+    return s;
+}
 }  // namespace
 
 Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R) {
@@ -78,14 +90,8 @@ constexpr double kStill = 1e-100;
 }  // namespace
 
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
-    Segment s;
-    s.start = t;
-    s.r = r;
-    s.v = Vec3(v.x(), v.y(), 0.0);
-    s.w = Vec3(w.x(), w.y(), w.z() + 0.0);  // -0 is no spin either
-    s.a = Vec2::Zero();
-    s.dw = Vec2::Zero();
-    s.duration = kInfinity;
+    // -0 is no spin either.
+    Segment s = free_of_forces(t, r, {v.x(), v.y(), 0.0}, {w.x(), w.y(), w.z() + 0.0});
     const Vec2 u = cloth_slip(s.v, s.w, p.R);
     const double slip = length(u), speed = length(planar(s.v));
     const double spin = std::sqrt(w.x() * w.x() + w.y() * w.y() + w.z() * w.z());
@@ -116,31 +122,21 @@ Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, con
 
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& p) {
-    Segment s;
-    s.start = t;
-    s.r = r;
-    s.v = Vec3(v.x(), v.y(), -falls);
-    s.w = w;
-    s.a = s.dw = Vec2::Zero();
+    Segment s = free_of_forces(t, r, {v.x(), v.y(), -falls}, w);
     s.duration = std::max(0.0, (std::sqrt(2.0 * p.gravity * r.z()) - falls) / p.gravity);
     s.state = MotionState::kFalling;
     return s;
 }
 
 Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& p) {
-    Segment s;
-    s.start = t;
-    s.r = r;
-    s.v = v;
-    s.w = w;
-    s.a = s.dw = Vec2::Zero();
+    Segment s = free_of_forces(t, r, v, w);
     s.state = MotionState::kAirborne;
     const double g = p.gravity, c = std::max(0.0, r.z() - p.R), v_z = v.z();
     const double root = std::sqrt(v_z * v_z + 2.0 * g * c);
     if (v_z < 0.0)
         s.duration = c > 0.0 ? 2.0 * c / (root - v_z) : 0.0;
-    else
-        s.duration = g > 0.0 ? (v_z + root) / g : kInfinity;
+    else if (g > 0.0)
+        s.duration = (v_z + root) / g;
     return s;
 }
 
@@ -156,12 +152,8 @@ Vec3 landing_velocity(const Segment& s, const MotionParams& p) {
 }
 
 Segment pocketed_segment(double t, const Pocket& pocket) {
-    Segment s;
-    s.start = t;
-    s.r = Vec3(pocket.center.x(), pocket.center.y(), -pocket.depth);
-    s.v = s.w = Vec3::Zero();
-    s.a = s.dw = Vec2::Zero();
-    s.duration = kInfinity;
+    Segment s =
+        free_of_forces(t, {pocket.center.x(), pocket.center.y(), -pocket.depth}, Vec3::Zero(), Vec3::Zero());
     s.state = MotionState::kPocketed;
     return s;
 }

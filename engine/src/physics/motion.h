@@ -8,9 +8,6 @@
 
 namespace carom {
 
-/// [m R^2] Moment of inertia of a solid ball about its centre.
-inline constexpr double kInertia = 0.4;
-
 /// Slip at the cloth, u = v + w x (-R z) = (v_x - R w_y, v_y + R w_x) [m/s].
 Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R);
 

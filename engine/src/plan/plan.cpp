@@ -47,10 +47,7 @@ Geometry geometry_of(const Scene& scene) {
     Geometry geometry;
     for (std::size_t i = 0; i < table.cushions.size(); ++i) {
         const Cushion& cushion = table.cushions[i];
-        const Vec2 along = cushion.to - cushion.from;
-        const double extent = length(along);
-        geometry.cushions.push_back(
-            {cushion.from, along / extent, extent, cushion.height, inset(cushion.height)});
+        geometry.cushions.push_back(line_of(cushion, inset(cushion.height)));
         for (const Vec2& end : {cushion.from, cushion.to})
             if (needs_tip(geometry, table, end))
                 geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
@@ -110,6 +107,7 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     choose_search(plan);
     plan.impact = {};
     plan.impact.tolerance = scene.physics.tolerance;
+    plan.impact.cloth_slip = scene.physics.cloth_slip;
     if (scene.physics.substeps) {
         plan.impact.march = scene.physics.march == March::kPublished
                                 ? kernel::march_function(plan.isa)
@@ -213,6 +211,12 @@ Plan bare_plan(const Scene& scene, kernel::Isa isa) {
 }
 
 }  // namespace
+
+CushionLine line_of(const Cushion& cushion, double inset) {
+    const Vec2 along = cushion.to - cushion.from;
+    const double extent = length(along);
+    return {cushion.from, along / extent, extent, cushion.height, inset};
+}
 
 ArcSpan span_of(const Jaw& jaw) {
     if (!jaw.is_arc()) return {};

@@ -106,14 +106,12 @@ class Bounds {
         // loose tolerance.
         const bool coarse = p.substeps ? *p.substeps < 100 : p.tolerance > 1e-6;
         const bool gains =
-            p.ball_ball->reads_tolerance && (p.cloth_slip == ClothSlipSign::kAsPublished || coarse);
+            p.ball_ball->reads_tolerance && (p.cloth_slip == kernel::ClothSlip::kAsPublished || coarse);
         if (gains || !(time_ < kUnbounded)) return kUnbounded;
         // The lightest ball could receive all the energy, so divide by its mass.
         double lightest = kUnbounded, energy = 0.0;
         for (const Start& s : starts_) lightest = std::min(lightest, s.size.m);
-        for (const Start& s : starts_)
-            energy += (s.size.m / lightest) *
-                      (0.5 * s.v.squaredNorm() + 0.5 * kInertia * s.size.R * s.size.R * s.w.squaredNorm());
+        for (const Start& s : starts_) energy += (s.size.m / lightest) * kinetic_energy(s.v, s.w, s.size.R);
         energy += energy_height_ / lightest;
         return wide(std::sqrt(2.0 * energy) * time_);
     }

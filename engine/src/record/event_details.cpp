@@ -8,6 +8,7 @@
 
 #include "carom/engine/geometry.h"
 #include "carom/engine/math.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 #include "record/verify_between.h"
 
@@ -60,12 +61,14 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
     const BallState& a = d.balls.front().after;
     const double R = record.size(event.a).R;
     switch (kind(event.type).partner) {
-        case Partner::kBall:
-            d.normal = a.position - d.balls[1].after.position;
-            if (record.balls.discs()) d.normal.z() = 0.0;
-            d.normal.normalize();
+        case Partner::kBall: {
+            const BallState& b = d.balls[1].after;
+            const BallAt<Vec3> ball{a.position, a.velocity, R},
+                other{b.position, b.velocity, record.size(event.b).R};
+            d.normal = (record.balls.discs() ? touch_level(other, ball, true) : touch_ball(other, ball)).n;
             d.point = a.position - R * d.normal;
             return;
+        }
         case Partner::kCushion:
         case Partner::kJaw: {
             const bool jaw = kind(event.type).partner == Partner::kJaw;
@@ -80,7 +83,8 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
                            jaw ? record.table.jaws[part].height : record.table.cushions[part].height);
             return;
         }
-        default:
+        case Partner::kPocket:
+        case Partner::kNone:
             if (event.type != EventType::kBallCloth) return;
             d.normal = Vec3::UnitZ();
             d.point = a.position - R * d.normal;
@@ -156,17 +160,9 @@ std::string met_name(const Record& record, const Event& event) {
 
 Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
     const auto part = static_cast<std::size_t>(event.b);
-    if (kind(event.type).partner == Partner::kJaw) {
-        const Jaw& jaw = table.jaws[part];
-        if (!jaw.is_arc()) return jaw.center;
-        const ArcSpan span = span_of(jaw);
-        const Vec2 out = place - jaw.center;
-        if (span.holds(out)) return jaw.center + jaw.radius / length(out) * out;
-        return jaw.center + jaw.radius * (dot(span.from, out) > dot(span.to, out) ? span.from : span.to);
-    }
-    const Cushion& c = table.cushions[part];
-    const Vec2 line = c.to - c.from;
-    return c.from + std::clamp(dot(place - c.from, line) / line.squaredNorm(), 0.0, 1.0) * line;
+    return kind(event.type).partner == Partner::kJaw
+               ? nearest_point(nose_of(table.jaws[part], event.b, 0.0), place)
+               : nearest_point(line_of(table.cushions[part], 0.0), place);
 }
 
 Table without_arcs(const Table& table) {

@@ -1,20 +1,22 @@
 #include "record/gaps.h"
 
-#include <cmath>
-#include <limits>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
-#include "physics/nose_reach.h"
 #include "physics/touch_tolerance.h"
 
 namespace carom {
 
 namespace {
-constexpr double kFar = std::numeric_limits<double>::infinity();
+
+BallAt<Vec3> at(const SeenBall& ball) {
+    return {ball.r, Vec3::Zero(), ball.R, ball.flies};
 }
+
+}  // namespace
 
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t) {
     return kClosingUlp * kEpsilon * (length3(v) + R * length3(w)) * t;
@@ -51,30 +53,19 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
 
 double gap_between(const SeenBall& one, const SeenBall& two) {
     const bool in_space = one.flies || two.flies || one.flew >= two.fell || two.flew >= one.fell;
-    if (!in_space) return length(planar(two.r) - planar(one.r)) - contact_distance(one.R, two.R, one.disc);
-    return length3(two.r - one.r) - (one.R + two.R);
+    return (in_space ? touch_ball(at(one), at(two)) : touch_level(at(one), at(two), one.disc)).gap;
 }
 
 double gap_to(const CushionLine& line, const SeenBall& ball) {
-    const Vec2 offset = planar(ball.r) - line.from;
-    const double foot = dot(line.direction, offset), level = std::abs(cross(line.direction, offset));
-    if (!(foot >= 0.0 && foot <= line.length)) return kFar;
-    if (!ball.flies) return level - (ball.R - line.inset);
-    return length(Vec2(level, ball.r.z() - line.height)) - nose_reach(ball.R, line.height, line.inset);
+    return beside(line, at(ball)) ? touch_line(line, at(ball)).gap : kNever;
 }
 
 double gap_to(const Nose& nose, const SeenBall& ball) {
-    const Vec2 out = planar(ball.r) - nose.center;
-    const double level = nose.sign() * length(out) - nose.radius;
-    // Behind an arc with ends a ball may be, and it does not touch it there.
-    if (!nose.span.whole && (level < 0.0 || !nose.span.holds(out))) return kFar;
-    if (!ball.flies) return level - (ball.R - nose.inset);
-    if (level < 0.0) return kFar;
-    return length(Vec2(level, ball.r.z() - nose.height)) - nose_reach(ball.R, nose.height, nose.inset);
+    return beside(nose, at(ball)) ? touch_round(nose, at(ball)).gap : kNever;
 }
 
 double gap_to_cloth(const SeenBall& ball) {
-    return ball.flies ? ball.r.z() - ball.R : 0.0;
+    return ball.flies ? touch_cloth(at(ball)).gap : 0.0;
 }
 
 }  // namespace carom

@@ -39,7 +39,7 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
 double gap_between(const SeenBall& one, const SeenBall& two);
 /// [m] To the nose of a cushion; infinite if the ball is beyond its ends.
 double gap_to(const CushionLine& line, const SeenBall& ball);
-/// [m] To a jaw or the end of a cushion; a ball over a jaw's disc does not touch it.
+/// [m] To a jaw or the end of a cushion; infinite if the ball is not beside it.
 double gap_to(const Nose& nose, const SeenBall& ball);
 /// [m] To the cloth: 0 for a ball that lies there.
 double gap_to_cloth(const SeenBall& ball);

@@ -24,12 +24,6 @@ using detail::JsonObject;
 using detail::JsonText;
 using detail::JsonValue;
 
-/// Properties of the file that the readers of all parts of a record need.
-struct Format {
-    std::int64_t version;
-    bool profiled;
-};
-
 int index_below(const JsonValue& value, std::int64_t least, std::size_t count) {
     return static_cast<int>(value.integer(least, static_cast<std::int64_t>(count) - 1));
 }
@@ -43,7 +37,9 @@ FieldValue read_value(const Key& key, const JsonValue& value) {
             return positive ? value.positive() : range.low == 0.0 ? value.non_negative() : value.number();
         case Key::Kind::kText:
             return value.text();
-        default:
+        case Key::Kind::kInteger:
+        case Key::Kind::kNumbers:
+        case Key::Kind::kIntegers:
             break;
     }
     const bool whole = key.kind == Key::Kind::kIntegers;
@@ -60,51 +56,49 @@ FieldValue read_value(const Key& key, const JsonValue& value) {
 }
 
 template <class T, std::size_t kRows>
-void read_fields(const JsonObject& all, const Field<T> (&fields)[kRows], const Format& format, T& object) {
+void read_fields(const JsonObject& all, const Field<T> (&fields)[kRows], T& object) {
     for (const Field<T>& f : fields) {
         if (!f.in(Files::kRecord)) continue;
-        const bool may_lack = f.optional || f.options.later || f.options.since > format.version;
+        const bool may_lack = f.optional || f.options.later;
         if (may_lack && !all.has(f.record_key())) continue;
         f.set(object, read_value(f, all.at(f.record_key())));
     }
 }
 
 template <class T, std::size_t kRows>
-T read_object(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
+T read_object(const JsonValue& value, const Field<T> (&fields)[kRows]) {
     const JsonObject all(value, keys_of(fields, Files::kRecord));
     T object{};
-    read_fields(all, fields, format, object);
+    read_fields(all, fields, object);
     return object;
 }
 
 template <class T, std::size_t kRows>
-std::vector<T> read_list(const JsonValue& value, const Field<T> (&fields)[kRows], const Format& format) {
+std::vector<T> read_list(const JsonValue& value, const Field<T> (&fields)[kRows]) {
     std::vector<T> list;
-    value.each(
-        [&](const JsonValue& item, std::size_t) { list.push_back(read_object(item, fields, format)); });
+    value.each([&](const JsonValue& item, std::size_t) { list.push_back(read_object(item, fields)); });
     return list;
 }
 
-Table read_table(const JsonValue& value, const Format& format) {
+Table read_table(const JsonValue& value) {
     std::vector<std::string_view> keys = keys_of(kTableFields, Files::kRecord);
     for (const std::string_view key : keys_of(kMeasureFields, Files::kRecord)) keys.push_back(key);
     for (const PocketSection& pockets : kPocketSections) keys.emplace_back(pockets.key);
     keys.insert(keys.end(), {"cushions", "jaws", "pockets"});
     const JsonObject all(value, keys);
     Table table;
-    read_fields(all, kTableFields, format, table);
-    read_fields(all, kMeasureFields, format, table.measures);
+    read_fields(all, kTableFields, table);
+    read_fields(all, kMeasureFields, table.measures);
     for (const PocketSection& of : kPocketSections)
-        if (all.has(of.key))
-            table.measures.*of.pockets = read_object(all.at(of.key), kPocketMeasureFields, format);
-    table.cushions = read_list(all.at("cushions"), kCushionFields, format);
-    table.jaws = read_list(all.at("jaws"), kJawFields, format);
-    table.pockets = read_list(all.at("pockets"), kPocketFields, format);
+        if (all.has(of.key)) table.measures.*of.pockets = read_object(all.at(of.key), kPocketMeasureFields);
+    table.cushions = read_list(all.at("cushions"), kCushionFields);
+    table.jaws = read_list(all.at("jaws"), kJawFields);
+    table.pockets = read_list(all.at("pockets"), kPocketFields);
     return table;
 }
 
-RenderSettings read_render(const JsonValue& value, const Format& format) {
-    RenderSettings render = read_object(value, kRenderFields, format);
+RenderSettings read_render(const JsonValue& value) {
+    RenderSettings render = read_object(value, kRenderFields);
     if (render.eye.has_value() != render.target.has_value())
         value.fail(std::string("the key \"") + (render.eye ? "target" : "eye") + "\" is missing");
     return render;
@@ -191,21 +185,21 @@ Event read_event(const JsonObject& all, Record& record) {
     return event;
 }
 
-EventCost read_cost(const JsonObject& all, const Format& format) {
+EventCost read_cost(const JsonObject& all) {
     EventCost cost;
     cost.detect_ns = all.at("detect_ns").non_negative();
     cost.resolve_ns = all.at("resolve_ns").non_negative();
     cost.kernel_ns = all.at("kernel_ns").non_negative();
     cost.steps = all.at("steps").integer(0, std::numeric_limits<std::int64_t>::max());
     cost.method = all.at("method").text();
-    if (format.version > 1 || all.has("queue_ns")) cost.queue_ns = all.at("queue_ns").non_negative();
+    cost.queue_ns = all.at("queue_ns").non_negative();
     return cost;
 }
 
-void read_events(const JsonValue& list, const Format& format, Record& record) {
+void read_events(const JsonValue& list, bool profiled, Record& record) {
     const std::size_t count = list.size();
     record.events.reserve(count);
-    if (format.profiled) record.costs.reserve(count);
+    if (profiled) record.costs.reserve(count);
     list.each([&](const JsonValue& item, std::size_t i) {
         const JsonObject all(item, {"time", "type", "a", "b", "balls", "nose", "slow", "detect_ns",
                                     "resolve_ns", "kernel_ns", "steps", "method", "queue_ns"});
@@ -213,7 +207,7 @@ void read_events(const JsonValue& list, const Format& format, Record& record) {
         if (i > 0 && record.events[i].time < record.events[i - 1].time) {
             item.fail("happens before the previous event");
         }
-        if (format.profiled) record.costs.push_back(read_cost(all, format));
+        if (profiled) record.costs.push_back(read_cost(all));
     });
 }
 
@@ -239,23 +233,14 @@ std::string text_of_file(const std::string& path) {
     return text;
 }
 
-std::int64_t read_version(const JsonObject& all) {
-    const JsonValue value = all.at("version");
-    const std::int64_t version = value.integer(1, 1000000);
-    if (version > kRecordVersion) {
-        value.fail("this program reads versions 1 to " + std::to_string(kRecordVersion) +
-                   "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
-    }
-    return version;
+void check_version(const JsonValue& version) {
+    if (version.integer(1, 1000000) == kRecordVersion) return;
+    version.fail("this program reads version " + std::to_string(kRecordVersion) +
+                 "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
 }
 
 /// Warnings about a file that was read all the same.
-void add_notes(const JsonText& source, std::int64_t version, std::vector<std::string>& notes) {
-    if (version == 1) {
-        notes.push_back(
-            "version 1 of the format lacks mu_b_fit (friction between balls is then the same at every slip) "
-            "and the names of the table's parts; simulate the scene again for a complete record");
-    }
+void add_notes(const JsonText& source, std::vector<std::string>& notes) {
     if (source.unknown_keys == 0) return;
     notes.push_back(source.unknown_keys == 1
                         ? "the key " + source.first_unknown + " is unknown to this program and was left out"
@@ -280,22 +265,22 @@ Record parse_record(std::string_view text, const std::string& name, std::vector<
                          {"format", "version", "duration", "stopped", "start_time", "gravity", "profiled",
                           "setup_detect_ns", "render", "table", "balls", "tracks", "events"});
     if (!all.has("format") || all.at("format").text() != kRecordFormat) root.fail(kNoRecord);
-    const Format format{read_version(all), all.at("profiled").boolean()};
+    check_version(all.at("version"));
     Record record;
     record.duration = all.at("duration").non_negative();
     record.stopped = all.at("stopped").one_of<StopReason>(names_of(StopReason()).size());
     record.start_time = all.at("start_time").number();
     record.gravity = all.at("gravity").number();
     record.setup_detect_ns = all.at("setup_detect_ns").non_negative();
-    record.render = read_render(all.at("render"), format);
-    record.table = read_table(all.at("table"), format);
-    record.balls = read_object(all.at("balls"), kBallFields, format);
+    record.render = read_render(all.at("render"));
+    record.table = read_table(all.at("table"));
+    record.balls = read_object(all.at("balls"), kBallFields);
     const JsonValue tracks = all.at("tracks");
     if (tracks.size() == 0) tracks.fail("a record needs at least one ball");
     tracks.each(
         [&](const JsonValue& item, std::size_t) { record.tracks.push_back(read_track(item, record.table)); });
-    read_events(all.at("events"), format, record);
-    if (notes != nullptr) add_notes(source, format.version, *notes);
+    read_events(all.at("events"), all.at("profiled").boolean(), record);
+    if (notes != nullptr) add_notes(source, *notes);
     return record;
 }
 

@@ -24,13 +24,6 @@ static_assert([] {
 
 namespace {
 
-// Returns the index of the segment in force at time t: the last one that starts at or before t.
-std::size_t segment_index(const std::vector<Segment>& segments, double t) {
-    const auto later = std::upper_bound(segments.begin(), segments.end(), t,
-                                        [](double time, const Segment& s) { return time < s.start; });
-    return later == segments.begin() ? 0 : static_cast<std::size_t>(later - segments.begin()) - 1;
-}
-
 // Returns the rotation by a vector (axis times angle).
 Eigen::Quaterniond rotation(const Vec3& turn) {
     const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
@@ -104,6 +97,12 @@ struct Record::Orientations {
     std::vector<std::vector<Eigen::Quaterniond>> at_start;
 };
 
+std::size_t BallTrack::segment_at(double t) const {
+    const auto later = std::upper_bound(segments.begin(), segments.end(), t,
+                                        [](double time, const Segment& s) { return time < s.start; });
+    return later == segments.begin() ? 0 : static_cast<std::size_t>(later - segments.begin()) - 1;
+}
+
 Vec3 spin_at(const Segment& s, double tau, double R) {
     const double left = std::abs(s.w.z()) - s.spin_decay * tau;
     const double w_z = !(left > 0.0) ? 0.0 : (s.w.z() < 0.0 ? -left : left);
@@ -132,7 +131,7 @@ void Record::clear() {
 BallState Record::state_at(int ball, double t) const {
     const BallTrack& track = tracks[ball];
     t = std::clamp(t, 0.0, duration);
-    const Segment& s = track.segments[segment_index(track.segments, t)];
+    const Segment& s = track.segments[track.segment_at(t)];
     const double tau = std::min(t - s.start, s.duration);
     BallState state;
     state.state = s.state;
@@ -177,15 +176,18 @@ Eigen::Quaterniond Record::orientation_at(int ball, double t) const {
     });
     const BallTrack& track = tracks[ball];
     t = std::clamp(t, 0.0, duration);
-    const std::size_t i = segment_index(track.segments, t);
+    const std::size_t i = track.segment_at(t);
     const Segment& s = track.segments[i];
     const double turns = std::min(s.duration, until_floor(s, size(ball).R, gravity));
     return segment_turn(s, std::min(t - s.start, turns), made.largest_step) * made.at_start[ball][i];
 }
 
+bool same_balls(const Scene& scene, const Record& record) {
+    return ids_of(scene.ball) == ids_of(record.tracks);
+}
+
 Scene scene_after(const Scene& scene, const Record& record) {
-    if (!std::equal(scene.ball.begin(), scene.ball.end(), record.tracks.begin(), record.tracks.end(),
-                    [](const BallStart& ball, const BallTrack& track) { return ball.id == track.id; }))
+    if (!same_balls(scene, record))
         throw std::invalid_argument(
             "the scene and the record have different balls; pass the scene of the record");
     Scene after = scene;

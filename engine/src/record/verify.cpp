@@ -8,6 +8,7 @@
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 #include "record/gaps.h"
 #include "record/verify_between.h"
@@ -39,7 +40,7 @@ double energy_of(const Record& record, const std::vector<BallState>& states) {
 bool keeps_energy(const Plan& plan) {
     const Physics& physics = plan.scene.physics;
     return !plan.ball_ball->reads_cloth ||
-           (physics.cloth_slip == ClothSlipSign::kConsistent && physics.substeps.value_or(100) >= 100);
+           (physics.cloth_slip == kernel::ClothSlip::kConsistent && physics.substeps.value_or(100) >= 100);
 }
 
 class Checker {
@@ -147,11 +148,7 @@ class Checker {
 
     void check_penetration(const std::vector<BallState>& now, double t) {
         const auto seen = [&](std::size_t i) {
-            const std::vector<Segment>& segments = record_.tracks[i].segments;
-            const auto next = std::upper_bound(segments.begin(), segments.end(), t,
-                                               [](double at, const Segment& s) { return at < s.start; });
-            const std::ptrdiff_t segment = std::max<std::ptrdiff_t>(0, next - segments.begin() - 1);
-            return see(record_, i, static_cast<std::size_t>(segment), now[i].position,
+            return see(record_, i, record_.tracks[i].segment_at(t), now[i].position,
                        rounding_of(now[i].velocity, now[i].spin, R(i), t), plan_.in_force(Effect::kAirborne));
         };
         for (std::size_t i = 0; i < now.size(); ++i) {
@@ -180,14 +177,11 @@ class Checker {
     // Checks the segment itself, because state_at derives the spin of a rolling ball from its velocity.
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
-            const std::vector<Segment>& segments = record_.tracks[i].segments;
-            const auto next = std::upper_bound(segments.begin(), segments.end(), time,
-                                               [](double t, const Segment& s) { return t < s.start; });
-            if (next == segments.begin()) continue;
-            const Segment& s = *(next - 1);
+            const BallTrack& track = record_.tracks[i];
+            const Segment& s = track.segments[track.segment_at(time)];
             if (s.state == MotionState::kRolling &&
                 length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
-                report("U7", "ball {} rolls and slips", record_.tracks[i].id);
+                report("U7", "ball {} rolls and slips", track.id);
         }
     }
 
@@ -215,9 +209,8 @@ class Checker {
             const double m1 = mass(record_, e.a), m2 = mass(record_, e.b);
             const Vec3 w1 = spin_at(*before1, e.time - before1->start, R1),
                        w2 = spin_at(*before2, e.time - before2->start, R2);
-            Vec3 n3 = after2->r - after1->r;
-            if (!free) n3.z() = 0.0;
-            n3.normalize();
+            const BallAt<Vec3> ball1{after1->r, v1, R1}, ball2{after2->r, v2, R2};
+            const Vec3 n3 = (free ? touch_ball(ball1, ball2) : touch_level(ball1, ball2, true)).n;
             // Two radii on the cloth touch along a tilted line.
             const double S = free || record_.balls.discs() ? 0.0 : (R2 - R1) / (R1 + R2),
                          C = std::sqrt(1.0 - S * S);

@@ -12,6 +12,7 @@
 #include "carom/engine/airborne.h"
 #include "carom/engine/tolerances.h"
 #include "contact/roots.h"
+#include "contact/touch.h"
 #include "physics/motion.h"
 #include "physics/nose_reach.h"
 #include "record/gaps.h"
@@ -182,7 +183,7 @@ class Between {
         // With a bed there is cloth on both sides of a cushion.
         const bool may_cross = in_air && plan_.scene.table.bed;
         for (const CushionLine& line : plan_.geometry.cushions) {
-            if (std::abs(cross(line.direction, pieces_[ball].r - line.from)) > near) continue;
+            if (std::abs(in_frame(line, pieces_[ball].r - line.from).y()) > near) continue;
             if (!may_cross) check_crossing(ball, line, from, to);
             for (const double share : kShares) {
                 const double t = from + share * (to - from);
@@ -216,14 +217,14 @@ class Between {
         const Segment& s = segment(ball);
         const double tau = std::min(from - s.start, s.duration),
                      duration = std::min(to - s.start, s.duration) - tau;
-        const Vec2 r = pieces_[ball].r, v = planar(velocity_at(s, tau));
-        const double height = cross(line.direction, r - line.from), side = height < 0.0 ? -1.0 : 1.0;
+        const Vec2 r = in_frame(line, pieces_[ball].r - line.from),
+                   v = in_frame(line, planar(velocity_at(s, tau))), a = in_frame(line, s.a);
+        const double side = r.y() < 0.0 ? -1.0 : 1.0;
         const bool flew = flies(s.state);
-        if (flew && !(std::abs(height) > kCrossingEnd)) return;
-        const double t = first_descent_quadratic(side * height, side * cross(line.direction, v),
-                                                 side * cross(line.direction, s.a), duration);
+        if (flew && !(std::abs(r.y()) > kCrossingEnd)) return;
+        const double t = first_descent_quadratic(side * r.y(), side * v.y(), side * a.y(), duration);
         if (!(flew ? t < kBeforeEnd * duration : t <= duration)) return;
-        const double foot = dot(line.direction, r + t * (v + 0.5 * t * s.a) - line.from);
+        const double foot = r.x() + t * (v.x() + 0.5 * t * a.x());
         if (foot > kCrossingEnd && foot < line.length - kCrossingEnd)
             report("U3", from + t, "ball {} {} a cushion", id(ball),
                    flew ? "flies on behind" : "passes through");
@@ -261,9 +262,7 @@ double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;
     const BallSize size = record.size(ball);
     const double fallen = is_off_cloth(state.state) ? record.gravity * (state.position.z() - size.R) : 0.0;
-    return size.m / record.balls.m *
-           (0.5 * state.velocity.squaredNorm() + 0.5 * kInertia * size.R * size.R * state.spin.squaredNorm() +
-            fallen);
+    return size.m / record.balls.m * (kinetic_energy(state.velocity, state.spin, size.R) + fallen);
 }
 
 double chord_energy(const Record& record, double t) {
@@ -271,15 +270,11 @@ double chord_energy(const Record& record, double t) {
     const std::vector<Jaw>& jaws = record.table.jaws;
     if (std::none_of(jaws.begin(), jaws.end(), [](const Jaw& jaw) { return jaw.is_arc(); })) return sum;
     for (const BallTrack& track : record.tracks) {
-        const auto next = std::upper_bound(track.segments.begin(), track.segments.end(), t,
-                                           [](double time, const Segment& s) { return time < s.start; });
-        if (next == track.segments.begin()) continue;
-        const Segment& s = *(next - 1);
+        const Segment& s = track.segments[track.segment_at(t)];
         const double tau = t - s.start;
         if (!s.held || !(tau < s.duration)) continue;
         const BallSize size = track.own.value_or(record.balls.size());
-        sum += size.m / record.balls.m * 0.5 * tau * (s.duration - tau) *
-               (s.a.squaredNorm() + kInertia * size.R * size.R * s.dw.squaredNorm());
+        sum += size.m / record.balls.m * tau * (s.duration - tau) * kinetic_energy(s.a, s.dw, size.R);
     }
     return sum;
 }

@@ -13,14 +13,14 @@ double ball_energy(const Record& record, int ball, const BallState& state);
 /// [J/kg] The rounding of the heights may change the energy of all balls together by this.
 double height_rounding(const Record& record);
 
-/// Checks the start, the quarters and the middle of every piece of motion between two changes of any segment,
-/// and so also inside the intervals of resting contacts. Laws "U3" and "U4". A centre that crosses a cushion
-/// is found exactly, at any speed.
-/// @param energy  whether energy must never rise
 /// [J/kg] What ball_energy() misses of balls that run along a round wall, in all: between two moments their
 /// velocity goes straight from one to the other, and in truth it turns.
 double chord_energy(const Record& record, double t);
 
+/// Checks the start, the quarters and the middle of every piece of motion between two changes of any segment,
+/// and so also inside the intervals of resting contacts. Laws "U3" and "U4". A centre that crosses a cushion
+/// is found exactly, at any speed.
+/// @param energy  whether energy must never rise
 std::optional<Violation> verify_between(const Record& record, const Plan& plan, bool energy);
 
 }  // namespace carom

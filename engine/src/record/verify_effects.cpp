@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/detect.h"
+#include "contact/pocket_edge.h"
 #include "contact/roots.h"
 #include "physics/motion.h"
 
@@ -86,9 +87,7 @@ class Skipped {
 
     void check_table(const Path& path) {
         for (const Cushion& c : plan_.scene.table.cushions) {
-            const Vec2 along = c.to - c.from;
-            const double extent = length(along);
-            const bool meets = time_to_line(path, c.from, along / extent, extent, R_) < kNever ||
+            const bool meets = time_to_line(path, line_of(c, 0.0), R_) < kNever ||
                                time_to_circle(path, c.from, R_) < kNever ||
                                time_to_circle(path, c.to, R_) < kNever;
             if (meets) need("cushions", "meets cushion " + c.id);
@@ -99,8 +98,7 @@ class Skipped {
 
     void check_pocket(const Path& path) {
         for (const Pocket& p : plan_.scene.table.pockets) {
-            const bool inside = length(path.r - p.center) < p.radius;
-            if (inside || time_to_pocket(path, p.center, p.radius) < kNever)
+            if (is_inside(p, path.r) || time_to_pocket(path, p.center, p.radius) < kNever)
                 need("pockets", "enters pocket " + p.id);
         }
     }

@@ -11,7 +11,7 @@
 #include "carom/engine/cushion.h"
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
-#include "physics/nose_reach.h"
+#include "contact/touch.h"
 #include "physics/touch_tolerance.h"
 #include "scene/sections.h"
 
@@ -64,39 +64,44 @@ void check_reach(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
-        // Depth of a ball in a nose at this horizontal distance.
-        const auto depth_at = [&](double distance, double height) {
-            const double inset = nose_inset(scene.physics.cushion_touch, R, height);
+        const BallAt<Vec3> at{ball.position, Vec3::Zero(), R, ball.height != 0.0};
+        const auto depth_in = [&](Nose nose) {
+            nose.inset = nose_inset(scene.physics.cushion_touch, R, nose.height);
             // Inside the circle of a jaw there is no cloth to land on, however high the ball starts.
-            if (ball.height == 0.0 || distance < 0.0) return R - inset - distance;
-            return nose_reach(R, height, inset) - length(Vec2(distance, ball.position.z() - height));
+            BallAt<Vec3> there = at;
+            there.flies = at.flies && !behind(nose, p);
+            return -touch_round(nose, there).gap;
+        };
+        const auto depth_at = [&](const Vec2& point, double height) {
+            return depth_in({point, 0.0, height, EventType::kBallCushion, 0});
         };
         for (const Cushion& c : scene.table.cushions) {
-            const double depth = depth_at(distance_to_segment(p, c.from, c.to), c.height);
+            const double depth = depth_at(nearest_point(line_of(c, 0.0), p), c.height);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
-            const Vec2 out = p - j.center;
+            const Nose nose = nose_of(j, 0, 0.0);
             if (!j.is_arc()) {
-                if (ball.height == 0.0 && out.norm() < j.radius - R)
+                if (!at.flies && length(p - j.center) < j.radius - R)
                     top.fail(
                         ball.where,
                         "ball {} lies inside jaw {}, which balls touch from outside; move it out, or write "
                         "[[table.arc]] with side = \"inside\" for a round wall",
                         in_quotes(ball.id), j.id);
-                const double depth = depth_at(out.norm() - j.radius, j.height);
-                if (depth > touch) refuse(ball, "jaw", j.id, depth);
+                if (const double depth = depth_in(nose); depth > touch) refuse(ball, "jaw", j.id, depth);
                 continue;
             }
-            const Nose nose = nose_of(j, 0, 0.0);
-            const double level = nose.sign() * out.norm() - nose.radius;
-            if (level < 0.0 && nose.span.holds(out))
-                top.fail(ball.where, "ball {} lies behind arc {}, whose side is \"{}\"; move it to that side",
-                         in_quotes(ball.id), j.id, *j.side);
-            double depth = nose.span.holds(out) ? depth_at(level, j.height) : 0.0;
+            double depth = 0.0;
+            if (nose.span.holds(p - nose.center)) {
+                if (behind(nose, p))
+                    top.fail(ball.where,
+                             "ball {} lies behind arc {}, whose side is \"{}\"; move it to that side",
+                             in_quotes(ball.id), j.id, *j.side);
+                depth = depth_in(nose);
+            }
             if (!nose.span.whole)
                 for (const Vec2& end : {nose.span.from, nose.span.to})
-                    depth = std::max(depth, depth_at((out - j.radius * end).norm(), j.height));
+                    depth = std::max(depth, depth_at(j.center + j.radius * end, j.height));
             if (depth > touch) refuse(ball, "arc", j.id, depth);
         }
     }
@@ -142,21 +147,12 @@ std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSiz
         return fmt::format("accepts mass ratios up to {}", kernel::kLargestMassRatio);
     if (!(radii <= kernel::kLargestRadiusRatio))
         return fmt::format("accepts radius ratios up to {}", kernel::kLargestRadiusRatio);
-    const kernel::ImpactParams params{.R = one.R,
-                                      .m = one.m,
-                                      .mu_s1 = scene.balls.mu_s,
-                                      .mu_s2 = scene.balls.mu_s,
-                                      .mu_b = scene.balls.ball_friction().most(),
-                                      .e_b = scene.balls.e_b,
-                                      .cloth_slip = scene.physics.cloth_slip == ClothSlipSign::kAsPublished
-                                                        ? kernel::ClothSlip::kAsPublished
-                                                        : kernel::ClothSlip::kConsistent,
-                                      .mass_ratio = two.m / one.m,
-                                      .radius_ratio = two.R / one.R};
-    if (kernel::sizes_have_solution(params)) return "";
+    const double mu_b = scene.balls.ball_friction().most();
+    const PairLaw law{*scene.physics.ball_ball, {.cloth_slip = scene.physics.cloth_slip}, scene.balls};
+    if (kernel::sizes_have_solution(law.params(one, two, mu_b))) return "";
     return fmt::format(
         "has no solution with balls.mu_s = {} and a friction of {} between balls of these sizes",
-        params.mu_s1, params.mu_b);
+        scene.balls.mu_s, mu_b);
 }
 
 /// Refuses balls of different size if the models of the scene have no formula for them.

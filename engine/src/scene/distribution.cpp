@@ -6,8 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/draws.h"
 #include "base/nearest.h"
@@ -52,48 +55,79 @@ std::int64_t whole(std::string_view name, const toml::array& list, std::size_t i
     return value(name, list, i, [](const toml::node& node) { return integer_in(node); });
 }
 
-}  // namespace
-
-namespace {
-
-/// The values of grid(a,b,n) or grid(list(v,...)).
-struct Grid {
-    toml::array list;
-    double low = 0.0, high = 0.0;
-    std::int64_t steps = 0;
-
-    explicit Grid(std::string_view text) {
-        if (text.starts_with("list(") && text.ends_with(')')) {
-            list = arguments("list", text.substr(5, text.size() - 6));
-            steps = static_cast<std::int64_t>(list.size());
-            if (steps == 0) fail("list has 0 values; write list(v,...)");
-            return;
-        }
-        const toml::array values = arguments("grid", text);
-        if (values.size() != 3)
-            fail("grid has {} values; write grid(a,b,n) or grid(list(v,...))", values.size());
-        low = number("grid", values, 0);
-        high = number("grid", values, 1);
-        steps = whole("grid", values, 2);
-        if (!std::isfinite(high - low)) fail("grid(a,b,n): b - a is too large for a number");
-        if (steps < 1 || steps > 1000000000) fail("grid(a,b,n) needs 1 <= n <= 1000000000");
-        if (steps == 1 && low != high) fail("grid(a,b,n) needs n >= 2 to reach from a to b");
+/// The values of a list, which stay where they are.
+struct List {
+    explicit List(toml::array list) : nodes(std::move(list)) {
+        for (const toml::node& node : nodes) items.emplace_back(node);
     }
-
-    double at(std::int64_t step) const {
-        if (step == steps - 1) return high;
-        return low + (high - low) * (static_cast<double>(step) / static_cast<double>(steps - 1));
+    /// The list has whole numbers only if all its values are whole.
+    ValueKind kind() const {
+        const auto all = [this](auto&& is) { return std::all_of(nodes.begin(), nodes.end(), is); };
+        if (all([](const toml::node& value) { return value.is_integer(); })) return ValueKind::kWhole;
+        return all([](const toml::node& value) { return value.is_number(); }) ? ValueKind::kNumber
+                                                                              : ValueKind::kText;
     }
-    /// Whether all numbers are whole, so that they suit keys that take whole numbers only.
-    bool is_whole() const {
-        constexpr double kExact = 0x1p53;
-        const double each = steps > 1 ? (high - low) / static_cast<double>(steps - 1) : 0.0;
-        return low == std::floor(low) && each == std::floor(each) &&
-               std::fmax(std::abs(low), std::abs(high)) < kExact;
-    }
+    toml::array nodes;
+    std::vector<ListItem> items;
 };
 
+/// The values of grid(list(v,...)).
+Distribution grid_of_list(std::string_view text) {
+    const auto list = std::make_shared<const List>(arguments("list", text));
+    if (list->items.empty()) fail("list has 0 values; write list(v,...)");
+    return {{}, list->kind(), list->items.size(), [list](std::uint64_t step) { return &list->items[step]; }};
+}
+
+/// The values of grid(a,b,n).
+Distribution grid_of_numbers(std::string_view text) {
+    const toml::array values = arguments("grid", text);
+    if (values.size() != 3) fail("grid has {} values; write grid(a,b,n) or grid(list(v,...))", values.size());
+    const double low = number("grid", values, 0), high = number("grid", values, 1);
+    const std::int64_t steps = whole("grid", values, 2);
+    if (!std::isfinite(high - low)) fail("grid(a,b,n): b - a is too large for a number");
+    if (steps < 1 || steps > 1000000000) fail("grid(a,b,n) needs 1 <= n <= 1000000000");
+    if (steps == 1 && low != high) fail("grid(a,b,n) needs n >= 2 to reach from a to b");
+    const auto last = static_cast<std::uint64_t>(steps - 1);
+    // Whole numbers suit keys that accept nothing else.
+    constexpr double kExact = 0x1p53;
+    const double each = last > 0 ? (high - low) / static_cast<double>(last) : 0.0;
+    const bool whole_numbers = low == std::floor(low) && each == std::floor(each) &&
+                               std::fmax(std::abs(low), std::abs(high)) < kExact;
+    return {{},
+            whole_numbers ? ValueKind::kWhole : ValueKind::kNumber,
+            last + 1,
+            [=](std::uint64_t step) -> DrawnValue {
+                const double value =
+                    step == last
+                        ? high
+                        : low + (high - low) * (static_cast<double>(step) / static_cast<double>(last));
+                if (whole_numbers) return static_cast<std::int64_t>(value);
+                return value;
+            }};
+}
+
 }  // namespace
+
+ListItem::ListItem(const toml::node& value) : node(&value) {
+    if (const auto* words = value.as_string()) {
+        text = words->get();
+    } else if (const auto* x = value.as_floating_point()) {
+        text = fmt::format("{}", x->get());
+        number = x->get();
+    } else {
+        std::ostringstream out;
+        value.visit([&out](const auto& v) { out << v; });
+        text = out.str();
+    }
+    if (const auto* whole = value.as_integer()) {
+        integer = whole->get();
+        number = static_cast<double>(integer);
+    }
+    try {
+        if (value.is_number()) exact = number_in(value);
+    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number holds
+    }
+}
 
 Distribution parse_distribution(std::string_view text, const toml::node* own) {
     const std::size_t open = text.find('(');
@@ -103,15 +137,10 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
             "grid(list(v,...))");
     const std::string_view name = text.substr(0, open);
     if (name == "grid") {
-        const auto grid = std::make_shared<const Grid>(text.substr(open + 1, text.size() - open - 2));
-        const bool whole_numbers = grid->list.empty() && grid->is_whole();
-        return {
-            {}, static_cast<std::uint64_t>(grid->steps), [grid, whole_numbers](std::uint64_t step) -> Drawn {
-                if (!grid->list.empty()) return grid->list.get(step);
-                const double value = grid->at(static_cast<std::int64_t>(step));
-                if (whole_numbers) return static_cast<std::int64_t>(value);
-                return value;
-            }};
+        const std::string_view inner = text.substr(open + 1, text.size() - open - 2);
+        if (inner.starts_with("list(") && inner.ends_with(')'))
+            return grid_of_list(inner.substr(5, inner.size() - 6));
+        return grid_of_numbers(inner);
     }
     const toml::array list = arguments(name, text.substr(open + 1, text.size() - open - 2));
     const auto need = [&](std::size_t low, std::size_t high, const char* shape) {
@@ -143,33 +172,19 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
         constexpr std::int64_t kMost = 1000000000;
         if (low < -kMost || high > kMost || high < low)
             fail("integer(a,b) needs {} <= a <= b <= {}", -kMost, kMost);
-        return {[=](SplitMix64& random) { return low + random.below(static_cast<int>(high - low + 1)); }};
+        return {[=](SplitMix64& random) { return low + random.below(static_cast<int>(high - low + 1)); },
+                ValueKind::kWhole};
     }
     if (name == "list") {
         need(1, std::numeric_limits<std::int32_t>::max(), "list(v,...)");
-        return {[values = std::make_shared<const toml::array>(list)](SplitMix64& random) {
-            return values->get(static_cast<std::size_t>(random.below(static_cast<int>(values->size()))));
-        }};
+        const auto values = std::make_shared<const List>(list);
+        const int count = static_cast<int>(list.size());
+        return {
+            [=](SplitMix64& random) { return &values->items[static_cast<std::size_t>(random.below(count))]; },
+            values->kind()};
     }
     fail("unknown distribution {}; use uniform, normal, integer, list or grid{}", in_quotes(name),
          did_you_mean(name, {"uniform", "normal", "integer", "list", "grid"}));
-}
-
-ValueKind kind_of(std::string_view text) {
-    const std::size_t open = text.find('(');
-    const std::string_view name = text.substr(0, open);
-    if (name == "grid") {
-        const std::string_view inner = text.substr(open + 1, text.size() - open - 2);
-        const Grid grid(inner);
-        if (grid.list.empty()) return grid.is_whole() ? ValueKind::kWhole : ValueKind::kNumber;
-        return kind_of(inner);
-    }
-    if (name != "list") return name == "integer" ? ValueKind::kWhole : ValueKind::kNumber;
-    const toml::array list = arguments(name, text.substr(open + 1, text.size() - open - 2));
-    const auto all = [&list](auto&& is) { return std::all_of(list.begin(), list.end(), is); };
-    if (all([](const toml::node& value) { return value.is_integer(); })) return ValueKind::kWhole;
-    return all([](const toml::node& value) { return value.is_number(); }) ? ValueKind::kNumber
-                                                                          : ValueKind::kText;
 }
 
 }  // namespace carom::detail

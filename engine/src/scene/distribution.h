@@ -5,13 +5,13 @@
 #include <toml++/toml.h>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
-#include <variant>
 
-#include "base/splitmix64.h"
 #include "carom/engine/variation.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::detail {
 
@@ -21,14 +21,19 @@ template <class... Values>
     throw std::invalid_argument(fmt::format(message, std::forward<Values>(values)...));
 }
 
-/// A drawn value; the distribution owns the node.
-using Drawn = std::variant<double, std::int64_t, const toml::node*>;
+/// Every ListedValue is one of these; the distribution owns them.
+struct ListItem : ListedValue {
+    explicit ListItem(const toml::node& value);
+    const toml::node* node;
+    std::optional<double> exact;  ///< the number, if it is one that keys accept
+};
 
 struct Distribution {
-    std::function<Drawn(SplitMix64& random)> draw;
+    std::function<DrawnValue(SplitMix64& random)> draw;
+    ValueKind kind = ValueKind::kNumber;
     /// A grid has steps instead, and `at` gives the value of each; 0: not a grid.
     std::uint64_t steps = 0;
-    std::function<Drawn(std::uint64_t step)> at{};
+    std::function<DrawnValue(std::uint64_t step)> at{};
 };
 
 /// The text between the brackets of `name`(`text`), as TOML values. @throws std::invalid_argument
@@ -38,7 +43,5 @@ toml::array arguments(std::string_view name, std::string_view text);
 /// @param own  the number in the file, or null; normal(sd) is centred on it
 /// @throws std::invalid_argument that says what is wrong
 Distribution parse_distribution(std::string_view text, const toml::node* own);
-/// The type of a valid distribution's values. A list has whole numbers only if all its values are whole.
-ValueKind kind_of(std::string_view text);
 
 }  // namespace carom::detail

@@ -47,30 +47,20 @@ constexpr BallParams pool() {
 }
 
 /// Rolling friction: Mathavan, Jackson, Parkin (2009), 0.124 to 0.126 m/s^2. Cushion: the same authors'
-/// rebounds of a rolling ball, which their model of 2010 reproduces up to 2 m/s with 0.98 and 0.14. The
-/// models of an impact in the air lose 27 % more of the speed.
-constexpr BallParams snooker_2026_11() {
-    BallParams p = kSnookerClassic;
-    p.mu_r = 0.0128, p.e_c = 0.98, p.f_c = 0.14;
-    return p;
-}
-/// With a restitution that falls with speed the model reproduces those rebounds up to 3.5 m/s.
+/// rebounds of a rolling ball, which their model of 2010 reproduces up to 3.5 m/s if the restitution falls
+/// with speed. The models of an impact in the air lose 27 % more of the speed.
 constexpr BallParams snooker() {
-    BallParams p = snooker_2026_11();
+    BallParams p = kSnookerClassic;
+    p.mu_r = 0.0128, p.f_c = 0.14;
     p.e_c = 1.0, p.e_c_fall = 0.08, p.e_c_above = 1.7;
     return p;
 }
 
 /// Measured on 182 tracked shots of a three-cushion match: rolling friction from 1900 stretches, cushion from
-/// 54 paths.
-constexpr BallParams carom_2026_11() {
-    BallParams p = kCaromClassic;
-    p.mu_r = 0.0045, p.e_c = 0.87, p.f_c = 0.26;
-    return p;
-}
-/// The cushion fitted to single impacts of that match as well: lab/notes/2026-11-presets.md.
+/// paths and single impacts (lab/notes/2026-11-presets.md).
 constexpr BallParams carom_balls() {
-    BallParams p = carom_2026_11();
+    BallParams p = kCaromClassic;
+    p.mu_r = 0.0045;
     p.e_c = 0.9, p.e_c_fall = 0.02;
     p.f_c = 0.19, p.f_c_more = 0.23, p.f_c_fall = 0.7;
     return p;
@@ -105,8 +95,6 @@ constexpr BallPreset kBalls[] = {
     {"bar_box_heavy", pool(), &kHan2005, {pool().R, pool().m + 0.75 * kOunce}},
     {"english_pool", english_pool(), &kHan2005, {kEnglishCue, by_volume(kEnglishCue)}},
     {"pyramid", pyramid_balls(), &kHan2005},
-    {"snooker_2026_11", snooker_2026_11(), &kMathavan2010},
-    {"carom_2026_11", carom_2026_11(), &kHan2005},
     {"pool_classic", kPoolClassic, &kHan2005},
     {"snooker_classic", kSnookerClassic, &kHan2005},
     {"carom_classic", kCaromClassic, &kHan2005}};

@@ -3,19 +3,27 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace carom::detail {
 
-/// Removes "name." from the front of a key; false if the key does not begin with it.
-bool take(std::string_view& key, std::string_view name);
+/// A key in its parts, which name the same value in a file and in a scene.
+struct KeyPath {
+    std::string section;                 ///< "cue", "ball", "table"
+    std::string list;                    ///< inside [table]: "cushion", "corner_pockets"; "" for none
+    std::optional<std::size_t> index;    ///< of the ball, or of the part in its list
+    std::string name;                    ///< of the value in its section
+    std::optional<std::size_t> element;  ///< of the value, if it is a list
 
-/// Removes the name of a part of the table from the front of a key ("c2" in the list "cushion"), and returns
-/// its index in the list. @throws std::invalid_argument
-std::size_t take_part(std::string_view& key, const std::string& list);
+    /// Whether one of the two keys names the value of the other, or a part of it.
+    bool overlaps(const KeyPath& other) const;
+};
 
-/// Returns the index in an array of "x", "side" or "0". @throws std::invalid_argument
-std::size_t element_index(std::string_view name);
+/// @param ids  of the balls that a key may name, in their order
+/// @throws std::invalid_argument
+KeyPath parse_key(std::string_view key, const std::vector<std::string>& ids);
 
 }  // namespace carom::detail

@@ -113,6 +113,13 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     return detail::scene_from(detail::toml_from(text, name), name);
 }
 
+Cue parse_cue(std::string_view text, const Scene& scene) {
+    const toml::table file = detail::toml_from(text, scene.file);
+    Scene struck = scene;
+    detail::read_cue(detail::top_of(file, scene.file), struck);
+    return struck.cue.value_or(Cue());
+}
+
 Scene read_scene(const std::string& path) {
     return parse_scene(read_scene_text(path), path);
 }

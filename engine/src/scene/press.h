@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "base/splitmix64.h"
 #include "carom/engine/scene.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom {
 

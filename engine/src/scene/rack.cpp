@@ -73,26 +73,20 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
 
 constexpr std::size_t kPink = 4;  // among the colours of snooker
 
-/// Balls that have spots. Snooker: the baulk line is 737 mm from the bottom cushion, the radius of the D is
-/// 292 mm, and the black spot is 324 mm from the top cushion (rules of the WPBSA, section 1). Three-cushion:
-/// white is 182.5 mm to the left of yellow, which is on the head spot (opening position of the rules of the
-/// UMB; measured in the first shot of a match: 178.5 +- 2 mm).
+/// Balls that have spots. Three-cushion: white is 182.5 mm to the left of yellow, which is on the head spot
+/// (opening position of the rules of the UMB; measured in the first shot of a match: 178.5 +- 2 mm).
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
-    const Vec2 origin = table.corner;
-    const double middle = table.width / 2.0, l = table.length;
-    const auto at = [&](double x, double y) { return Vec2(origin.x() + x, origin.y() + y); };
     if (rack.game == RackGame::kThreeCushion) {
-        const double aside = 0.1825 * (l / 2.84);
-        return {{"white", at(middle - aside, l / 4.0)},
-                {"yellow", at(middle, l / 4.0)},
-                {"red", at(middle, 3.0 * l / 4.0)}};
+        const double aside = 0.1825 * (table.length / 2.84);
+        return {{"white", spot_on_axis(table, table.length / 4.0, -aside)},
+                {"yellow", head_spot(table)},
+                {"red", foot_spot(table)}};
     }
-    if (rack.game != RackGame::kSnooker) return {};
-    const double scale = l / 3.569;
-    const double baulk = 0.737 * scale, d = 0.292 * scale;
-    return {{"yellow", at(middle + d, baulk)},   {"green", at(middle - d, baulk)},
-            {"brown", at(middle, baulk)},        {"blue", at(middle, l / 2.0)},
-            {"pink", at(middle, 3.0 * l / 4.0)}, {"black", at(middle, l - 0.324 * scale)}};
+    std::vector<RackedBall> balls;
+    if (rack.game == RackGame::kSnooker)
+        for (const char* colour : {"yellow", "green", "brown", "blue", "pink", "black"})
+            balls.push_back({colour, snooker_spot(table, colour)});
+    return balls;
 }
 
 /// Positions without jitter, row by row from left to right.

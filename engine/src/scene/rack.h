@@ -31,7 +31,7 @@ int balls_of(const Rack& rack);
 /// The apex, or rack.spot_ball (which must be in the rack), is at rack.position, by default the foot spot
 /// (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about
 /// that ball. The colours of snooker and the balls of three-cushion are on their spots, whose distances
-/// (rack.cpp) scale with the length of the table; they have no jitter.
+/// scale with the length of the table; they have no jitter.
 ///
 /// Without jitter the rack is its own exact mirror image about x = apex.x, bit for bit, and neighbours are 2R
 /// + gap apart to within rounding.

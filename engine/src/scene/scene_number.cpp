@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,11 +22,9 @@
 namespace carom {
 namespace {
 
-using detail::element_index;
 using detail::fail;
+using detail::KeyPath;
 using detail::Section;
-using detail::take;
-using detail::take_part;
 
 // [-] Larger integers are not all exact as doubles.
 constexpr double kMostWhole = 0x1p53;
@@ -49,16 +48,15 @@ struct Found {
     std::function<double(Scene&)> get;  // NaN: the scene does not set it
 };
 
-/// The number that `key` names in the rows of a section.
+/// The number that a key names in the rows of its section.
 /// @param at  returns the object with the rows, given a scene
 /// @param change  what must be checked after a change within the range
 template <class T, std::size_t kRows, class At>
-Found find(const Field<T> (&fields)[kRows], const char* section, std::string_view key, Change change, At at) {
-    const std::size_t dot = key.find('.');
+Found find(const Field<T> (&fields)[kRows], const char* section, const KeyPath& path, Change change, At at) {
     for (const Field<T>& f : fields) {
-        if (!f.in(Files::kScene) || key.substr(0, dot) != f.key) continue;
-        if (dot != key.npos) {
-            const std::size_t k = element_index(key.substr(dot + 1));
+        if (!f.in(Files::kScene) || path.name != f.key) continue;
+        if (path.element) {
+            const std::size_t k = *path.element;
             if (f.element == nullptr || k >= f.count()) break;
             return {&f,
                     // The numbers of a fit have limits together, too.
@@ -94,59 +92,49 @@ Found find(const Field<T> (&fields)[kRows], const char* section, std::string_vie
         break;
     }
     fail("there is no such number in [{}]{}", section,
-         did_you_mean(key.substr(0, dot), keys_of(fields, Files::kScene)));
+         did_you_mean(path.name, keys_of(fields, Files::kScene)));
 }
 
-Found find_in_ball(const Scene& scene, std::string_view key) {
-    std::string ids;
-    for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const std::string& id = scene.ball[i].id;
-        ids += (ids.empty() ? "" : ", ") + id;
-        if (!take(key, id)) continue;
-        const auto ball = [i](Scene& s) -> BallStart& { return s.ball[i]; };
-        if (key != "radius" && key != "mass") {
-            const bool place = key.substr(0, key.find('.')) == "position";
-            Found found = find(kBallStartFields, "ball", key,
-                               place || key == "height" ? Change::kPlaces : Change::kNumbers, ball);
-            if (key == "height")
-                found.put = [put = std::move(found.put), i](Scene& s, double value) {
-                    const Change change = put(s, value);
-                    s.ball[i].position.z() = s.size_of(s.ball[i]).R + value;
-                    return change;
-                };
-            return found;
-        }
-        if (!scene.ball[i].own) fail("the ball has no size of its own; give it one, then vary it");
-        Found found = find(kSizeFields, "ball", key, Change::kTable,
-                           [i](Scene& s) -> BallSize& { return *s.ball[i].own; });
-        found.put = [put = std::move(found.put), i](Scene& s, double value) {
-            const Change change = put(s, value);
-            s.ball[i].position.z() = s.ball[i].own->R + s.ball[i].height;
-            return change;
-        };
-        return found;
-    }
-    fail("there is no such ball; write ball.ID.position.x with one of these ids: {}", ids);
-}
-
-Found find_in_balls(std::string_view key) {
-    Found found = find(kBallFields, "balls", key, key == "radius" ? Change::kTable : Change::kNumbers,
-                       [](Scene& s) -> BallParams& { return s.balls; });
-    if (key == "radius")
-        found.put = [put = std::move(found.put)](Scene& s, double value) {
-            const Change change = put(s, value);
-            for (BallStart& ball : s.ball) ball.position.z() = s.size_of(ball).R + ball.height;
-            return change;
-        };
+/// Puts balls that rest on the cloth at the height of their size, after `found` has changed it.
+template <class Balls>
+Found lifting(Found found, Balls balls) {
+    found.put = [put = std::move(found.put), balls](Scene& s, double value) {
+        const Change change = put(s, value);
+        for (BallStart& ball : balls(s)) ball.position.z() = s.size_of(ball).R + ball.height;
+        return change;
+    };
     return found;
 }
 
+Found find_in_ball(const Scene& scene, const KeyPath& path) {
+    const std::size_t i = *path.index;
+    const auto alone = [i](Scene& s) { return std::span(s.ball).subspan(i, 1); };
+    if (path.name == "radius" || path.name == "mass") {
+        if (!scene.ball[i].own) fail("the ball has no size of its own; give it one, then vary it");
+        return lifting(find(kSizeFields, "ball", path, Change::kTable,
+                            [i](Scene& s) -> BallSize& { return *s.ball[i].own; }),
+                       alone);
+    }
+    const bool place = path.name == "position" || path.name == "height";
+    Found found = find(kBallStartFields, "ball", path, place ? Change::kPlaces : Change::kNumbers,
+                       [i](Scene& s) -> BallStart& { return s.ball[i]; });
+    return path.name == "height" ? lifting(std::move(found), alone) : found;
+}
+
+Found find_in_balls(const KeyPath& path) {
+    const bool size = path.name == "radius";
+    Found found = find(kBallFields, "balls", path, size ? Change::kTable : Change::kNumbers,
+                       [](Scene& s) -> BallParams& { return s.balls; });
+    return size ? lifting(std::move(found), [](Scene& s) { return std::span(s.ball); }) : found;
+}
+
+/// @param first  how many parts of the list the file keeps in another list
 template <class Part, std::size_t kRows>
-Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, const char* list,
-                    std::vector<Part> Table::*parts, const Scene& scene, std::string_view key) {
-    const std::size_t i = take_part(key, list);
+Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, std::vector<Part> Table::*parts,
+                    const Scene& scene, const KeyPath& path, std::size_t first = 0) {
+    const std::size_t i = first + *path.index;
     if (i >= (scene.table.*parts).size()) fail("the table has no such part");
-    return find(fields, section, key, Change::kTable,
+    return find(fields, section, path, Change::kTable,
                 [parts, i](Scene& s) -> Part& { return (s.table.*parts)[i]; });
 }
 
@@ -164,52 +152,54 @@ Found rebuilding(Found found) {
     return found;
 }
 
-Found find_number(const Scene& scene, std::string_view key) {
-    if (take(key, "balls")) return find_in_balls(key);
-    if (take(key, "ball")) return find_in_ball(scene, key);
-    if (take(key, "cue")) {
+Found find_in_table(const Scene& scene, const KeyPath& path) {
+    if (path.list == "cushion")
+        return find_in_parts(kCushionFields, "table.cushion", &Table::cushions, scene, path);
+    if (path.list == "jaw") return find_in_parts(kJawFields, "table.jaw", &Table::jaws, scene, path);
+    if (path.list == "arc") {
+        const std::vector<Jaw>& jaws = scene.table.jaws;
+        const auto arc = std::find_if(jaws.begin(), jaws.end(), [](const Jaw& jaw) { return jaw.is_arc(); });
+        const auto first = static_cast<std::size_t>(arc - jaws.begin());
+        return find_in_parts(kJawFields, "table.arc", &Table::jaws, scene, path, first);
+    }
+    if (path.list == "pocket")
+        return find_in_parts(kPocketFields, "table.pocket", &Table::pockets, scene, path);
+    for (const PocketSection& section : kPocketSections)
+        if (path.list == section.key)
+            return rebuilding(find(kPocketMeasureFields, section.path, path, Change::kAnything,
+                                   [pockets = section.pockets](Scene& s) -> PocketMeasures& {
+                                       return s.table.measures.*pockets;
+                                   }));
+    return rebuilding(find(kMeasureFields, "table", path, Change::kAnything,
+                           [](Scene& s) -> Measures& { return s.table.measures; }));
+}
+
+Found find_number(const Scene& scene, const KeyPath& path) {
+    if (path.section == "balls") return find_in_balls(path);
+    if (path.section == "ball") return find_in_ball(scene, path);
+    if (path.section == "cue") {
         if (!scene.cue) fail("the scene has no cue; give it one, then vary it");
-        return find(kCueFields, "cue", key, Change::kNumbers, [](Scene& s) -> Cue& { return *s.cue; });
+        return find(kCueFields, "cue", path, Change::kNumbers, [](Scene& s) -> Cue& { return *s.cue; });
     }
-    if (take(key, "physics"))
-        return find(kPhysicsFields, "physics", key, Change::kNumbers,
+    if (path.section == "physics")
+        return find(kPhysicsFields, "physics", path, Change::kNumbers,
                     [](Scene& s) -> Physics& { return s.physics; });
-    if (take(key, "stop"))
-        return find(kStopFields, "stop", key, Change::kNumbers, [](Scene& s) -> Stop& { return s.stop; });
-    if (take(key, "table")) {
-        for (const PocketSection& section : kPocketSections)
-            if (take(key, section.key))
-                return rebuilding(find(kPocketMeasureFields, section.path, key, Change::kAnything,
-                                       [pockets = section.pockets](Scene& s) -> PocketMeasures& {
-                                           return s.table.measures.*pockets;
-                                       }));
-        if (take(key, "cushion"))
-            return find_in_parts(kCushionFields, "table.cushion", "cushion", &Table::cushions, scene, key);
-        if (take(key, "jaw")) return find_in_parts(kJawFields, "table.jaw", "jaw", &Table::jaws, scene, key);
-        if (take(key, "arc")) {
-            const auto first = std::find_if(scene.table.jaws.begin(), scene.table.jaws.end(),
-                                            [](const Jaw& jaw) { return jaw.is_arc(); });
-            const std::size_t i = (first - scene.table.jaws.begin()) + take_part(key, "arc");
-            if (i >= scene.table.jaws.size()) fail("the table has no such part");
-            return find(kJawFields, "table.arc", key, Change::kTable,
-                        [i](Scene& s) -> Jaw& { return s.table.jaws[i]; });
-        }
-        if (take(key, "pocket"))
-            return find_in_parts(kPocketFields, "table.pocket", "pocket", &Table::pockets, scene, key);
-        return rebuilding(find(kMeasureFields, "table", key, Change::kAnything,
-                               [](Scene& s) -> Measures& { return s.table.measures; }));
-    }
+    if (path.section == "stop")
+        return find(kStopFields, "stop", path, Change::kNumbers, [](Scene& s) -> Stop& { return s.stop; });
+    if (path.section == "table") return find_in_table(scene, path);
     fail(
         "name a number in its section, such as cue.speed; sections are balls, ball, cue, physics, stop and "
         "table{}",
-        did_you_mean(key.substr(0, key.find('.')), {"balls", "ball", "cue", "physics", "stop", "table"}));
+        did_you_mean(path.section, {"balls", "ball", "cue", "physics", "stop", "table"}));
 }
 
 }  // namespace
 
 SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
     try {
-        Found found = find_number(scene, key);
+        std::vector<std::string> ids;
+        for (const BallStart& ball : scene.ball) ids.push_back(ball.id);
+        Found found = find_number(scene, detail::parse_key(key, ids));
         row_ = found.row;
         put_ = std::move(found.put);
         get_ = std::move(found.get);

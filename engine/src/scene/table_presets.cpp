@@ -301,10 +301,6 @@ const WithoutPockets& without_pockets(std::string_view preset) {
 
 }  // namespace
 
-Vec2 foot_spot(const Table& table) {
-    return {table.corner.x() + table.width / 2.0, table.corner.y() + 3.0 * table.length / 4.0};
-}
-
 std::optional<PocketTable> pocket_table(std::string_view preset) {
     const WithPockets* row = with_pockets(preset);
     return row != nullptr ? std::optional(row->make()) : std::nullopt;

@@ -1,11 +1,8 @@
 #include "carom/engine/variation.h"
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
-#include <iterator>
 
 #include <algorithm>
-#include <charconv>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -14,7 +11,6 @@
 
 #include "base/draws.h"
 #include "base/fnv.h"
-#include "base/toml_number.h"
 #include "carom/engine/tolerances.h"
 #include "scene/aim.h"
 #include "scene/distribution.h"
@@ -27,175 +23,104 @@ namespace carom {
 namespace {
 
 using detail::Distribution;
-using detail::Drawn;
-using detail::element_index;
 using detail::fail;
-using detail::take;
-using detail::take_part;
-
-/// One step of a path: into a table by its name, or, if the name is empty, into an array by its index.
-struct Step {
-    std::string name;
-    std::size_t index = 0;
-    bool operator==(const Step&) const = default;
-};
+using detail::KeyPath;
+using detail::ListItem;
 
 struct Rule {
     std::string key;
-    std::vector<Step> path;
+    KeyPath path;
     Distribution distribution;
-    ValueKind kind = ValueKind::kNumber;
+    std::string unit;  // "" if it is not a number of the scene
     // The number or rack value of this key, if it can be set without the file.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
     // Of a grid: how many shots share a value before the next one comes.
     std::uint64_t stride = 1;
 
-    Drawn draw(std::uint64_t seed, std::uint64_t index) const {
+    DrawnValue draw(std::uint64_t seed, std::uint64_t index) const {
         if (distribution.steps > 0) return distribution.at(index / stride % distribution.steps);
         SplitMix64 random = draws_of(seed, index, key);
         return distribution.draw(random);
     }
 };
 
-toml::node* follow(toml::node& from, const Step& step) {
-    if (!step.name.empty()) {
-        toml::table* table = from.as_table();
-        return table ? table->get(step.name) : nullptr;
-    }
-    toml::array* array = from.as_array();
-    return array && step.index < array->size() ? array->get(step.index) : nullptr;
+const ListItem* listed(const DrawnValue& value) {
+    const auto* const* item = std::get_if<const ListedValue*>(&value);
+    return item != nullptr ? static_cast<const ListItem*>(*item) : nullptr;
 }
 
-toml::node* follow(toml::node& from, const std::vector<Step>& path) {
-    toml::node* at = &from;
-    for (const Step& step : path) {
-        if (at == nullptr) return nullptr;
-        at = follow(*at, step);
-    }
-    return at;
+using Node = toml::node_view<toml::node>;
+
+/// The table of the file that holds the value of a key, or no node.
+Node holder_in(toml::table& file, const KeyPath& path) {
+    Node at = file[path.section];
+    if (!path.list.empty()) at = at[path.list];
+    return path.index ? at[*path.index] : at;
 }
 
-/// Sets a value at the end of the path. All steps before the last one exist.
-void put_value(toml::table& file, const std::vector<Step>& path, const Drawn& value) {
-    toml::node* parent = follow(file, std::vector<Step>(path.begin(), path.end() - 1));
+Node value_in(toml::table& file, const KeyPath& path) {
+    const Node at = holder_in(file, path)[path.name];
+    return path.element ? at[*path.element] : at;
+}
+
+/// Sets the value of a key. Everything that holds it exists.
+void put_value(toml::table& file, const KeyPath& path, const DrawnValue& value) {
+    const Node holder = holder_in(file, path);
     const auto place = [&](const auto& v) {
-        const Step& last = path.back();
-        if (!last.name.empty()) {
-            parent->as_table()->insert_or_assign(last.name, v);
+        if (!path.element) {
+            holder.as_table()->insert_or_assign(path.name, v);
         } else {
-            toml::array& array = *parent->as_array();
-            array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(last.index), v);
+            toml::array& array = *holder[path.name].as_array();
+            array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(*path.element), v);
         }
     };
-    if (const auto* node = std::get_if<const toml::node*>(&value))
-        (*node)->visit(place);
+    if (const ListItem* item = listed(value))
+        item->node->visit(place);
     else if (const auto* whole = std::get_if<std::int64_t>(&value))
         place(*whole);
     else
         place(std::get<double>(value));
 }
 
-void write(const Drawn& value, std::string& text) {
-    text.clear();
-    const auto add = [&text](const auto& x) { fmt::format_to(std::back_inserter(text), "{}", x); };
-    if (const auto* number = std::get_if<double>(&value)) {
-        char digits[40];  // a double takes 24
-        text.append(digits, fmt::format_to(digits, FMT_COMPILE("{}"), *number));
-        return;
-    }
-    if (const auto* whole = std::get_if<std::int64_t>(&value)) return add(*whole);
-    const toml::node& node = *std::get<const toml::node*>(value);
-    if (const auto* words = node.as_string()) return add(words->get());
-    if (const auto* x = node.as_floating_point()) return add(x->get());
-    std::ostringstream out;
-    node.visit([&out](const auto& v) { out << v; });
-    text = out.str();
+/// The drawn number, if keys accept it.
+std::optional<double> exact_number(const DrawnValue& value) {
+    const ListItem* item = listed(value);
+    return item != nullptr ? item->exact : number_of(value);
 }
 
-/// The drawn number, if a double can hold it.
-std::optional<double> number_of(const Drawn& value) {
-    if (const auto* number = std::get_if<double>(&value)) return *number;
-    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
-    const toml::node& node = *std::get<const toml::node*>(value);
-    try {
-        return detail::number_in(node);
-    } catch (const std::invalid_argument&) {
-        return std::nullopt;
-    }
+bool is_whole(const DrawnValue& value) {
+    const ListItem* item = listed(value);
+    return item != nullptr ? item->node->is_integer() : std::holds_alternative<std::int64_t>(value);
 }
 
-bool is_whole(const Drawn& value) {
-    const auto* const* node = std::get_if<const toml::node*>(&value);
-    return std::holds_alternative<std::int64_t>(value) || (node != nullptr && (*node)->is_integer());
-}
-
-/// Removes the id of a ball from the front of a key, and returns its index in the list.
-std::size_t take_ball(toml::table& file, std::string_view& key) {
-    const toml::array* balls = file["ball"].as_array();
-    std::string ids;
-    for (std::size_t i = 0; balls && i < balls->size(); ++i) {
-        const toml::table* ball = balls->get_as<toml::table>(i);
-        const std::string id = ball ? (*ball)["id"].value_or(std::string("cue")) : "";
-        if (take(key, id)) return i;
-        ids += (ids.empty() ? "" : ", ") + id;
-    }
-    fail("the scene has no such [[ball]]; write ball.ID.position.x with one of these ids: {}",
-         ids.empty() ? "none is written" : ids);
-}
-
-/// Finds the section that a key begins with. If it is missing and holds only settings, adds it, empty.
-std::vector<Step> find_section(toml::table& file, std::string_view& key) {
-    if (take(key, "ball")) return {{"ball"}, {"", take_ball(file, key)}};
-    const std::size_t dot = key.find('.');
-    if (dot == key.npos || dot == 0) fail("name a value in its section, such as cue.speed");
-    const std::string section(key.substr(0, dot));
-    key.remove_prefix(dot + 1);
-    if (!file.contains(section)) {
+/// The path that a key names in the file. If its section is missing and holds only settings, adds it, empty.
+KeyPath find_path(toml::table& file, std::string_view key) {
+    std::vector<std::string> ids;
+    for (std::size_t i = 0; const Node ball = file["ball"][i]; ++i)
+        ids.push_back(ball["id"].value_or(std::string("cue")));
+    KeyPath path = detail::parse_key(key, ids);
+    if (!file.contains(path.section)) {
         // These two would put balls on the table, or strike one.
-        if (section == "rack" || section == "cue")
-            fail("the scene has no [{}]; write the section, then vary what is in it", section);
-        file.insert(section, toml::table());
+        if (path.section == "rack" || path.section == "cue")
+            fail("the scene has no [{}]; write the section, then vary what is in it", path.section);
+        file.insert(path.section, toml::table());
     }
-    std::vector<Step> path = {{section}};
-    if (section != "table") return path;
-    for (const PocketSection& of : kPocketSections) {
-        if (!take(key, of.key)) continue;
-        toml::table* table = file["table"].as_table();
-        if (table != nullptr && !table->contains(of.key)) table->insert(of.key, toml::table());
-        path.push_back({of.key});
-        return path;
-    }
-    for (const std::string list : {"cushion", "jaw", "arc", "pocket"}) {
-        if (!take(key, list)) continue;
-        path.push_back({list});
-        path.push_back({"", take_part(key, list)});
-        break;
-    }
-    return path;
-}
-
-/// The path in the file that a key names.
-std::vector<Step> find_path(toml::table& file, std::string_view key) {
-    std::vector<Step> path = find_section(file, key);
-    const toml::node* holder = follow(file, path);
-    if (holder == nullptr || !holder->is_table()) fail("the scene file does not contain this part");
-    const std::size_t dot = key.find('.');
-    if (key.empty() || dot == 0) fail("the name of the value is missing");
-    path.push_back({std::string(key.substr(0, dot))});
-    if (dot == key.npos) return path;
-    const std::size_t index = element_index(key.substr(dot + 1));
-    const toml::node* array = follow(file, path);
-    if (array == nullptr || !array->is_array())
+    toml::table* table = file[path.section].as_table();
+    if (table != nullptr && !path.list.empty() && !path.index && !table->contains(path.list))
+        table->insert(path.list, toml::table());
+    const Node holder = holder_in(file, path);
+    if (!holder.is_table()) fail("the scene file does not contain this part");
+    if (!path.element) return path;
+    if (!holder[path.name].is_array())
         fail("the scene file does not contain this array; add it, then vary one of its numbers");
-    path.push_back({"", index});
-    if (follow(file, path) == nullptr) fail("the array in the scene file is shorter");
+    if (!value_in(file, path)) fail("the array in the scene file is shorter");
     return path;
 }
 
 /// Refuses a key that no scene has. If the file has no value for it, nothing else distinguishes it from a key
 /// that was left out.
-void check_known(toml::table file, const std::string& name, const std::vector<Step>& path) {
+void check_known(toml::table file, const std::string& name, const KeyPath& path) {
     put_value(file, path, 0.0);
     try {
         detail::scene_from(file, name);
@@ -211,42 +136,40 @@ Rule parse_rule(toml::table& file, const std::string& name, const std::string& t
     Rule rule;
     rule.key = text.substr(0, equals);
     rule.path = find_path(file, rule.key);
-    const toml::node* const own = follow(file, rule.path);
+    const toml::node* const own = value_in(file, rule.path).node();
     if (own == nullptr) check_known(file, name, rule.path);
     rule.distribution = detail::parse_distribution(std::string_view(text).substr(equals + 1), own);
-    rule.kind = detail::kind_of(std::string_view(text).substr(equals + 1));
     return rule;
-}
-
-bool overlap(const Rule& a, const Rule& b) {
-    const std::size_t common = std::min(a.path.size(), b.path.size());
-    return std::equal(a.path.begin(), a.path.begin() + static_cast<std::ptrdiff_t>(common), b.path.begin());
 }
 
 /// Whether a key of the file is a number of the scene on which nothing else depends. Noses, racks and balls
 /// with their own size depend on the size of the balls, and the surface on the parts of the table.
-bool is_number_alone(std::string_view key) {
-    const std::string_view section = key.substr(0, key.find('.')), last = key.substr(key.rfind('.') + 1);
-    if (section == "cue" || section == "physics" || section == "stop") return true;
-    return (section == "ball" || section == "balls") && last != "radius" && last != "mass";
+bool is_number_alone(const KeyPath& path) {
+    if (path.section == "cue" || path.section == "physics" || path.section == "stop") return true;
+    return (path.section == "ball" || path.section == "balls") && path.name != "radius" &&
+           path.name != "mass";
 }
 
 /// Finds what a rule varies in the scene itself.
 void find_number(const Scene& scene, Rule& rule) {
-    std::string_view key = rule.key;
+    const std::string& name = rule.path.name;
+    if (rule.path.section == "rack") {
+        for (const Field<Rack>& f : kRackFields)
+            if (name == f.key && (name == "gap" || name == "jitter" || name == "seed" || name == "angle_deg"))
+                rule.rack = &f, rule.unit = f.range.unit;
+        return;
+    }
     try {
-        if (is_number_alone(key)) rule.number.emplace(scene, key);
+        const SceneNumber number(scene, rule.key);
+        rule.unit = number.row().range.unit;
+        if (is_number_alone(rule.path)) rule.number = number;
     } catch (const std::invalid_argument&) {  // a model, a list, or a mistake that shot() reports
     }
-    if (!take(key, "rack")) return;
-    for (const Field<Rack>& f : kRackFields)
-        if (key == f.key && (key == "gap" || key == "jitter" || key == "seed" || key == "angle_deg"))
-            rule.rack = &f;
 }
 
 /// Sets a number of the rack; false if its section would refuse it.
-bool put_in_rack(const Field<Rack>& row, const Drawn& value, Rack& rack) {
-    const std::optional<double> number = number_of(value);
+bool put_in_rack(const Field<Rack>& row, const DrawnValue& value, Rack& rack) {
+    const std::optional<double> number = exact_number(value);
     if (!number || !contains(row.range, *number)) return false;
     if (row.kind == Key::Kind::kNumber)
         row.set(rack, *number);
@@ -263,6 +186,24 @@ bool same_balls(const Scene& a, const Scene& b) {
 }
 
 }  // namespace
+
+double number_of(const DrawnValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+    return std::get<const ListedValue*>(value)->number;
+}
+
+std::int64_t integer_of(const DrawnValue& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
+    const auto* const* item = std::get_if<const ListedValue*>(&value);
+    return item != nullptr ? (*item)->integer : 0;
+}
+
+std::string text_of(const DrawnValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+    return std::get<const ListedValue*>(value)->text;
+}
 
 struct Variation::Parts {
     Parts(std::string file_name, toml::table content)
@@ -316,7 +257,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         try {
             Rule rule = parse_rule(parts->file, parts->path, text);
             for (const Rule& other : parts->rules)
-                if (overlap(rule, other)) fail("{} already varies this value", other.key);
+                if (rule.path.overlaps(other.path)) fail("{} already varies this value", other.key);
             find_number(parts->base, rule);
             parts->quick = parts->quick && (rule.number || rule.rack != nullptr);
             parts->keys.push_back(rule.key);
@@ -349,10 +290,11 @@ std::string with_values(std::string_view text, const std::string& name, const st
     toml::table file = detail::toml_from(text, name);
     for (const NewValue& value : values) {
         try {
-            const std::vector<Step> path = find_path(file, value.key);
+            const KeyPath path = find_path(file, value.key);
             const toml::array list = detail::arguments("value", value.value);
             if (list.size() != 1) fail("expected one value, not {}", list.size());
-            put_value(file, path, list.get(0));
+            const ListItem item(list[0]);
+            put_value(file, path, &item);
         } catch (const std::invalid_argument& error) {
             throw VariationError(value.key + ": " + error.what());
         }
@@ -370,14 +312,8 @@ const std::vector<std::string>& Variation::keys() const {
     return parts_->keys;
 }
 
-std::string Variation::unit(std::size_t key) const {
-    const Rule& rule = parts_->rules.at(key);
-    if (rule.rack != nullptr) return rule.rack->range.unit;
-    try {
-        return SceneNumber(parts_->base, rule.key).row().range.unit;
-    } catch (const std::invalid_argument&) {
-        return "";
-    }
+const std::string& Variation::unit(std::size_t key) const {
+    return parts_->rules.at(key).unit;
 }
 
 std::uint64_t Variation::grid() const {
@@ -385,21 +321,24 @@ std::uint64_t Variation::grid() const {
 }
 
 ValueKind Variation::kind(std::size_t key) const {
-    return parts_->rules.at(key).kind;
+    return parts_->rules.at(key).distribution.kind;
 }
 
 std::uint64_t Variation::fingerprint() const {
     return parts_->fingerprint;
 }
 
+void Variation::draw(std::uint64_t index, std::span<DrawnValue> values) const {
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = parts_->rules[k].draw(parts_->seed, index);
+}
+
 VariedShot Variation::shot(std::uint64_t index) const {
     VariedShot shot;
+    shot.values.resize(parts_->rules.size());
+    draw(index, shot.values);
     toml::table file = parts_->file;
-    for (const Rule& rule : parts_->rules) {
-        const Drawn value = rule.draw(parts_->seed, index);
-        write(value, shot.values.emplace_back());
-        put_value(file, rule.path, value);
-    }
+    for (std::size_t k = 0; k < shot.values.size(); ++k)
+        put_value(file, parts_->rules[k].path, shot.values[k]);
     try {
         shot.scene = detail::scene_from(file, parts_->path);
         if (same_balls(*shot.scene, parts_->base)) return shot;
@@ -411,23 +350,19 @@ VariedShot Variation::shot(std::uint64_t index) const {
     return shot;
 }
 
-std::optional<Change> Variation::put(std::uint64_t index, Scene& scene,
-                                     std::vector<std::string>& values) const {
+std::optional<Change> Variation::put(std::span<const DrawnValue> values, Scene& scene) const {
     if (!parts_->quick) return std::nullopt;
-    values.resize(parts_->rules.size());
     Change change = Change::kNumbers;
     std::optional<Rack> rack;
     for (std::size_t k = 0; k < values.size(); ++k) {
         const Rule& rule = parts_->rules[k];
-        const Drawn value = rule.draw(parts_->seed, index);
-        write(value, values[k]);
         if (rule.rack != nullptr) {
             if (!rack) rack = parts_->rack;
-            if (!put_in_rack(*rule.rack, value, *rack)) return std::nullopt;
+            if (!put_in_rack(*rule.rack, values[k], *rack)) return std::nullopt;
             continue;
         }
-        const std::optional<double> number = number_of(value);
-        if (!number || (rule.number->row().kind == Key::Kind::kInteger && !is_whole(value)))
+        const std::optional<double> number = exact_number(values[k]);
+        if (!number || (rule.number->row().kind == Key::Kind::kInteger && !is_whole(values[k])))
             return std::nullopt;
         try {
             change = std::max(change, rule.number->put(scene, *number));

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "carom/engine/ball_ball.h"
 #include "carom/engine/vec.h"
 
 namespace carom::tangent {
 
 // The same functions of duals stand beside these.
-using carom::cross, carom::dot, carom::length, carom::length3, carom::planar;
+using carom::contact_distance, carom::cross, carom::cross3, carom::dot, carom::dot3, carom::length,
+    carom::length3, carom::planar;
 
 /// Inputs per replay: one vector register of 512 bits.
 inline constexpr int kLanes = 8;
@@ -33,6 +35,10 @@ inline Dual chain(double x, const Dual& a, double by_a) {
     Dual r(x);
     for (int i = 0; i < kLanes; ++i) r.d[i] = by_a * a.d[i];
     return r;
+}
+/// Compares the values.
+inline bool operator<(const Dual& a, const Dual& b) {
+    return a.x < b.x;
 }
 inline Dual operator+(const Dual& a, const Dual& b) {
     return chain(a.x + b.x, a, 1.0, b, 1.0);
@@ -67,8 +73,14 @@ inline Dual cross(const Dual2& a, const Dual2& b) {
 inline Dual length(const Dual2& a) {
     return sqrt(dot(a, a));
 }
+inline Dual dot3(const Dual3& a, const Dual3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Dual3 cross3(const Dual3& a, const Dual3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 inline Dual length3(const Dual3& a) {
-    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    return sqrt(dot3(a, a));
 }
 inline Dual2 planar(const Dual3& a) {
     return {a[0], a[1]};
@@ -78,6 +90,11 @@ std::array<Dual, N> operator-(const std::array<Dual, N>& a, const std::array<Dua
     std::array<Dual, N> r;
     for (std::size_t i = 0; i < N; ++i) r[i] = a[i] - b[i];
     return r;
+}
+
+inline Dual contact_distance(const Dual& R1, const Dual& R2, bool discs) {
+    const double x = carom::contact_distance(R1.x, R2.x, discs);
+    return chain(x, R1, discs ? 1.0 : 0.5 * x / R1.x, R2, discs ? 1.0 : 0.5 * x / R2.x);
 }
 
 }  // namespace carom::tangent

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "carom/engine/airborne.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/tangents.h"
 #include "carom/engine/tolerances.h"
-#include "contact/detect.h"
+#include "physics/cushion/bounce.h"
 #include "physics/motion.h"
-#include "physics/nose_reach.h"
 
 namespace carom::tangent {
 namespace {
@@ -33,8 +34,6 @@ constexpr double kClusterDisagree = 1e-3;
 constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] A derivative below this is known no better than this.
 constexpr double kRounding = 1e-3;
-// [-] Most impacts at one nose in one bounce; loop/bounce.cpp has the reason.
-constexpr int kMostImpacts = 200;
 
 using List = std::vector<double>;
 using Map = std::function<List(const double*)>;
@@ -126,11 +125,8 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
 
 /// Reads what Arguments holds.
 struct Reader {
-    explicit Reader(const double* list) : next(list) {
-        balls = params_of(list);
-        next += kParams;
-        gravity = *next++;
-    }
+    Reader(const Laws& laws, const double* list)
+        : next(list + kParams), balls(with_numbers(laws.plan.scene.balls, list)), gravity(*next++) {}
     double number() { return *next++; }
     Vec3 vec() {
         next += 3;
@@ -149,8 +145,11 @@ struct Reader {
     double gravity;
 };
 
-void add(List& out, const Velocities& ball) {
-    for (const Vec3* part : {&ball.v, &ball.w}) out.insert(out.end(), part->data(), part->data() + 3);
+List list_of(std::initializer_list<Velocities> balls) {
+    List out;
+    for (const Velocities& ball : balls)
+        for (const Vec3* part : {&ball.v, &ball.w}) out.insert(out.end(), part->data(), part->data() + 3);
+    return out;
 }
 void put(State& s, const Dual* from) {
     for (int i = 0; i < 3; ++i) s.v[i] = from[i], s.w[i] = from[3 + i];
@@ -169,68 +168,54 @@ double closing_speed(const Dual3& apart, const State& s1, const State& s2) {
     return sum / length3(apart).x;
 }
 
-Arguments pair_arguments(const Laws& laws, int one, int two, const Dual3& apart, const State& s1,
-                         const State& s2) {
+/// Differentiates a law of two balls. law(in, pair, ball1, ball2): the numbers that all share, the sizes and
+/// the way from centre to centre, and the velocities, which it replaces.
+struct Pair {
+    BallSize size1, size2;
+    Vec3 apart;
+};
+template <class Law>
+void meet_pair(Laws& laws, int one, int two, const Dual3& apart, State& s1, State& s2, const Law& law) {
     const Numbers::Ball &b1 = laws.numbers.balls[one], &b2 = laws.numbers.balls[two];
-    Arguments in(laws.numbers);
+    Arguments arguments(laws.numbers);
     // In a thin hit the models bend within the closing speed.
     const double speed = std::abs(closing_speed(apart, s1, s2)), reach = length3(apart).x;
     const double most = std::max({speed_of(s1, b1.R), speed_of(s2, b2.R), speed});
-    in.add(b1);
-    in.add(b2);
-    in.add(apart, most > 0.0 ? reach * speed / most : reach);
-    in.add(s1, b1.R, speed);
-    in.add(s2, b2.R, speed);
-    return in;
+    arguments.add(b1);
+    arguments.add(b2);
+    arguments.add(apart, most > 0.0 ? reach * speed / most : reach);
+    arguments.add(s1, b1.R, speed);
+    arguments.add(s2, b2.R, speed);
+    const std::vector<Dual> out = differentiate(laws, arguments, [&](const double* list) {
+        Reader in(laws, list);
+        const Pair pair{in.size(), in.size(), in.vec()};
+        Velocities ball1 = in.velocities(pair.size1.R), ball2 = in.velocities(pair.size2.R);
+        law(in, pair, ball1, ball2);
+        return list_of({ball1, ball2});
+    });
+    put(s1, out.data());
+    put(s2, out.data() + 6);
 }
 
-/// The planar impact of Resolver::collide, at the tightest tolerance. Friction that a plan skips has no
-/// effect, so none is skipped.
-List collide_at(const Plan& plan, bool equal, const double* list) {
-    Reader in(list);
-    const BallSize size1 = in.size(), size2 = in.size();
-    const BallParams& balls = in.balls;
-    Vec2 apart = planar(in.vec());
-    apart *= contact_distance(size1.R, size2.R, balls.discs()) / length(apart);
-    const Velocities a = in.velocities(size1.R), b = in.velocities(size2.R);
-    const Vec2 y = apart / length(apart), x(y.y(), -y.x());
-    const Vec3 w = a.w + b.w;
-    const double along = dot(x, planar(a.v - b.v)) - size1.R * w.z();
-    const Vec2 slip(along, size1.R * dot(x, planar(w)));
-    const BallBallModelInfo& model = *plan.ball_ball;
-    kernel::ImpactParams params{.R = size1.R,
-                                .m = size1.m,
-                                .mu_s1 = balls.mu_s,
-                                .mu_s2 = balls.mu_s,
-                                .mu_b = model.reads_friction ? balls.ball_friction()(length(slip)) : 0.0,
-                                .e_b = model.reads_restitution ? balls.e_b : 1.0,
-                                .cloth_slip = plan.scene.physics.cloth_slip == ClothSlipSign::kAsPublished
-                                                  ? kernel::ClothSlip::kAsPublished
-                                                  : kernel::ClothSlip::kConsistent};
-    const auto ball = [](const Vec2& r, double z, const Velocities& at) {
-        return kernel::Ball{{r.x(), r.y(), z}, {at.v.x(), at.v.y(), 0.0}, {at.w.x(), at.w.y(), at.w.z()}};
-    };
-    const kernel::Ball ball1 = ball(Vec2::Zero(), size1.R, a), ball2 = ball(apart, size2.R, b);
-    kernel::ImpactResult result;
-    const bool integrated =
-        model.reads_tolerance && (equal || params.mu_b != 0.0 || (params.mu_s1 != 0.0 && size1.R != size2.R));
-    if (equal && !integrated && size1 == size2) {
-        model.collide(plan.impact, ball1, ball2, params, result);
-    } else if (integrated) {
-        params.mass_ratio = size2.m / size1.m;
-        params.radius_ratio = size2.R / size1.R;
-        BallBallSettings settings = plan.impact;
-        settings.tolerance = kernel::kTightestTolerance;
-        model.collide(settings, ball1, ball2, params, result);
-    } else {
-        collide_unequal(size1, size2, ball1, ball2, params, result);
-    }
-    if (result.status != kernel::ImpactStatus::kOk)
-        throw TangentError("its model has no solution nearby, as at the edge of a miss");
-    List out;
-    for (const double* part : {result.v1, result.w1, result.v2, result.w2})
-        out.insert(out.end(), part, part + 3);
-    return out;
+/// The same of one ball. law(in, size, about, ball)
+/// @param about  three more numbers that the law reads, in this unit
+template <class Law>
+void meet_table(Laws& laws, int ball, const Dual3& about, double unit, double speed, State& s,
+                const Law& law) {
+    const Numbers::Ball& numbers = laws.numbers.balls[ball];
+    Arguments arguments(laws.numbers);
+    arguments.add(numbers);
+    arguments.add(about, unit);
+    arguments.add(s, numbers.R, speed);
+    const std::vector<Dual> out = differentiate(laws, arguments, [&](const double* list) {
+        Reader in(laws, list);
+        const BallSize size = in.size();
+        const Vec3 more = in.vec();
+        Velocities at = in.velocities(size.R);
+        law(in, size, more, at);
+        return list_of({at});
+    });
+    put(s, out.data());
 }
 
 }  // namespace
@@ -242,12 +227,20 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
             "physics.substeps makes it a step function of its input; use physics.tolerance instead");
     const Dual fall1 = s1.v[2], fall2 = s2.v[2];
     s1.v[2] = s2.v[2] = 0.0;
-    const bool equal = plan.sizes[one] == plan.sizes[two];
-    const std::vector<Dual> out =
-        differentiate(laws, pair_arguments(laws, one, two, apart, s1, s2),
-                      [&](const double* list) { return collide_at(plan, equal, list); });
-    put(s1, out.data());
-    put(s2, out.data() + 6);
+    BallBallSettings settings = plan.impact;
+    settings.tolerance = kernel::kTightestTolerance;
+    meet_pair(laws, one, two, apart, s1, s2,
+              [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
+                  const auto& [size1, size2, r] = pair;
+                  const Vec2 level =
+                      planar(r) * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(planar(r)));
+                  // Friction that a plan skips has no effect, but it may have derivatives: none is skipped.
+                  const PairImpact impact =
+                      carom::collide({*plan.ball_ball, settings, in.balls}, size1, size2, {0.0, 0.0, size1.R},
+                                     {level.x(), level.y(), size2.R}, ball1, ball2);
+                  if (impact.status != kernel::ImpactStatus::kOk)
+                      throw TangentError("its model has no solution nearby, as at the edge of a miss");
+              });
     s1.v[2] = fall1;
     s2.v[2] = fall2;
 }
@@ -255,28 +248,16 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2) {
     const BallBallModelInfo& model = *laws.plan.ball_ball;
-    const std::vector<Dual> out =
-        differentiate(laws, pair_arguments(laws, one, two, apart, s1, s2), [&](const double* list) {
-            Reader in(list);
-            FreePair pair{in.size(), in.size(), in.balls};
-            if (!model.reads_restitution) pair.balls.e_b = 1.0;
-            if (!model.reads_friction) pair.balls.mu_b = pair.balls.mu_b_more = 0.0;
-            const Vec3 r = in.vec(), n = r / length3(r);
-            Velocities a = in.velocities(pair.size1.R), b = in.velocities(pair.size2.R);
-            const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), in.gravity);
-            if (slow) {
-                part_slowly(pair, n, lies.one, lies.two, parting, a, b);
-            } else {
-                pair.balls.e_b = std::max(pair.balls.e_b, parting / dot3(a.v - b.v, n));
-                hit_ball(pair, n, a, b);
-            }
-            List after;
-            add(after, a);
-            add(after, b);
-            return after;
-        });
-    put(s1, out.data());
-    put(s2, out.data() + 6);
+    meet_pair(laws, one, two, apart, s1, s2,
+              [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
+                  FreePair free{pair.size1, pair.size2, model.friction(in.balls),
+                                      model.restitution(in.balls)};
+                  const Vec3 n = pair.apart / length3(pair.apart);
+                  if (slow)
+                      part_slowly(free, n, lies, in.gravity, ball1, ball2);
+                  else
+                      hit_ball(free, n, ball1, ball2);
+              });
 }
 
 // The loop resolves the cluster again, in a scene that contains nothing else.
@@ -306,7 +287,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     // The one that moves is put to touch, so that what touches at rest still does, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
     const Map resolve = [&](const double* list) {
-        Reader read(list);
+        Reader read(laws, list);
         scene.balls = read.balls;
         scene.physics.gravity = read.gravity;
         for (BallStart& ball : scene.ball) {
@@ -327,8 +308,10 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
             record.clusters[0].size() != balls.size())
             throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
         List after;
-        for (const BallTrack& track : record.tracks)
-            add(after, {track.segments.back().v, track.segments.back().w});
+        for (const BallTrack& track : record.tracks) {
+            const List ball = list_of({{track.segments.back().v, track.segments.back().w}});
+            after.insert(after.end(), ball.begin(), ball.end());
+        }
         return after;
     };
     const std::vector<Dual> out = differentiate(laws, in, resolve, kClusterDisagree);
@@ -337,83 +320,36 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
 
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,
                   const Dual& height, bool hops, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
     const Dual fall = s.v[2];
     s.v[2] = 0.0;
     const double speed = std::abs(normal[0].x * s.v[0].x + normal[1].x * s.v[1].x);
-    const double most = std::max(speed_of(s, numbers.R), speed);
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add({normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0);
-    in.add(s, numbers.R, speed);
-    const std::vector<Dual> out = differentiate(laws, in, [&](const double* list) {
-        Reader read(list);
-        const BallSize size = read.size();
-        const Vec3 nose = read.vec();
-        const Vec2 n = planar(nose) / length(planar(nose));
-        const Velocities came = read.velocities(size.R);
-        Velocities at = came;
-        const CushionContact contact = cushion_contact(read.balls, size, nose.z(), n, at.v, at.w);
-        const double noise = kClosingUlp * kEpsilon * (length(planar(at.v)) + size.R * at.w.norm());
-        for (int k = 0; k < kMostImpacts && -dot(n, planar(at.v)) > noise; ++k)
-            if (!model.resolve(contact, n, at.v, at.w))
+    const double most = std::max(speed_of(s, laws.numbers.balls[ball].R), speed);
+    meet_table(
+        laws, ball, {normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0, speed, s,
+        [&](const Reader& in, const BallSize& size, const Vec3& nose, Velocities& at) {
+            const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
+            if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt, at))
                 throw TangentError("its model has no solution nearby");
-        if (hops && read.balls.e_h > 0.0 && model.grip != nullptr) {
-            const double up = size.R - nose.z(), reach = nose_reach(size.R, nose.z(), 0.0);
-            const MotionParams motion = motion_params(read.balls, read.gravity, size.R);
-            const double hop = hop_speed(read.balls, motion, model,
-                                         {size.R / reach * n.x(), size.R / reach * n.y(), up / reach}, came);
-            const auto energy = [&size](const Velocities& v) {
-                return v.v.squaredNorm() + kInertia * size.R * size.R * v.w.squaredNorm();
-            };
-            at.v.z() = std::min(hop, std::sqrt(std::max(0.0, energy(came) - energy(at))));
-        }
-        List after;
-        add(after, at);
-        return after;
-    });
-    put(s, out.data());
+        });
     if (!hops) s.v[2] = fall;
 }
 
 void meet_nose_in_air(Laws& laws, int ball, const CushionModelInfo& model, const Dual3& apart, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
     double speed = 0.0;
     for (int i = 0; i < 3; ++i) speed += apart[i].x * s.v[i].x;
-    const double reach = length3(apart).x, most = speed_of(s, numbers.R);
+    const double reach = length3(apart).x, most = speed_of(s, laws.numbers.balls[ball].R);
     speed = std::abs(speed) / reach;
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add(apart, most > 0.0 ? reach * speed / most : reach);
-    in.add(s, numbers.R, speed);
-    const std::vector<Dual> out = differentiate(laws, in, [&](const double* list) {
-        Reader read(list);
-        const BallSize size = read.size();
-        const Vec3 r = read.vec();
-        Velocities at = read.velocities(size.R);
-        hit_nose(read.balls, size.R, model, r / length3(r), parting_speed(size.R, read.gravity), at);
-        List after;
-        add(after, at);
-        return after;
-    });
-    put(s, out.data());
+    meet_table(laws, ball, apart, most > 0.0 ? reach * speed / most : reach, speed, s,
+               [&](const Reader& in, const BallSize& size, const Vec3& r, Velocities& at) {
+                   hit_nose(in.balls, size.R, model, r / length3(r), parting_speed(size.R, in.gravity), at);
+               });
 }
 
 void meet_cloth(Laws& laws, int ball, State& s) {
-    const Numbers::Ball& numbers = laws.numbers.balls[ball];
-    Arguments in(laws.numbers);
-    in.add(numbers);
-    in.add(s, numbers.R, std::abs(s.v[2].x));
-    const std::vector<Dual> out = differentiate(laws, in, [](const double* list) {
-        Reader read(list);
-        const BallSize size = read.size();
-        Velocities at = read.velocities(size.R);
-        hit_cloth(read.balls, motion_params(read.balls, read.gravity, size.R), at);
-        List after;
-        add(after, at);
-        return after;
-    });
-    put(s, out.data());
+    meet_table(laws, ball, {}, 1.0, std::abs(s.v[2].x), s,
+               [](const Reader& in, const BallSize& size, const Vec3&, Velocities& at) {
+                   hit_cloth(in.balls, motion_params(in.balls, in.gravity, size.R), at);
+               });
 }
 
 }  // namespace carom::tangent

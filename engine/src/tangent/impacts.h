@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "carom/engine/ball_ball.h"
+#include "carom/engine/airborne.h"
 #include "carom/engine/cushion.h"
 #include "tangent/leg.h"
 
@@ -24,9 +24,6 @@ struct Laws {
 void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State& s2);
 
 /// Two balls as free bodies.
-struct Lies {
-    bool one, two;
-};
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2);
 

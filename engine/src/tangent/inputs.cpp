@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -17,8 +15,6 @@
 
 namespace carom::tangent {
 namespace {
-
-static_assert(std::is_trivially_copyable_v<BallParams> && sizeof(BallParams) % sizeof(double) == 0);
 
 // [-] and [degrees] Steps of the differences. Four points of them are exact to 1e-13 for sines and roots.
 constexpr double kStep = 1e-3, kAngleStep = 0.1;
@@ -34,42 +30,51 @@ Input with_step(const std::string& key, double value, const Interval& range,
     return {key, value, step, std::move(put)};
 }
 
-/// The numbers in the order in which numbers_of() reads them: of the balls and the stroke, and of the table.
-std::vector<double> list_of(const Scene& scene, Vertical vertical) {
-    std::vector<double> list(kParams);
-    std::memcpy(list.data(), &scene.balls, sizeof(BallParams));
-    const auto add_all = [&list](const auto& v) { list.insert(list.end(), v.data(), v.data() + v.size()); };
-    list.push_back(scene.physics.gravity);
-    for (const BallStart& ball : scene.ball) {
-        const BallSize size = scene.size_of(ball);
-        list.insert(list.end(), {size.R, size.m});
-        add_all(ball.position);
-        if (scene.cue && scene.cue->ball == ball.id) {
-            const StruckBall struck = strike(*scene.cue, size, true, vertical);
-            add_all(struck.v);
-            add_all(struck.w);
-        } else {
-            add_all(ball.velocity);
-            add_all(ball.spin);
-        }
-    }
+template <class Vector>
+auto duals(const Vector& v) {
+    std::array<Dual, Vector::RowsAtCompileTime> list;
+    std::copy(v.begin(), v.end(), list.begin());
     return list;
 }
-void add_table(const Geometry& table, std::vector<double>& list) {
-    const auto add = [&list](const Vec2& v) { list.insert(list.end(), {v.x(), v.y()}); };
-    for (const CushionLine& line : table.cushions) {
-        add(line.from);
-        add(line.direction);
-        list.insert(list.end(), {line.length, line.height, line.inset});
+
+Numbers values_of(const Scene& scene, const Geometry& table, Vertical vertical) {
+    Numbers n;
+    for (std::size_t i = 0; i < kParams; ++i) n.params[i] = scene.balls.*kParamMembers[i];
+    n.gravity = scene.physics.gravity;
+    for (const BallStart& ball : scene.ball) {
+        const BallSize size = scene.size_of(ball);
+        const bool struck = scene.cue && scene.cue->ball == ball.id;
+        const StruckBall moves =
+            struck ? strike(*scene.cue, size, true, vertical) : StruckBall{ball.velocity, ball.spin, 0.0};
+        n.balls.push_back({size.R, size.m, duals(ball.position), duals(moves.v), duals(moves.w)});
     }
-    for (const Nose& nose : table.noses) {
-        add(nose.center);
-        list.insert(list.end(), {nose.radius, nose.height, nose.inset});
-    }
-    for (const Pocket& pocket : table.pockets) {
-        add(pocket.center);
-        list.push_back(pocket.radius);
-    }
+    for (const CushionLine& line : table.cushions)
+        n.cushions.push_back({duals(line.from), duals(line.direction), line.length, line.height, line.inset});
+    for (const Nose& nose : table.noses)
+        n.noses.push_back({duals(nose.center), nose.radius, nose.height, nose.inset});
+    for (const Pocket& pocket : table.pockets)
+        n.pockets.push_back({duals(pocket.center), pocket.radius, {}, {}});
+    return n;
+}
+
+void append(std::vector<Dual*>& list, Dual& number) {
+    list.push_back(&number);
+}
+template <std::size_t N>
+void append(std::vector<Dual*>& list, std::array<Dual, N>& numbers) {
+    for (Dual& number : numbers) list.push_back(&number);
+}
+
+/// All numbers, in one order.
+std::vector<Dual*> list_of(Numbers& n) {
+    std::vector<Dual*> list;
+    const auto add = [&list](auto&... numbers) { (append(list, numbers), ...); };
+    add(n.params, n.gravity);
+    for (Numbers::Ball& b : n.balls) add(b.R, b.m, b.r, b.v, b.w);
+    for (Numbers::Line& l : n.cushions) add(l.from, l.direction, l.length, l.height, l.inset);
+    for (std::vector<Numbers::Round>* rounds : {&n.noses, &n.pockets})
+        for (Numbers::Round& r : *rounds) add(r.center, r.radius, r.height, r.inset);
+    return list;
 }
 
 }  // namespace
@@ -88,69 +93,46 @@ Input input_of(Scene& scene, const std::string& key) {
                      [number](Scene& s, double x) { return number.put(s, x); });
 }
 
-BallParams params_of(const double* list) {
-    BallParams balls{};
-    std::memcpy(&balls.R, list, sizeof(BallParams));
+BallParams with_numbers(BallParams balls, const double* numbers) {
+    for (const auto member : kParamMembers) balls.*member = *numbers++;
     return balls;
 }
 
 const Dual& Numbers::param(double BallParams::*member) const {
-    static const BallParams kAny{};
-    return params[static_cast<std::size_t>(&(kAny.*member) - &kAny.R)];
+    const auto at = std::find(kParamMembers.begin(), kParamMembers.end(), member);
+    return params[static_cast<std::size_t>(at - kParamMembers.begin())];
 }
 
 Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs) {
     // Effects that the plan skips are computed: they change nothing here, but they change derivatives.
     const Vertical vertical = plan.in_force(Effect::kAirborne) ? Vertical::kKeep : Vertical::kDrop;
-    std::vector<double> base = list_of(scene, vertical);
-    add_table(plan.geometry, base);
-    std::vector<Dual> list(base.begin(), base.end());
+    Numbers n = values_of(scene, plan.geometry, vertical);
+    const std::vector<Dual*> list = list_of(n);
     for (std::size_t lane = 0; lane < inputs.size(); ++lane) {
         const Input& input = inputs[lane];
-        std::array<std::vector<double>, 4> at;
+        std::array<Numbers, 4> near;
+        std::array<std::vector<Dual*>, 4> at;
         for (const auto& [k, steps] : {std::pair{0, -2.0}, {1, -1.0}, {2, 1.0}, {3, 2.0}}) {
             const Change change = input.put(scene, input.value + steps * input.step);
-            at[k] = list_of(scene, vertical);
-            if (change < Change::kTable) continue;
-            scene.effects.clear();
-            try {
-                add_table(make_plan(scene, plan.isa).geometry, at[k]);
-            } catch (const SceneError& error) {
-                throw TangentError(fmt::format("{}: {}", input.key, error.message()));
+            Geometry table = plan.geometry;
+            if (change >= Change::kTable) {
+                scene.effects.clear();
+                try {
+                    table = make_plan(scene, plan.isa).geometry;
+                } catch (const SceneError& error) {
+                    throw TangentError(fmt::format("{}: {}", input.key, error.message()));
+                }
             }
-            if (at[k].size() != base.size())
+            near[k] = values_of(scene, table, vertical);
+            at[k] = list_of(near[k]);
+            if (at[k].size() != list.size())
                 throw TangentError(fmt::format("{} changes which parts of the table there are", input.key));
-            scene = plan.scene;
+            if (change >= Change::kTable) scene = plan.scene;
         }
         input.put(scene, input.value);
-        for (std::size_t i = 0; i < at[0].size(); ++i)
-            list[i].d[lane] = (8.0 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12.0 * input.step);
-    }
-    const Dual* next = list.data();
-    const auto two = [&next] { return next += 2, Dual2{next[-2], next[-1]}; };
-    const auto three = [&next] { return next += 3, Dual3{next[-3], next[-2], next[-1]}; };
-    Numbers n;
-    for (Dual& param : n.params) param = *next++;
-    n.gravity = *next++;
-    for (std::size_t i = 0; i < plan.sizes.size(); ++i) {
-        Numbers::Ball& ball = n.balls.emplace_back();
-        ball.R = *next++, ball.m = *next++;
-        ball.r = three(), ball.v = three(), ball.w = three();
-    }
-    for (std::size_t i = 0; i < plan.geometry.cushions.size(); ++i) {
-        Numbers::Line& line = n.cushions.emplace_back();
-        line.from = two(), line.direction = two();
-        line.length = *next++, line.height = *next++, line.inset = *next++;
-    }
-    for (std::size_t i = 0; i < plan.geometry.noses.size(); ++i) {
-        Numbers::Round& nose = n.noses.emplace_back();
-        nose.center = two();
-        nose.radius = *next++, nose.height = *next++, nose.inset = *next++;
-    }
-    for (std::size_t i = 0; i < plan.geometry.pockets.size(); ++i) {
-        Numbers::Round& pocket = n.pockets.emplace_back();
-        pocket.center = two();
-        pocket.radius = *next++;
+        for (std::size_t i = 0; i < list.size(); ++i)
+            list[i]->d[lane] =
+                (8.0 * (at[2][i]->x - at[1][i]->x) - (at[3][i]->x - at[0][i]->x)) / (12.0 * input.step);
     }
     return n;
 }

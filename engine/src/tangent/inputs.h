@@ -1,8 +1,11 @@
 // What a shot depends on, with the derivatives by its inputs.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -23,10 +26,18 @@ struct Input {
 /// @throws TangentError if the number has no derivative, std::invalid_argument if there is no such number
 Input input_of(Scene& scene, const std::string& key);
 
-/// BallParams consists of numbers only: here they are a list.
-inline constexpr std::size_t kParams = sizeof(BallParams) / sizeof(double);
-using ParamList = std::array<double, kParams>;
-BallParams params_of(const double* list);
+/// The numbers of BallParams: its keys have one row for each.
+inline constexpr std::size_t kParams = std::count_if(std::begin(kBallFields), std::end(kBallFields),
+                                                     [](const auto& row) { return row.number != nullptr; });
+inline constexpr auto kParamMembers = [] {
+    std::array<double BallParams::*, kParams> members{};
+    auto next = members.begin();
+    for (const Field<BallParams>& row : kBallFields)
+        if (row.number != nullptr) *next++ = row.number;
+    return members;
+}();
+/// These balls with other numbers.
+BallParams with_numbers(BallParams balls, const double* numbers);
 
 /// All numbers of a plan that the replay reads.
 struct Numbers {

@@ -4,7 +4,6 @@
 #include <limits>
 
 namespace carom::tangent {
-namespace {
 
 Dual2 slip_of(const State& s, const Dual& R) {
     return {s.v[0] - R * s.w[1], s.v[1] + R * s.w[0]};
@@ -14,6 +13,8 @@ void roll(State& s, const Dual& R) {
     s.w[0] = -(s.v[1] / R);
     s.w[1] = s.v[0] / R;
 }
+
+namespace {
 
 /// Gives duals the numbers of the record.
 void take(Dual3& duals, const Vec3& numbers) {

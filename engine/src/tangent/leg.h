@@ -12,6 +12,11 @@ struct State {
     Dual3 r, v, w;
 };
 
+/// The slip at the cloth.
+Dual2 slip_of(const State& s, const Dual& R);
+/// Gives a ball the spin with which it rolls.
+void roll(State& s, const Dual& R);
+
 /// All numbers that a ball's motion depends on.
 struct Surface {
     Dual R, gravity, slide, roll, spin;  ///< as in MotionParams

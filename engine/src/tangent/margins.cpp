@@ -48,6 +48,11 @@ double nearest_time(const GapAt& gap, double from, double to) {
     return gap(t).x < least ? t : best;
 }
 
+/// The ball without the derivatives.
+BallAt<Vec3> numbers_at(const State& s, const Dual& R) {
+    return {{s.r[0].x, s.r[1].x, s.r[2].x}, {s.v[0].x, s.v[1].x, s.v[2].x}, R.x};
+}
+
 }  // namespace
 
 // The smallest gap of two bodies between two times, unless they touch there.
@@ -100,40 +105,30 @@ std::vector<Room> Replay::rooms() const {
             }
             if (is_off_cloth(leg.state)) continue;
             const Dual& R = leg.R;
-            for (std::size_t j = 0; moves(leg) && j < numbers_.cushions.size(); ++j) {
-                const Numbers::Line& line = numbers_.cushions[j];
+            const auto near_part = [&](const Contact& part, const std::string& name) {
                 const auto gap = [&](const State& s, const State&) {
-                    const Dual2 out = planar(s.r) - line.from;
-                    const Dual foot = dot(line.direction, out), side = cross(line.direction, out);
-                    if (foot.x < 0.0 || foot.x > line.length.x) return Dual(kNever);
-                    return (side.x < 0.0 ? -side : side) - (R - line.inset);
+                    if (!beside(plan_.geometry, part, numbers_at(s, R))) return Dual(kNever);
+                    return touch_part(numbers_, part, BallAt<Dual3>{s.r, s.v, R}).gap;
+                };
+                if (moves(leg))
+                    add_near(rooms, {ball, &leg}, gap, leg.start, to, who(ball) + " meets " + name);
+            };
+            const Table& table = plan_.scene.table;
+            for (int j = 0; j < static_cast<int>(numbers_.cushions.size()); ++j)
+                near_part({ball, With::kCushion, j}, table.cushions[j].id);
+            for (int j = 0; j < static_cast<int>(numbers_.noses.size()); ++j) {
+                const Nose& nose = plan_.geometry.noses[j];
+                near_part({ball, With::kNose, j}, nose.type == EventType::kBallJaw
+                                                      ? table.jaws[nose.index].id
+                                                      : "the end of " + table.cushions[nose.index].id);
+            }
+            for (std::size_t j = 0; moves(leg) && j < numbers_.pockets.size(); ++j) {
+                const auto gap = [&pocket = numbers_.pockets[j]](const State& s, const State&) {
+                    return length(planar(s.r) - pocket.center) - pocket.radius;
                 };
                 add_near(rooms, {ball, &leg}, gap, leg.start, to,
-                         who(ball) + " meets " + plan_.scene.table.cushions[j].id);
+                         who(ball) + " falls into " + table.pockets[j].id);
             }
-            const auto round = [&](const Numbers::Round& part, const Dual& reach, const std::string& what,
-                                   const Nose* nose = nullptr) {
-                add_near(
-                    rooms, {ball, &leg},
-                    [&](const State& s, const State&) {
-                        const Dual2 out = planar(s.r) - part.center;
-                        if (nose != nullptr && !nose->span.holds({out[0].x, out[1].x})) return Dual(kNever);
-                        return (nose != nullptr ? nose->sign() : 1.0) * length(out) - reach;
-                    },
-                    leg.start, to, who(ball) + what);
-            };
-            for (std::size_t j = 0; moves(leg) && j < numbers_.noses.size(); ++j) {
-                const Nose& nose = plan_.geometry.noses[j];
-                const Table& table = plan_.scene.table;
-                round(numbers_.noses[j], R + numbers_.noses[j].radius - numbers_.noses[j].inset,
-                      " meets " + (nose.type == EventType::kBallJaw
-                                       ? table.jaws[nose.index].id
-                                       : "the end of " + table.cushions[nose.index].id),
-                      &nose);
-            }
-            for (std::size_t j = 0; moves(leg) && j < numbers_.pockets.size(); ++j)
-                round(numbers_.pockets[j], numbers_.pockets[j].radius,
-                      " falls into " + plan_.scene.table.pockets[j].id);
             for (std::size_t j = 0; j < balls_.size(); ++j) {
                 const std::vector<Leg>& others = balls_[j].legs;
                 for (std::size_t l = 0; j != i && l < others.size(); ++l) {
@@ -147,7 +142,9 @@ std::vector<Room> Replay::rooms() const {
                     add_near(
                         rooms, {ball, &leg, static_cast<int>(j), &other},
                         [&](const State& s, const State& o) {
-                            return length(planar(s.r) - planar(o.r)) - (R + other.R);
+                            return touch_level(BallAt<Dual3>{s.r, s.v, R}, {o.r, o.v, other.R},
+                                               plan_.balls.discs())
+                                .gap;
                         },
                         from, stop.x < to.x ? stop : to, who(ball) + " meets " + who(static_cast<int>(j)));
                 }

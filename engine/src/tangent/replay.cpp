@@ -91,10 +91,10 @@ const Leg& Replay::leg_at(int ball, double time) const {
 }
 
 // An event at which a gap closes moves by -dg / (dg/dt).
-Dual Replay::when(const Dual& gap, double rate, double size) const {
-    if (std::abs(gap.x) > kTouches * size)
+Dual Replay::when(const Touch<Dual3>& touch, double size) const {
+    if (std::abs(touch.gap.x) > kTouches * size)
         throw TangentError("the two overlapped before, and met when they began to approach");
-    return chain(now_, gap, -1.0 / rate);
+    return chain(now_, touch.gap, 1.0 / touch.closing.x);
 }
 
 // On a straight path it would pass the centre at |apart x velocity| / |velocity|, and it meets because that
@@ -195,7 +195,12 @@ void Replay::replay(const Event& event) {
         case EventType::kBallCluster:
             time = cluster(event);
             break;
-        default:
+        case EventType::kBallBallHold:
+        case EventType::kBallBallRelease:
+        case EventType::kBallCushionHold:
+        case EventType::kBallCushionRelease:
+        case EventType::kBallJawHold:
+        case EventType::kBallJawRelease:
             throw TangentError("it is a resting contact");
     }
     times_.push_back(time);
@@ -208,10 +213,9 @@ Dual Replay::transition(const Event& event) {
     time.x = now_;
     State s = leg.at(time);
     if (leg.state == MotionState::kSliding) {
-        const Dual2 u{leg.from.v[0] - leg.R * leg.from.w[1], leg.from.v[1] + leg.R * leg.from.w[0]};
+        const Dual2 u = slip_of(leg.from, leg.R);
         for (int i = 0; i < 2; ++i) s.v[i] = leg.from.v[i] - 2.0 / 7.0 * u[i];
-        s.w[0] = -(s.v[1] / leg.R);
-        s.w[1] = s.v[0] / leg.R;
+        roll(s, leg.R);
     } else {
         for (int i = 0; i < 2; ++i) s.v[i] = s.w[i] = 0.0;
     }
@@ -233,25 +237,17 @@ Replay::Meeting Replay::meet(const Event& event) {
     const Numbers::Ball &b1 = numbers_.balls[one], &b2 = numbers_.balls[two];
     const bool space = in_space(one, two);
     const auto sinks = [](const Leg& leg) { return leg.state == MotionState::kFalling; };
-    const auto apart_at = [&](const Dual& time) {
-        State s1 = leg1.at(time), s2 = leg2.at(time);
-        if (space) {
-            place_in_space(leg1, s1);
-            place_in_space(leg2, s2);
-        }
-        Dual3 apart = s2.r - s1.r;
-        if (!space) apart[2] = sinks(leg1) || sinks(leg2) ? Dual(0.0) : b2.R - b1.R;
-        return apart;
+    const auto at = [space](const Leg& leg, const Dual& R, const Dual& time) {
+        State s = leg.at(time);
+        if (space) place_in_space(leg, s);
+        return BallAt<Dual3>{s.r, s.v, R};
     };
-    const Dual3 apart = apart_at(now_);
-    const Dual reach = b1.R.x == b2.R.x ? b1.R + b2.R : 2.0 * sqrt(b1.R * b2.R);
-    const Dual gap = space ? length3(apart) - (b1.R + b2.R) : length(planar(apart)) - reach;
-    const State v1 = leg1.at(now_), v2 = leg2.at(now_);
-    double rate = 0.0;
-    for (int i = 0; i < (space ? 3 : 2); ++i) rate += apart[i].x * (v2.v[i].x - v1.v[i].x);
-    rate /= space ? length3(apart).x : length(planar(apart)).x;
-    const Dual time = when(gap, rate, b1.R.x);
-    const Meeting m{space, time, apart_at(time), leg1.at(time), leg2.at(time)};
+    const BallAt<Dual3> ball1 = at(leg1, b1.R, now_), ball2 = at(leg2, b2.R, now_);
+    const Dual time =
+        when(space ? touch_ball(ball1, ball2) : touch_level(ball1, ball2, plan_.balls.discs()), b1.R.x);
+    Dual3 apart = at(leg2, b2.R, time).r - at(leg1, b1.R, time).r;
+    if (!space) apart[2] = sinks(leg1) || sinks(leg2) ? Dual(0.0) : b2.R - b1.R;
+    const Meeting m{space, time, apart, leg1.at(time), leg2.at(time)};
     add_miss(planar(m.apart), planar(m.s2.v - m.s1.v), event);
     return m;
 }
@@ -322,68 +318,44 @@ Dual Replay::cushion(const Event& event) {
     const Leg leg = balls_[ball].legs.back();
     const bool flying = flies(leg.state);
     const Dual& R = numbers_.balls[ball].R;
-    Dual height, inset;
-    // From the nose to the centre, level with the cloth; `beyond` is the radius of a round nose, and the sign
-    // is negative if it lies around the ball.
-    Dual2 out;
-    Dual beyond;
-    const Nose* round = event.detail >= 0 ? &plan_.geometry.noses[event.detail] : nullptr;
-    const double sign = round != nullptr ? round->sign() : 1.0;
-    const auto look = [&](const State& s) {
-        if (event.detail >= 0) {
-            const Numbers::Round& nose = part_of(numbers_.noses, event.detail);
-            height = nose.height, inset = nose.inset, beyond = sign * nose.radius;
-            out = planar(s.r) - nose.center;
-            return;
-        }
-        const Numbers::Line& line = part_of(numbers_.cushions, event.b);
-        height = line.height, inset = line.inset;
-        const Dual2 normal{-line.direction[1], line.direction[0]};
-        const Dual side = dot(normal, planar(s.r) - line.from);
-        out = {side * normal[0], side * normal[1]};
+    const Contact part = contact_of(event);
+    const Nose* round = part.with == With::kNose ? &part_of(plan_.geometry.noses, part.other) : nullptr;
+    if (round == nullptr) part_of(plan_.geometry.cushions, part.other);
+    const auto add_end = [&](const Dual& left) {
+        rooms_.push_back({left, fmt::format("{} passes the end of {} at {:.3f} s", who(ball),
+                                            record_.partner_id(event), now_)});
     };
-    const auto apart_at = [&](const State& s) {
-        look(s);
-        const Dual distance = length(out), level = (distance - beyond) / distance;
-        return Dual3{level * out[0], level * out[1], s.r[2] - height};
+    const auto touch_at = [&](const State& s) {
+        return touch_part(numbers_, part, BallAt<Dual3>{s.r, s.v, R, flying});
     };
-    const State here = leg.at(now_);
-    const Dual3 apart = apart_at(here);
-    const Dual up = height - R, level = R - inset;
-    const Dual gap =
-        flying ? length3(apart) - sqrt(level * level + up * up) : sign * (length(out) - beyond) - level;
-    double rate = 0.0;
-    for (int i = 0; i < (flying ? 3 : 2); ++i) rate += apart[i].x * here.v[i].x;
-    rate /= flying ? length3(apart).x : length(planar(apart)).x;
-    const Dual time = when(gap, rate, R.x);
+    const Dual time = when(touch_at(leg.at(now_)), R.x);
     State s = leg.at(time);
-    const Dual3 at = apart_at(s);
+    const Touch<Dual3> touch = touch_at(s);
+    // Into the table.
+    const Dual3 normal{-touch.n[0], -touch.n[1], -touch.n[2]};
     if (round != nullptr && round->is_arc()) {
-        look(s);
+        const Dual2 out = planar(s.r) - numbers_.noses[part.other].center;
         for (const Vec2& end : {round->span.from, round->span.to}) {
             const Dual aside = end.x() * out[1] - end.y() * out[0];
-            if (dot(end, Vec2(out[0].x, out[1].x)) > 0.0)
-                rooms_.push_back({aside.x < 0.0 ? -aside : aside,
-                                  fmt::format("{} passes the end of {} at {:.3f} s", who(ball),
-                                              record_.partner_id(event), now_)});
+            if (dot(end, Vec2(out[0].x, out[1].x)) > 0.0) add_end(aside.x < 0.0 ? -aside : aside);
         }
-    } else if (event.detail >= 0) {
-        add_miss(planar(at), planar(s.v), event);
+    } else if (round != nullptr) {
+        const Dual reach = reach_of(numbers_.noses[part.other], R, flying);
+        add_miss({reach * normal[0], reach * normal[1]}, planar(s.v), event);
     } else {
-        const Numbers::Line& line = part_of(numbers_.cushions, event.b);
+        const Numbers::Line& line = numbers_.cushions[part.other];
         const Dual foot = dot(line.direction, planar(s.r) - line.from);
-        for (const Dual& left : {foot, line.length - foot})
-            rooms_.push_back({left, fmt::format("{} passes the end of {} at {:.3f} s", who(ball),
-                                                record_.partner_id(event), now_)});
+        for (const Dual& left : {foot, line.length - foot}) add_end(left);
     }
     const CushionModelInfo& model = event.type == EventType::kBallJaw ? *plan_.jaw : *plan_.cushion;
     if (flying) {
-        meet_nose_in_air(laws_, ball, model, at, s);
+        meet_nose_in_air(laws_, ball, model, normal, s);
         go_on(ball, time, s);
     } else {
-        const Dual distance = sign * length(out);
         const bool hops = laws_.flights() && leg.state != MotionState::kFalling;
-        meet_cushion(laws_, ball, model, {out[0] / distance, out[1] / distance}, height, hops, s);
+        const Dual& height =
+            round != nullptr ? numbers_.noses[part.other].height : numbers_.cushions[part.other].height;
+        meet_cushion(laws_, ball, model, planar(normal), height, hops, s);
         begin(ball, time, s);
     }
     return time;
@@ -402,7 +374,7 @@ Dual Replay::pocket(const Event& event) {
     const double rate = (out[0].x * here.v[0].x + out[1].x * here.v[1].x) / distance.x;
     // It sinks or lands before it crosses the edge, or it crosses the edge.
     const bool ends = (falls || flies(leg.state)) && std::abs(time.x - now_) <= kAgrees * (1.0 + now_);
-    if (!ends) time = when(distance - pocket.radius, rate, pocket.radius.x);
+    if (!ends) time = when({{}, distance - pocket.radius, -rate, 0.0}, pocket.radius.x);
     time.x = now_;
     State s = leg.at(time);
     if (!ends) add_miss(planar(s.r) - pocket.center, planar(s.v), event);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "carom/engine/tangents.h"
+#include "contact/touch.h"
 #include "tangent/impacts.h"
 
 namespace carom::tangent {
@@ -58,7 +59,9 @@ class Replay {
     const Segment& next(int ball);
     void begin(int ball, const Dual& time, const State& state);
     void go_on(int ball, const Dual& time, State state);
-    Dual when(const Dual& gap, double rate, double size) const;
+    /// When an event at which a gap closes happens: `touch` at the record's time, between bodies of this
+    /// size.
+    Dual when(const Touch<Dual3>& touch, double size) const;
     /// Adds how far something is from missing what it met: by `apart` and `velocity` from the other to it.
     void add_miss(const Dual2& apart, const Dual2& velocity, const Event& event);
     /// margins.cpp. A ball, and the other ball of a gap, if there is one.

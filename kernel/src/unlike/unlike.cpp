@@ -70,6 +70,13 @@ double parting(const Tilt& t, const Forces& f) {
     return t.C * ((t.C - t.S * f.zeta) + t.share[0] * f.gy[0] - t.share[1] * f.gy[1]);
 }
 
+// What an impact exchanges, over the reduced mass times the approach speed.
+struct Impulses {
+    double p = 0.0;  // along the normal
+    Forces total{};
+    std::int64_t steps = 0;  // or sweeps
+};
+
 enum class Until : unsigned char { kGiven, kParted, kWorked };
 
 struct Stretch {
@@ -99,8 +106,8 @@ class Solver {
                             last ? end : smallest(most, 0.6 * end), left_};
             const double asked = stretch.h, shortest = 1e-3 * tolerance_ / (t_.mu_b + t_.S);
             Slips after;
-            Forces done;
-            if (collocate(stretch, after, done)) {
+            Forces more;
+            if (collocate(stretch, after, more)) {
                 next = stretch.h * (sweeps_of_last_ < 10 ? 2.5 : 1.3);
             } else if (asked > shortest) {
                 next = 0.4 * asked;
@@ -110,13 +117,13 @@ class Solver {
                 stretch.until = Until::kGiven;
                 stretch.h = smallest(asked, shortest);
                 const Forces f = forces(s_);
-                done = times(stretch.h, f);
-                after = moved(t_, s_, stretch.h, done);
+                more = times(stretch.h, f);
+                after = moved(t_, s_, stretch.h, more);
                 stretch.work = stretch.h * 0.5 * (s_.v + after.v);
                 next = 2.0 * shortest;
             }
-            p += stretch.h;
-            add(total, 1.0, done);
+            done.p += stretch.h;
+            add(done.total, 1.0, more);
             s_ = after;
             if (compressing_) {
                 compressed_ += stretch.work;
@@ -137,9 +144,7 @@ class Solver {
         finish_frictionless();
     }
 
-    double p = 0.0;
-    Forces total{};
-    std::int64_t sweeps = 0;
+    Impulses done;
 
   private:
     static constexpr double kFar = 1e300;
@@ -150,11 +155,11 @@ class Solver {
     void finish_frictionless() {
         const double r = t_.C * t_.C;
         if (compressing_) {
-            p += s_.v / r;
+            done.p += s_.v / r;
             left_ = t_.e_b * t_.e_b * (compressed_ + 0.5 * s_.v * s_.v / r);
             s_.v = 0.0;
         }
-        p += 2.0 * left_ / (-s_.v + square_root(s_.v * s_.v + 2.0 * r * left_));
+        done.p += 2.0 * left_ / (-s_.v + square_root(s_.v * s_.v + 2.0 * r * left_));
     }
 
     // Whether the slip between the balls has ended and friction can hold them.
@@ -196,7 +201,7 @@ class Solver {
     }
 
     // Solves one stretch. Returns false where the sweeps do not converge, or the nodes resolve too little.
-    bool collocate(Stretch& stretch, Slips& after, Forces& done) {
+    bool collocate(Stretch& stretch, Slips& after, Forces& more) {
         Slips at[kNodes];
         Forces f[kNodes], mean{};
         const Forces first = forces(s_);
@@ -223,7 +228,7 @@ class Solver {
             if (!finite(h) || !finite_forces(f[kNodes - 1])) break;
             converged = h * change + absolute(h - before) <= kSweepsLeave * tolerance_ + 0x1p-50 * h;
         }
-        sweeps += k;
+        done.steps += k;
         sweeps_of_last_ = k;
         if (!converged) return false;
         Forces top{};
@@ -244,8 +249,8 @@ class Solver {
         const double rough = largest_of(top), friction = t_.mu_b + t_.S;
         const double error = h * (one && two ? rough : smallest(rough, 8.0 * rough * rough / friction));
         if (!(error <= kNodesLeave * tolerance_ + 0x1p-50 * h)) return false;
-        done = times(h, mean);
-        after = moved(t_, s_, h, done);
+        more = times(h, mean);
+        after = moved(t_, s_, h, more);
         if (turns_round(at, after)) {
             double most = sticks_ ? 0.0 : t_.mu_b;
             for (const Forces& each : f)
@@ -361,6 +366,40 @@ void drop_noise(const Ball& b1, const Ball& b2, double R1, double R2, double n, 
     }
 }
 
+// The impact of two unlike balls. `run` gets its constants and the slips, of which those on the cloth below a
+// given size are zero, and returns the impulses; steps < 0: it reached its limit.
+template <class Run>
+void impact(const Ball& ball1, const Ball& ball2, const ImpactParams& params, bool in_range,
+            ImpactResult& result, const Run& run) {
+    if (params.radius_ratio < 1.0) {
+        ImpactParams swapped = params;
+        swap_balls(swapped);
+        impact(ball2, ball1, swapped, in_range, result, run);
+        swap_results(result);
+        return;
+    }
+    const Tilt tilt = tilt_of(params);
+    if (!in_range || !sizes_in_range(params) || !friction_in_range(tilt)) {
+        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
+        return;
+    }
+    Frame frame;
+    FrameState state;
+    if (enter(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
+    const double n = state.v1y - state.v2y, R1 = params.R, R2 = params.R * params.radius_ratio;
+    const Impulses done = run(tilt, [&](double slight) {
+        Slips slips = slips_of(tilt, state, R1, R2, n);
+        drop_noise(ball1, ball2, R1, R2, n, slight, slips);
+        return slips;
+    });
+    if (done.steps < 0) {
+        copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
+        return;
+    }
+    add_impulses(tilt, done.p, done.total, n, R1, R2, state);
+    leave_frame(ball1, ball2, frame, state, done.steps, result);
+}
+
 }  // namespace
 
 bool sizes_have_solution(const ImpactParams& params) noexcept {
@@ -375,32 +414,17 @@ bool sizes_have_solution(const ImpactParams& params) noexcept {
 
 void solve_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
                   ImpactResult& result) noexcept {
-    if (params.radius_ratio < 1.0) {
-        ImpactParams swapped = params;
-        swap_balls(swapped);
-        solve_unlike(ball2, ball1, swapped, tolerance, result);
-        swap_results(result);
-        return;
-    }
-    const Tilt tilt = tilt_of(params);
-    if (!(tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance) || !sizes_in_range(params) ||
-        !friction_in_range(tilt)) {
-        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
-        return;
-    }
-    Frame frame;
-    FrameState state;
-    if (enter(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const double n = state.v1y - state.v2y, R1 = params.R, R2 = params.R * params.radius_ratio;
-    // A ball takes up to twice the error that the same impulse makes between equal ones, and stretches add
-    // up.
-    const double solved = 0.25 * smallest(tolerance, kLoosestSolved) / largest(tilt.share[0], tilt.share[1]);
-    Slips slips = slips_of(tilt, state, R1, R2, n);
-    drop_noise(ball1, ball2, R1, R2, n, kSlight * solved, slips);
-    Solver solver(tilt, slips, solved);
-    solver.run();
-    add_impulses(tilt, solver.p, solver.total, n, R1, R2, state);
-    leave_frame(ball1, ball2, frame, state, solver.sweeps, result);
+    const bool in_range = tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance;
+    impact(ball1, ball2, params, in_range, result, [&](const Tilt& tilt, const auto& slips) {
+        // A ball takes up to twice the error that the same impulse makes between equal ones, and stretches
+        // add up.
+        const double solved =
+            0.25 * smallest(tolerance, kLoosestSolved) / largest(tilt.share[0], tilt.share[1]);
+        Solver solver(tilt, slips(kSlight * solved), solved);
+        solver.run();
+        return solver.done;
+    });
+    if (result.status != ImpactStatus::kOk) return;
     result.method = ToleranceMethod::kAdaptive;
     if (!(finite(result.v1) && finite(result.v2) && finite(result.w1) && finite(result.w2)))
         copy_input(ball1, ball2, ImpactStatus::kBadState, result);
@@ -408,54 +432,35 @@ void solve_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
 
 void march_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
                   ImpactResult& result) noexcept {
-    if (params.radius_ratio < 1.0) {
-        ImpactParams swapped = params;
-        swap_balls(swapped);
-        march_unlike(ball2, ball1, swapped, n, result);
-        swap_results(result);
-        return;
-    }
-    const Tilt tilt = tilt_of(params);
-    if (n < 1 || !sizes_in_range(params) || !friction_in_range(tilt)) {
-        copy_input(ball1, ball2, ImpactStatus::kBadParameter, result);
-        return;
-    }
-    Frame frame;
-    FrameState state;
-    if (enter(ball1, ball2, params, frame, state, result) != ImpactStatus::kOk) return;
-    const double approach = state.v1y - state.v2y, R1 = params.R, R2 = params.R * params.radius_ratio;
-    Slips s = slips_of(tilt, state, R1, R2, approach);
-    drop_noise(ball1, ball2, R1, R2, approach, 0.0, s);
-    const double h = (1.0 + tilt.e_b) * s.v / (tilt.C * tilt.C) / n;
-    const std::int64_t limit = kMarchStepLimit * static_cast<std::int64_t>(n);
-    double p = 0.0, work = 0.0, goal = 0.0;
-    Forces total{};
-    bool compressing = true;
-    std::int64_t steps = 0;
-    while (s.v > 0.0 || compressing || work < goal) {
-        if (++steps > limit) {
-            copy_input(ball1, ball2, ImpactStatus::kStepLimit, result);
-            return;
+    impact(ball1, ball2, params, n >= 1, result, [&](const Tilt& tilt, const auto& slips) {
+        Slips s = slips(0.0);
+        const double h = (1.0 + tilt.e_b) * s.v / (tilt.C * tilt.C) / n;
+        const std::int64_t limit = kMarchStepLimit * static_cast<std::int64_t>(n);
+        double work = 0.0, goal = 0.0;
+        Impulses done;
+        bool compressing = true;
+        while (s.v > 0.0 || compressing || work < goal) {
+            if (++done.steps > limit) return Impulses{.steps = -1};
+            // A slip that this step would turn round has ended: the steps would go to and fro, and press one
+            // ball and the other in turn.
+            const bool ends = size(s.cx, s.cz) <= 3.5 * tilt.mu_b * h;
+            const Forces stick = sticking_forces(tilt, s);
+            const bool sticks =
+                ends && stick.xi * stick.xi + stick.zeta * stick.zeta <= tilt.mu_b * tilt.mu_b;
+            if (sticks) s.cx = s.cz = 0.0;
+            const Forces f = times(h, sticks ? stick : sliding_forces(tilt, s));
+            const double before = s.v;
+            s = moved(tilt, s, h, f);
+            done.p += h;
+            add(done.total, 1.0, f);
+            work += 0.5 * h * absolute(before + s.v);
+            if (compressing && s.v < 0.0) {
+                compressing = false;
+                goal = (1.0 + tilt.e_b * tilt.e_b) * work;
+            }
         }
-        // A slip that this step would turn round has ended: the steps would go to and fro, and press one ball
-        // and the other in turn.
-        const bool ends = size(s.cx, s.cz) <= 3.5 * tilt.mu_b * h;
-        const Forces stick = sticking_forces(tilt, s);
-        const bool sticks = ends && stick.xi * stick.xi + stick.zeta * stick.zeta <= tilt.mu_b * tilt.mu_b;
-        if (sticks) s.cx = s.cz = 0.0;
-        const Forces f = times(h, sticks ? stick : sliding_forces(tilt, s));
-        const double before = s.v;
-        s = moved(tilt, s, h, f);
-        p += h;
-        add(total, 1.0, f);
-        work += 0.5 * h * absolute(before + s.v);
-        if (compressing && s.v < 0.0) {
-            compressing = false;
-            goal = (1.0 + tilt.e_b * tilt.e_b) * work;
-        }
-    }
-    add_impulses(tilt, p, total, approach, R1, R2, state);
-    leave_frame(ball1, ball2, frame, state, steps, result);
+        return done;
+    });
 }
 
 }  // namespace carom::kernel

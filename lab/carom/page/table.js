@@ -1,7 +1,8 @@
 // Sortable tables: {title, columns: [{title}], rows: [[value, ...], ...]}; values after them are notes.
-"use strict";
 
-function sortedTable(spec) {
+import {make, shown} from "../../../tools/carom/page/dom.js";
+
+export function sortedTable(spec) {
   const body = make("tbody", {svg: false}), heads = [];
   let by = -1, down = false;
   const cell = (value, i) => make("td", {class: typeof value === "number" ? "number" : null},

@@ -41,7 +41,7 @@ void write_html_report(const Report& report, const std::string& path) {
         page[key] = Json::array();
         for (const std::string& item : *list) page[key].push_back(Json::parse(item));
     }
-    write_report(path, page_html(report.title, {"dom.js", "chart.js", "table.js", "report.js"},
+    write_report(path, page_html(report.title, "report.js",
                                  {{"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}}));
 }
 

@@ -174,7 +174,7 @@ Plot overview(const std::vector<ValidationRow>& rows) {
         plot.x.marks.emplace_back(column + 0.5, one ? fmt::format("{}", column + 1.0) : from->of->id);
         for (auto row = from; row != to; ++row) {
             const std::string& preset = row->variant->preset;
-            const bool former = preset.ends_with("_classic") || preset.ends_with("_2026_11");
+            const bool former = preset.ends_with("_classic");
             const std::size_t series = !row->variant->own_keys().empty() ? 0 : former ? 1 : 2;
             const double part = (static_cast<double>(row - from) + 0.5) / static_cast<double>(to - from);
             plot.series[series].points.emplace_back(column + 0.1 + 0.8 * part,

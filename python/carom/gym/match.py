@@ -5,7 +5,6 @@ They need pettingzoo, which is part of the extra [gym].
 
 from __future__ import annotations
 
-import itertools
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +16,7 @@ try:
 except ImportError as error:
     raise ImportError("carom.gym.match needs PettingZoo: pip install 'carom-billiards[gym]'") from error
 
-from carom import games
+from carom import _carom, games
 from carom._arguments import checked
 from carom._names import GameName, TableName
 from carom._record import Record
@@ -288,8 +287,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         return games.Call(*next(fell, ("", "")))
 
     def _free_place(self, part: NDArray[np.float64]) -> tuple[float, float]:
-        """The free place nearest to the one the action wants, in steps of a quarter of the cue ball's
-        radius."""
+        """The free place nearest to the one the action wants."""
         assert self._record is not None and self._option is not None
         table, radius = self._game.table, float(self._game.radii[self._game.cue_ball])
         low = np.array(table.corner) + radius
@@ -301,13 +299,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             reach = table.width / 6
             low, high = brown - reach, brown + [reach, 0.0]
         wanted = low + (high - low) * 0.5 * (part + 1)
-        for ring in itertools.count():
-            if ring * radius / 4 > table.width + table.length:
-                raise RuntimeError("no place is free for the cue ball in hand")
-            for place in wanted + radius / 4 * _ring(ring):
-                if games.may_place(self._record, self._option, place.tolist()):
-                    return float(place[0]), float(place[1])
-        raise AssertionError
+        return _carom.free_place(self._record._native, self._option, tuple(wanted.tolist()))
 
     def _rack(self, seed: int) -> Scene:
         balls = "snooker" if self._rules == "snooker" else "pool"
@@ -318,15 +310,3 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         cue = {"speed": 4.0, "aim_deg": 90.0}
         return Scene(
             table=self._table, balls=balls, rack=rack, ball=[{"id": "cue", "position": place}], cue=cue)
-
-
-def _ring(number: int) -> NDArray[np.float64]:
-    """Integer points (n, 2) whose distance from the origin is in (number - 1, number], the nearest first.
-
-    Whole numbers because numpy's sine and cosine have different bits on different processors.
-    """
-    side = np.arange(-number, number + 1)
-    all_of = np.stack(np.meshgrid(side, side, indexing="ij"), -1).reshape(-1, 2)
-    far = (all_of * all_of).sum(1)
-    ring = all_of[(far > (number - 1) ** 2) & (far <= number**2)] if number else all_of
-    return np.array(ring[np.argsort((ring * ring).sum(1), kind="stable")], np.float64)

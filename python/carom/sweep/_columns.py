@@ -11,7 +11,6 @@ from carom import _carom, _toml
 from carom._arguments import checked
 from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene
-from carom._simulate import Shots, ShotStatus
 
 if TYPE_CHECKING:
     import pyarrow
@@ -23,22 +22,24 @@ OUTCOMES = tuple(_carom.status_names())
 MOST_SHOTS = 2**53
 
 
-class Texts(NamedTuple):
-    """A column of strings: for each shot the index of its string in `names`, -1 for none."""
-
-    names: list[str]
-    codes: NDArray[np.int32]
+#: For `Player.play(stop=)`: never.
+NEVER = np.zeros(1, np.uint8)
 
 
-class Counts(NamedTuple):
-    """A column of integers, missing for some shots."""
+class Column(NamedTuple):
+    """The values of a column. If it has texts, the values are indices of these, and -1 stands for none."""
 
-    values: NDArray[np.int64]
-    missing: NDArray[np.bool_]
+    values: NDArray[Any]
+    texts: list[str] | None = None
+    missing: NDArray[np.uint8] | None = None  # for each shot 1 or 0; None for a column that is always there
 
 
-#: In an array of floats, NaN stands for a missing value.
-Column = np.ndarray[Any, Any] | Texts | Counts
+class Played(NamedTuple):
+    """Shots that were played."""
+
+    columns: dict[str, Column]  # those of `carom sweep`
+    status: NDArray[np.uint8]  # ShotStatus
+    hash: NDArray[np.uint64]  # of each record, if requested
 
 
 def rules_of(vary: Mapping[str, Any] | Sequence[str]) -> list[str]:
@@ -66,31 +67,22 @@ class Player:
         if not 0 <= seed < 2**64:
             raise ValueError(f"seed={seed}: expected 0 to 2**64 - 1")
         self.rules = rules_of(vary)
-        self.balls = len(scene.ids)
         self._sweep = _carom.make_sweep(scene._native, self.rules, seed, list(measures), game)
 
     def types(self) -> dict[str, tuple[str, str]]:
         """For every column its type, "int64", "float64" or "text", and its unit or ""."""
-        return {name: (kind, unit) for name, kind, unit, _ in self._sweep.columns}
+        return {name: (kind, unit) for name, kind, unit in self._sweep.columns}
 
     def play(
-        self, first: int, last: int, threads: int, *, hash_every: int = 0
-    ) -> tuple[dict[str, Column], Shots]:
-        """Plays shots first to last - 1. Returns the columns of `carom sweep` and the outcomes behind them.
+        self, first: int, last: int, threads: int, *, hash_every: int = 0, stop: NDArray[np.uint8] = NEVER
+    ) -> Played:
+        """Plays shots first to last - 1.
 
         hash_every: hash the shots whose number is a multiple of this; 0 for none
+        stop: a flag that ends the batch with RuntimeError once it is not 0
         """
-        n = last - first
-        shots = Shots.empty(n, self.balls, hashes=hash_every > 0)
-        failures, values = self._sweep.play(first, n, threads, shots._native(), hash_every)
-        failed = shots.status >= ShotStatus.INVALID
-        columns: dict[str, Column] = {}
-        for (name, kind, _, of_result), (array, texts) in zip(self._sweep.columns, values):
-            if kind == "text":
-                columns[name] = Texts(texts, array)
-            else:
-                columns[name] = Counts(array, failed) if kind == "int64" and of_result else array
-        return columns, shots._replace(messages=dict(failures))
+        columns, *rest = self._sweep.play(first, last - first, threads, hash_every, stop)
+        return Played({name: Column(*column) for name, column in zip(self.types(), columns)}, *rest)
 
 
 @checked
@@ -140,17 +132,17 @@ def _played(
     if threads < 0:
         raise ValueError(f"threads={threads}: expected at least 0")
     player = Player(scene, vary, seed, measures, game)
-    return player, player.play(first, end, threads)[0], end
+    return player, player.play(first, end, threads).columns, end
 
 
 def _plain(column: Column) -> Any:
-    if isinstance(column, Texts):
-        names = [*column.names, None]  # the index -1 is the last one
-        return [names[code] for code in column.codes.tolist()]
-    if isinstance(column, Counts):
+    if column.texts is not None:
+        names = [*column.texts, None]  # the index -1 is the last one
+        return [names[code] for code in column.values.tolist()]
+    if column.missing is not None and column.values.dtype == np.int64:
         values = zip(column.values.tolist(), column.missing.tolist())
         return [None if gone else value for value, gone in values]
-    return column
+    return column.values
 
 
 def arrow(columns: Mapping[str, Column], schema: pyarrow.Schema) -> pyarrow.Table:
@@ -158,12 +150,9 @@ def arrow(columns: Mapping[str, Column], schema: pyarrow.Schema) -> pyarrow.Tabl
     import pyarrow
 
     def array(column: Column) -> pyarrow.Array:
-        if isinstance(column, Texts):
-            codes = pyarrow.array(column.codes, mask=column.codes < 0)
-            return pyarrow.array(column.names, pyarrow.string()).take(codes)
-        if isinstance(column, Counts):
-            return pyarrow.array(column.values, mask=column.missing)
-        return pyarrow.array(column, mask=np.isnan(column) if column.dtype == np.float64 else None)
+        mask = None if column.missing is None else column.missing.astype(bool)
+        values = pyarrow.array(column.values, mask=mask)
+        return values if column.texts is None else pyarrow.array(column.texts, pyarrow.string()).take(values)
 
     return pyarrow.table([array(column) for column in columns.values()], schema=schema)
 

@@ -144,8 +144,7 @@ def player_of(plan: Plan) -> Player:
 
 
 def _probe(player: Player, shots: int) -> str:
-    _, played = player.play(0, min(shots, _PROBE), 1, hash_every=1)
-    assert played.hash is not None
+    played = player.play(0, min(shots, _PROBE), 1, hash_every=1)
     return sha256(played.hash.astype("<u8").tobytes() + played.status.tobytes())
 
 

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import functools
 import itertools
 import json
 import os
 import queue
-import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
-from concurrent.futures import BrokenExecutor, CancelledError, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from carom._arguments import checked
+from carom.sweep._columns import NEVER
 from carom.sweep._folder import PLAN, in_parallel, status, those_there
 from carom.sweep._plan import Plan, SweepError, wrong_worker
 from carom.sweep._shard import Tally, footer, make_shard, need, run_shard, tables
 
 if TYPE_CHECKING:
     import pyarrow
+    from numpy.typing import NDArray
 
 #: The least number of shards in an executor's queue; limited so that the client's memory does not grow with
 #: the sweep.
@@ -56,38 +60,35 @@ class _Count:
 
     def __init__(self, shards: int, tell: Callable[[Progress], None] | None) -> None:
         self.tell, self.start = tell, time.perf_counter()
-        self.now = Progress(shards, 0, 0, 0, 0.0, {})
+        self.progress = Progress(shards, 0, 0, 0, 0.0, {})
 
     def add(self, outcomes: dict[str, int], played: bool) -> None:
-        rows, now = sum(outcomes.values()), self.now
-        names = now.outcomes | outcomes
-        whole = {name: now.outcomes.get(name, 0) + outcomes.get(name, 0) for name in names}
-        played_rows = now.played + rows * played
-        self.now = now._replace(done=now.done + 1, rows=now.rows + rows, played=played_rows, outcomes=whole)
-
-    def progress(self) -> Progress:
-        return self.now._replace(seconds=time.perf_counter() - self.start)
+        rows, now = sum(outcomes.values()), self.progress
+        self.progress = now._replace(
+            done=now.done + 1, rows=now.rows + rows, played=now.played + rows * played,
+            seconds=time.perf_counter() - self.start,
+            outcomes=dict(collections.Counter(now.outcomes) + collections.Counter(outcomes)))
 
     def show(self) -> None:
         if self.tell is not None:
-            self.tell(self.progress())
+            self.tell(self.progress)
 
 
 class _Threads:
     """The executor within one process. It can stop in the middle of a shard."""
 
     def __init__(self, threads: int) -> None:
-        self.ended = threading.Event()
+        self.ended = np.zeros(1, np.uint8)
         self.pool = ThreadPoolExecutor(threads or len(os.sched_getaffinity(0)), "carom-sweep")
 
     def submit(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        return self.pool.submit(work, *arguments, self.ended.is_set)
+        return self.pool.submit(work, *arguments, self.ended)
 
     def __enter__(self) -> _Threads:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.ended.set()
+        self.ended[0] = 1
         self.pool.shutdown(cancel_futures=True)
 
 
@@ -131,16 +132,15 @@ class _Tasks:
                 continue
             try:
                 return shard, future.result()
-            except (BrokenExecutor, CancelledError) as error:
-                what = f"its worker or the scheduler has gone ({type(error).__name__})"
-                raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
             except Exception as error:
-                if type(error).__name__ in ("CancelledError", "FutureCancelledError"):
-                    what = "the scheduler has gone"
+                kind = type(error).__name__
+                # Dask has errors of its own with these names.
+                if isinstance(error, BrokenExecutor) or kind in ("CancelledError", "FutureCancelledError"):
+                    what = f"its worker or the scheduler has gone ({kind})"
                     raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
                 # Dask gives up a task whose workers have died several times, which may be the machines'
                 # fault.
-                if type(error).__name__ != "KilledWorker" or self.left == 0:
+                if kind != "KilledWorker" or self.left == 0:
                     raise
                 self.left -= 1
                 self.begin(shard)
@@ -244,11 +244,11 @@ def run(
         for result in results:
             count.add(result["outcomes"], result["played"])
             count.show()
-    return count.progress()
+    return count.progress
 
 
 def _reduced(
-    plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: Callable[[], bool] = lambda: False
+    plan: Plan, shard: int, fn: Callable[[pyarrow.Table], Any], stop: NDArray[np.uint8] = NEVER
 ) -> tuple[Any, dict[str, int]]:
     import pyarrow
 

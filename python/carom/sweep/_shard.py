@@ -8,34 +8,26 @@ import json
 import os
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import _carom
 from carom._arguments import checked
 from carom._files import whole_file
-from carom._simulate import Shots
-from carom.sweep._columns import OUTCOMES, Column, arrow, arrow_schema, provenance
+from carom.sweep._columns import NEVER, OUTCOMES, Column, Played, arrow, arrow_schema, provenance
 from carom.sweep._plan import HASH_EVERY, Plan, SweepError, canonical, player_of, sha256, wrong_worker
 
 if TYPE_CHECKING:
     import pyarrow
+    from numpy.typing import NDArray
 
 #: The subfolder for unfinished files. Readers of a folder ignore names that begin with a dot.
 UNFINISHED = ".unfinished"
 _ROW_GROUP = 1 << 16
-_MOST_AT_ONCE = 1 << 14
-#: [s] Shots are played in blocks of about this long, between which a run can be stopped.
-_BLOCK_TIME = 0.2
 #: Held for the first conversion from pyarrow to numpy: pyarrow then looks for pandas, and without the GIL two
 #: threads that do so at once wait for each other forever (pyarrow 26).
 _FIRST_ARRAY = threading.Lock()
-
-
-class Stopped(Exception):
-    """The run that requested this shard has ended."""
 
 
 def need(name: str) -> None:
@@ -136,30 +128,6 @@ def _first_line(error: BaseException) -> str:
     return (str(error).strip() or type(error).__name__).splitlines()[0][:200]
 
 
-def _hash_every(plan: Plan) -> int:
-    return {"none": 0, "digest": HASH_EVERY, "column": 1}[plan.hashes]
-
-
-def _blocks(
-    plan: Plan, shard: int, threads: int, stop: Callable[[], bool]
-) -> Iterator[tuple[int, dict[str, Column], Shots]]:
-    player = player_of(plan)
-    at, last = plan.range(shard)
-    most = 256
-    while at < last:
-        if stop():
-            raise Stopped
-        end, start = min(at + most, last), time.perf_counter()
-        columns, shots = player.play(at, end, threads, hash_every=_hash_every(plan))
-        if plan.hashes == "column":
-            assert shots.hash is not None
-            columns["record_hash"] = shots.hash
-        yield at, columns, shots
-        if time.perf_counter() - start < _BLOCK_TIME and most < _MOST_AT_ONCE:
-            most *= 2
-        at = end
-
-
 class Tally:
     """How the shots of a shard ended, and the digest of their records."""
 
@@ -167,38 +135,32 @@ class Tally:
         self.counts = np.zeros(len(OUTCOMES), np.int64)
         self.records: Any = hashlib.sha256()
 
-    def add(self, first: int, shots: Shots) -> None:
-        self.counts += np.bincount(shots.status, minlength=len(OUTCOMES))
-        if shots.hash is not None:
-            hashed = shots.hash[-first % HASH_EVERY :: HASH_EVERY]
-            self.records.update(np.ascontiguousarray(hashed, "<u8").data)
+    def add(self, first: int, played: Played) -> None:
+        self.counts += np.bincount(played.status, minlength=len(OUTCOMES))
+        hashed = played.hash[-first % HASH_EVERY :: HASH_EVERY]
+        self.records.update(np.ascontiguousarray(hashed, "<u8").data)
 
     def outcomes(self) -> dict[str, int]:
         return {name: count for name, count in zip(OUTCOMES, self.counts.tolist()) if count > 0}
 
 
 def tables(
-    plan: Plan, shard: int, threads: int, stop: Callable[[], bool], tally: Tally
+    plan: Plan, shard: int, threads: int, stop: NDArray[np.uint8], tally: Tally
 ) -> Iterator[pyarrow.Table]:
-    """Plays a shard and yields tables with the rows of one row group each, whatever the blocks."""
-    import pyarrow
-
-    schema = schema_of(plan, *plan.range(shard))
-    waiting: list[pyarrow.Table] = []
-    rows = 0
-    for first, columns, shots in _blocks(plan, shard, threads, stop):
-        tally.add(first, shots)
-        waiting.append(arrow(columns, schema))
-        rows += len(shots.status)
-        while rows >= _ROW_GROUP:
-            whole = pyarrow.concat_tables(waiting)
-            yield whole.slice(0, _ROW_GROUP).combine_chunks()
-            waiting, rows = [whole.slice(_ROW_GROUP)], rows - _ROW_GROUP
-    if rows > 0:
-        yield pyarrow.concat_tables(waiting).combine_chunks()
+    """Plays a shard and yields tables with the rows of one row group each."""
+    first, last = plan.range(shard)
+    schema = schema_of(plan, first, last)
+    hash_every = {"none": 0, "digest": HASH_EVERY, "column": 1}[plan.hashes]
+    for at in range(first, last, _ROW_GROUP):
+        end = min(at + _ROW_GROUP, last)
+        played = player_of(plan).play(at, end, threads, hash_every=hash_every, stop=stop)
+        if plan.hashes == "column":
+            played.columns["record_hash"] = Column(played.hash)
+        tally.add(at, played)
+        yield arrow(played.columns, schema)
 
 
-def _write(plan: Plan, shard: int, file: Any, threads: int, stop: Callable[[], bool]) -> dict[str, str]:
+def _write(plan: Plan, shard: int, file: Any, threads: int, stop: NDArray[np.uint8]) -> dict[str, str]:
     """Writes a Parquet file and returns its metadata."""
     import inspect
 
@@ -262,8 +224,8 @@ def _host() -> str:
     return os.uname().nodename
 
 
-def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: Callable[[], bool]) -> dict[str, Any]:
-    """`run_shard`, except that it raises Stopped between two blocks of shots once `stop` returns true."""
+def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: NDArray[np.uint8]) -> dict[str, Any]:
+    """`run_shard`, except that it raises RuntimeError once the flag `stop` is not 0."""
     need("pyarrow")
     start = time.perf_counter()
     name = plan.file(shard)
@@ -335,4 +297,4 @@ def run_shard(
     """
     if not isinstance(plan, Plan):
         plan = Plan.load(plan)
-    return make_shard(plan, shard, os.fspath(folder), threads, lambda: False)
+    return make_shard(plan, shard, os.fspath(folder), threads, NEVER)

@@ -83,9 +83,12 @@ class PartSorter {
                 return {Part::kShade, Part::kCutShade};
             case Material::kChalk:
                 return {Part::kChalk, Part::kChalk};
-            default:
-                return {Part::kSmall, Part::kSmall};
+            case Material::kPocket:
+            case Material::kTrim:
+            case Material::kInlay:
+                break;
         }
+        return {Part::kSmall, Part::kSmall};
     }
 
     bool meets_hole(const Corners& piece) const {

@@ -22,9 +22,15 @@ Rgba state_color(MotionState state) {
             return {1.0F, 0.62F, 0.18F, 1.0F};
         case MotionState::kRolling:
             return {0.94F, 0.94F, 0.90F, 1.0F};
-        default:
-            return {0.55F, 0.75F, 1.0F, 1.0F};
+        case MotionState::kStationary:
+        case MotionState::kSpinning:
+        case MotionState::kPocketed:
+        case MotionState::kFalling:
+        case MotionState::kAirborne:
+        case MotionState::kOut:
+            break;
     }
+    return {0.55F, 0.75F, 1.0F, 1.0F};
 }
 
 // Line width [pixels] in proportion to the image, at least 1.

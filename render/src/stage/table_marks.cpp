@@ -1,6 +1,7 @@
 #include "stage/table_marks.h"
 
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 namespace carom::render {
@@ -47,22 +48,19 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
     }
 }
 
-// Baulk line, D and the six spots of an English table (World Snooker rules,
-// section 1: the baulk line is 29 in from the face of the bottom cushion, the D
-// has a radius of 11 1/2 in, the black spot is 12 3/4 in from the top cushion).
+// Baulk line, D and the six spots of an English table.
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
-    const double w = table.width, l = table.length, scale = l / 3.569;  // as the balls are placed
-    const double baulk = 0.737 * scale, d = 0.292 * scale;
-    line(builder, {{0.0, baulk}, {w, baulk}}, 0.003, 0.6);
+    const Vec2 brown = snooker_spot(table, "brown");
+    const double d = radius_of_d(table);
+    line(builder, {{0.0, brown.y()}, {table.width, brown.y()}}, 0.003, 0.6);
     constexpr int kPieces = 48;  // [-] straight pieces of the D
     std::vector<Vec2> arc;
     for (int i = 0; i <= kPieces; ++i) {
         const double angle = 3.14159265358979323846 * i / kPieces;
-        arc.emplace_back(0.5 * w - d * std::cos(angle), baulk - d * std::sin(angle));
+        arc.emplace_back(brown - d * Vec2(std::cos(angle), std::sin(angle)));
     }
     line(builder, arc, 0.003, 0.6);
-    for (double x : {0.5 * w - d, 0.5 * w, 0.5 * w + d}) spot(builder, {x, baulk}, 0.005);
-    for (double y : {0.5 * l, 0.75 * l, l - 0.324 * scale}) spot(builder, {0.5 * w, y}, 0.005);
+    for (const std::string_view colour : kColours) spot(builder, snooker_spot(table, colour), 0.005);
 }
 
 }  // namespace

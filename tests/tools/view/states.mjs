@@ -13,12 +13,12 @@ const motion = scripts.filter((text) => text.includes("function stateAt("));
 if (motion.length !== 1) throw new Error(`${motion.length} scripts of the page define stateAt`);
 const context = vm.createContext({});
 vm.runInContext(motion[0], context);
-const orientation = context.orientations(record);
+const {orientations, stateAt} = context.modules["motion.js"], orientation = orientations(record);
 
 let compared = 0, differ = 0, turned = 0;
 for (const line of readFileSync(states, "utf8").trim().split("\n")) {
   const [ball, t, state, pocket, ...rest] = line.split(",");
-  const numbers = rest.map(Number), here = context.stateAt(record, Number(ball), Number(t));
+  const numbers = rest.map(Number), here = stateAt(record, Number(ball), Number(t));
   const mine = [...here.r, ...here.v, ...here.w];
   compared += mine.length + 2;
   const wrong = mine.filter((x, k) => !Object.is(x, numbers[k])).length + (here.state !== state)

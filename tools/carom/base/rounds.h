@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/console.h"
-#include "reference/random_impacts.h"
+#include "carom/kernel/splitmix64.h"
 
 namespace carom::tools {
 
@@ -21,7 +21,7 @@ inline std::vector<std::vector<double>> interleaved(const std::string& title, st
     std::vector<std::vector<double>> samples(count);
     std::vector<std::size_t> order(count);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    reference::Generator rng(99);
+    SplitMix64 rng(99);
     ProgressLine progress(title);
     for (int round = 0; round < rounds; ++round) {
         for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[rng.next() % i]);

@@ -1,6 +1,8 @@
 // Shares of shots and how sure they are.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "carom/games/solve.h"
@@ -9,6 +11,9 @@ namespace carom::tools {
 
 using games::Share;
 using games::share_of;
-std::string share_text(const Share& share);
+inline std::string share_text(const Share& share) {
+    return fmt::format("{:6.2f} %  ({:.2f} to {:.2f})", 100.0 * share.value, 100.0 * share.low,
+                       100.0 * share.high);
+}
 
 }  // namespace carom::tools

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "base/game_state.h"
 #include "carom/engine/math.h"
@@ -52,35 +51,17 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
             {"options", options}};
 }
 
-Vec2 free_place(const Record& record, const games::Option& option) {
-    const Table& table = record.table;
-    const Vec2 from = games::head_spot(table);
-    // Rings about the head spot, one ball radius apart.
-    const double step = record.balls.R;
-    const int rings = static_cast<int>(std::ceil((table.width + table.length) / step));
-    for (int ring = 0; ring <= rings; ++ring) {
-        const int places = std::max(1, 6 * ring);
-        for (int k = 0; k < places; ++k) {
-            const auto [sin, cos] = sin_cos_deg(360.0 * k / places - 90.0);
-            Vec2 place = from + step * ring * Vec2(cos, sin);
-            if (games::may_place(record, option, place)) return place;
-        }
-    }
-    throw std::invalid_argument("there is no free place for the cue ball");
-}
-
 Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,
              const std::vector<std::string>& first) {
     Cue cue = before;
     cue.ball = ball;
     cue.side = 0.0;
-    const auto struck =
-        std::find_if(table.ball.begin(), table.ball.end(), [&](const BallStart& b) { return b.id == ball; });
+    const int struck = index_of(table.ball, ball);
     double least = HUGE_VAL;
     for (const BallStart& other : table.ball) {
-        if (struck == table.ball.end() || other.id == ball) continue;
+        if (struck < 0 || other.id == ball) continue;
         if (!first.empty() && std::find(first.begin(), first.end(), other.id) == first.end()) continue;
-        const Vec2 way = planar(other.position - struck->position);
+        const Vec2 way = planar(other.position - table.ball[struck].position);
         if (way.norm() >= least) continue;
         least = way.norm();
         cue.aim_deg = direction_deg(way.x(), way.y());

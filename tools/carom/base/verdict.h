@@ -18,10 +18,6 @@ std::string next_text(const games::State& state);
 /// The verdict as `carom judge --json` prints it.
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
 
-/// The free place for the cue ball in hand that is nearest to the head spot. @throws std::invalid_argument if
-/// there is none
-Vec2 free_place(const Record& record, const games::Option& option);
-
 /// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
 /// side.
 /// @param first  ids of these balls; empty: any ball

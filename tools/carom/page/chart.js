@@ -1,6 +1,9 @@
 // SVG charts of the program's plots (tools/carom/report/plot.h), with a cursor that follows the pointer or
 // the arrow keys.
-"use strict";
+
+import {make, onWidth, shown} from "./dom.js";
+
+const LEFT = 58, RIGHT = 12, TOP = 22, BOTTOM = 42;  // [px] room around the curves, for texts
 
 /** About `count` round values from low to high on an axis. */
 function roundValues(low, high, log, count) {
@@ -52,109 +55,115 @@ class Scale {
   }
 }
 
-/** A chart in its own element. A click calls pick(x). Returns {element, cursor(x)}. */
-function chart(spec, pick = null) {
-  const label = `${spec.title}. ${(spec.notes || []).join(". ")}`;
-  const host = make("div", {class: "plot", tabindex: "0", role: "img", "aria-label": label});
-  const readout = make("p", {class: "readout", "aria-live": "polite"});
-  const figure = make("figure", {class: "card"}, make("figcaption", {}, make("h2", {}, spec.title),
-    ...(spec.notes || []).map((note) => make("p", {}, note))), host, readout);
-  const all = spec.series.flatMap((s) => s.points);
-  const colour = (s, i) => s.stroke || `var(--c${(s.colour >= 0 ? s.colour : i) % 8})`;
-  const height = spec.height || 230, left = 58, right = 12, top = 22, bottom = 42;
-  let x, y, width = 0, line = null, held = null;
+/** A chart in its own element. A click calls pick(x). */
+export class Chart {
+  constructor(spec, pick = null) {
+    Object.assign(this, {spec, pick, width: 0, height: spec.height || 230, line: null, held: null});
+    const notes = spec.notes || [];
+    this.host = make("div", {class: "plot", tabindex: "0", role: "img",
+      "aria-label": `${spec.title}. ${notes.join(". ")}`});
+    this.readout = make("p", {class: "readout", "aria-live": "polite"});
+    this.element = make("figure", {class: "card"}, make("figcaption", {}, make("h2", {}, spec.title),
+      ...notes.map((note) => make("p", {}, note))), this.host, this.readout);
+    this.points = spec.series.flatMap((s) => s.points);
+    this.listen();
+    this.say(null);
+    onWidth(this.host, () => this.draw());
+  }
 
-  function draw() {
-    width = Math.max(host.clientWidth, 220);
-    x = new Scale(spec.x, all.map((p) => p[0]), left, width - right);
-    const levels = (spec.levels || []).map((l) => l.y);
-    y = new Scale(spec.y, all.map((p) => p[1]).concat(levels), height - bottom, top);
-    const parts = [], text = (px, py, anchor, words, name = "") =>
-      make("text", {x: px, y: py, "text-anchor": anchor, class: name}, words);
+  draw() {
+    const {spec, host, height} = this, levels = (spec.levels || []).map((l) => l.y);
+    const width = this.width = Math.max(host.clientWidth, 220);
+    this.x = new Scale(spec.x, this.points.map((p) => p[0]), LEFT, width - RIGHT);
+    this.y = new Scale(spec.y, this.points.map((p) => p[1]).concat(levels), height - BOTTOM, TOP);
+    const series = spec.series.flatMap((s, i) => this.seriesParts(s, this.colour(s, i)));
+    this.line = make("line", {class: "cursor", y1: TOP, y2: height - BOTTOM, x1: -9, x2: -9});
+    const box = {width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"};
+    host.replaceChildren(make("svg", box, ...this.axes(), ...series, ...this.markParts(), this.line));
+    if (this.held !== null) this.cursor(this.held);
+  }
+
+  axes() {
+    const {spec, x, y, width} = this, parts = [], foot = this.height - BOTTOM, end = width - RIGHT;
     for (const [value, words] of x.marks(spec.x, Math.max(2, Math.floor(width / 75)))) {
       const px = x.at(value);
-      parts.push(make("line", {class: "grid", x1: px, x2: px, y1: top, y2: height - bottom}),
-        text(px, height - bottom + 15, "middle", words));
+      parts.push(make("line", {class: "grid", x1: px, x2: px, y1: TOP, y2: foot}),
+        svgText(px, foot + 15, "middle", words));
     }
     for (const [value, words] of y.marks(spec.y, 5)) {
       const py = y.at(value);
-      parts.push(make("line", {class: "grid", x1: left, x2: width - right, y1: py, y2: py}),
-        text(left - 6, py + 4, "end", words));
+      parts.push(make("line", {class: "grid", x1: LEFT, x2: end, y1: py, y2: py}),
+        svgText(LEFT - 6, py + 4, "end", words));
     }
-    parts.push(text((left + width - right) / 2, height - 6, "middle", spec.x.title, "axis"));
-    parts.push(text(4, 12, "start", spec.y.title, "axis"));
+    parts.push(svgText((LEFT + end) / 2, this.height - 6, "middle", spec.x.title, "axis"),
+      svgText(4, 12, "start", spec.y.title, "axis"));
     for (const ticks of spec.ticks || []) {
-      const path = ticks.at.map((t) => `M${x.at(t).toFixed(1)} ${height - bottom}v-6`).join("");
+      const path = ticks.at.map((t) => `M${x.at(t).toFixed(1)} ${foot}v-6`).join("");
       parts.push(make("path", {d: path, class: "tick"}, make("title", {}, ticks.name)));
     }
     for (const level of spec.levels || []) {
       const py = y.at(level.y);
-      parts.push(make("line", {class: "level", x1: left, x2: width - right, y1: py, y2: py}),
-        text(width - right - 4, py - 5, "end", level.name, "level"));
+      parts.push(make("line", {class: "level", x1: LEFT, x2: end, y1: py, y2: py}),
+        svgText(end - 4, py - 5, "end", level.name, "level"));
     }
-    spec.series.forEach((s, i) => parts.push(...seriesParts(s, colour(s, i))));
-    for (const mark of spec.marks || []) {
-      const px = x.at(mark.x), py = y.at(mark.y), end = px > width / 2;
-      parts.push(make("circle", {class: "mark", cx: px, cy: py, r: 6}),
-        text(px + (end ? -10 : 10), py + 4, end ? "end" : "start", mark.name, "mark"));
-    }
-    line = make("line", {class: "cursor", y1: top, y2: height - bottom, x1: -9, x2: -9});
-    const box = {width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true"};
-    host.replaceChildren(make("svg", box, ...parts, line));
-    if (held !== null) cursor(held);
-  }
-
-  function seriesParts(s, stroke) {
-    const parts = [], usable = s.points.filter((p) => x.shows(p[0]) && y.shows(p[1]));
-    const points = usable.map((p) => [x.at(p[0]).toFixed(1), y.at(p[1]).toFixed(1)]);
-    if (points.length === 0) return parts;
-    const style = {fill: "none", "stroke-width": s.width || 1.6, "stroke-dasharray": s.dashed ? "4 3" : null};
-    const coloured = (element, property) => { element.style[property] = stroke; return element; };
-    const curve = {...style, d: "M" + points.map((p) => p.join(" ")).join("L")};
-    const dots = {fill: "none", "stroke-width": 5, "stroke-linecap": "round",
-      d: points.map((p) => `M${p.join(" ")}h0`).join("")};
-    if (s.line) parts.push(coloured(make("path", curve), "stroke"));
-    if (s.dots) parts.push(coloured(make("path", dots), "stroke"));
     return parts;
   }
 
-  /** The point of a series nearest to x. */
-  function valueAt(s, at) {
-    let best = null;
-    for (const p of s.points)
-      if (best === null || Math.abs(p[0] - at) < Math.abs(best[0] - at)) best = p;
-    return best;
+  markParts() {
+    return (this.spec.marks || []).flatMap((mark) => {
+      const px = this.x.at(mark.x), py = this.y.at(mark.y), end = px > this.width / 2;
+      return [make("circle", {class: "mark", cx: px, cy: py, r: 6}),
+        svgText(px + (end ? -10 : 10), py + 4, end ? "end" : "start", mark.name, "mark")];
+    });
   }
 
-  const key = (s, i, words) => {
-    const swatch = make("i", {});
-    swatch.style.background = colour(s, i);
-    return make("span", {class: "key"}, swatch, words);
-  };
+  seriesParts(s, stroke) {
+    const {x, y} = this, parts = [], usable = s.points.filter((p) => x.shows(p[0]) && y.shows(p[1]));
+    const points = usable.map((p) => [x.at(p[0]).toFixed(1), y.at(p[1]).toFixed(1)]);
+    if (points.length === 0) return parts;
+    const style = {fill: "none", "stroke-width": s.width || 1.6, "stroke-dasharray": s.dashed ? "4 3" : null};
+    const curve = {...style, d: "M" + points.map((p) => p.join(" ")).join("L")};
+    const dots = {fill: "none", "stroke-width": 5, "stroke-linecap": "round",
+      d: points.map((p) => `M${p.join(" ")}h0`).join("")};
+    if (s.line) parts.push(make("path", curve));
+    if (s.dots) parts.push(make("path", dots));
+    for (const part of parts) part.style.stroke = stroke;
+    return parts;
+  }
 
-  function say(at, point = null) {
-    const named = spec.series.map((s, i) => [s, i]).filter(([s]) => s.name);
+  colour(s, i) { return s.stroke || `var(--c${(s.colour >= 0 ? s.colour : i) % 8})`; }
+
+  key(s, i, words) {
+    const swatch = make("i", {});
+    swatch.style.background = this.colour(s, i);
+    return make("span", {class: "key"}, swatch, words);
+  }
+
+  /** Writes the values at an instant below the chart, or those of one point. */
+  say(at, point = null) {
+    const {spec, readout} = this, named = spec.series.map((s, i) => [s, i]).filter(([s]) => s.name);
     if (point !== null) {
       const [s, i] = point.of, [px, py] = point.p.map((value) => shown(value));
-      readout.replaceChildren(key(s, i, `${s.name}: ${spec.x.title} ${px}; ${spec.y.title} ${py}`));
+      readout.replaceChildren(this.key(s, i, `${s.name}: ${spec.x.title} ${px}; ${spec.y.title} ${py}`));
       return;
     }
-    const keys = (words) => named.map(([s, i]) => key(s, i, words(s)));
+    const keys = (words) => named.map(([s, i]) => this.key(s, i, words(s)));
     if (at === null || spec.byPoint) readout.replaceChildren(...keys((s) => s.name));
     else readout.replaceChildren(make("b", {}, `${shown(at, 4)} ${spec.x.unit || ""}`),
-      ...keys((s) => `${s.name} ${shown(valueAt(s, at)?.[1])}`));
+      ...keys((s) => `${s.name} ${shown(nearestTo(s, at)?.[1])}`));
   }
 
-  function cursor(at) {
-    held = at;
-    if (line === null) return;
-    line.setAttribute("x1", x.at(at));
-    line.setAttribute("x2", x.at(at));
+  cursor(at) {
+    this.held = at;
+    this.line?.setAttribute("x1", this.x.at(at));
+    this.line?.setAttribute("x2", this.x.at(at));
   }
 
-  function nearest(px, py) {
+  /** The point nearest to a place [px], with its series, or null. */
+  nearest(px, py) {
+    const {x, y} = this;
     let best = null;
-    spec.series.forEach((s, i) => {
+    this.spec.series.forEach((s, i) => {
       for (const p of s.points) {
         if (!s.name || !x.shows(p[0]) || !y.shows(p[1])) continue;
         const away = Math.hypot(x.at(p[0]) - px, y.at(p[1]) - py);
@@ -164,31 +173,47 @@ function chart(spec, pick = null) {
     return best;
   }
 
-  const place = (event) => {
-    const box = host.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
-  host.onpointermove = (event) => {
-    const [px, py] = place(event);
-    if (spec.byPoint) say(null, nearest(px, py));
-    else if (px >= left && px <= width - right) { say(x.value(px)); if (pick === null) cursor(x.value(px)); }
-  };
-  host.onpointerleave = () => say(null);
-  if (pick !== null)
-    host.onclick = (event) => pick(x.value(Math.min(Math.max(place(event)[0], left), width - right)));
-  host.onkeydown = (event) => {
-    const turn = {ArrowLeft: -1, ArrowRight: 1}[event.key];
-    if (turn === undefined || pick !== null) return;
-    const order = all.slice().sort((a, b) => a[0] - b[0]);
-    const now = held === null ? 0 : order.findIndex((p) => p[0] >= held);
-    let next = now;
+  listen() {
+    const {spec, host, pick} = this;
+    const place = (event) => {
+      const box = host.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    host.onpointermove = (event) => {
+      const [px, py] = place(event);
+      if (spec.byPoint) this.say(null, this.nearest(px, py));
+      else if (px >= LEFT && px <= this.width - RIGHT) {
+        this.say(this.x.value(px));
+        if (pick === null) this.cursor(this.x.value(px));
+      }
+    };
+    host.onpointerleave = () => this.say(null);
+    if (pick === null) host.onkeydown = (event) => this.step(event);
+    else host.onclick = (event) =>
+      pick(this.x.value(Math.min(Math.max(place(event)[0], LEFT), this.width - RIGHT)));
+  }
+
+  /** Goes to the next point by the arrow keys. */
+  step(event) {
+    const turn = {ArrowLeft: -1, ArrowRight: 1}[event.key], {held} = this;
+    if (turn === undefined) return;
+    const order = this.points.slice().sort((a, b) => a[0] - b[0]);
+    let next = held === null ? 0 : order.findIndex((p) => p[0] >= held);
     while (order[next] && held !== null && order[next][0] === held && order[next + turn]) next += turn;
     event.preventDefault();
-    cursor(order[next][0]);
-    if (spec.byPoint) say(null, nearest(x.at(order[next][0]), y.at(order[next][1])));
-    else say(order[next][0]);
-  };
-  say(null);
-  onWidth(host, draw);
-  return {element: figure, cursor};
+    const [x, y] = order[next];
+    this.cursor(x);
+    if (this.spec.byPoint) this.say(null, this.nearest(this.x.at(x), this.y.at(y)));
+    else this.say(x);
+  }
+}
+
+const svgText = (x, y, anchor, words, name = "") =>
+  make("text", {x, y, "text-anchor": anchor, class: name}, words);
+
+/** The point of a series nearest to x. */
+function nearestTo(s, x) {
+  let best = null;
+  for (const p of s.points) if (best === null || Math.abs(p[0] - x) < Math.abs(best[0] - x)) best = p;
+  return best;
 }

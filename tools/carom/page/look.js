@@ -1,9 +1,11 @@
 // How a table and its balls look from above: the lamp, materials and patterns of the rendered frames
 // (render/src/draw/shaders), computed pixel by pixel. The table is painted once per size, a ball whenever it
 // moves or turns.
-"use strict";
 
-const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+import * as look from "../../../render/include/carom/render/look.h";
+import {brightness} from "./dom.js";
+
+export const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const mix = (a, b, t) => a + (b - a) * t;
 /** GLSL's smoothstep; a may be greater than b. */
 const step = (a, b, x) => { const t = clamp((x - a) / (b - a), 0, 1); return t * t * (3 - 2 * t); };
@@ -14,9 +16,9 @@ const toScreen = (c) => {
 };
 const fromScreen = (c) => c.map((x) => x * x);
 
-// The build inserts the constants with a k from render/include/carom/render/look.h here.
 const [CLOTH, WOOD_DARK, WOOD_LIGHT, TRIM, INLAY, IVORY, RED_DOT, PALE_DOT] =
-  [kCloth, kWoodDark, kWoodLight, kTrim, kInlay, kIvory, kRedDot, kPaleDot].map(fromScreen);
+  ["Cloth", "WoodDark", "WoodLight", "Trim", "Inlay", "Ivory", "RedDot", "PaleDot"]
+    .map((name) => fromScreen(look[`k${name}`]));
 
 function lattice(x, y) {
   let h = Math.imul(x, 0x9E3779B1) ^ Math.imul(y, 0x85EBCA77);
@@ -41,7 +43,7 @@ function lampLight(lamp, x, y, z) {
 }
 
 /** Where the table [m] is on a canvas [px]: lengthwise along the longer side, as in the camera `top`. */
-class Projection {
+export class Projection {
   constructor(bounds, width, height, margin) {
     const [w, l] = [0, 1].map((k) => Math.max(bounds.high[k] - bounds.low[k], 1e-3));
     const W = Math.max(width - 2 * margin, 10), H = Math.max(height - 2 * margin, 10);
@@ -63,7 +65,7 @@ class Projection {
   }
 }
 
-function pathOf(loops) {
+export function pathOf(loops) {
   const path = new Path2D();
   for (const loop of loops) {
     for (let i = 0; i < loop.length; i += 2) path[i === 0 ? "moveTo" : "lineTo"](loop[i], loop[i + 1]);
@@ -93,7 +95,7 @@ function paint(scratch, projection, path, colour) {
 }
 
 /** Paints the table without balls. `shape`: as tools/carom/page/table_shape.h describes. */
-function paintTable(canvas, projection, shape) {
+export function paintTable(canvas, projection, shape) {
   const context = canvas.getContext("2d");
   const scratch = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
   scratch.canvas.width = canvas.width;
@@ -130,11 +132,11 @@ function paintTable(canvas, projection, shape) {
   }
   layer(shape.cloth, (x, y, out) => lit(out, CLOTH, nap(x, y), x, y, 0));
   shade(context, projection, shape);
-  layer(shape.chalk, (x, y, out) => lit(out, [kChalk, kChalk, kChalk], 0.42, x, y, 0));
+  layer(shape.chalk, (x, y, out) => lit(out, [look.kChalk, look.kChalk, look.kChalk], 0.42, x, y, 0));
   plain();
   for (const hole of shape.holes) paintHole(context, projection, hole);
   layer(shape.trim, (x, y, out) => lit(out, TRIM, 1, x, y, top));
-  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, kCushionGain * nap(x, y), x, y, 0.04));
+  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, look.kCushionGain * nap(x, y), x, y, 0.04));
   line(shape.cushion, 0.0025, "rgba(0,20,10,0.35)");
   layer(shape.inlay, (x, y, out) => lit(out, INLAY, 1, x, y, top));
   plain();
@@ -200,32 +202,31 @@ function albedo(style, b, w, out) {
   const blend = (colour, t) => { for (let k = 0; k < 3; ++k) out[k] = mix(out[k], colour[k], t); };
   for (let k = 0; k < 3; ++k) out[k] = style.base[k];
   if (style.pattern === "stripe") {
-    const band = inside(Math.abs(b[0]) - kStripe);
+    const band = inside(Math.abs(b[0]) - look.kStripe);
     for (let k = 0; k < 3; ++k) out[k] = mix(IVORY[k], style.base[k], band);
   } else if (style.pattern === "dots") {
     const [x, y, z] = b.map(Math.abs), upper = z >= x && z >= y;
     const away = upper ? Math.hypot(x, y) : x > y ? Math.hypot(y, z) : Math.hypot(x, z);
-    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? kLargeDot : kDot)));
+    blend(style.bright ? RED_DOT : PALE_DOT, inside(away - (upper && b[2] > 0 ? look.kLargeDot : look.kDot)));
   } else if (style.pattern === "halves") {
-    blend(style.base.map((c) => mix(c, 1, kPaleHalf)), inside(b[0]));
+    blend(style.base.map((c) => mix(c, 1, look.kPaleHalf)), inside(b[0]));
   }
   if (style.number === 0) return 1;
-  const spot = inside(Math.hypot(b[0], b[1]) - kSpot);
+  const spot = inside(Math.hypot(b[0], b[1]) - look.kSpot);
   if (spot === 0) return 1;
   blend(IVORY, spot);
-  const across = b[1] / (2 * kSpot) + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / (2 * kSpot) + 0.5;
+  const across = b[1] / (2 * look.kSpot) + 0.5, down = (b[2] > 0 ? b[0] : -b[0]) / (2 * look.kSpot) + 0.5;
   const i = Math.floor(clamp(across, 0, 0.999) * GLYPH), j = Math.floor(clamp(down, 0, 0.999) * GLYPH);
   const ink = spot * glyphOf(style.number)[j * GLYPH + i] / 255;
-  blend([kInk, kInk, kInk], ink);
+  blend([look.kInk, look.kInk, look.kInk], ink);
   return 1 - 0.85 * ink;
 }
 
 /** A ball as a small picture, which is drawn again when the ball moves or turns. */
-class BallPicture {
+export class BallPicture {
   constructor(style) {
     this.style = {...style, base: fromScreen(style.color), bright: false};
-    const [red, green, blue] = this.style.base;
-    this.style.bright = 0.3 * red + 0.6 * green + 0.1 * blue > kBright;
+    this.style.bright = brightness(this.style.base) > look.kBright;
     this.context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
     this.key = "";
   }
@@ -292,7 +293,7 @@ class BallPicture {
 }
 
 /** A round shadow, whose darkness at d radii is profile(d), up to `reach` radii. */
-function shadowPicture(reach, profile) {
+export function shadowPicture(reach, profile) {
   const canvas = document.createElement("canvas"), size = canvas.width = canvas.height = 64;
   const context = canvas.getContext("2d");
   const image = context.createImageData(size, size);

@@ -1,10 +1,9 @@
 // Where every ball of a record is at any time. The formulas are those of docs/reference/record_format.md,
 // with their terms in the engine's order, so that positions, velocities and spins have the same bits.
 // Orientations do not: they need sin and cos, and a browser's differ from the engine's.
-"use strict";
 
 /** The index of the last item in `list` whose `start` (or other key) is at most t; 0 if there is none. */
-function lastBefore(list, t, key = "start") {
+export function lastBefore(list, t, key = "start") {
   let low = 0, high = list.length;
   while (low < high) {
     const middle = (low + high) >> 1;
@@ -14,15 +13,15 @@ function lastBefore(list, t, key = "start") {
   return low === 0 ? 0 : low - 1;
 }
 
-function radiusOf(record, ball) {
-  const own = record.tracks[ball].radius;
-  return own === undefined ? record.balls.R : own;
-}
+/** Whether a ball with this state is off the table. */
+export const isGone = (state) => state === "pocketed" || state === "out";
 
-function massOf(record, ball) {
-  const own = record.tracks[ball].mass;
-  return own === undefined ? record.balls.m : own;
-}
+export const flies = (track) => track.segments.some((s) => s.state === "airborne");
+/** The length of a vector. */
+export const size = (v) => Math.hypot(...v);
+
+export const radiusOf = (record, ball) => record.tracks[ball].radius ?? record.balls.R;
+const massOf = (record, ball) => record.tracks[ball].mass ?? record.balls.m;
 
 function velocityAt(s, tau) {
   if (s.state === "rolling" && s.duration !== null && !s.held) {
@@ -53,7 +52,7 @@ function untilFloor(s, R, g) {
 }
 
 /** The state of a ball: {state, r, v, w, pocket}, in SI units. */
-function stateAt(record, ball, t) {
+export function stateAt(record, ball, t) {
   t = Math.min(Math.max(t, 0), record.duration);
   const track = record.tracks[ball], s = track.segments[lastBefore(track.segments, t)];
   const R = radiusOf(record, ball), floor = untilFloor(s, R, record.gravity);
@@ -71,6 +70,18 @@ function stateAt(record, ball, t) {
   if (tau === floor)
     return {state: s.state, r: [r[0], r[1], R - FLOOR_DEPTH], v: [0, 0, 0], w: [0, 0, 0], pocket: -1};
   return {state: s.state, r, v, w: spinAt(s, tau, R), pocket: s.state === "pocketed" ? track.pocket : -1};
+}
+
+/** The path of a ball on the table in the k-th segment of its track, up to a time: [start, middle, end] of a
+ * quadratic curve, which is exactly the parabola of the segment; null if it does not move there. */
+export function pathPiece(record, track, k, until) {
+  const s = track.segments[k], next = track.segments[k + 1]?.start ?? record.duration;
+  const tau = Math.min(Math.min(next, until) - s.start, s.duration ?? Infinity);
+  const still = s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0;
+  if (!(tau > 0) || still || isGone(s.state) || s.state === "falling") return null;
+  const point = (at) => [at(0), at(1)];
+  return [point((j) => s.r[j]), point((j) => s.r[j] + 0.5 * tau * s.v[j]),
+    point((j) => s.r[j] + tau * (s.v[j] + 0.5 * tau * s.a[j]))];
 }
 
 // Quaternions are [w, x, y, z].
@@ -125,7 +136,7 @@ function segmentTurn(s, tau) {
 }
 
 /** A function (ball, t) that returns the rotation since the start, from the ball's frame to the table's. */
-function orientations(record) {
+export function orientations(record) {
   const starts = record.tracks.map((track) => {
     let q = [1, 0, 0, 0];
     return track.segments.map((s, i) => {
@@ -144,12 +155,12 @@ function orientations(record) {
 }
 
 /** The energy [J] of all balls in play together: {moving, turning, raised}. */
-function energiesAt(record, t) {
+export function energiesAt(record, t) {
   const sum = {moving: 0, turning: 0, raised: 0};
   const square = (x) => x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
   for (let ball = 0; ball < record.tracks.length; ++ball) {
     const s = stateAt(record, ball, t), R = radiusOf(record, ball), m = massOf(record, ball);
-    if (s.state === "pocketed" || s.state === "out") continue;
+    if (isGone(s.state)) continue;
     sum.moving += 0.5 * m * square(s.v);
     sum.turning += 0.2 * m * R * R * square(s.w);
     if (s.state === "airborne") sum.raised += m * record.gravity * Math.max(0, s.r[2] - R);

@@ -29,6 +29,14 @@ const PageFile& page_file(std::string_view name) {
     return *found;
 }
 
+/// Adds a script to the list, after those that it imports.
+void add_script(std::string_view name, std::vector<const PageFile*>& scripts) {
+    const PageFile& file = page_file(name);
+    if (std::find(scripts.begin(), scripts.end(), &file) != scripts.end()) return;
+    for (const char* const needed : file.imports) add_script(needed, scripts);
+    scripts.push_back(&file);
+}
+
 /// Base64 of hexadecimal digits: the form in which a policy writes a hash.
 std::string base64(const std::string& hex) {
     constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -48,29 +56,24 @@ std::string policy_hash(const PageFile& file) {
     return fmt::format(" 'sha256-{}'", base64(file.sha256));
 }
 
-std::string as_html(const std::string& text) {
+std::string replaced(const std::string& text, char what, std::string_view with) {
     std::string out;
     for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
+        if (c == what)
+            out += with;
         else
             out += c;
     }
     return out;
 }
 
+std::string as_html(const std::string& text) {
+    return replaced(replaced(text, '&', "&amp;"), '<', "&lt;");
+}
+
 /// JSON whose texts cannot end the element: "<" occurs only in strings, where it may be escaped.
 std::string inlined(const std::string& json) {
-    std::string out;
-    for (const char c : json) {
-        if (c == '<')
-            out += "\\u003c";
-        else
-            out += c;
-    }
-    return out;
+    return replaced(json, '<', "\\u003c");
 }
 
 }  // namespace
@@ -79,8 +82,10 @@ void add_page_files(const std::vector<PageFile>& more) {
     known_files().insert(known_files().end(), more.begin(), more.end());
 }
 
-std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
-                      const std::vector<PageData>& data, const PageExtras& extras) {
+std::string page_html(const std::string& title, const std::string& script, const std::vector<PageData>& data,
+                      const PageExtras& extras) {
+    std::vector<const PageFile*> scripts;
+    add_script(script, scripts);
     std::vector<std::string> style_names = {"style.css"};
     style_names.insert(style_names.end(), extras.styles.begin(), extras.styles.end());
     std::string policy = "default-src 'none'; base-uri 'none'; form-action 'none'; style-src", styles;
@@ -90,7 +95,7 @@ std::string page_html(const std::string& title, const std::vector<std::string>& 
     }
     policy += "; script-src";
     if (extras.wasm) policy += " 'wasm-unsafe-eval'";
-    for (const std::string& name : scripts) policy += policy_hash(page_file(name));
+    for (const PageFile* const file : scripts) policy += policy_hash(*file);
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
@@ -102,10 +107,7 @@ std::string page_html(const std::string& title, const std::vector<std::string>& 
     for (const PageData& item : data)
         html +=
             "<script type=\"application/json\" id=\"" + item.id + "\">" + inlined(item.json) + "</script>\n";
-    for (const std::string& name : scripts) {
-        const PageFile& file = page_file(name);
-        html += std::string("<script>") + file.text + "</script>\n";
-    }
+    for (const PageFile* const file : scripts) html += std::string("<script>") + file->text + "</script>\n";
     return html + "</body>\n</html>\n";
 }
 

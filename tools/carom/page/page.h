@@ -8,11 +8,12 @@
 
 namespace carom::tools {
 
-/// A script or a style sheet that the build embedded in the program.
+/// A script or another file that the build embedded in the program.
 struct PageFile {
     const char* name;
     const char* text;
-    const char* sha256;  ///< of the text, in hexadecimal digits
+    const char* sha256;                ///< of the text, in hexadecimal digits
+    std::vector<const char*> imports;  ///< names of the scripts that it needs
 };
 const std::vector<PageFile>& page_files();
 /// Adds the page files of another library: the laboratory's.
@@ -29,9 +30,9 @@ struct PageExtras {
     bool wasm = false;                ///< the page may compile WebAssembly
 };
 
-/// The whole file. @param scripts  names of page files, in their order
-std::string page_html(const std::string& title, const std::vector<std::string>& scripts,
-                      const std::vector<PageData>& data, const PageExtras& extras = {});
+/// The whole file. @param script  the name of the page's script, which brings all that it imports
+std::string page_html(const std::string& title, const std::string& script, const std::vector<PageData>& data,
+                      const PageExtras& extras = {});
 
 /// What every page says about itself: title, subtitle, the command that made it, program and machine.
 nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,

@@ -21,10 +21,8 @@ using Json = nlohmann::ordered_json;
 /// it.
 Json shot_json(const Record& record) {
     const render::Stage stage(record, {});
-    std::vector<std::string> ids;
-    for (const BallTrack& track : record.tracks) ids.push_back(track.id);
     return {{"shape", table_shape(record.table, *stage.table())},
-            {"styles", ball_styles(ids, record.table.preset)}};
+            {"styles", ball_styles(ids_of(record.tracks), record.table.preset)}};
 }
 
 std::string counted(std::size_t count, const char* what) {
@@ -49,8 +47,7 @@ std::string shot_page(const Record& record, const Record* second, const nlohmann
         data.push_back({"second", record_json(*second)});
     }
     data.push_back({"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)});
-    return page_html(texts.title, {"dom.js", "motion.js", "look.js", "stage.js", "chart.js", "shot.js"},
-                     data);
+    return page_html(texts.title, "shot.js", data);
 }
 
 }  // namespace carom::tools

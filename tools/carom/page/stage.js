@@ -1,14 +1,15 @@
 // A table with the balls of a record, on two canvases: below the table, which is painted once per size, and
 // above it everything that moves.
-"use strict";
+
+import {cssColour, make} from "./dom.js";
+import {BallPicture, Projection, clamp, paintTable, pathOf, shadowPicture} from "./look.js";
+import {isGone, orientations, pathPiece, radiusOf, stateAt} from "./motion.js";
 
 const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
 const SINK_TIME = 0.15;  // [s] how long a pocketed ball is seen sinking, as in rendered frames
 const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
 
-const isGone = (state) => state === "pocketed" || state === "out";
-
-class TableView {
+export class TableView {
   /** `shape` and `styles`: the table's outlines, and {color, pattern, number} for each ball. */
   constructor(record, shape, styles, label) {
     Object.assign(this, {record, shape, styles, width: 0, numbered: false});
@@ -171,29 +172,30 @@ class TableView {
     if (dashed) context.setLineDash([5, 4].map((x) => x * this.dense / this.projection.scale));
     record.tracks.forEach((track, ball) => {
       if (only >= 0 && ball !== only) return;
-      for (let i = 0; i < track.segments.length; ++i) {
-        const s = track.segments[i], next = track.segments[i + 1];
-        if (s.start >= t || isGone(s.state)) break;
-        const stop = next ? Math.min(next.start, t) : Math.min(t, record.duration);
-        const tau = Math.min(stop - s.start, s.duration ?? Infinity);
-        const still = s.v[0] === 0 && s.v[1] === 0 && s.a[0] === 0 && s.a[1] === 0;
-        if (!(tau > 0) || s.state === "falling" || still) continue;
+      track.segments.forEach((s, k) => {
+        const piece = pathPiece(record, track, k, t);
+        if (piece === null) return;
         const own = this.styles[ball % this.styles.length].color;
         context.strokeStyle = kind === "ball" ? cssColour(own) : TRAIL_COLOURS[s.state] || "#8cbfff";
         context.beginPath();
-        context.moveTo(s.r[0], s.r[1]);
-        context.quadraticCurveTo(s.r[0] + 0.5 * tau * s.v[0], s.r[1] + 0.5 * tau * s.v[1],
-          s.r[0] + tau * (s.v[0] + 0.5 * tau * s.a[0]), s.r[1] + tau * (s.v[1] + 0.5 * tau * s.a[1]));
+        context.moveTo(...piece[0]);
+        context.quadraticCurveTo(...piece[1], ...piece[2]);
         context.stroke();
-      }
+      });
     });
     context.restore();
   }
 
+  /** The canvas pixel under the pointer. */
+  pixelAt(event) {
+    const box = this.over.getBoundingClientRect();
+    return [(event.clientX - box.left) * this.dense, (event.clientY - box.top) * this.dense];
+  }
+  /** The place of the table under the pointer [m]. */
+  placeAt(event) { return this.projection.table(...this.pixelAt(event)); }
   /** The ball under the pointer, or -1. */
   ballAt(event) {
-    const box = this.over.getBoundingClientRect();
-    const x = (event.clientX - box.left) * this.dense, y = (event.clientY - box.top) * this.dense;
+    const [x, y] = this.pixelAt(event);
     let best = -1, nearest = 12 * this.dense;
     for (const ball of this.seen || []) {
       const away = Math.hypot(ball.x - x, ball.y - y) - ball.r;
@@ -202,5 +204,3 @@ class TableView {
     return best;
   }
 }
-
-const cssColour = (color) => `rgb(${color.map((c) => Math.round(255 * c)).join()})`;

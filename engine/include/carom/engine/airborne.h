@@ -12,11 +12,6 @@
 
 namespace carom {
 
-/// Velocity of the centre [m/s] and angular velocity [rad/s] of one ball.
-struct Velocities {
-    Vec3 v, w;
-};
-
 /// [m/s] The slowest rebound that leaves the cloth: sqrt(2 g 0.0045 R). A resting ball sinks in by 0.0045 R:
 /// (9/8) (mu_sp/mu_s)^2 R with the frictions of pool, from the contact radius that the pivot friction
 /// implies.
@@ -38,20 +33,26 @@ double cloth_restitution(const BallParams& balls, double V);
 /// @param balls  mu_s, mu_sp, e_t
 void hit_cloth(const BallParams& balls, const MotionParams& motion, Velocities& ball);
 
-/// Two balls that meet, with the friction and restitution that the model and the plan leave in force.
+/// Two balls that meet, with the friction and restitution that their model reads.
 struct FreePair {
     BallSize size1, size2;
-    BallParams balls;  ///< mu_b, mu_b_more, mu_b_fall, e_b
+    Falling friction;
+    double e_b;
 };
 
 /// Two free balls: one impulse with friction, equation (A5). Does nothing if they do not approach.
 /// @param n  unit, from the centre of ball 1 to that of ball 2
 void hit_ball(const FreePair& pair, const Vec3& n, Velocities& ball1, Velocities& ball2);
 
-/// A contact so slow that bounces would never end: no friction, and the balls separate at `parting` [m/s],
-/// equation (A7). The cloth supports a ball that lies on it.
-void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, double parting,
-                 Velocities& ball1, Velocities& ball2);
+/// Which of two balls the cloth supports.
+struct Lies {
+    bool one, two;
+};
+
+/// A contact so slow that bounces would never end: no friction, and the balls separate at the parting_speed()
+/// of the larger one, equation (A7).
+void part_slowly(const FreePair& pair, const Vec3& n, const Lies& lies, double gravity, Velocities& ball1,
+                 Velocities& ball2);
 
 /// A ball in the air at a nose, equation (A6).
 /// @param n  unit, from the nose to the ball's centre
@@ -59,11 +60,5 @@ void part_slowly(const FreePair& pair, const Vec3& n, bool lies1, bool lies2, do
 /// @return whether the contact is slow
 bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
               Velocities& ball);
-
-/// [m/s] Upward speed of a ball that lay on the cloth when it met a nose: the result of (A6), or the share
-/// e_h of it if that points down. 0 if that is below bounce_end().
-/// @param ball  before the impact
-double hop_speed(const BallParams& balls, const MotionParams& motion, const CushionModelInfo& model,
-                 const Vec3& n, Velocities ball);
 
 }  // namespace carom

@@ -1,9 +1,12 @@
-// Ball-ball impact models: one function each, behind one interface.
+// Impacts of two balls in the plane: the models, one function each behind one interface, and the law that
+// applies them to balls of any size.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "carom/engine/motion.h"
 #include "carom/engine/scene.h"
 #include "carom/kernel/march.h"
 #include "carom/kernel/tolerance.h"
@@ -16,6 +19,7 @@ struct BallBallSettings {
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     int substeps = 0;
     double tolerance = 0.0;  ///< relative to the approach speed
+    kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
 };
 
 /// Velocities after the impact of two balls of equal radius, whose centres are at the same height. Their
@@ -37,6 +41,12 @@ struct BallBallModelInfo {
     bool reads_tolerance = false;    ///< the settings matter: the model integrates, it has no closed form
     /// balls on the cloth collide as free balls, then the cloth reacts: they may leave it
     bool free = false;
+
+    /// e_b and the friction between two balls, as the model reads them.
+    double restitution(const BallParams& balls) const { return reads_restitution ? balls.e_b : 1.0; }
+    Falling friction(const BallParams& balls) const {
+        return reads_friction ? balls.ball_friction() : Falling{0.0};
+    }
 };
 
 /// All models; equations and sources in docs/reference/physics.md, "Ball-ball impact".
@@ -57,5 +67,27 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel:
 /// Horizontal distance of the centres of two balls that touch while both lie on the cloth: 2 sqrt(R1 R2), and
 /// R1 + R2 for discs.
 double contact_distance(double R1, double R2, bool discs);
+
+/// The laws of the planar impacts of a scene. A friction that no ball can feel may be 0 in `balls`.
+struct PairLaw {
+    const BallBallModelInfo& model;
+    const BallBallSettings& settings;
+    const BallParams& balls;
+
+    /// The parameters of an impact with the friction mu_b between the balls.
+    kernel::ImpactParams params(const BallSize& size1, const BallSize& size2, double mu_b) const;
+};
+
+struct PairImpact {
+    kernel::ImpactStatus status;
+    std::int64_t steps;
+    const char* method;  ///< for people: the model, or how the kernel integrated it
+};
+
+/// Replaces the velocities of two balls on the cloth that meet, unless the status is an error. The friction
+/// between them is that at their slip before the impact.
+/// @param r1, r2  the centres; their heights differ as the radii do
+PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& size2, const Vec3& r1,
+                   const Vec3& r2, Velocities& ball1, Velocities& ball2);
 
 }  // namespace carom

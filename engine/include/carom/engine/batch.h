@@ -56,8 +56,8 @@ class Simulator {
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
     /// The same for a shot of a variation. This simulator must have been made for its base(), and all its
     /// shots must come from this variation.
-    /// @param values  receives the draws, as VariedShot
-    ShotStatus play(const Variation& variation, std::uint64_t index, std::vector<std::string>& values,
+    /// @param values  receives the draws, one per key
+    ShotStatus play(const Variation& variation, std::uint64_t index, std::span<DrawnValue> values,
                     const SimulateOptions& options = {});
     /// From now on every shot also has a record, in memory that is reused.
     void keep_records() { records_ = true; }
@@ -99,6 +99,9 @@ struct BatchOptions {
     /// without playing them again. Both arguments are valid during the call only, and neither contains balls
     /// that were left out. An exception ends the batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
+    /// Called by each thread after every shot, once the arrays hold it and it is judged. @param message  why
+    /// it has no result, or ""
+    std::function<void(std::size_t shot, const std::string& message)> done{};
     /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes
     /// short shots take half as long again.
     std::uint64_t hash_every = 1;
@@ -173,9 +176,9 @@ std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           const BatchOptions& options, const BatchArrays& out);
 
 /// Plays shots first, first + 1, ... of a variation; otherwise the same. Ignores `options.absent`.
-/// @param values  receives the draws: a text per shot and key, as in VariedShot
+/// @param values  receives the draws: one per shot and key, as in VariedShot
 std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint64_t first, std::size_t shots,
                                           kernel::Isa isa, const BatchOptions& options,
-                                          const BatchArrays& out, std::vector<std::string>& values);
+                                          const BatchArrays& out, std::vector<DrawnValue>& values);
 
 }  // namespace carom

@@ -44,10 +44,9 @@ struct KeyOptions {
     const char* shape = "";            ///< of a list: "[x, y]"
     const char* record_key = nullptr;  ///< the key in record files, if it differs
     Files files = Files::kBoth;
-    int since = 1;                            ///< the version of record files that introduced the key
-    bool later = false;                       ///< added within that version: older files of it lack the key
-    bool needed = false;                      ///< the scene must give it
-    bool last_may_lack = false;               ///< the last number of a list may be omitted if it is 0
+    bool later = false;          ///< added within a version of record files: older ones of it lack the key
+    bool needed = false;         ///< the scene must give it
+    bool last_may_lack = false;  ///< the last number of a list may be omitted if it is 0
     const char* standard = nullptr;           ///< the default in words, if it is not a value
     const char* instead_of = nullptr;         ///< the key that this one replaces if it is given
     std::span<const char* const> names = {};  ///< the texts allowed; empty: all
@@ -92,6 +91,8 @@ struct Field : Key {
     bool (*fits)(const T&, const Key&) = nullptr;
     /// The k-th number of a list in the struct itself; null if the struct does not store the list.
     double* (*element)(T&, std::size_t k) = nullptr;
+    /// The number of the struct that the row sets first; null if it is none.
+    double T::*number = nullptr;
 
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
@@ -243,6 +244,15 @@ void put(V& v, const FieldValue& value) {
     }
 }
 
+/// The member itself if it is a number, otherwise null.
+template <auto kMember>
+constexpr double ClassOf<kMember>::*number_of() {
+    if constexpr (std::is_same_v<ValueOf<kMember>, double>)
+        return kMember;
+    else
+        return nullptr;
+}
+
 }  // namespace detail
 
 /// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration,
@@ -260,7 +270,8 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval&
             [](const T& object) { return detail::get(object.*kMember); },
             [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); },
             [](const T& object, const Key& row) { return detail::fits(object.*kMember, row); },
-            detail::element<kMember>};
+            detail::element<kMember>,
+            detail::number_of<kMember>()};
 }
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* meaning,
@@ -297,25 +308,24 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
-/// A row of a number that is 0 or 1, and the first or the second word in files. The first is the default,
-/// which files leave out.
+/// A row of a flag: false is the first word in files, true the second. False is the default, which files
+/// leave out.
 template <auto kMember, const auto& kWords>
 constexpr Field<detail::ClassOf<kMember>> either(const char* key, const char* meaning) {
     using T = detail::ClassOf<kMember>;
-    return {{key,
-             Key::Kind::kText,
-             at_least(0.0, 0.0),
-             meaning,
-             {.since = 2, .later = true, .standard = kWords[0], .names = kWords},
-             true,
-             1,
-             nullptr},
-            [](const T& object) {
-                return object.*kMember == 0.0 ? FieldValue() : FieldValue(std::string(kWords[1]));
-            },
-            [](T& object, const FieldValue& value) {
-                object.*kMember = std::get<std::string>(value) == kWords[1] ? 1.0 : 0.0;
-            }};
+    return {
+        {key,
+         Key::Kind::kText,
+         at_least(0.0, 0.0),
+         meaning,
+         {.later = true, .standard = kWords[0], .names = kWords},
+         true,
+         1,
+         nullptr},
+        [](const T& object) { return object.*kMember ? FieldValue(std::string(kWords[1])) : FieldValue(); },
+        [](T& object, const FieldValue& value) {
+            object.*kMember = std::get<std::string>(value) == kWords[1];
+        }};
 }
 
 /// The rows of a coefficient that may be a number or a fit with three. `number` is the first number alone,
@@ -329,7 +339,10 @@ constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const In
             [](T& object, const FieldValue& value) {
                 object.*kFirst = std::get<double>(value);
                 ((object.*kOthers = 0.0), ...);
-            }};
+            },
+            nullptr,
+            nullptr,
+            kFirst};
 }
 template <auto kFirst, auto kSecond, auto kThird>
 constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& range, const char* meaning,

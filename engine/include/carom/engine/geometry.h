@@ -18,6 +18,8 @@ struct CushionLine {
     double inset = 0.0;  ///< [m] a ball touches it with its centre at R - inset (cushion_touch)
 };
 
+CushionLine line_of(const Cushion& cushion, double inset);
+
 /// The part of a circle that an arc covers, counter-clockwise from one direction to another.
 struct ArcSpan {
     Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< unit vectors

@@ -1,7 +1,23 @@
-// The parameters of a ball's motion between events.
+// The parameters of a ball's motion between events, and its velocities.
 #pragma once
 
+#include "carom/engine/vec.h"
+
 namespace carom {
+
+/// Velocity of the centre [m/s] and angular velocity [rad/s] of one ball.
+struct Velocities {
+    Vec3 v, w;
+};
+
+/// [m R^2] Moment of inertia of a solid ball about its centre.
+inline constexpr double kInertia = 0.4;
+
+/// [J/kg] Kinetic energy of a ball, per mass. The vectors may be planar.
+template <class V, class W>
+double kinetic_energy(const V& v, const W& w, double R) {
+    return 0.5 * (v.squaredNorm() + kInertia * R * R * w.squaredNorm());
+}
 
 /// One ball's friction as accelerations, as in the equations of motion.
 struct MotionParams {

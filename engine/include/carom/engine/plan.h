@@ -72,7 +72,7 @@ struct Plan {
     kernel::Isa isa = kernel::Isa::kScalar;
     const BallBallModelInfo* ball_ball = nullptr;
     /// e_b as the model of ball-ball impacts reads it: 1 if it does not.
-    double e_b() const { return ball_ball->reads_restitution ? balls.e_b : 1.0; }
+    double e_b() const { return ball_ball->restitution(balls); }
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     /// kSequential if there are fewer than three balls

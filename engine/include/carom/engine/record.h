@@ -210,6 +210,8 @@ struct BallTrack {
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
     bool operator==(const BallTrack&) const = default;
+    /// Index of the segment in force at time t: the last one that starts at or before t.
+    std::size_t segment_at(double t) const;
 };
 
 class Record {
@@ -302,6 +304,9 @@ inline double until_floor(const Segment& s, double R, double gravity) {
     return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
 }
 
+/// Whether a record may be of this scene: it has the same balls in the same order.
+bool same_balls(const Scene& scene, const Record& record);
+
 /// The scene for the next shot: that of the record with every ball as it is at the end, without the balls in
 /// pockets and without a cue. The caller chooses the ball to strike, and puts fallen balls back. A ball that
 /// is still falling starts its fall again. The result may need other [effects].
@@ -315,7 +320,7 @@ void write_record(const Record& record, const std::string& path);
 /// The text that write_record writes. @throws std::runtime_error as write_record does, except for the file
 std::string record_json(const Record& record);
 
-/// Reads what write_record wrote, in this version or in version 1 (docs/reference/record_format.md). `notes`
+/// Reads what write_record wrote, in this version of the format (docs/reference/record_format.md). `notes`
 /// receives a sentence for everything that the file lacks or that this version does not know. @throws
 /// SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);

@@ -17,6 +17,7 @@
 #include "carom/engine/frame_size.h"
 #include "carom/engine/table.h"
 #include "carom/engine/tolerances.h"
+#include "carom/kernel/impact.h"
 #include "carom/kernel/tolerance.h"
 
 namespace carom {
@@ -100,11 +101,10 @@ struct BallParams {
     /// Share of the downward speed after a cushion that throws the ball up again. 0: the published planar
     /// cushions.
     double e_h = 0.0;
-    // BallParams has numbers only (tangents read them as a list): these two are 0 or 1.
-    double disc = 0.0;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
-    double slides = 0.0;  ///< pucks: they never roll
-    bool discs() const { return disc != 0.0; }
-    bool rolls() const { return slides == 0.0; }
+    bool disc = false;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
+    bool slides = false;  ///< pucks: they never roll
+    bool discs() const { return disc; }
+    bool rolls() const { return !slides; }
     BallSize size() const { return {R, m}; }
     /// Between two balls, as a function of their slip at the contact. Source of the form: D. Alciatore,
     /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the slip
@@ -130,9 +130,9 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_b_more>(
         "mu_b_more", kFriction,
         "at a slip of u m/s the ball-ball friction is `mu_b` + `mu_b_more` exp(-`mu_b_fall` u)",
-        {.files = Files::kRecord, .since = 2}),
+        {.files = Files::kRecord}),
     field<&BallParams::mu_b_fall>("mu_b_fall", at_least(0.0, kMaxFriction, "s/m"), "see `mu_b_more`",
-                                  {.files = Files::kRecord, .since = 2}),
+                                  {.files = Files::kRecord}),
     fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
         "mu_b_fit", kFriction,
         "ball-ball friction a + b exp(-c u) at the slip u in m/s (for two balls, the slip before the "
@@ -145,9 +145,9 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "e_c_fall", at_least(0.0, kMaxFriction, "s/m"),
         "above a speed of `e_c_above` towards the cushion the restitution is `e_c` - "
         "`e_c_fall` (speed - `e_c_above`), and not below 0",
-        {.files = Files::kRecord, .since = 2}),
+        {.files = Files::kRecord}),
     field<&BallParams::e_c_above>("e_c_above", at_least(0.0, kMaxSpeed, "m/s"), "see `e_c_fall`",
-                                  {.files = Files::kRecord, .since = 2}),
+                                  {.files = Files::kRecord}),
     fit<&BallParams::e_c, &BallParams::e_c_fall, &BallParams::e_c_above>(
         "e_c_fit", kFriction,
         "cushion restitution that falls with the speed v in m/s towards the cushion: e up to v0, e - c (v - "
@@ -160,21 +160,21 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::f_c_more>(
         "f_c_more", kFriction,
         "at a slip of u m/s at the nose the cushion friction is `f_c` + `f_c_more` exp(-`f_c_fall` u)",
-        {.files = Files::kRecord, .since = 2}),
+        {.files = Files::kRecord}),
     field<&BallParams::f_c_fall>("f_c_fall", at_least(0.0, kMaxFriction, "s/m"), "see `f_c_more`",
-                                 {.files = Files::kRecord, .since = 2}),
+                                 {.files = Files::kRecord}),
     fit<&BallParams::f_c, &BallParams::f_c_more, &BallParams::f_c_fall>(
         "f_c_fit", kFriction,
         "cushion friction a + b exp(-c u) at the slip u in m/s at the nose before the impact",
         "[a, b, c] for a + b exp(-c u)", "f_c"),
     number_or_fit<&BallParams::e_t, &BallParams::e_t_more, &BallParams::e_t_fall>(
-        "e_t", kRestitution, "restitution of ball and cloth, at any speed", {.since = 2, .later = true}),
+        "e_t", kRestitution, "restitution of ball and cloth, at any speed", {.later = true}),
     field<&BallParams::e_t_more>(
         "e_t_more", kRestitution,
         "at a speed of V m/s towards the cloth its restitution is `e_t` + `e_t_more` exp(-`e_t_fall` V)",
-        {.files = Files::kRecord, .since = 2, .later = true}),
+        {.files = Files::kRecord, .later = true}),
     field<&BallParams::e_t_fall>("e_t_fall", at_least(0.0, kMaxFriction, "s/m"), "see `e_t_more`",
-                                 {.files = Files::kRecord, .since = 2, .later = true}),
+                                 {.files = Files::kRecord, .later = true}),
     fit<&BallParams::e_t, &BallParams::e_t_more, &BallParams::e_t_fall>(
         "e_t_fit", kFriction,
         "restitution of ball and cloth a + b exp(-c V) at the speed V in m/s towards the cloth",
@@ -182,7 +182,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::e_h>("e_h", kRestitution,
                             "share of the downward speed after a cushion that throws the ball up again (a "
                             "hop); about 0.2 on a real table",
-                            {.since = 2, .later = true}),
+                            {.later = true}),
     either<&BallParams::disc, kBallShapes>(
         "shape", "two discs touch at the sum of their radii, and two balls of unlike size a little nearer"),
     either<&BallParams::slides, kRolls>(
@@ -317,10 +317,11 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::restitution>("restitution", kRestitution, "of the tip; 1 loses nothing"),
 };
 
-enum class ClothSlipSign : std::uint8_t { kConsistent, kAsPublished };
-constexpr auto names_of(ClothSlipSign) {
+namespace kernel {
+constexpr auto names_of(ClothSlip) {
     return std::array{"consistent", "as_published"};
 }
+}  // namespace kernel
 /// Where a ball touches a cushion.
 enum class CushionTouch : std::uint8_t { kRadius, kNose };
 constexpr auto names_of(CushionTouch) {
@@ -364,7 +365,7 @@ struct Physics {
     const CushionModelInfo* cushion = &kHan2005;
     const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: the same as straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
-    ClothSlipSign cloth_slip = ClothSlipSign::kConsistent;
+    kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
     /// set: the published integration with this many steps, instead of the tolerance
@@ -399,22 +400,19 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::march>("march",
                            "how `substeps` are computed: the same steps summed over many at once, or one by "
                            "one as published, bit for bit",
-                           {.since = 2, .later = true}),
+                           {.later = true}),
     field<&Physics::cushion_touch>(
         "cushion_touch",
         "distance of a ball's centre from a nose line that it touches: its `radius` R, as in most "
-        "simulators, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose` (0.6 to 2.2 mm less)",
-        {.since = 2}),
+        "simulators, or sqrt(R^2 - (height - R)^2), where its sphere meets the `nose` (0.6 to 2.2 mm less)"),
     field<&Physics::pocket>("pocket",
                             "a ball whose centre crosses the circle of a pocket falls, and may come back "
                             "over the edge before it has sunk, or it "
-                            "is pocketed `at_once`, as in planar simulators",
-                            {.since = 2}),
+                            "is pocketed `at_once`, as in planar simulators"),
     field<&Physics::vertical>(
         "vertical",
         "a ball that is struck or thrown up flies, or the vertical part is dropped, as in planar "
-        "simulators",
-        {.since = 2}),
+        "simulators"),
 };
 
 /// Effects that a plan computes or skips, in the order of effect_table() in plan.h, which has the keywords of
@@ -511,8 +509,8 @@ struct Scene {
     bool operator==(const Scene&) const = default;
 };
 inline constexpr const char* kBallPresets[] = {
-    "pool",    "snooker",         "carom",         "bar_box_oversized", "bar_box_heavy",   "english_pool",
-    "pyramid", "snooker_2026_11", "carom_2026_11", "pool_classic",      "snooker_classic", "carom_classic"};
+    "pool",         "snooker", "carom",        "bar_box_oversized", "bar_box_heavy",
+    "english_pool", "pyramid", "pool_classic", "snooker_classic",   "carom_classic"};
 /// The first key of [balls]; the others are kBallFields.
 inline constexpr Field<Scene> kBallPresetFields[] = {
     field<&Scene::ball_preset>("preset", "ball properties, and the cushion model, to start from",
@@ -527,6 +525,9 @@ std::string read_scene_text(const std::string& path);
 
 /// The same from text; messages call the file `name`.
 Scene parse_scene(std::string_view text, const std::string& name);
+
+/// The [cue] of such a text, aimed at the balls of `scene`. @throws SceneError
+Cue parse_cue(std::string_view text, const Scene& scene);
 
 /// A scene as the text of a scene file, every value written out: parse_scene reads the same scene back.
 /// Racked balls are placed one by one; names for people and depths of pockets are left out.

@@ -48,10 +48,6 @@ class SimulationError : public std::runtime_error {
 /// @throws SimulationError
 Record simulate(const Plan& plan, const SimulateOptions& options = {});
 
-/// Continues a run of the same plan that stopped at its number of events or its stop time; the plan must no
-/// longer stop there. The result has the bits of a run that never stopped. @throws SimulationError
-Record resume(const Plan& plan, const Record& so_far, const SimulateOptions& options = {});
-
 /// In place of the index of a pocket: the ball has left the table (ball_out).
 inline constexpr int kOffTable = -2;
 

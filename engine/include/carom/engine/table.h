@@ -3,8 +3,11 @@
 // Frame: right-handed, z up, x along the short side, y along the long side, origin where two nose lines meet.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/field.h"
@@ -33,8 +36,7 @@ inline constexpr Field<Cushion> kCushionFields[] = {
     field<&Cushion::to>("to", kCoordinate, "the other end", {.shape = "[x, y]", .needed = true}),
     field<&Cushion::height>("height", kNoseHeight, "of the nose above the cloth",
                             {.standard = "1.28 x ball radius"}),
-    field<&Cushion::name>("name", "for people, such as: left rail, head half",
-                          {.files = Files::kRecord, .since = 2}),
+    field<&Cushion::name>("name", "for people, such as: left rail, head half", {.files = Files::kRecord}),
 };
 
 /// A rounded jaw: a full circle. A ball touches it at centre distance R + radius. Or an arc: a round wall,
@@ -60,15 +62,15 @@ inline constexpr Field<Jaw> kJawFields[] = {
                         {.needed = true}),
     field<&Jaw::height>("height", kNoseHeight, "of the nose above the cloth",
                         {.standard = "1.28 x ball radius"}),
-    field<&Jaw::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+    field<&Jaw::name>("name", "for people", {.files = Files::kRecord}),
     field<&Jaw::side>("side", "of an arc's circle, on which the balls are: `inside` for a round table",
-                      {.since = 2, .later = true, .standard = "inside", .names = kArcSides}),
+                      {.later = true, .standard = "inside", .names = kArcSides}),
     field<&Jaw::from_deg>("from_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                           "of an arc: direction from the centre to its first end; 0 is +x",
-                          {.since = 2, .later = true, .standard = "0"}),
+                          {.later = true, .standard = "0"}),
     field<&Jaw::to_deg>("to_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                         "of an arc: to its other end, counter-clockwise; 360 more is the full circle",
-                        {.since = 2, .later = true, .standard = "`from_deg` + 360"}),
+                        {.later = true, .standard = "`from_deg` + 360"}),
 };
 
 /// A ball whose centre crosses the circle falls (docs/reference/physics.md, "Pockets").
@@ -87,7 +89,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
                            "a ball whose centre crosses this circle falls", {.needed = true}),
     field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
                           {.files = Files::kRecord}),
-    field<&Pocket::name>("name", "for people", {.files = Files::kRecord, .since = 2}),
+    field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
 
 /// Measures of the pockets at the corners, or at the sides, that replace those of a preset.
@@ -183,10 +185,36 @@ inline constexpr Field<Table> kTableFields[] = {
     field<&Table::bed>(
         "bed", kCoordinate,
         "two corners of the playing surface: a ball in the air is out when it leaves this rectangle",
-        {.shape = "[x0, y0, x1, y1]", .since = 2, .later = true, .standard = "behind any cushion"}),
+        {.shape = "[x0, y0, x1, y1]", .later = true, .standard = "behind any cushion"}),
 };
 
-/// Foot spot, the default position of racks: (w/2, 3l/4) from the table's corner.
+/// Index of the ball, pocket, ... with this id, or -1.
+template <class Part>
+int index_of(const std::vector<Part>& list, std::string_view id) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (list[i].id == id) return static_cast<int>(i);
+    return -1;
+}
+template <class Part>
+std::vector<std::string> ids_of(const std::vector<Part>& list) {
+    std::vector<std::string> ids;
+    for (const Part& part : list) ids.push_back(part.id);
+    return ids;
+}
+
+/// A place on the long axis or beside it [m], from the table's corner of smallest y.
+Vec2 spot_on_axis(const Table& table, double y, double aside = 0.0);
+/// Spots on the long axis: the head string, the centre and the foot string, at a quarter, a half and three
+/// quarters of the length. Racks are at the foot spot by default.
+Vec2 head_spot(const Table& table);
+Vec2 center_spot(const Table& table);
 Vec2 foot_spot(const Table& table);
+/// The colours of snooker, from the highest value, 7, down to 2.
+inline constexpr std::array<std::string_view, 6> kColours = {"black", "pink",  "blue",
+                                                             "brown", "green", "yellow"};
+/// The spot of a snooker colour. @throws std::invalid_argument for another id
+Vec2 snooker_spot(const Table& table, std::string_view colour);
+/// The radius of the D [m], whose centre is the spot of the brown.
+double radius_of_d(const Table& table);
 
 }  // namespace carom

@@ -19,6 +19,10 @@ inline constexpr double kTouchTolerance = 1e-12;
 /// slip.
 inline constexpr double kRollingUlp = 8.0;
 
+/// [ulp of the speeds of centres and surfaces] Lower closing speeds are rounding errors of the projection,
+/// not an approach.
+inline constexpr double kClosingUlp = 8.0;
+
 /// [s] and [-] More events than this within one such span are an error with a dump, never a silent stop.
 inline constexpr double kEventCapSpan = 1e-6;
 inline constexpr int kEventCap = 10000;

@@ -3,11 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "carom/engine/scene.h"
@@ -27,11 +30,26 @@ inline constexpr std::uint64_t kMostShots = std::uint64_t{1} << 53;
 /// The type of a column of values.
 enum class ValueKind : std::uint8_t { kNumber, kWhole, kText };
 
+/// A value of list(v,...).
+struct ListedValue {
+    std::string text;  ///< as tables write it
+    double number = std::numeric_limits<double>::quiet_NaN();
+    std::int64_t integer = 0;
+};
+/// A drawn value. The Variation owns those of lists.
+using DrawnValue = std::variant<double, std::int64_t, const ListedValue*>;
+/// NaN if it is no number.
+double number_of(const DrawnValue& value);
+/// 0 if it is no integer.
+std::int64_t integer_of(const DrawnValue& value);
+/// As tables write it; numbers read back to the same bits.
+std::string text_of(const DrawnValue& value);
+
 /// One shot: the values drawn, and their scene.
 struct VariedShot {
-    std::vector<std::string> values;  ///< one per key; numbers read back to the same bits
-    std::optional<Scene> scene;       ///< nothing if the values make no valid scene
-    std::string error;                ///< why they make none
+    std::vector<DrawnValue> values;  ///< one per key
+    std::optional<Scene> scene;      ///< nothing if the values make no valid scene
+    std::string error;               ///< why they make none
 };
 
 /// A scene file and the rules by which its values vary.
@@ -66,7 +84,7 @@ class Variation {
     const std::vector<std::string>& keys() const;
     /// The unit of the rule number `key`: "m/s", "degrees"; "" if it has none or is not a number of the
     /// scene.
-    std::string unit(std::size_t key) const;
+    const std::string& unit(std::size_t key) const;
 
     /// How many points the product of all grids has; 0 without a grid.
     std::uint64_t grid() const;
@@ -78,12 +96,14 @@ class Variation {
     /// another size), the result is an error instead of a scene: all shots share the columns of one table.
     VariedShot shot(std::uint64_t index) const;
 
-    /// A faster path to the same shot: writes its numbers into a scene that differs from base() only in the
-    /// values of these keys. Allocates no memory once `values` has its size, unless the rack varies.
-    /// @param values  receives those of VariedShot
+    /// The values of shot(index) alone. @param values  one per key
+    void draw(std::uint64_t index, std::span<DrawnValue> values) const;
+
+    /// Writes drawn values into a scene that differs from base() only in the values of these keys: a faster
+    /// path to the scene of shot(). Allocates no memory unless the rack varies.
     /// @return what must be checked. Nothing if a key or value is not a number of the cue, the physics, the
     /// stop, the balls' material or state, or the rack's gap, jitter, seed or angle: call shot() instead
-    std::optional<Change> put(std::uint64_t index, Scene& scene, std::vector<std::string>& values) const;
+    std::optional<Change> put(std::span<const DrawnValue> values, Scene& scene) const;
 
     /// Hash of the file's content, the rules and the seed: equal fingerprints mean equal shots.
     std::uint64_t fingerprint() const;

@@ -41,7 +41,7 @@ struct BreakSearch {
 };
 
 /// @throws std::invalid_argument for a game or number that is not allowed; SceneError for another table
-BreakSearch break_search(const BreakOptions& options, kernel::Isa isa);
+BreakSearch break_search(const BreakOptions& options);
 
 /// The scene of a file with many seeds of its rack; empty if it has no rack. @throws SceneError
 std::vector<Scene> racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed);

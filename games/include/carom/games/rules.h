@@ -179,6 +179,11 @@ const char* cue_ball(const State& state);
 /// @throws std::invalid_argument for an option with balls that the record does not have
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
+/// The place nearest to `wanted` at which may_place() lets the cue ball lie, in steps of a quarter of its
+/// radius.
+/// @throws std::invalid_argument as may_place(), and if there is none
+Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted);
+
 /// The table before the next shot, without a cue: pocketed balls are gone, respotted balls are back, and the
 /// cue ball is placed.
 /// @param scene that of the record

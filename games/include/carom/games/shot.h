@@ -50,7 +50,9 @@ struct Shot {
 Shot shot_of(const Record& record);
 
 /// Index of a ball, or -1.
-int index_of(const Record& record, std::string_view id);
+inline int index_of(const Record& record, std::string_view id) {
+    return carom::index_of(record.tracks, id);
+}
 
 /// How far a ball gets in the direction `along` (a unit vector) until `time`: the largest along * position
 /// [m].

@@ -19,15 +19,12 @@ struct Lying {
     double gap = 0.0;           ///< [m] how far others must stay away; 0: they may touch it
 };
 
-/// Spots on the long axis: the head string, the centre and the foot string, at a quarter, a half and three
-/// quarters of the length.
-Vec2 head_spot(const Table& table);
-Vec2 center_spot(const Table& table);
-/// The colours of snooker, from the highest value, 7, down to 2.
-inline constexpr std::array<std::string_view, 6> kColours = {"black", "pink",  "blue",
-                                                             "brown", "green", "yellow"};
-/// The spot of a snooker colour. @throws std::invalid_argument for another id
-Vec2 snooker_spot(const Table& table, std::string_view colour);
+// Where the balls of a table stand (carom/engine/table.h).
+using carom::center_spot;
+using carom::head_spot;
+using carom::kColours;
+using carom::radius_of_d;
+using carom::snooker_spot;
 
 /// Where the cue ball may be placed.
 enum class InHand : std::uint8_t { kNo, kAnywhere, kHeadString, kD };
@@ -60,9 +57,6 @@ inline constexpr double kSpotGap = 5e-4;
 /// rail; if that is all blocked, towards the head rail (WPA 1.4). @throws std::invalid_argument if the whole
 /// string is blocked
 Vec2 spot_on_long_string(const Table& table, const Vec2& spot, double R, std::span<const Lying> others);
-
-/// The radius of the D [m], whose centre is the spot of the brown.
-double radius_of_d(const Table& table);
 
 /// The place of a spotted snooker colour: its own spot; else the free spot of the highest colour; else as
 /// near to its own spot as possible, towards the top (foot) cushion, or the other way if there is no room.

@@ -9,14 +9,13 @@
 
 namespace carom::tools {
 
-/// record.schema.json beside this file, and docs/reference/scene_format.md
-/// as they were when the program was built.
+/// record.schema.json and scene_format.md of docs/reference as they were when the program was built.
 const std::vector<PageFile>& describe_files();
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// A JSON Schema of record files: docs/reference/record.schema.json. Its fixed text is beside this file, with
-/// null for what comes from the tables.
+/// A JSON Schema of record files: docs/reference/record.schema.json, with fresh parts for what the tables of
+/// their keys say.
 std::string record_schema();
 /// The page of scene files: docs/reference/scene_format.md, with fresh tables between the marks <!-- begin
 /// NAME --> and <!-- end NAME -->.

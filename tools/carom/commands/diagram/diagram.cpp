@@ -7,10 +7,10 @@
 
 #include "base/console.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
 #include "report/diagram.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -51,9 +51,7 @@ int run(const DiagramArgs& args) {
     style.diamond_numbers = args.diamonds;
     style.speeds = args.speeds;
     style.units = units_of(args.units);
-    OutputFile file(args.output);
-    file.write(draw_diagram(shots, style, format));
-    file.commit();
+    write_report(args.output, draw_diagram(shots, style, format));
     print(fmt::format("{}: {}\n", harmless(args.output), counted(shots.size(), "shot")));
     return kOk;
 }

@@ -13,7 +13,6 @@
 
 #include "base/console.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
 #include "commands/fit/tracks.h"
@@ -85,11 +84,8 @@ int run(const FitArgs& args) {
     }
     for (const std::string& warning : fit.warnings) message(warning);
     if (!fit.converged) message("the fit did not converge: " + fit.trouble);
-    if (!args.output.empty()) {
-        OutputFile file(args.output);
-        file.write(fmt::format("# Fitted by carom to {}\n{}", harmless(args.tracks), scene_text(fit.scene)));
-        file.commit();
-    }
+    write_report(args.output,
+                 fmt::format("# Fitted by carom to {}\n{}", harmless(args.tracks), scene_text(fit.scene)));
     write_report(args.csv, residuals_csv(fit, points));
     const Table table = values_table(fit, keys);
     if (args.json)

@@ -104,13 +104,12 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         };
         const double t = number(0), x = number(2), y = number(3);
         const Word id = word(1);
-        const auto ball = std::find_if(scene.ball.begin(), scene.ball.end(),
-                                       [&](const BallStart& b) { return b.id == id.text; });
-        if (ball == scene.ball.end())
+        const int ball = index_of(scene.ball, id.text);
+        if (ball < 0)
             fail(id.column, fmt::format("the scene has no ball {}; name the tracks as the scene does",
                                         in_quotes(std::string(id.text))));
         if (std::isnan(x) || std::isnan(y)) continue;
-        points.push_back({t, static_cast<int>(ball - scene.ball.begin()), Vec2(x, y)});
+        points.push_back({t, ball, Vec2(x, y)});
     }
     line_number = std::max<std::size_t>(line_number, 1);
     if (points.empty()) fail(1, "there are no places; add lines such as 0.05,cue,0.61,1.95 below t,ball,x,y");

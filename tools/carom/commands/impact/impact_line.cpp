@@ -172,8 +172,8 @@ Json free_balls(const Json& line) {
                   parameter(params, "m1", 0.0, kUnbounded, true)};
     pair.size2 = {parameter(params, "R2", 0.0, kUnbounded, true),
                   parameter(params, "m2", 0.0, kUnbounded, true)};
-    pair.balls.mu_b = parameter(params, "mu_b", 0.0, kUnbounded);
-    pair.balls.e_b = parameter(params, "e_b", 0.0, 1.0);
+    pair.friction.at_rest = parameter(params, "mu_b", 0.0, kUnbounded);
+    pair.e_b = parameter(params, "e_b", 0.0, 1.0);
     const Vec3 apart = vector_of(line, "r2") - vector_of(line, "r1");
     Velocities ball1{vector_of(line, "v1"), vector_of(line, "w1")},
         ball2{vector_of(line, "v2"), vector_of(line, "w2")};

@@ -15,12 +15,12 @@
 #include "base/console.h"
 #include "base/game_state.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "base/verdict.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/printable.h"
 #include "carom/games/rules.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -54,12 +54,6 @@ struct Judged {
     Verdict verdict;
     games::Option option;
 };
-
-void write_text(const std::string& path, const std::string& text) {
-    OutputFile file(path);
-    file.write(text);
-    file.commit();
-}
 
 /// Calls a function of the games, and turns its refusals into messages about the shot.
 template <class F>
@@ -120,8 +114,7 @@ int run_judge(const JudgeArgs& args) {
         throw UsageError("give --game, or the state of a game with --state");
     const Record record = read_shot(args.shot, {});
     const Judged verdict = judged(args.shot, record, args.game);
-    if (!args.game.state_out.empty())
-        write_text(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
+    write_report(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
     print(args.json ? verdict_json(verdict.verdict, verdict.option.state.game).dump() + "\n"
                     : verdict_text(verdict));
     return kOk;
@@ -139,7 +132,7 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const g
         return place;
     }
     if (option.state.in_hand == InHand::kNo) return std::nullopt;
-    return asked(args.scene, [&] { return free_place(record, option); });
+    return asked(args.scene, [&] { return games::free_place(record, option, head_spot(record.table)); });
 }
 
 int run_next(const NextArgs& args) {
@@ -178,22 +171,17 @@ int run_next(const NextArgs& args) {
             return games::table_after(plan.scene, record, option, place_of(args, record, option));
         });
         ball = games::cue_ball(option.state);
-        std::vector<std::string> ids;
-        for (const BallStart& b : next.ball) ids.push_back(b.id);
-        first = asked(args.scene, [&] { return games::legal(option.state, ids).first; });
+        first = asked(args.scene, [&] { return games::legal(option.state, ids_of(next.ball)).first; });
         said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
                             next_text(option.state));
-        if (!args.game.state_out.empty())
-            write_text(args.game.state_out, state_json(option.state).dump(2) + "\n");
+        write_report(args.game.state_out, state_json(option.state).dump(2) + "\n");
     }
     next.cue.reset();
-    const bool there =
-        std::any_of(next.ball.begin(), next.ball.end(), [&](const BallStart& b) { return b.id == ball; });
-    if (plan.scene.cue && there)
+    if (plan.scene.cue && index_of(next.ball, ball) >= 0)
         next.cue = next_cue(next, *plan.scene.cue, ball, first);
     else
         said += "# The struck ball is gone: place it as a [[ball]], and add a [cue].\n";
-    write_text(args.output, said + scene_text(next));
+    write_report(args.output, said + scene_text(next));
     print(fmt::format("{}: {}\n", harmless(args.output), counted(next.ball.size(), "ball")));
     return kOk;
 }

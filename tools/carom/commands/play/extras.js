@@ -1,50 +1,51 @@
 // What the page offers beside the table: scenes to open, every value of table, balls and physics, printing.
-"use strict";
 
-/** The values in one section of a scene file that carom wrote: {key: text}. */
-function sectionOf(toml, section) {
-  const values = {};
-  let inside = false;
-  for (const line of toml.split("\n")) {
-    if (line.startsWith("[")) inside = line.trim() === `[${section}]`;
-    const [, key, value] = (inside && /^([\w.]+)\s*=\s*(.*)$/.exec(line)) || [];
-    if (key !== undefined) values[key] = value;
-  }
-  return values;
+import {button, make, optionsOf, select} from "../../page/dom.js";
+import {printShots} from "./paper.js";
+import {sectionOf} from "./scene_text.js";
+import {begin, change} from "./shots.js";
+
+/** A dialog with a title, and a bar of buttons at its end that closes it. */
+export function dialog(title, parts, ...buttons) {
+  const element = make("dialog", {"aria-label": title}, make("h2", {}, title), ...parts, make("div",
+    {class: "bar"}, ...buttons, make("span", {class: "room"}), button("Close", () => element.close())));
+  document.body.append(element);
+  return element;
 }
 
-/** A dialog with every key of some sections. `keys`: {section: {key: {type, enum, description}}}. `play`: as
- * for playExtras. @returns a function that opens it */
-function settingsDialog(keys, play) {
-  const wrong = make("p", {class: "error", role: "alert"}), form = make("div", {class: "settings"});
-  /** What an input says, or a sentence why it says nothing. */
-  const read = (key, {type, enum: names}, text) => {
-    if (names) return text;
-    if (type === "array") {
-      try {
-        return JSON.parse(text);
-      } catch {
-        throw new Error(`${key}: expected a list of numbers, such as [0.01, 0.1, 1.1]`);
-      }
+/** The value that an input's text stands for. @throws Error with a sentence */
+export function valueOf(key, {type, enum: names}, text) {
+  if (names) return text;
+  if (type === "array") {
+    try {
+      return JSON.parse(text);
+    } catch {
+      throw new Error(`${key}: expected a list of numbers, such as [0.01, 0.1, 1.1]`);
     }
-    const x = Number(text.replace(",", "."));
-    if (text.trim() === "" || Number.isNaN(x)) throw new Error(`${key}: expected a number`);
-    return x;
-  };
+  }
+  const x = Number(text.replace(",", "."));
+  if (text.trim() === "" || Number.isNaN(x)) throw new Error(`${key}: expected a number`);
+  return x;
+}
+
+/** A dialog with every key of some sections: {section: {key: {type, enum, description}}}.
+ * @returns a function that opens it */
+function settingsDialog(state, keys) {
+  const wrong = make("p", {class: "error", role: "alert"}), form = make("div", {class: "settings"});
   const row = (section, key, about, value = "") => {
     const id = `key-${section}-${key}`, before = value.replace(/^"(.*)"$/, "$1");
     const input = about.enum
-      ? make("select", {id}, ...["", ...about.enum].map((x) => make("option", {value: x}, x || "default")))
+      ? make("select", {id}, ...optionsOf(["", ...about.enum].map((x) => [x, x || "default"])))
       : make("input", {id, placeholder: "default", autocomplete: "off",
         inputmode: about.type === "array" ? "text" : "decimal"});
     input.value = before;
-    input.disabled = play.locked(section);
+    input.disabled = state.locked(section);
     input.onchange = () => {
       wrong.textContent = "";
       try {
-        const changes = {[`${section}.${key}`]: read(key, about, input.value)};
-        play.scene().with(changes).free();
-        if (!play.change(changes)) throw new Error(document.querySelector(".says").textContent);
+        const changes = {[`${section}.${key}`]: valueOf(key, about, input.value)};
+        state.scene.with(changes).free();
+        if (!change(state, changes)) throw new Error(state.said);
         fill();
       } catch (error) {
         wrong.textContent = error.reason || error.message;
@@ -55,7 +56,7 @@ function settingsDialog(keys, play) {
       make("small", {}, about.description.replace(/; default: .*$/, "")));
   };
   const fill = () => {
-    const toml = play.scene().everything, focused = document.activeElement?.id;
+    const toml = state.scene.everything, focused = document.activeElement?.id;
     form.replaceChildren(...Object.entries(keys).map(([section, list]) => {
       const values = sectionOf(toml, section);
       return make("fieldset", {class: "section"}, make("legend", {}, section),
@@ -63,29 +64,24 @@ function settingsDialog(keys, play) {
     }));
     if (focused) document.getElementById(focused)?.focus();
   };
-  const title = "Table, balls and physics";
-  const dialog = make("dialog", {"aria-label": title}, make("h2", {}, title), wrong, form,
-    make("div", {class: "bar"}, make("span", {class: "room"}),
-      make("button", {type: "button", onclick: () => dialog.close()}, "Close")));
-  document.body.append(dialog);
+  const element = dialog("Table, balls and physics", [wrong, form]);
   return () => {
     wrong.textContent = "";
     fill();
-    dialog.showModal();
+    element.showModal();
   };
 }
 
-/** The controls. `play`: {scene(), shot(), change(changes), begin(toml), locked(key)} */
-function playExtras(page, play) {
-  const open = make("select", {class: "open", "aria-label": "Open a scene", onchange: () => {
-    const chosen = page.scenes.find(({name}) => name === open.value);
-    open.value = "";
-    if (chosen) play.begin(chosen.text);
-  }}, make("option", {value: ""}, "Open …"),
-  ...page.scenes.map(({name, title}) => make("option", {value: name}, title)));
-  const settings = settingsDialog(page.keys, play);
-  printsShots(play);
-  const button = (text, onclick) => make("button", {type: "button", onclick}, text);
-  return [page.lock.length > 0 ? null : open, button("All values …", settings),
+/** The controls of the card. */
+export function extras(state) {
+  const {page} = state;
+  const open = select("Open a scene", [["", "Open …"], ...page.scenes.map(({name, title}) => [name, title])],
+    "", (name) => {
+      open.value = "";
+      const chosen = page.scenes.find((scene) => scene.name === name);
+      if (chosen) begin(state, chosen.text);
+    }, {class: "open"});
+  printShots(state);
+  return [state.fixed ? null : open, button("All values …", settingsDialog(state, page.keys)),
     button("Print", () => print())];
 }

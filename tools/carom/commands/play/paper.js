@@ -1,5 +1,8 @@
 // The shot on white paper, for printing.
-"use strict";
+
+import {brightness, cssColour, make} from "../../page/dom.js";
+import {isGone, pathPiece, radiusOf, stateAt} from "../../page/motion.js";
+import {withUnit} from "./words.js";
 
 /** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes
  * to the right, its x down. */
@@ -17,19 +20,14 @@ function drawnOnPaper(record, shape, styles, cue) {
     const [cx, cy] = at(x, y);
     return make("circle", {cx, cy, r, stroke: "#000", "stroke-width": 0.002, ...attributes});
   };
-  const bright = ([red, green, blue], than = 0.75) => 0.3 * red + 0.6 * green + 0.1 * blue > than;
-  const ink = (i) => bright(styles[i].color) ? "#555" : cssColour(styles[i].color);
+  const ink = (i) => brightness(styles[i].color) > 0.75 ? "#555" : cssColour(styles[i].color);
   const parts = [filled(shape.wood.flatMap((board) => board.loops), "#f4f2ee"),
     filled(shape.cushion, "#dcd8cf"), filled(shape.inlay, "#000"),
     ...shape.holes.map(({center, radius}) => circle(center[0], center[1], radius, {fill: "#666"}))];
   record.tracks.forEach((track, i) => {
-    const pieces = track.segments.map((s, k) => {
-      const until = track.segments[k + 1]?.start ?? record.duration;
-      const tau = Math.min(until - s.start, s.duration ?? Infinity);
-      if (isGone(s.state) || s.state === "falling" || !(tau > 0)) return "";
-      const bend = [0, 1].map((j) => s.r[j] + 0.5 * tau * s.v[j]);
-      const end = [0, 1].map((j) => s.r[j] + tau * (s.v[j] + 0.5 * tau * s.a[j]));
-      return `M${text(s.r[0], s.r[1])}Q${text(...bend)} ${text(...end)}`;
+    const pieces = track.segments.map((_, k) => {
+      const piece = pathPiece(record, track, k, Infinity)?.map((place) => text(...place));
+      return piece ? `M${piece[0]}Q${piece[1]} ${piece[2]}` : "";
     });
     parts.push(make("path", {d: pieces.join(""), fill: "none", stroke: ink(i), "stroke-width": 0.006}));
     const end = stateAt(record, i, record.duration), R = radiusOf(record, i);
@@ -45,7 +43,7 @@ function drawnOnPaper(record, shape, styles, cue) {
       : circle(x, y, R, {fill: cssColour(color)}));
     if (number > 0)
       parts.push(make("text", {x: cx, y: cy + 0.36 * R, "text-anchor": "middle",
-        class: striped || bright(color, 0.6) ? "on-paper" : "on-paper on-dark"}, track.id));
+        class: striped || brightness(color) > 0.6 ? "on-paper" : "on-paper on-dark"}, track.id));
   });
   const struck = cue === null ? -1 : record.tracks.findIndex((track) => track.id === cue.ball);
   if (struck >= 0) {
@@ -58,12 +56,12 @@ function drawnOnPaper(record, shape, styles, cue) {
   return make("svg", {viewBox: `0 0 ${wide.toFixed(4)} ${tall.toFixed(4)}`}, ...parts);
 }
 
-/** Puts the shot onto paper whenever the page is printed. `play`: {scene(), shot()} */
-function printsShots(play) {
+/** Puts the shot onto paper whenever the page is printed. */
+export function printShots(state) {
   const paper = make("section", {class: "paper", "aria-hidden": "true"});
   document.body.append(paper);
   window.addEventListener("beforeprint", () => {
-    const scene = play.scene(), shot = play.shot(), {cue} = scene, {shape, styles} = scene.look();
+    const {scene, shot} = state, {cue} = scene, {shape, styles} = scene.look();
     const offset = (x, one, other) => `${Math.abs(x).toFixed(2)} R ${x < 0 ? other : one}`;
     const speed = cue && withUnit("metric", "speed", cue.speed);
     const stroke = cue === null ? [] : [`Ball ${cue.ball} is struck at ${speed}`,

@@ -1,11 +1,9 @@
 // carom play: a page to play on, with carom in it.
-#include "commands/play/play_wasm.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +19,20 @@
 
 namespace carom::tools {
 
-/// Made by the build: scripts and styles in this folder, and core.js of the npm package.
+/// Made by the build: scripts and styles in this folder, core.js of the npm package, the schema of scene
+/// files, the scenes that come with carom, and carom.wasm if tools/web has built it.
 const std::vector<PageFile>& play_files();
 
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The text of one of them, or "" if there is none.
+std::string text_of(std::string_view name) {
+    for (const PageFile& file : play_files())
+        if (file.name == name) return file.text;
+    return "";
+}
 
 struct PlayArgs {
     std::string scene, output = "play.html", lock;
@@ -35,9 +41,8 @@ struct PlayArgs {
 /// "cue.speed,balls" as a list of keys. @throws UsageError
 Json locked_keys(const std::string& list) {
     Json keys = Json::array();
-    for (std::size_t begin = 0; begin < list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        const std::string key = list.substr(begin, end - begin);
+    std::istringstream in(list);
+    for (std::string key; std::getline(in, key, ',');) {
         const std::string part = key.substr(0, key.find('.'));
         if (part != "cue" && part != "ball" && part != "balls" && part != "table" && part != "physics")
             throw UsageError(
@@ -45,7 +50,6 @@ Json locked_keys(const std::string& list) {
                             "such as cue.speed,ball",
                             harmless(list)));
         keys.push_back(key);
-        begin = end + 1;
     }
     return keys;
 }
@@ -71,10 +75,7 @@ Json shipped_scenes() {
 
 /// The keys that a page can set, by section: numbers, names and lists of numbers.
 Json keys_to_set() {
-    const auto schema = std::find_if(play_files().begin(), play_files().end(), [](const PageFile& file) {
-        return std::string_view(file.name) == "scene.schema.json";
-    });
-    const Json sections = Json::parse(schema->text).at("properties");
+    const Json sections = Json::parse(text_of("scene.schema.json")).at("properties");
     Json keys;
     for (const char* section : {"table", "balls", "physics"}) {
         for (const auto& [key, about] : sections.at(section).at("properties").items()) {
@@ -111,22 +112,13 @@ Json start_of(const PlayArgs& args) {
 int run(const PlayArgs& args) {
     check_page_path("-o", args.output);
     const Json page = start_of(args);
-    if (*kPlayWasm == '\0')
+    const std::string wasm = text_of("carom.wasm.gz.b64");
+    if (wasm.empty())
         throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
-    static const bool added = [] {
-        add_page_files(play_files());
-        return true;
-    }();
-    static_cast<void>(added);
-    const std::vector<std::string> scripts = {"dom.js",    "motion.js", "look.js",   "stage.js",
-                                              "core.js",   "share.js",  "words.js",  "tip.js",
-                                              "tables.js", "paper.js",  "extras.js", "play.js"};
-    const std::vector<PageData> data = {{"wasm", '"' + std::string(kPlayWasm) + '"'},
+    add_page_files(play_files());
+    const std::vector<PageData> data = {{"wasm", '"' + wasm + '"'},
                                         {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}};
-    PageExtras extras;
-    for (const char* style : {"play.css", "extras.css"}) extras.styles.emplace_back(style);
-    extras.wasm = true;
-    const std::string html = page_html("carom", scripts, data, extras);
+    const std::string html = page_html("carom", "play.js", data, {{"play.css", "extras.css"}, true});
     write_report(args.output, html);
     print(fmt::format("{}: open it in a browser; {} kB\n", args.output, (html.size() + 500) / 1000));
     return kOk;

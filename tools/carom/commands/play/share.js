@@ -1,9 +1,9 @@
 // A scene as part of an address: its file, packed and written in letters that need no escape. The hash of the
 // shot goes with it, so that whoever opens the address can see that the bits are the same.
-"use strict";
 
 // [bytes] Longer addresses, and longer files in them, are refused.
-const LONGEST_FRAGMENT = 60000, LONGEST_SCENE = 400000;
+export const LONGEST_FRAGMENT = 60000;
+const LONGEST_SCENE = 400000;
 
 async function piped(bytes, through, most) {
   const reader = new Blob([bytes]).stream().pipeThrough(through).getReader(), parts = [];
@@ -30,13 +30,13 @@ const fromLetters = (letters) =>
   Uint8Array.from(atob(letters.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
 
 /** "#h=HASH&s=SCENE" */
-async function fragmentOf(toml, hash) {
+export async function fragmentOf(toml, hash) {
   const packed = await piped(new TextEncoder().encode(toml), new CompressionStream("deflate-raw"), Infinity);
   return `#h=${hash}&s=${toLetters(packed)}`;
 }
 
 /** {toml, hash} of an address, or null if it holds no scene. @throws Error with a sentence */
-async function sceneInFragment(fragment) {
+export async function sceneInFragment(fragment) {
   const found = /^#h=([0-9a-f]{16})&s=([A-Za-z0-9_-]+)$/.exec(fragment);
   if (!/[#&]s=/.test(fragment)) return null;
   if (fragment.length > LONGEST_FRAGMENT) throw new Error("The address is too long for a scene.");
@@ -50,6 +50,6 @@ async function sceneInFragment(fragment) {
 }
 
 /** The bytes of carom.wasm from the page's data: base64 of gzip. */
-async function wasmOfPage(letters) {
+export async function wasmOfPage(letters) {
   return piped(fromLetters(letters), new DecompressionStream("gzip"), Infinity);
 }

@@ -1,11 +1,8 @@
 // Scenes to begin with: the tables, the balls on them, and the games that can be played.
-"use strict";
 
-const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "tournament"],
+export const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "tournament"],
   ["match_heated", "heated, match"]];
-const CUSHIONS = [["", "as the balls"], ["han_2005", "han_2005"], ["mathavan_2010", "mathavan_2010"],
-  ["stronge", "stronge"], ["impulse", "impulse"], ["smooth", "smooth"]];
-const GAMES = [["", "no rules"], ["eight_ball", "eight-ball"], ["nine_ball", "nine-ball"],
+export const GAMES = [["", "no rules"], ["eight_ball", "eight-ball"], ["nine_ball", "nine-ball"],
   ["three_cushion", "three-cushion"]];
 
 const ball = (id, x, y) => `[[ball]]\nid = "${id}"\nposition = [${x}, ${y}]\n`;
@@ -17,8 +14,8 @@ function ballsOf(table) {
   return kind || "pool";
 }
 
-/** A scene file for a table: a few balls to practise with, or the start of a game. */
-function startOf(game, table, seed = 1) {
+/** A scene file for a table: a few balls to practise with, or the start of a game. `carom`: core.js. */
+export function startOf(carom, game, table, seed = 1) {
   const kind = ballsOf(table), head = `[table]\npreset = "${table}"\n[balls]\npreset = "${kind}"\n`;
   const rack = (name, more = "") => `[rack]\ngame = "${name}"\ngap = 1e-4\nseed = ${seed}\n${more}`;
   const {width: w, length: l} = carom.Scene.parse(head + ball("cue", 0.3, 0.3)).table;

@@ -1,9 +1,16 @@
 // The cue ball as the player sees it: where the tip strikes, set by pointer or keys.
-"use strict";
+
+import {make} from "../../page/dom.js";
 
 const MOST_OFFSET = 0.5;  // [ball radii] farther out the tip slips off
 
-class TipPicture {
+/** The offsets nearest to these at which the tip does not slip off, to a thousandth of the radius. */
+export function reachable(side, height) {
+  const size = Math.hypot(side, height), most = MOST_OFFSET - 1e-6, shrink = size > most ? most / size : 1;
+  return [side, height].map((x) => Math.trunc(x * shrink * 1000) / 1000 + 0);
+}
+
+export class TipPicture {
   /** `onchange(side, height)`: offsets in ball radii, left and up positive. */
   constructor(onchange) {
     Object.assign(this, {onchange, side: 0, height: 0});
@@ -28,17 +35,14 @@ class TipPicture {
       const step = event.shiftKey ? 0.1 : 0.02;
       const way = {ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step]};
       if (event.key === "Home") this.change(0, 0);
-      else if (way[event.key]) this.change(this.side + way[event.key][0], this.height + way[event.key][1]);
+      else if (way[event.key]) this.step(...way[event.key]);
       else return;
       event.preventDefault();
       event.stopPropagation();
     });
   }
-  change(side, height) {
-    const size = Math.hypot(side, height), most = MOST_OFFSET - 1e-6, shrink = size > most ? most / size : 1;
-    const round = (x) => Math.trunc(x * shrink * 1000) / 1000 + 0;
-    this.onchange(round(side), round(height));
-  }
+  change(side, height) { this.onchange(...reachable(side, height)); }
+  step(side, height) { this.change(this.side + side, this.height + height); }
   show(side, height) {
     Object.assign(this, {side, height});
     this.mark.setAttribute("cx", -side);

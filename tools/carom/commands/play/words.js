@@ -1,19 +1,18 @@
 // Numbers with units, and events in words.
-"use strict";
 
-const UNITS = {
+export const UNITS = {
   metric: {speed: [1, "m/s", 2], length: [100, "cm", 1]},
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
 };
 
 /** A number of SI units for people. `kind`: speed or length. */
-function withUnit(units, kind, x) {
+export function withUnit(units, kind, x) {
   const [factor, name, digits] = UNITS[units][kind];
   return `${(factor * x).toFixed(digits)} ${name}`;
 }
 
 /** What happened, for the list of events. */
-function eventWords(e, units) {
+export function eventWords(e, units) {
   const text = ballWords(e, units);
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
@@ -45,11 +44,11 @@ function ballWords(e, units) {
 }
 
 /** Events that a player wants to know, without changes of motion. */
-const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
+export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
   "ball_pocket", "ball_out"].includes(e.type);
 
 /** The verdict on a shot in a sentence. */
-function verdictWords(verdict) {
+export function verdictWords(verdict) {
   const fouls = verdict.fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul));
   const points = verdict.points > 0 ? `, ${verdict.points} point${verdict.points === 1 ? "" : "s"}` : "";
   return fouls.length > 0 ? `Foul: ${fouls.join(", ")}.` : `Fair shot${points}.`;

@@ -37,7 +37,6 @@ struct RenderArgs {
     std::string eye, target;  ///< "x,y,z"; empty: a named camera
     std::string ball;         ///< ball for camera "follow"; empty: the first that moves
     std::string overlay;      ///< list of names
-    bool trails = false;      ///< --overlay trails
     std::string sheet;        ///< "4x3"; empty: frames
     int jobs = 0;
     bool resume = false;
@@ -125,9 +124,7 @@ Vec3 parse_point(const char* option, const std::string& text) {
 
 render::Overlay overlay_of(const RenderArgs& args) {
     try {
-        render::Overlay overlay = render::parse_overlay(args.overlay);
-        overlay.trails = overlay.trails || args.trails;
-        return overlay;
+        return render::parse_overlay(args.overlay);
     } catch (const render::RenderError& error) {
         throw UsageError(fmt::format("--overlay: {}", error.what()));
     }
@@ -327,7 +324,6 @@ void add_render(Options& program) {
     command.option("--overlay", &args.overlay, "LIST",
                    "Overlays: trails (or trails=ball, in the balls' colours), events, spin, ghost, clock, "
                    "margin, or all; and diamonds, their numbers (default: none)");
-    command.flag("--trails", args.trails, "Same as --overlay trails (default: off)");
     command.option("--sheet", &args.sheet, "CxR",
                    "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);

@@ -17,7 +17,6 @@
 #include "base/console.h"
 #include "base/hand.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "carom/engine/printable.h"
@@ -324,11 +323,8 @@ int run(const SensitivityArgs& args) {
         throw SceneError(args.scene, {}, "no ball is struck; add a [cue], whose errors are what is measured");
     const Record record = simulate_plan(plan, interruptible());
     const Sensitivity result = measure(plan, record, args);
-    if (!args.plot.empty()) {
-        OutputFile file(args.plot);
-        file.write(draw_diagram({drawing_of(result, plan, record, args.hand)}, {}, format));
-        file.commit();
-    }
+    if (!args.plot.empty())
+        write_report(args.plot, draw_diagram({drawing_of(result, plan, record, args.hand)}, {}, format));
     print(args.json ? json_of(result, record, args.hand).dump() + "\n"
                     : text_of(result, plan, record, args.hand));
     return kOk;

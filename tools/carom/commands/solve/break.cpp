@@ -12,7 +12,6 @@
 
 #include "base/console.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "base/shown_units.h"
 #include "base/statistics.h"
@@ -22,6 +21,7 @@
 #include "commands/solve/search.h"
 #include "page/shot_page.h"
 #include "report/diagram.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -64,7 +64,7 @@ games::BreakSearch read_break(const BreakArgs& args) {
     games::BreakOptions options = args.wanted;
     options.seed = args.search.seed;
     try {
-        return games::break_search(options, chosen_isa());
+        return games::break_search(options);
     } catch (const std::invalid_argument& error) {
         throw UsageError(error.what());
     }
@@ -84,16 +84,12 @@ int run(const BreakArgs& args) {
             DiagramStyle style;
             style.diamond_numbers = true;
             style.units = units_of(args.units);
-            OutputFile file(args.diagram);
-            file.write(
-                draw_diagram({{title, record, found[0].scene.cue, {}}}, style, diagram_format(args.diagram)));
-            file.commit();
+            write_report(args.diagram, draw_diagram({{title, record, found[0].scene.cue, {}}}, style,
+                                                    diagram_format(args.diagram)));
         }
-        if (!args.page.empty()) {
-            OutputFile file(args.page);
-            file.write(shot_page(record, nullptr, nullptr, {title, command_line(), program_version()}));
-            file.commit();
-        }
+        if (!args.page.empty())
+            write_report(args.page,
+                         shot_page(record, nullptr, nullptr, {title, command_line(), program_version()}));
     }
     if (args.search.json) {
         print(Json{{"game", game},

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "base/console.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "base/statistics.h"
 #include "carom/engine/batch.h"
@@ -15,6 +14,7 @@
 #include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "report/sweep_plot.h"
+#include "report/table.h"
 
 namespace carom::tools {
 namespace {
@@ -129,9 +129,7 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
     DiagramStyle style;
     style.diamond_numbers = true;
     const DiagramShot shot{title, simulate(make_plan(best.scene, chosen_isa())), best.scene.cue};
-    OutputFile file(args.plot);
-    file.write(draw_plot(plot, diagram_format(args.plot), {shot}, style));
-    file.commit();
+    write_report(args.plot, draw_plot(plot, diagram_format(args.plot), {shot}, style));
 }
 
 std::string falls_text(const Solution& solution) {
@@ -162,11 +160,9 @@ Json solutions_json(const std::vector<Solution>& solutions, const std::vector<Ch
 
 void write_best(const std::string& path, const Solution& best, const std::string& want,
                 const SearchArgs& args) {
-    OutputFile file(path);
-    file.write(fmt::format("# Found by carom for: {}\n# Success with a hand of {}: {}\n{}", harmless(want),
-                           args.hand, share_text(share_of(best.successes, best.shots)),
-                           scene_text(best.scene)));
-    file.commit();
+    write_report(path, fmt::format("# Found by carom for: {}\n# Success with a hand of {}: {}\n{}",
+                                   harmless(want), args.hand,
+                                   share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
 }
 
 }  // namespace carom::tools

@@ -3,6 +3,7 @@
 // A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on
 // all threads, and their rows are written in order.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -21,15 +23,13 @@
 #include "base/console.h"
 #include "base/game_state.h"
 #include "base/options.h"
-#include "base/output_file.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
+#include "commands/sweep/plot.h"
 #include "commands/sweep/rows.h"
 #include "commands/sweep/status.h"
 #include "commands/sweep/table_in_parts.h"
 #include "commands/sweep/tally.h"
-#include "report/diagram.h"
-#include "report/sweep_plot.h"
 
 namespace carom::tools {
 namespace {
@@ -57,9 +57,6 @@ constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
 
-/// [shots] A plot shows the first ones: more would not change it, and need memory.
-constexpr std::size_t kMostPlotted = 1000000;
-
 /// Shots `first` to `last - 1`.
 struct ShotRange {
     std::uint64_t first, last;
@@ -81,51 +78,58 @@ std::uint64_t failures(const Outcomes& outcomes) {
     return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
-void add(const std::vector<PlotShot>& shots, SweepPlot& plot) {
-    const std::size_t room = kMostPlotted - std::min(kMostPlotted, plot.shots.size());
-    plot.shots.insert(plot.shots.end(), shots.begin(),
-                      shots.begin() + static_cast<std::ptrdiff_t>(std::min(room, shots.size())));
-}
+/// What the played shots come to.
+struct Totals {
+    Outcomes outcomes{};
+    std::vector<Tally> tallies;
+    PlottedSweep plot;
+
+    /// @return how many of the shots failed
+    std::uint64_t add(const games::SweptShots& shots) {
+        const std::uint64_t before = failures(outcomes);
+        for (std::size_t i = 0; i < shots.count; ++i) {
+            const ShotStatus status = shots.outcomes.status[i];
+            ++outcomes[static_cast<std::size_t>(status)];
+            for (std::size_t m = 0; m < tallies.size() && has_result(status); ++m)
+                tallies[m].add(shots.measured[i * tallies.size() + m]);
+        }
+        plot.add(shots);
+        return failures(outcomes) - before;
+    }
+};
 
 /// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played.
-/// Two blocks are never played at once, because each uses all of the sweep's threads.
-Outcomes write_rows(TableInParts& table, const Sweep& sweep, const ShotRange& range, SweepStatus& status,
-                    std::vector<Tally>& tallies, SweepPlot& plot) {
-    Outcomes outcomes{};
+/// Two blocks are never played at once, because each uses all threads.
+void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa, int threads,
+                const ShotRange& range, SweepStatus& status, Totals& totals) {
     ProgressLine line("sweep");
-    auto block = 2 * static_cast<std::uint64_t>(sweep.threads);
+    auto size = 2 * static_cast<std::uint64_t>(threads);
     std::uint64_t begun = table.next();
-    std::future<SweepRows> next;
+    std::future<SweepBlock> next;
     const auto begin_next = [&] {
-        const std::uint64_t first = begun, shots = std::min(block, range.last - begun);
+        const std::uint64_t first = begun, shots = std::min(size, range.last - begun);
         begun += shots;
-        next = std::async(std::launch::async, [&sweep, first, shots] {
-            return play_rows(sweep, first, static_cast<std::size_t>(shots));
+        next = std::async(std::launch::async, [&sweep, isa, threads, first, shots] {
+            return play_block(sweep, first, static_cast<std::size_t>(shots), isa, threads);
         });
     };
     if (begun < range.last) begin_next();
     while (table.next() < range.last) {
         const Clock::time_point start = Clock::now();
-        const std::uint64_t shots = begun - table.next();
-        const SweepRows rows = next.get();
-        if (Clock::now() - start < kBlockTime && block < kLargestBlock) block *= 2;
+        const SweepBlock block = next.get();
+        if (Clock::now() - start < kBlockTime && size < kLargestBlock) size *= 2;
         if (begun < range.last) begin_next();
-        table.add(rows.text, shots, failures(rows.outcomes));
-        for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += rows.outcomes[i];
-        for (std::size_t i = 0; i < rows.values.size(); ++i) tallies[i % tallies.size()].add(rows.values[i]);
-        add(rows.plotted, plot);
-        status.show(table.next(), outcomes);
+        table.add(fmt::format("{}", fmt::join(block.rows, "")), block.shots.count, totals.add(block.shots));
+        status.show(table.next(), totals.outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
                       static_cast<long>(range.last - range.first));
     }
-    return outcomes;
 }
 
 /// What the shots that this run has played came to.
-std::string summary(const Outcomes& outcomes, const std::vector<Tally>& tallies, const SweepArgs& args,
-                    int jobs, double seconds) {
-    std::uint64_t shots = 0;
-    for (const std::uint64_t n : outcomes) shots += n;
+std::string summary(const Totals& totals, const SweepArgs& args, int jobs, double seconds) {
+    const auto& [outcomes, tallies, plot] = totals;
+    const std::uint64_t shots = std::accumulate(outcomes.begin(), outcomes.end(), std::uint64_t{0});
     if (args.json) {
         nlohmann::ordered_json json = {
             {"file", harmless(args.output)}, {"shots", shots}, {"seconds", seconds}};
@@ -147,85 +151,53 @@ std::string summary(const Outcomes& outcomes, const std::vector<Tally>& tallies,
     return text;
 }
 
-std::vector<games::Measure> read_measures(const SweepArgs& args, const Scene& scene) {
+games::Sweep read_sweep(const SweepArgs& args) {
     std::optional<games::Game> game;
     if (!args.game.empty()) game = game_of(args.game);
-    std::vector<games::Measure> measures;
     try {
-        for (const std::string& text : args.measures) measures.emplace_back(text, scene, game);
+        return games::Sweep(Variation(args.scene, args.vary, args.seed), args.measures, game);
+    } catch (const VariationError& error) {
+        throw UsageError(fmt::format("--vary: {}", error.what()));
     } catch (const games::MeasureError& error) {
         throw UsageError(fmt::format("--measure {}", error.what()));
     }
-    return measures;
 }
 
-/// What a plot needs from every shot: the first measure, over the first two numbers that vary.
-SweepPlot prepare_plot(const SweepArgs& args, Sweep& sweep) {
-    SweepPlot plot;
-    if (args.plot.empty()) return plot;
-    diagram_format(args.plot);
-    if (sweep.measures.empty() || !sweep.measures.front().is_number())
-        throw UsageError(
-            "--plot draws the first --measure, which has to be a number; carom describe measures "
-            "lists them");
-    plot.measure = sweep.measures.front().text();
-    sweep.plot = true;
-    const Variation& variation = sweep.variation;
-    for (std::size_t k = 0; k < variation.keys().size() && plot.axes.size() < 2; ++k) {
-        if (variation.kind(k) == ValueKind::kText) continue;
-        const std::string unit = variation.unit(k);
-        plot.axes.push_back(variation.keys()[k] + (unit.empty() ? "" : " [" + unit + "]"));
-        sweep.plot_keys.push_back(k);
-    }
-    if (plot.axes.size() == 2) return plot;
-    plot.axes.clear();
-    sweep.plot_keys.clear();
-    return plot;
-}
-
-Variation read_variation(const SweepArgs& args) {
-    try {
-        return Variation(args.scene, args.vary, args.seed);
-    } catch (const VariationError& error) {
-        throw UsageError(fmt::format("--vary: {}", error.what()));
-    }
+/// The name of the parts of this sweep: each range of shots has its own.
+std::uint64_t id_of(const games::Sweep& sweep, const SweepArgs& args, const ShotRange& range) {
+    std::uint64_t columns = 0;
+    for (const games::Measure& measure : sweep.measures())
+        for (const char c : measure.text() + args.game + '\n')
+            columns = (columns ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    return sweep.variation().fingerprint() ^ columns ^ (range.first * 0x9e3779b97f4a7c15u) ^
+           (range.last * 0xbf58476d1ce4e5b9u);
 }
 
 int run(const SweepArgs& args) {
     if (args.count && (*args.count < 1 || *args.count > static_cast<long>(kMostShots)))
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const kernel::Isa isa = chosen_isa();
-    const Variation variation = read_variation(args);
+    const games::Sweep sweep = read_sweep(args);
+    const Variation& variation = sweep.variation();
     const std::uint64_t count = args.count ? static_cast<std::uint64_t>(*args.count) : variation.grid();
     if (count == 0) throw UsageError("--count is missing; only a grid knows how many shots it has");
     const ShotRange range = shard_range(args.shard, count);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
-    const std::vector<games::Measure> measures = read_measures(args, variation.base());
-    std::uint64_t columns = 0;
-    for (const games::Measure& measure : measures)
-        for (const char c : measure.text() + args.game + '\n')
-            columns = (columns ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    // Each range of shots has parts of its own.
-    const std::uint64_t id = variation.fingerprint() ^ columns ^ (range.first * 0x9e3779b97f4a7c15u) ^
-                             (range.last * 0xbf58476d1ce4e5b9u);
     if (!args.shard.empty() && std::filesystem::is_regular_file(args.output))
         throw UsageError(fmt::format(
             "-o {}: this file exists, perhaps from another shard; give each shard its own, or remove it",
             args.output));
     const int jobs =
         args.jobs > 0 ? args.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    Sweep sweep{variation, measures, isa, jobs};
-    SweepPlot plot = prepare_plot(args, sweep);
-    std::vector<Tally> tallies(measures.begin(), measures.end());
-    TableInParts table(args.output, id, range.header ? sweep_header(sweep) : "", range.first,
-                       [&](std::string_view rows) {
-                           if (sweep.plot) add(plotted_rows(sweep, rows), plot);
-                       });
+    const std::vector<games::Measure>& measures = sweep.measures();
+    Totals totals{{}, {measures.begin(), measures.end()}, {sweep, args.plot}};
+    TableInParts table(args.output, id_of(sweep, args, range), range.header ? sweep_header(sweep) : "",
+                       range.first, [&](std::string_view rows) { totals.plot.add(rows); });
     const std::uint64_t from = table.next();
     if (from > range.first) {
         // Another build may have other bits.
-        if (!table.ends_with(play_rows(sweep, from - 1, 1).text))
+        if (!table.ends_with(play_block(sweep, from - 1, 1, isa, 1).rows.front()))
             throw std::runtime_error(
                 fmt::format("{}: its last row is not what this program computes; remove it to start again",
                             table.folder()));
@@ -233,10 +205,9 @@ int run(const SweepArgs& args) {
                             range.last - range.first));
     }
     const Clock::time_point start = Clock::now();
-    Outcomes outcomes{};
     SweepStatus status(args.status, args.output, range.first, range.last, from);
     try {
-        outcomes = write_rows(table, sweep, range, status, tallies, plot);
+        write_rows(table, sweep, isa, jobs, range, status, totals);
     } catch (const std::system_error& error) {
         throw std::runtime_error(fmt::format("not all of {} could be started ({}); use fewer with --jobs",
                                              counted(static_cast<std::size_t>(jobs), "thread"),
@@ -249,14 +220,9 @@ int run(const SweepArgs& args) {
         throw;
     }
     table.commit();
-    if (sweep.plot) {
-        OutputFile file(args.plot);
-        file.write(draw_plot(plot, diagram_format(args.plot)));
-        file.commit();
-    }
+    totals.plot.write();
     status.end("done");
-    print(
-        summary(outcomes, tallies, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
+    print(summary(totals, args, jobs, std::chrono::duration<double>(Clock::now() - start).count()));
     if (table.failed() == 0) return kOk;
     message(fmt::format("{} failed while running; {} why", counted(table.failed(), "shot"),
                         table.failed() == 1 ? "its row says" : "their rows say"));

@@ -26,7 +26,7 @@ struct ViewArgs {
     std::string input, second;  ///< a scene, or a record (.json); `second` may be empty
     std::string output = "shot.html";
     std::string gl = "auto";
-    bool margin = true;
+    bool margin = false;  ///< draw and time the frames
 };
 
 /// A shot, and the cost of its frames if known.
@@ -53,13 +53,11 @@ MeasuredShot read_record_shot(const ViewArgs& args) {
     std::vector<MarginRun> runs(1);
     Record& record = runs.front().record;
     record = read_shot(args.input, {});
-    if (!args.margin) return {std::move(record)};
     if (record.costs.empty()) {
-        message(
-            fmt::format("note: {}: the record is not profiled, so the page has no frame chart; use the "
-                        "scene, or a record from carom simulate --profile",
-                        args.input));
-        return {std::move(record)};
+        if (!args.margin) return {std::move(record)};
+        throw UsageError(fmt::format(
+            "--margin: {} is not profiled; use the scene, or a record from carom simulate --profile",
+            harmless(args.input)));
     }
     const double fps = record.render.fps;
     runs.front().frames = costs_by_frame(record, 0.0, fps, checked_frame_count(0.0, record.duration, fps));
@@ -97,7 +95,8 @@ void add_view(Options& program) {
     command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
     command.argument("SECOND", args.second, "Second shot, over or beside the first (default: none)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write; FILE.html#t=1.5 opens at 1.5 s");
-    command.flag("--no-margin", args.margin, "Skip drawing and timing the frames (default: off)");
+    command.flag("--margin", args.margin,
+                 "Draw and time every frame, and chart what each one cost (default: off)");
     add_gl(command, args.gl);
 }
 

@@ -1,0 +1,193 @@
+// The geometry of a contact: its direction, its gap, and how fast the gap closes. One function per kind of
+// part: another ball, a straight nose, a round nose (a point if its radius is 0, a wall around the balls if
+// it is negative), the cloth. A new kind of part needs one here, its time in detect.h, and its keys in the
+// reader. The functions take numbers, or dual numbers (tangent/dual.h) for derivatives.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include "carom/engine/ball_ball.h"
+#include "carom/engine/geometry.h"
+#include "carom/engine/tolerances.h"
+#include "carom/engine/vec.h"
+#include "contact/contact.h"
+#include "physics/nose_reach.h"
+
+namespace carom {
+
+/// The scalar, and the vector of the plane, that belong to a vector in space.
+template <class Space>
+using Number = std::remove_cvref_t<decltype(std::declval<const Space&>()[0])>;
+template <class Space>
+using Plane = decltype(planar(std::declval<const Space&>()));
+
+/// The centre of a ball at an instant.
+template <class Space>
+struct BallAt {
+    Space r, v;
+    Number<Space> R;
+    /// Whether it meets noses in space. On the cloth it meets them in the plane, whatever r.z and v.z are.
+    bool flies = false;
+};
+
+template <class Space>
+struct Touch {
+    Space n;                ///< unit, from the ball into what it touches; level for balls on the cloth
+    Number<Space> gap;      ///< [m] negative: overlap
+    Number<Space> closing;  ///< [m/s] the rate at which the gap closes
+    Number<Space> bend;     ///< [m/s^2] the rate at which motion along a curved part slows the closing
+
+    /// [m/s^2] Closing acceleration of a ball with the level acceleration `a` (for two balls: the relative
+    /// one).
+    Number<Space> pressing(const Plane<Space>& a) const { return dot(planar(n), a) - bend; }
+};
+
+/// [m] Distance of a touching ball's centre from a nose: horizontally, or in space if the ball flies.
+template <class Part, class T>
+T reach_of(const Part& part, const T& R, bool flies) {
+    return flies ? nose_reach(R, part.height, part.inset) : T(R - part.inset);
+}
+/// [m] Radius on which a touching ball moves around a round nose on the cloth; negative inside a wall.
+template <class Round, class T>
+T turn_around(const Round& nose, const T& R) {
+    return R + nose.radius - nose.inset;
+}
+
+namespace detail {
+
+template <class Space>
+Touch<Space> touch_spheres(const Space& apart, const Space& v, const Number<Space>& reach) {
+    const Number<Space> d = length3(apart);
+    const Space n{apart[0] / d, apart[1] / d, apart[2] / d}, across = cross3(n, v);
+    return {n, d - reach, dot3(n, v), dot3(across, across) / reach};
+}
+
+/// A nose in space.
+/// @param out  level, from the centre of a round nose or from the foot on a straight one
+template <class Space, class Part>
+Touch<Space> touch_rim(const Plane<Space>& out, const Number<Space>& radius, bool round, const Part& nose,
+                       const BallAt<Space>& ball) {
+    using T = Number<Space>;
+    const T distance = length(out), level = distance - radius, up = ball.r[2] - nose.height;
+    const Plane<Space> v = planar(ball.v);
+    Plane<Space> away{0.0, 0.0};
+    if (T(0.0) < distance) away = Plane<Space>{out[0] / distance, out[1] / distance};
+    const Space apart{level * away[0], level * away[1], up};
+    const T d = length3(apart);
+    const Space n{-(apart[0] / d), -(apart[1] / d), -(apart[2] / d)};
+    const T across = (level * ball.v[2] - up * dot(away, v)) / d, around = cross(away, v);
+    T bend = across * across / d;
+    if (round && T(0.0) < distance) bend = bend + level / d * (around * around / distance);
+    return {n, d - reach_of(nose, ball.R, true), dot3(n, ball.v), bend};
+}
+
+}  // namespace detail
+
+/// Two balls in space.
+template <class Space>
+Touch<Space> touch_ball(const BallAt<Space>& ball, const BallAt<Space>& other) {
+    return detail::touch_spheres<Space>(other.r - ball.r, ball.v - other.v, ball.R + other.R);
+}
+
+/// Two balls on the cloth, or discs, at whatever height the fall of one began.
+template <class Space>
+Touch<Space> touch_level(const BallAt<Space>& ball, const BallAt<Space>& other, bool discs) {
+    const Space apart{other.r[0] - ball.r[0], other.r[1] - ball.r[1], 0.0};
+    const Space v{ball.v[0] - other.v[0], ball.v[1] - other.v[1], 0.0};
+    return detail::touch_spheres<Space>(apart, v, contact_distance(ball.R, other.R, discs));
+}
+
+/// A ball and a straight nose, on either side of it.
+template <class Line, class Space>
+Touch<Space> touch_line(const Line& line, const BallAt<Space>& ball) {
+    using T = Number<Space>;
+    const Plane<Space> from = planar(ball.r) - line.from;
+    const T &x = line.direction[0], &y = line.direction[1];
+    if (ball.flies) {
+        const T along = dot(line.direction, from);
+        const Plane<Space> out{ball.r[0] - (line.from[0] + x * along),
+                               ball.r[1] - (line.from[1] + y * along)};
+        return detail::touch_rim<Space>(out, 0.0, false, line, ball);
+    }
+    const T side = cross(line.direction, from), level = reach_of(line, ball.R, false);
+    const bool right = side < T(0.0);
+    const Space n = right ? Space{-y, x, 0.0} : Space{y, -x, 0.0};
+    return {n, (right ? T(-side) : side) - level, dot3(n, ball.v), 0.0};
+}
+
+/// A ball and a round nose; inside a wall the normal points outwards.
+template <class Round, class Space>
+Touch<Space> touch_round(const Round& nose, const BallAt<Space>& ball) {
+    using T = Number<Space>;
+    const Plane<Space> out = planar(ball.r) - nose.center;
+    if (ball.flies) return detail::touch_rim<Space>(out, nose.radius, true, nose, ball);
+    const T level = (nose.radius < T(0.0) ? -1.0 : 1.0) * length(out), turn = turn_around(nose, ball.R);
+    const Space n{-(out[0] / level), -(out[1] / level), 0.0};
+    const T around = cross(planar(n), planar(ball.v));
+    return {n, level - turn, dot3(n, ball.v), around * around / turn};
+}
+
+/// A ball above the cloth.
+template <class Space>
+Touch<Space> touch_cloth(const BallAt<Space>& ball) {
+    return {Space{0.0, 0.0, -1.0}, ball.r[2] - ball.R, -ball.v[2], 0.0};
+}
+
+/// Components of a vector along a line, and across it to its left.
+inline Vec2 in_frame(const CushionLine& line, const Vec2& x) {
+    return {dot(line.direction, x), cross(line.direction, x)};
+}
+
+/// Rounding error [m] of the distance between a foot point and the end of a cushion, for a centre at r.
+double end_rounding(const Vec2& r, double line_length);
+
+/// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding its direction
+/// of motion decides, so that a ball that leaves over the end is not mistaken for one that arrives: the
+/// condition that ends a contact here cannot begin it. Beyond the end, the end point or the jaw takes over.
+inline bool past_end(double left, double rate, double pull, double rounding) {
+    if (std::abs(left) > rounding) return left < 0.0;
+    return rate < 0.0 || (rate == 0.0 && pull < 0.0);
+}
+
+/// Whether a foot that moves along a line is between its ends.
+inline bool between_ends(double foot, double rate, double pull, double line_length, double rounding) {
+    return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
+}
+
+/// The point of a cushion or an arc that is nearest to a place, or the centre of another nose.
+Vec2 nearest_point(const CushionLine& line, const Vec2& place);
+Vec2 nearest_point(const Nose& nose, const Vec2& place);
+
+/// Whether a place is on the far side of a round nose: inside a jaw, outside a wall around the balls.
+inline bool behind(const Nose& nose, const Vec2& place) {
+    return nose.sign() * length(place - nose.center) < nose.radius;
+}
+
+/// Whether the ball is beside the part, so that it can touch it there: between the ends of a cushion or an
+/// arc, on the side on which an arc acts, and not over the disc of a jaw.
+/// @param slack [m] rounding of the direction from an arc's centre
+bool beside(const CushionLine& line, const BallAt<Vec3>& ball);
+bool beside(const Nose& nose, const BallAt<Vec3>& ball, double slack = 0.0);
+
+// By the part of a contact.
+
+/// A ball and its part of the table: a cushion or a nose.
+/// @param parts  a Geometry, or its dual numbers
+template <class Parts, class Space>
+Touch<Space> touch_part(const Parts& parts, const Contact& contact, const BallAt<Space>& ball) {
+    return contact.with == With::kNose ? touch_round(parts.noses[contact.other], ball)
+                                       : touch_line(parts.cushions[contact.other], ball);
+}
+bool beside(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball);
+/// Whether the ball touches the part now, within kTouchTolerance and the rounding of the part's ends.
+bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball);
+/// [m] Height of the nose.
+double part_height(const Geometry& geometry, const Contact& contact);
+/// [m] Radius on which a touching ball moves around the part: 0 for a straight one, negative inside a wall.
+double part_turn(const Geometry& geometry, const Contact& contact, double R);
+/// The point of a cushion nearest to a ball, or the centre of a nose or a pocket.
+Vec2 part_place(const Geometry& geometry, const Contact& contact, const Vec2& r);
+
+}  // namespace carom

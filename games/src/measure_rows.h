@@ -1,0 +1,51 @@
+// The measures that expressions name.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carom/games/measures.h"
+#include "carom/games/shot.h"
+
+namespace carom::games::detail {
+
+using Texts = std::vector<std::string>;
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The arguments of a measure, checked against the scene.
+struct Arguments {
+    int ball = -1;
+    std::vector<double> numbers;
+    std::optional<Game> game;
+};
+
+/// A record, and what several measures read from it.
+struct PlayedShot {
+    explicit PlayedShot(const Record& played) : record(played) {}
+    const Shot& shot() const {
+        if (!shot_) shot_ = shot_of(record);
+        return *shot_;
+    }
+    int struck() const {
+        for (const Event& event : record.events)
+            if (event.type == EventType::kCueStrike) return event.a;
+        return -1;
+    }
+    const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
+
+    const Record& record;
+
+  private:
+    mutable std::optional<Shot> shot_;
+};
+
+struct MeasureRow {
+    MeasureInfo info;
+    MeasureValue (*value)(const PlayedShot&, const Arguments&);
+};
+std::span<const MeasureRow> measure_rows();
+
+}  // namespace carom::games::detail

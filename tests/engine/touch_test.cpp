@@ -1,0 +1,244 @@
+// Contacts with every kind of part: gap and normal in closed form, and speed and acceleration against
+// differences of the gap along a motion.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "contact/touch.h"
+#include "reference/random_impacts.h"
+#include "tangent/dual.h"
+
+namespace carom {
+namespace {
+
+using Ball = BallAt<Vec3>;
+
+constexpr double kR = 0.03, kHeight = 0.04, kInset = 0.001;
+// Along (0.6, 0.8), from (0.1, 0.2): its left is (-0.8, 0.6).
+const CushionLine kLine{{0.1, 0.2}, {0.6, 0.8}, 0.5, kHeight, kInset};
+
+Nose nose(double radius, double inset = kInset, const ArcSpan& span = {}) {
+    return {{0.3, -0.1}, radius, kHeight, EventType::kBallJaw, 0, inset, span};
+}
+
+Ball ball_at(const Vec3& r, bool flies = false, double R = kR) {
+    return {r, Vec3::Zero(), R, flies};
+}
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-15) {
+    EXPECT_LE((a - b).norm(), tolerance) << a.transpose() << " and " << b.transpose();
+}
+
+TEST(Touch, BallsInSpaceAndOnTheCloth) {
+    const Touch<Vec3> space = touch_ball(ball_at({0.1, 0.2, 0.3}), ball_at({0.3, 0.3, 0.5}, true, 0.02));
+    expect_near(space.n, Vec3(2.0, 1.0, 2.0) / 3.0);
+    EXPECT_NEAR(space.gap, 0.3 - 0.05, 1e-15);
+    // On the cloth unlike balls touch at 2 sqrt(R1 R2), discs at R1 + R2, and heights are not read.
+    const Ball small = ball_at({0.1, 0.2, 0.7}, false, 0.01), large = ball_at({0.4, 0.6, 0.1}, false, 0.04);
+    for (const bool discs : {false, true}) {
+        const Touch<Vec3> level = touch_level(small, large, discs);
+        expect_near(level.n, {0.6, 0.8, 0.0});
+        EXPECT_NEAR(level.gap, 0.5 - (discs ? 0.05 : 0.04), 1e-15);
+    }
+}
+
+TEST(Touch, StraightNoses) {
+    for (const double side : {1.0, -1.0}) {
+        const Vec2 place = kLine.from + 0.2 * kLine.direction + side * 0.05 * Vec2(-0.8, 0.6);
+        const Touch<Vec3> level = touch_line(kLine, ball_at({place.x(), place.y(), 9.0}));
+        expect_near(level.n, side * Vec3(0.8, -0.6, 0.0));
+        EXPECT_NEAR(level.gap, 0.05 - (kR - kInset), 1e-15);
+        EXPECT_EQ(level.bend, 0.0);
+        // From above: 0.05 aside and 0.12 up, 0.13 away.
+        const Touch<Vec3> space = touch_line(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
+        expect_near(space.n, Vec3(side * 0.8 * 5.0, side * -0.6 * 5.0, -12.0) / 13.0);
+        EXPECT_NEAR(space.gap, 0.13 - std::hypot(kR - kInset, kHeight - kR), 1e-15);
+    }
+}
+
+TEST(Touch, RoundNosesFromOutsideAndInside) {
+    const Vec2 place = nose(0.0).center + 0.1 * Vec2(0.6, 0.8);
+    const auto at = [&](double z, bool flies) { return ball_at({place.x(), place.y(), z}, flies); };
+    for (const double radius : {0.02, 0.0, -0.3}) {
+        const double sign = radius < 0.0 ? -1.0 : 1.0;
+        const Touch<Vec3> level = touch_round(nose(radius), at(0.0, false));
+        expect_near(level.n, -sign * Vec3(0.6, 0.8, 0.0));
+        EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kR - kInset), 1e-15) << radius;
+    }
+    // 0.05 outside of the circle and 0.12 above it, 0.13 away.
+    const Touch<Vec3> space = touch_round(nose(0.05), at(kHeight + 0.12, true));
+    expect_near(space.n, Vec3(-0.6 * 5.0, -0.8 * 5.0, -12.0) / 13.0);
+    EXPECT_NEAR(space.gap, 0.13 - std::hypot(kR - kInset, kHeight - kR), 1e-15);
+}
+
+TEST(Touch, TheCloth) {
+    const Touch<Vec3> touch = touch_cloth(Ball{{1.0, 2.0, 0.05}, {0.3, 0.0, -0.7}, kR, true});
+    expect_near(touch.n, -Vec3::UnitZ());
+    EXPECT_NEAR(touch.gap, 0.02, 1e-16);
+    EXPECT_EQ(touch.closing, 0.7);
+}
+
+struct Kind {
+    std::string name;
+    bool flies;
+    std::function<Touch<Vec3>(const Ball&)> touch;
+};
+
+std::vector<Kind> kinds() {
+    const auto at = [](bool flies, const auto& touch) {
+        return [=](Ball b) {
+            b.flies = flies;
+            return touch(b);
+        };
+    };
+    std::vector<Kind> kinds{{"cloth", true, [](const Ball& b) { return touch_cloth(b); }}};
+    for (const bool flies : {false, true}) {
+        const std::string where = flies ? " in space" : " on the cloth";
+        // The other ball rests.
+        const Ball other = ball_at({0.0, 0.0, kR}, false, 0.02);
+        kinds.push_back({"ball" + where, flies, [=](const Ball& b) {
+                             return flies ? touch_ball(b, other) : touch_level(b, other, false);
+                         }});
+        kinds.push_back(
+            {"line" + where, flies, at(flies, [](const Ball& b) { return touch_line(kLine, b); })});
+        for (const double radius : {0.02, 0.0, -0.3})
+            if (!flies || radius >= 0.0)
+                kinds.push_back({"round " + std::to_string(radius) + where, flies,
+                                 at(flies, [=](const Ball& b) { return touch_round(nose(radius), b); })});
+    }
+    return kinds;
+}
+
+TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
+    reference::Generator random(5);
+    const auto vec = [&random](double size) {
+        Vec3 v;
+        for (double& x : v) x = random.uniform(-size, size);
+        return v;
+    };
+    constexpr double kStep = 1e-4;
+    for (const Kind& kind : kinds()) {
+        for (int k = 0; k < 200; ++k) {
+            Ball ball{vec(0.15) + Vec3(0.3, 0.0, 0.3), vec(0.1), kR};
+            Vec3 a = vec(1.0);
+            if (!kind.flies) ball.v.z() = a.z() = 0.0;
+            // On the cloth the bend is that of a touching ball: move it there.
+            for (int i = 0; i < 100; ++i) {
+                const Touch<Vec3> touch = kind.touch(ball);
+                ball.r += touch.gap * touch.n;
+            }
+            const Touch<Vec3> touch = kind.touch(ball);
+            ASSERT_NEAR(touch.gap, 0.0, 1e-14) << kind.name << " " << k;
+            ASSERT_NEAR(touch.n.norm(), 1.0, 1e-15) << kind.name;
+            const auto gap = [&](double t) {
+                Ball later = ball;
+                later.r += t * (ball.v + 0.5 * t * a);
+                return kind.touch(later).gap;
+            };
+            const double rate = (gap(kStep) - gap(-kStep)) / (2.0 * kStep),
+                         bend = (gap(kStep) - 2.0 * gap(0.0) + gap(-kStep)) / (kStep * kStep);
+            // The error of the speed: step^2 / 6 times the third derivative, up to 3 v a / R + 3 v^3 / R^2.
+            // That of the acceleration: step^2 / 12 times the fourth, and rounding over step^2.
+            EXPECT_NEAR(touch.closing, -rate, 1e-7) << kind.name << " " << k;
+            EXPECT_NEAR(touch.pressing(planar(a)) + touch.n.z() * a.z(), -bend, 1e-6)
+                << kind.name << " " << k;
+        }
+    }
+}
+
+TEST(Touch, DualNumbersGiveTheGradient) {
+    using tangent::Dual, tangent::Dual3;
+    struct Line {
+        tangent::Dual2 from, direction;
+        Dual height, inset;
+    };
+    struct Round {
+        tangent::Dual2 center;
+        Dual radius, height, inset;
+    };
+    const Line line{{kLine.from.x(), kLine.from.y()}, {0.6, 0.8}, kHeight, kInset};
+    for (const bool flies : {false, true}) {
+        const Vec3 r(0.2, 0.1, 0.09), other(0.3, 0.2, 0.05);
+        BallAt<Dual3> ball{{r.x(), r.y(), r.z()}, {0.1, 0.2, flies ? 0.3 : 0.0}, kR, flies};
+        for (int i = 0; i < 3; ++i) ball.r[i].d[i] = 1.0;
+        ball.R.d[3] = 1.0;
+        const Ball numbers{r, {0.1, 0.2, flies ? 0.3 : 0.0}, kR, flies};
+        const auto compare = [&](const Touch<Dual3>& dual, const Touch<Vec3>& touch) {
+            EXPECT_NEAR(dual.gap.x, touch.gap, 1e-16);
+            EXPECT_NEAR(dual.closing.x, touch.closing, 1e-16);
+            EXPECT_NEAR(dual.bend.x, touch.bend, 1e-15);
+            // The gap shrinks by the motion along the normal.
+            for (int i = 0; i < 3; ++i) EXPECT_NEAR(dual.gap.d[i], -touch.n[i], 1e-15) << i;
+        };
+        compare(touch_line(line, ball), touch_line(kLine, numbers));
+        for (const double radius : {0.02, 0.0, -0.3}) {
+            if (flies && radius < 0.0) continue;
+            const Round round{{0.3, -0.1}, radius, kHeight, kInset};
+            compare(touch_round(round, ball), touch_round(nose(radius), numbers));
+        }
+        const BallAt<Dual3> dual_other{{other.x(), other.y(), other.z()}, {}, 0.02};
+        const Touch<Dual3> pair = flies ? touch_ball(ball, dual_other) : touch_level(ball, dual_other, false);
+        compare(pair, flies ? touch_ball(numbers, ball_at(other, false, 0.02))
+                            : touch_level(numbers, ball_at(other, false, 0.02), false));
+        // Of unlike balls on the cloth, 2 sqrt(R1 R2).
+        EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kR), 1e-15);
+    }
+}
+
+TEST(Touch, ABallIsBesideAPartBetweenItsEnds) {
+    const CushionLine line{{0.0, 0.0}, {1.0, 0.0}, 0.5, kHeight};
+    for (const double x : {-0.1, 0.0, 0.2, 0.5, 0.6})
+        EXPECT_EQ(beside(line, ball_at({x, 0.1, kR})), x >= 0.0 && x <= 0.5) << x;
+    Geometry table;
+    table.cushions = {line};
+    const Contact cushion{0, With::kCushion, 0};
+    // Exactly at an end the direction of motion decides.
+    for (const double speed : {-1.0, 1.0})
+        for (const double end : {0.0, 0.5})
+            EXPECT_EQ(touches_part(table, cushion, {{end, kR, kR}, {speed, 0.0, 0.0}, kR}),
+                      end == 0.0 ? speed > 0.0 : speed < 0.0);
+    EXPECT_FALSE(touches_part(table, cushion, ball_at({0.2, kR + 1e-9, kR})));
+}
+
+TEST(Touch, ABallIsBesideAnArcOnItsOwnSide) {
+    const ArcSpan quarter{{1.0, 0.0}, {0.0, 1.0}, false, false};
+    Geometry table;
+    table.noses = {nose(0.2, 0.0, quarter), nose(-0.2, 0.0, quarter), nose(0.2, 0.0)};
+    const auto ball = [](double x, double y, bool flies = false) {
+        return ball_at({0.3 + x, -0.1 + y, kR}, flies);
+    };
+    for (const int wall : {0, 1}) {
+        const Nose& arc = table.noses[wall];
+        const double there = wall == 0 ? 0.23 : 0.17, behind_it = wall == 0 ? 0.1 : 0.3;
+        EXPECT_TRUE(beside(arc, ball(0.6 * there, 0.8 * there))) << wall;
+        EXPECT_FALSE(beside(arc, ball(0.6 * there, -0.8 * there))) << wall << ": past its end";
+        EXPECT_FALSE(beside(arc, ball(0.6 * behind_it, 0.8 * behind_it))) << wall << ": behind it";
+        // The gap behind it is negative, and nothing touches there.
+        const Contact contact{0, With::kNose, wall};
+        EXPECT_LT(touch_part(table, contact, ball(0.6 * behind_it, 0.8 * behind_it)).gap, 0.0);
+        EXPECT_FALSE(touches_part(table, contact, ball(0.6 * behind_it, 0.8 * behind_it)));
+        EXPECT_TRUE(touches_part(table, contact, ball(0.6 * there, 0.8 * there)));
+    }
+    // Over the disc of a jaw a ball meets nothing; on the cloth it would be deep inside.
+    EXPECT_FALSE(beside(table.noses[2], ball(0.1, 0.0, true)));
+    EXPECT_TRUE(beside(table.noses[2], ball(0.1, 0.0)));
+}
+
+TEST(Touch, NearestPoints) {
+    const auto expect = [](const Vec2& point, const Vec2& wanted) {
+        EXPECT_LE(length(point - wanted), 1e-15) << point.transpose();
+    };
+    expect(nearest_point(kLine, kLine.from + Vec2(-0.8, 0.6)), kLine.from);
+    expect(nearest_point(kLine, kLine.from + 2.0 * kLine.direction), kLine.from + 0.5 * kLine.direction);
+    expect(nearest_point(nose(0.2), {1.0, 1.0}), {0.3, -0.1});
+    const Nose wall = nose(-0.2, 0.0, {{1.0, 0.0}, {0.0, 1.0}, false, false});
+    expect(nearest_point(wall, {0.6, 0.3}), {0.3 + 0.12, -0.1 + 0.16});
+    expect(nearest_point(wall, {0.5, -0.4}), {0.5, -0.1});
+}
+
+}  // namespace
+}  // namespace carom

@@ -1,0 +1,78 @@
+// Games: who may do what, the verdict on a shot, and what comes after it.
+
+import {begin, enter} from "./shots.js";
+import {startOf} from "./tables.js";
+
+const TABLES = {eight_ball: "nine_foot", nine_ball: "nine_foot", three_cushion: "carom"};
+const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
+const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
+
+export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** Begins a game, or goes on without one if the name is "". */
+export function newGame(state, name) {
+  const {carom} = state, {preset} = state.scene.table;
+  const table = preset === "carom" || name === "three_cushion" ? TABLES[name] : preset;
+  const target = name === "three_cushion" ? 15 : 0;
+  const game = name === "" ? null : {state: carom.games.start(name, {target}), option: 0};
+  begin(state, startOf(carom, name, table || preset || "nine_foot", randomSeed()), {game});
+}
+
+/** What the player may do: {callable, mayPushOut}, and all of it in words. */
+export function legal({carom, game, scene}) {
+  if (!game) return {text: "", callable: [], mayPushOut: false};
+  const now = game.state;
+  let may;
+  try {
+    may = carom.games.legal(now, scene);
+  } catch (error) {
+    return {text: error.reason || error.message, callable: [], mayPushOut: false};
+  }
+  const score = now.points.some((x) => x > 0) ? ` Points: ${now.points.join(" to ")}.` : "";
+  const group = now.game === "eight_ball" && now.group[now.turn] !== "open"
+    ? ` Plays ${now.group[now.turn]}.` : "";
+  const few = may.first.length > 0 && may.first.length < 8;
+  const first = few ? ` Hit first: ${may.first.join(", ")}.` : "";
+  return {...may, text: `${sentence(may.text)}.${group}${first}${score}`};
+}
+
+/** Judges the shot by what the player announced. */
+export function judge(state) {
+  const {carom, game, shot, announced} = state;
+  state.verdict = null;
+  try {
+    if (game) state.verdict = carom.games.judge(game.state, shot, announced);
+  } catch (error) {
+    state.refuse(error);
+  }
+  state.tell("judged");
+}
+
+/** Goes on where the balls rest; in a game, by one of the verdict's options. */
+export function nextShot(state, option = 0) {
+  const {carom, game, shot, scene} = state;
+  if (!game) return advance(state, shot.after(), null);
+  if (state.verdict === null) judge(state);
+  const {verdict} = state;
+  if (verdict === null) return;
+  const {state: then, rerack, text} = verdict.options[option];
+  if (then.over) return state.say(`${sentence(text)}.`);
+  if (rerack)
+    return begin(state, startOf(carom, then.game, scene.table.preset, randomSeed()),
+      {game: {state: then, option: 0}});
+  try {
+    advance(state, verdict.next({option}), {state: then, judged: verdict, option, shot});
+  } catch (error) {
+    state.refuse(error);
+  }
+}
+
+function advance(state, after, game) {
+  if (after.cue === null) {
+    const [first] = after.balls;
+    if (!first) return state.say("No ball is left on the table.");
+    after = after.with({"cue.ball": first.id});
+  }
+  state.announced = {...NOTHING, ball: state.announced.ball};
+  enter(state, after, {game});
+}

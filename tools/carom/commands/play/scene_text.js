@@ -1,0 +1,29 @@
+// Lines of a scene file.
+
+/** The lines as {line, name, value}; in "key = value", name is the section and the key. */
+function linesOf(toml) {
+  let section = "";
+  return toml.split("\n").map((line) => {
+    const [, head] = /^\s*\[+([A-Za-z_][\w.]*)\]/.exec(line) || [];
+    if (head) section = `${head}.`;
+    const [, key, value] = /^\s*([\w.]+)\s*=\s*(.*)$/.exec(line) || [];
+    return {line, name: key && section + key, value};
+  });
+}
+
+/** The values in one section of a scene file that carom wrote: {key: text}. */
+export function sectionOf(toml, section) {
+  const own = linesOf(toml).filter(({name}) => name?.startsWith(`${section}.`));
+  return Object.fromEntries(own.map(({name, value}) => [name.slice(section.length + 1), value]));
+}
+
+/** The file without the line of "section.key". */
+export const without = (toml, key) =>
+  linesOf(toml).filter(({name}) => name !== key).map(({line}) => line).join("\n");
+
+/** Where the n-th line begins and ends in a text, from 1. */
+export function rangeOf(text, n) {
+  const lines = text.split("\n");
+  const start = lines.slice(0, n - 1).reduce((sum, line) => sum + line.length + 1, 0);
+  return [start, start + lines[n - 1].length];
+}

@@ -1,0 +1,63 @@
+// The stroke: speed, aim, tip and elevation of the cue.
+
+import {make} from "../../page/dom.js";
+import {change} from "./shots.js";
+import {TipPicture} from "./tip.js";
+import {UNITS} from "./words.js";
+
+/** An angle from -180 to 180 degrees. */
+export const wrapped = (angle) => angle - 360 * Math.round(angle / 360);
+const rounded = (x) => Math.round(1000 * x) / 1000;
+/** The aim in degrees from a ball to a place. */
+export const aimAt = (ball, x, y) => rounded(Math.atan2(y - ball.y, x - ball.x) * 180 / Math.PI);
+
+/** Changes a number of the cue by a step. */
+export function nudge(state, key, by) {
+  const {scene: {cue}} = state;
+  if (state.clock.now > 0 || !cue || state.locked(`cue.${key}`)) return;
+  const value = rounded(cue[key] + by);
+  change(state, {[`cue.${key}`]: key === "speed" ? Math.max(0, value) : wrapped(value)});
+}
+
+/** A number of the cue, to type and to slide. `unit()`: [SI units in one of these, name]. */
+function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, digits) {
+  const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
+  const write = (input) => change(state, {[`cue.${key}`]: Number(input.value) / unit()[0]});
+  const slide = make("input", {type: "range", ...attributes, "aria-label": `${label}, ${unit()[1]}`,
+    oninput: () => write(slide)});
+  const type =
+    make("input", {type: "number", ...attributes, "aria-label": label, onchange: () => write(type)});
+  const name = make("span", {});
+  state.on("stroke", () => {
+    if (!state.scene.cue) return;
+    const value = shown(state.scene.cue[key]) * unit()[0];
+    name.textContent = `${label} [${unit()[1]}]`;
+    slide.value = String(value);
+    if (document.activeElement !== type) type.value = value.toFixed(digits);
+  });
+  return make("label", {class: "field"}, name, type, slide);
+}
+
+export function strokeCard(state) {
+  const degrees = () => [1, "°"], speed = () => UNITS[state.units].speed;
+  const tip = new TipPicture((side, height) => {
+    if (!state.locked("cue.offset"))
+      change(state, {"cue.offset.side": side, "cue.offset.height": height});
+  });
+  const words = make("span", {class: "tip-words"});
+  const card = make("section", {class: "card stroke"}, make("h2", {}, "Stroke"),
+    make("div", {class: "stroke-parts"}, make("div", {class: "tip-side"}, tip.element, words),
+      make("div", {},
+        numberField(state, "Speed", "speed", {min: 0, max: 30, step: 0.01, unit: speed}, 2),
+        numberField(state, "Aim", "aim_deg",
+          {min: -180, max: 180, step: 0.01, unit: degrees, shown: wrapped}, 2),
+        numberField(state, "Cue raised", "elevation_deg", {min: 0, max: 85, step: 0.5, unit: degrees}, 1))));
+  state.on("stroke", () => {
+    const {cue} = state.scene;
+    card.hidden = cue === null;
+    if (!cue) return;
+    tip.show(cue.side, cue.height);
+    words.textContent = `Tip: ${tip.words}`;
+  });
+  return {card, tip};
+}
