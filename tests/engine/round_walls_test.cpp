@@ -97,11 +97,11 @@ void nothing_leaves(int count, std::uint64_t seed) {
         const Scene scene = random_scene(rng, round, k % 3);
         if (scene.ball.empty()) continue;
         ++runs;
+        SCOPED_TRACE("scene " + std::to_string(k));
         const Record record = run_verified(scene);
         for (std::size_t i = 0; i < scene.ball.size(); ++i) {
             const BallState end = record.state_at(static_cast<int>(i), record.duration);
-            EXPECT_GE(round.room(planar(end.position)), scene.balls.R - 1e-9)
-                << "scene " << k << ", ball " << i;
+            EXPECT_GE(round.room(planar(end.position)), scene.balls.R - 1e-9) << "ball " << i;
         }
     }
 }

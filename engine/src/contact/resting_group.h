@@ -104,6 +104,8 @@ struct Group {
     Complementarity problem{};
 };
 
+/// Removes energy at the end that is not there at the start. @return whether there was any
+bool keep_energy(Group& g);
 /// [m/s] Velocity of the other ball, or of the table, relative to ball i: v or v_end.
 Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity);
 

@@ -226,15 +226,16 @@ void run_along_walls(Group& g) {
     for (const Link& link : g.links) {
         if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
         Body& b = g.bodies[link.i];
-        if (std::count_if(g.links.begin(), g.links.end(),
-                          [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
+        if (std::count_if(g.links.begin(), g.links.end(), [&](const Link& other) {
+                return !other.open && (other.i == link.i || other.j == link.i);
+            }) > 1)
             continue;
         const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
         const double towards = dot(link.n, b.v_end);
         const Vec2 along = b.v_end - towards * link.n;
         const double work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls,
                      left = dot(along, along) - work;
-        if (!(left > 0.0)) continue;
+        if (!(left > 0.0) || !moves(along)) continue;
         b.v_end = towards * link.n + std::sqrt(left / dot(along, along)) * along;
         if (b.mode == Mode::kRolling) b.s_end = b.v_end;
     }
@@ -325,6 +326,7 @@ void solve_interval(Group& g) {
         }
     }
     run_along_walls(g);
+    keep_energy(g);
     write_segments(g, h);
 }
 
