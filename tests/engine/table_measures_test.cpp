@@ -110,7 +110,7 @@ TEST(Measures, KeepWhatIsNotChanged) {
     EXPECT_TRUE(tight.side_pockets == plain.side_pockets);
 }
 
-// What a text is refused for is in tests/data/scene_messages.toml.
+// The messages for refused texts are in tests/data/scene_messages.toml.
 TEST(Measures, BuiltInCodeMeetTheSameRules) {
     Scene scene = parse_scene(kShot, "s.toml");
     scene.table = make_table("nine_foot", {.corner_pockets = {.mouth = 0.05}});

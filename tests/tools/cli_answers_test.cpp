@@ -66,7 +66,7 @@ TEST_F(CliAnswers, AWantThatNoShotCanFulfilIsRefused) {
     refused({"sweep", draw(), "--vary", "cue.speed=uniform(1,2)", "--count", "2", "--measure",
              R"("9" in pocketed)", "-o", folder_.file("a.csv")},
             R"(the scene has no ball "9")");
-    // What shots can do is none of these.
+    // An expression that a shot can meet is not refused.
     for (const char* fine : {R"(pocketed == "1")", R"(pocketed == "1;cue")", R"(pocket_of(1) == "out")",
                              R"(pocket_of(1) != "")", "cue near (1, 1, 0)"})
         EXPECT_EQ(carom({"sweep", draw(), "--vary", "cue.speed=uniform(1,2)", "--count", "1", "--measure",

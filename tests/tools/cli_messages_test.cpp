@@ -1,4 +1,4 @@
-// What the program refuses, as rows of a command line and a message (tests/data/messages, a file per
+// Command lines that the program refuses, with their messages: rows of tests/data/messages (a file per
 // command). Every row obeys one law: this status, this message and nothing else, no output, and no file made
 // or changed.
 #include <gtest/gtest.h>

@@ -208,10 +208,10 @@ std::vector<std::string> figure_faults(const std::string& page,
     return faults;
 }
 
-/// The numbers of a page's sentences that no comment of their paragraph has. Headings, tables, code and
-/// targets of links do not count.
-std::vector<std::string> unchecked_numbers(const std::string& page) {
-    static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)"), number("[0-9][0-9.]*(e-?[0-9]+)?");
+/// What matches `claim` in a page's sentences and is in no comment of their paragraph. Headings, tables, code
+/// and targets of links do not count.
+std::vector<std::string> unchecked(const std::string& page, const std::regex& claim) {
+    static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)");
     std::vector<std::string> found;
     bool fenced = false;
     for (const Paragraph& paragraph : paragraphs_of(page)) {
@@ -223,37 +223,26 @@ std::vector<std::string> unchecked_numbers(const std::string& page) {
         std::string said;
         for (const std::string& comment : paragraph.comments) said += comment;
         const std::string text = std::regex_replace(paragraph.text, left_out, "");
-        for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
+        for (std::sregex_iterator it(text.begin(), text.end(), claim), end; it != end; ++it)
             if (!contains(said, it->str().substr(0, it->str().find_last_not_of('.') + 1)))
                 found.push_back(it->str() + " in: " + text);
     }
     return found;
 }
 
-/// The shares and counts that a page's sentences promise ("four of five", "81 %", "6 scripts") and that no
-/// comment of their paragraph has. As in unchecked_numbers, code does not count.
+std::vector<std::string> unchecked_numbers(const std::string& page) {
+    static const std::regex number("[0-9][0-9.]*(e-?[0-9]+)?");
+    return unchecked(page, number);
+}
+
+/// Shares and counts that sentences promise: "four of five", "81 %", "6 scripts".
 std::vector<std::string> unchecked_promises(const std::string& page) {
     static const std::string number =
         "(one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|[0-9][0-9.]*)";
-    static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)"),
-        promise("\\b" + number + " (of|in) " + number + "\\b|[0-9][0-9.]* %|\\b" + number +
-                    " (lessons|scripts|presets|games|environments)\\b",
-                std::regex::icase);
-    std::vector<std::string> found;
-    bool fenced = false;
-    for (const Paragraph& paragraph : paragraphs_of(page)) {
-        const bool fence = contains(paragraph.text, "```");
-        if (fence || fenced || paragraph.text.find_first_of("#|") == 0) {
-            fenced = fenced != fence && !contains(paragraph.text.substr(3), "```");
-            continue;
-        }
-        std::string said;
-        for (const std::string& comment : paragraph.comments) said += comment;
-        const std::string text = std::regex_replace(paragraph.text, left_out, "");
-        for (std::sregex_iterator it(text.begin(), text.end(), promise), end; it != end; ++it)
-            if (!contains(said, it->str())) found.push_back(it->str() + " in: " + text);
-    }
-    return found;
+    static const std::regex promise("\\b" + number + " (of|in) " + number + "\\b|[0-9][0-9.]* %|\\b" +
+                                        number + " (lessons|scripts|presets|games|environments)\\b",
+                                    std::regex::icase);
+    return unchecked(page, promise);
 }
 
 TEST(Figures, AFalseOneIsSeen) {

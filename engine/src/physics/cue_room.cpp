@@ -105,7 +105,7 @@ CueRoom room_for(const Scene& scene, const Cue& cue) {
             continue;
         }
         room.clears_deg = elevation;
-        // What asks for this elevation, not what asks for the least.
+        // Name the part that forces this elevation, not the one that forces the least.
         room.in = last;
         return room;
     }

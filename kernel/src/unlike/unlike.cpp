@@ -70,7 +70,7 @@ double parting(const Tilt& t, const Forces& f) {
     return t.C * ((t.C - t.S * f.zeta) + t.share[0] * f.gy[0] - t.share[1] * f.gy[1]);
 }
 
-// What an impact exchanges, over the reduced mass times the approach speed.
+// The impulse of an impact, over the reduced mass times the approach speed.
 struct Impulses {
     double p = 0.0;  // along the normal
     Forces total{};
