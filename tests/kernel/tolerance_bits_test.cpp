@@ -15,6 +15,7 @@ namespace carom::test {
 namespace {
 
 using namespace kernel;
+using reference::random_impact;
 
 constexpr std::uint64_t kBitsOfEveryCompiler = 0x646ad6702b328f49ull;
 
