@@ -106,6 +106,30 @@ TEST(Pocket, OverTheRim) {
     }
 }
 
+// A hole in the middle of a table, as in golf: the ball meets the far rim with its centre, not earlier with
+// its sunken side (physics.md, "Not modelled"), and stays in if it is then too slow to climb its depth.
+TEST(Pocket, ABallMeetsTheFarRimOfAHoleInTheMiddleWithItsCentre) {
+    Generator rng(17);
+    int in = 0, over = 0;
+    for (int i = 0; i < 200; ++i) {
+        const double speed = rng.uniform(0.5, 3.0), aside = rng.uniform(-0.95, 0.95) * kHole;
+        Scene scene = hole(speed);
+        scene.ball[0].position.y() = aside;
+        const Record r = run(scene);
+        ASSERT_GE(r.events.size(), 2u);
+        const double half = std::sqrt(kHole * kHole - aside * aside), tau = 2.0 * half / speed;
+        const double sunk = 0.5 * kG * tau * tau / kRadius;
+        const bool climbed = climbs(speed * half / kHole, sunk, kRadius, kG).has_value();
+        EXPECT_EQ(r.tracks[0].pocket, climbed ? -1 : 0) << speed << " " << aside;
+        ++(climbed ? over : in);
+        const double end = sunk < 1.0 ? tau : std::sqrt(2.0 * kRadius / kG);
+        EXPECT_NEAR(r.events[1].time - r.events[0].time, end, 1e-13) << speed << " " << aside;
+        EXPECT_NEAR(r.state_at(0, r.events[1].time).position.x(), end * speed - half, 1e-13);
+    }
+    EXPECT_GT(in, 50);
+    EXPECT_GT(over, 20);
+}
+
 TEST(Pocket, AtOnceAndWithoutGravity) {
     Scene scene = hole(3.0);
     scene.physics.pocket = PocketModel::kAtOnce;

@@ -11,7 +11,6 @@
 
 namespace carom::tools {
 
-using Json = nlohmann::ordered_json;
 using games::InHand;
 using games::State;
 using games::Verdict;
@@ -32,7 +31,8 @@ std::string next_text(const State& state) {
     return text;
 }
 
-Json verdict_json(const Verdict& verdict, games::Game game) {
+nlohmann::ordered_json verdict_json(const Verdict& verdict, games::Game game) {
+    using Json = nlohmann::ordered_json;
     Json fouls = Json::array(), options = Json::array();
     for (const games::Foul foul : verdict.fouls)
         fouls.push_back({{"foul", carom::name(foul)}, {"rule", games::rule_of(game, foul)}});

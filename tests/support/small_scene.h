@@ -1,0 +1,19 @@
+// A scene file with little in it, for tests of what varies in it.
+#pragma once
+
+namespace carom::test {
+
+inline constexpr char kSmallScene[] = R"([table]
+cushion = [{from = [0, 0], to = [0, 3], height = 0.03}, {from = [2, 0], to = [2, 3], height = 0.03}]
+pocket = [{center = [1.0, 3.0], radius = 0.06}]
+[[ball]]
+position = [0.635, 0.50]
+[[ball]]
+id = "ball.2"
+position = [0.60, 2]
+[cue]
+speed = 4
+offset = [0.2, 0.1]
+)";
+
+}  // namespace carom::test
