@@ -105,18 +105,8 @@ class Reader {
         if (!take(word)) fail("expected " + std::string(word));
     }
 
-    static Node made(Node::Kind kind, std::string word, std::vector<Node> parts) {
-        Node node;
-        node.kind = kind;
-        node.word = std::move(word);
-        node.parts = std::move(parts);
-        return node;
-    }
-    Node pair(Node::Kind kind, std::string word, Node left, Node right) const {
-        std::vector<Node> parts;
-        parts.push_back(std::move(left));
-        parts.push_back(std::move(right));
-        return made(kind, std::move(word), std::move(parts));
+    static Node pair(Node::Kind kind, std::string word, Node left, Node right) {
+        return {.kind = kind, .word = std::move(word), .parts = {std::move(left), std::move(right)}};
     }
 
     Node either() {
@@ -133,9 +123,7 @@ class Reader {
         if (++depth_ > kDeepest) fail("expected fewer levels");
         Node node = [this] {
             if (!take("not")) return compared();
-            std::vector<Node> parts;
-            parts.push_back(negated());
-            return made(Node::Kind::kNot, "not", std::move(parts));
+            return Node{.kind = Node::Kind::kNot, .word = "not", .parts = {negated()}};
         }();
         --depth_;
         return node;

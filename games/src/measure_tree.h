@@ -13,11 +13,11 @@ namespace carom::games {
 struct Measure::Node {
     enum class Kind { kValue, kMeasure, kOr, kAnd, kNot, kCompare, kIn, kSum };
     Kind kind = Kind::kValue;
-    std::string word;  ///< the operator
-    MeasureValue value;
+    std::string word{};  ///< the operator
+    MeasureValue value{};
     const detail::MeasureRow* row = nullptr;
-    detail::Arguments arguments;
-    std::vector<Node> parts;
+    detail::Arguments arguments{};
+    std::vector<Node> parts{};
 };
 
 namespace detail {
