@@ -11,6 +11,7 @@
 
 namespace carom::tools {
 
+using Json = nlohmann::ordered_json;
 using games::InHand;
 using games::State;
 using games::Verdict;
@@ -31,8 +32,7 @@ std::string next_text(const State& state) {
     return text;
 }
 
-nlohmann::ordered_json verdict_json(const Verdict& verdict, games::Game game) {
-    using Json = nlohmann::ordered_json;
+Json verdict_json(const Verdict& verdict, games::Game game) {
     Json fouls = Json::array(), options = Json::array();
     for (const games::Foul foul : verdict.fouls)
         fouls.push_back({{"foul", carom::name(foul)}, {"rule", games::rule_of(game, foul)}});
