@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/as_number.h"
 #include "base/draws.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/strike.h"
@@ -56,12 +56,9 @@ Rack rack_of(const BreakGame& game, const BreakOptions& options) {
         rack.method = how == "template" ? RackMethod::kTemplate : RackMethod::kTriangle;
         return rack;
     }
-    const char* const end = how.data() + how.size();
-    if (how.starts_with("gap=") && std::from_chars(how.data() + 4, end, rack.gap).ptr == end &&
-        rack.gap >= 0.0 && rack.gap <= kLargestGap) {
-        rack.jitter = 0.5 * rack.gap;
-        return rack;
-    }
+    rack.gap = how.starts_with("gap=") ? as_number<double>(how.substr(4)).value_or(-1.0) : -1.0;
+    rack.jitter = 0.5 * rack.gap;
+    if (rack.gap >= 0.0 && rack.gap <= kLargestGap) return rack;
     throw std::invalid_argument(
         fmt::format("the rack {} is not known; use template, triangle or gap=METRES with 0 to {}",
                     in_quotes(how), kLargestGap));

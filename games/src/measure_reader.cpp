@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/as_number.h"
 #include "measure_tree.h"
 
 namespace carom::games::detail {
@@ -296,12 +297,11 @@ class Reader {
         } else if (what == "GAME") {
             to.game = game_of(word);
         } else {
-            double number = 0.0;
-            const char* const end = word.data() + word.size();
-            const auto [ptr, error] = std::from_chars(word.data(), end, number);
-            if (error != std::errc() || ptr != end) fail("expected a number in place of \"" + word + "\"");
-            if (what == "K" && !(number >= 1.0 && number <= 1000.0)) fail("expected a number from 1 to 1000");
-            to.numbers.push_back(number);
+            const auto number = as_number<double>(word);
+            if (!number) fail("expected a number in place of \"" + word + "\"");
+            if (what == "K" && !(*number >= 1.0 && *number <= 1000.0))
+                fail("expected a number from 1 to 1000");
+            to.numbers.push_back(*number);
         }
     }
     Game game_of(const std::string& word) const {
