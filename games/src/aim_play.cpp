@@ -20,8 +20,6 @@
 namespace carom::games {
 namespace {
 
-using detail::cross;
-
 /// [-] Doubling steps that bracket the wanted aim, and steps that then narrow it down.
 constexpr int kBrackets = 14, kNarrow = 40;
 /// [-] Corrections of a strike that misses the ball.

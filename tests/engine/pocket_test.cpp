@@ -124,7 +124,9 @@ TEST(Pocket, ABallMeetsTheFarRimOfAHoleInTheMiddleWithItsCentre) {
         ++(climbed ? over : in);
         const double end = sunk < 1.0 ? tau : std::sqrt(2.0 * kHoleR / kHoleG);
         EXPECT_NEAR(r.events[1].time - r.events[0].time, end, 1e-13) << speed << " " << aside;
-        EXPECT_NEAR(r.state_at(0, r.events[1].time).position.x(), end * speed - half, 1e-13);
+        if (climbed) {
+            EXPECT_NEAR(r.state_at(0, r.events[1].time).position.x(), half, 1e-13);
+        }
     }
     EXPECT_GT(in, 50);
     EXPECT_GT(over, 20);
