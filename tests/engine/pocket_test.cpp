@@ -39,11 +39,6 @@ Record run(const Scene& scene) {
     return record;
 }
 
-int count(const Record& record, EventType type) {
-    return static_cast<int>(std::count_if(record.events.begin(), record.events.end(),
-                                          [type](const Event& e) { return e.type == type; }));
-}
-
 TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
     const Record r = run(hole(0.5));
     ASSERT_EQ(r.events.size(), 2u);

@@ -15,7 +15,7 @@
 #include "base/draws.h"
 #include "scene/distribution.h"
 #include "support/process.h"
-#include "support/small_scene.h"
+#include "support/scenes.h"
 
 namespace carom::test {
 namespace {

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "support/small_scene.h"
+#include "support/scenes.h"
 
 namespace carom::games {
 namespace {

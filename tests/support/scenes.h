@@ -1,7 +1,15 @@
-// A scene file with little in it, for tests of what varies in it.
+// Scenes that come with carom, and a file with little in it, for tests of what varies in it.
 #pragma once
 
+#include <string>
+
+#include "carom/engine/scene.h"
+
 namespace carom::test {
+
+inline Scene shipped(const std::string& name) {
+    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
 
 inline constexpr char kSmallScene[] = R"([table]
 cushion = [{from = [0, 0], to = [0, 3], height = 0.03}, {from = [2, 0], to = [2, 3], height = 0.03}]
