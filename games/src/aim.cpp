@@ -19,8 +19,6 @@
 namespace carom::games {
 namespace {
 
-using detail::cross;
-
 /// [-] Directions tried across the width of a pocket, before the ends of the widest run are refined.
 constexpr int kDirections = 144;
 /// [-] Bisections between a direction that enters and one that does not: to 1e-11 of the gap.

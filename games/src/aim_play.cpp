@@ -20,8 +20,6 @@
 namespace carom::games {
 namespace {
 
-using detail::cross;
-
 /// [-] Doubling steps that bracket the wanted aim, and steps that then narrow it down.
 constexpr int kBrackets = 14, kNarrow = 40;
 /// [-] Corrections of a strike that misses the ball.
@@ -41,46 +39,32 @@ struct Played {
 };
 
 /// A strike at one ball for one pocket, with any aim.
-class Player {
-  public:
-    Player(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket)
-        : scene_(scene),
-          ball_id_(ball),
-          pocket_(static_cast<int>(&detail::pocket_of(scene, pocket) - scene.table.pockets.data())) {
-        scene_.cue = how;
-        cue_place_ = planar(detail::ball_of(scene, how.ball).position);
-        const BallStart& object = detail::ball_of(scene, ball);
-        place_ = planar(object.position);
-        R_ = scene.size_of(object).R;
-        both_ = R_ + scene.size_of(detail::ball_of(scene, how.ball)).R;
-        if (ball == how.ball) throw std::invalid_argument("the ball to pot is the one that is struck");
+struct Player {
+    Player(const Scene& played, const Cue& how, std::string_view object, std::string_view into)
+        : scene(played),
+          ball_id(object),
+          pocket(static_cast<int>(&detail::pocket_of(played, into) - played.table.pockets.data())),
+          cue_place(planar(detail::ball_of(played, how.ball).position)),
+          place(planar(detail::ball_of(played, object).position)),
+          R(played.size_of(detail::ball_of(played, object)).R),
+          both(R + played.size_of(detail::ball_of(played, how.ball)).R) {
+        scene.cue = how;
+        if (object == how.ball) throw std::invalid_argument("the ball to pot is the one that is struck");
     }
 
     Record play(double aim_deg) {
-        scene_.cue->aim_deg = aim_deg;
-        validate(scene_);
+        scene.cue->aim_deg = aim_deg;
+        validate(scene);
         ++shots;
-        return simulate(make_plan(scene_, kernel::best_isa()));
+        return simulate(make_plan(scene, kernel::best_isa()));
     }
 
-    Cue cue() const { return *scene_.cue; }
-    const Vec2& cue_place() const { return cue_place_; }
-    const Vec2& place() const { return place_; }
-    double both() const { return both_; }
-    double R() const { return R_; }
-    int pocket() const { return pocket_; }
-    int ball(const Record& record) const { return index_of(record, ball_id_); }
-    const std::string& ball_id() const { return ball_id_; }
-    const Pocket& pocket_there() const { return scene_.table.pockets[static_cast<std::size_t>(pocket_)]; }
-
+    Scene scene;
+    const std::string ball_id;
+    const int pocket;
+    const Vec2 cue_place, place;
+    const double R, both;
     int shots = 0;
-
-  private:
-    Scene scene_;
-    std::string ball_id_;
-    int pocket_;
-    Vec2 cue_place_, place_;
-    double R_ = 0.0, both_ = 0.0;
 };
 
 /// Why the cue ball does not hit this ball first, or "".
@@ -126,37 +110,30 @@ std::optional<double> off_line(const Record& record, int ball, double from, cons
     return cross(towards, way) / size;
 }
 
-/// One strike for a direct pot: the ball should run along `towards`.
-Played play_direct(Player& player, double aim_deg, const Vec2& towards) {
+/// One strike. @param towards  the ball should run along it; null: into the pocket after its first cushion
+Played played_at(Player& player, double aim_deg, const Vec2* towards) {
     const Record record = player.play(aim_deg);
     const Shot shot = shot_of(record);
-    const int ball = player.ball(record);
+    const int ball = index_of(record, player.ball_id);
     Played played;
     played.why = missed(record, shot, ball);
     if (!played.why.empty()) return played;
-    played.off = off_line(record, ball, shot.first_time, next_stop(record, ball, shot.first_time), towards);
+    double from = shot.first_time;
+    const Event* stop = next_stop(record, ball, from);
+    PocketLine line;
+    if (towards == nullptr) {
+        if (stop == nullptr || stop->type != EventType::kBallCushion) return played;
+        played.cushion = stop->b;
+        from = stop->time;
+        const Pocket& pocket = record.table.pockets[static_cast<std::size_t>(player.pocket)];
+        line = detail::line_from(record.table, pocket, place_at(record, ball, from), player.R);
+        if (line.width_deg == 0.0) return played;
+        stop = next_stop(record, ball, from);
+        towards = &line.towards;
+    }
+    played.off = off_line(record, ball, from, stop, *towards);
     if (!played.off) played.why = "the ball does not move";
-    played.potted = fell_into(shot, ball, player.pocket());
-    return played;
-}
-
-/// One strike for a bank: the ball should run into the pocket after its first cushion.
-Played play_bank(Player& player, double aim_deg) {
-    const Record record = player.play(aim_deg);
-    const Shot shot = shot_of(record);
-    const int ball = player.ball(record);
-    Played played;
-    played.why = missed(record, shot, ball);
-    if (!played.why.empty()) return played;
-    const Event* bounce = next_stop(record, ball, shot.first_time);
-    if (bounce == nullptr || bounce->type != EventType::kBallCushion) return played;
-    played.cushion = bounce->b;
-    const Vec2 at = place_at(record, ball, bounce->time);
-    const PocketLine line = detail::line_from(record.table, player.pocket_there(), at, player.R());
-    if (line.width_deg == 0.0) return played;
-    const Event* stop = next_stop(record, ball, bounce->time);
-    played.off = off_line(record, ball, bounce->time, stop, line.towards);
-    played.potted = fell_into(shot, ball, player.pocket());
+    played.potted = fell_into(shot, ball, player.pocket);
     return played;
 }
 
@@ -192,30 +169,29 @@ Tried narrowed(Tried a, Tried b, double near, const Play& play) {
 
 /// Half of the angle under which the cue ball sees the ball that it should hit [degrees].
 double half_view_deg(const Player& player) {
-    const double distance = length(player.place() - player.cue_place());
-    return 90.0 - arc_cos(std::min(1.0, player.both() / distance)) * kDegrees;
+    const double distance = length(player.place - player.cue_place);
+    return 90.0 - arc_cos(std::min(1.0, player.both / distance)) * kDegrees;
 }
 
 /// How far a cue ball that misses strays from its path to the ghost ball, by squirt and swerve [degrees];
 /// positive to the left.
 double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
-    const Vec2 way = ghost - player.cue_place();
+    const Vec2 way = ghost - player.cue_place;
     const int cue_ball = shot_of(record).struck;
     const Event* stop = next_stop(record, cue_ball, 0.0);
     double late = stop != nullptr ? stop->time : record.duration, early = 0.0;
     // At the distance of the ghost ball, or as far as it gets.
     for (int k = 0; k < kNarrow; ++k) {
         const double middle = 0.5 * (early + late);
-        (length(place_at(record, cue_ball, middle) - player.cue_place()) < length(way) ? early : late) =
-            middle;
+        (length(place_at(record, cue_ball, middle) - player.cue_place) < length(way) ? early : late) = middle;
     }
-    const Vec2 went = place_at(record, cue_ball, late) - player.cue_place();
+    const Vec2 went = place_at(record, cue_ball, late) - player.cue_place;
     return direction_deg({dot(way, went), cross(way, went)});
 }
 
 /// Why geometry already rules the aim out, or "".
 std::string refused(const Player& player, const PocketLine& line, double cut_deg) {
-    const std::string& id = player.ball_id();
+    const std::string& id = player.ball_id;
     if (line.width_deg == 0.0) return "no straight path of ball " + id + " into the pocket clears the jaws";
     if (!line.in_the_way.empty()) return "ball " + line.in_the_way + " is in the way of ball " + id;
     if (!(cut_deg < 90.0)) return "the cut would be 90 degrees or more";
@@ -226,26 +202,26 @@ std::string refused(const Player& player, const PocketLine& line, double cut_deg
 
 Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket) {
     Player player(scene, how, ball, pocket);
-    const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(player.pocket())];
-    const Vec2 ghost = ghost_ball(player.place(), line.towards, player.both());
+    const PocketLine line = pocket_lines(scene, ball, how.ball)[static_cast<std::size_t>(player.pocket)];
+    const Vec2 ghost = ghost_ball(player.place, line.towards, player.both);
     Aim aim;
-    aim.geometric_deg = direction_deg(ghost - player.cue_place());
-    aim.cut_deg = cut_angle_deg(player.cue_place(), ghost, line.towards);
+    aim.geometric_deg = direction_deg(ghost - player.cue_place);
+    aim.cut_deg = cut_angle_deg(player.cue_place, ghost, line.towards);
     aim.why = refused(player, line, aim.cut_deg);
     if (!aim.why.empty()) return aim;
     const double near = kNearMiddle * line.width_deg / kDegrees;
-    const auto play = [&](double aim_deg) {
-        const Played played = play_direct(player, aim_deg, line.towards);
+    const auto off_at = [&](double aim_deg) {
+        const Played played = played_at(player, aim_deg, &line.towards);
         aim.why = played.why;
         return played.off;
     };
     // Squirt and swerve may carry the cue ball past the ball altogether; the aim moves the other way by as
     // much as it strays.
     Tried start = {aim.geometric_deg, 0.0};
-    std::optional<double> first = play(start.aim_deg);
+    std::optional<double> first = off_at(start.aim_deg);
     for (int k = 0; k < kCorrections && !first; ++k) {
         start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
-        first = play(start.aim_deg);
+        first = off_at(start.aim_deg);
     }
     // A ball that runs too far to the left is hit too far on its right: the aim moves left, in doubling
     // steps.
@@ -256,7 +232,7 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         std::optional<double> miss;  // an aim that misses the ball: the wanted one is before it
         for (int k = 0; k < kBrackets && (a.off > 0.0) == (b.off > 0.0) && std::abs(b.off) > near; ++k) {
             const double next = miss ? 0.5 * (b.aim_deg + *miss) : b.aim_deg + step;
-            const std::optional<double> off = play(next);
+            const std::optional<double> off = off_at(next);
             if (off) {
                 a = b;
                 b = {next, *off};
@@ -266,11 +242,11 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
             }
         }
         const bool between = (a.off > 0.0) != (b.off > 0.0);
-        const Tried best = between ? narrowed(a, b, near, play) : b;
-        const Played played = play_direct(player, best.aim_deg, line.towards);
+        const Tried best = between ? narrowed(a, b, near, off_at) : b;
+        const Played played = played_at(player, best.aim_deg, &line.towards);
         aim.why = played.why;
         if (played.potted)
-            aim.cue = player.cue();
+            aim.cue = *player.scene.cue;
         else if (aim.why.empty())
             aim.why = std::abs(best.off) > near ? "no aim sends the ball there"
                                                 : "the ball runs towards the pocket but does not fall";
@@ -283,13 +259,13 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
 std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_view ball,
                              std::string_view pocket) {
     Player player(scene, how, ball, pocket);
-    const double middle = direction_deg(player.place() - player.cue_place()), half = half_view_deg(player);
+    const double middle = direction_deg(player.place - player.cue_place), half = half_view_deg(player);
     std::vector<Aim> routes;
     std::optional<Tried> last;
     int last_cushion = -1;
     for (int k = 0; k <= kBankAims; ++k) {
         const double aim_deg = middle + half * (2.0 * k / kBankAims - 1.0);
-        const Played played = play_bank(player, aim_deg);
+        const Played played = played_at(player, aim_deg, nullptr);
         const std::optional<Tried> here =
             played.off ? std::optional(Tried{aim_deg, *played.off}) : std::nullopt;
         const bool crossed =
@@ -300,12 +276,12 @@ std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_vie
             std::any_of(routes.begin(), routes.end(), [&](const Aim& r) { return r.cushion == cushion; });
         if (crossed && !known) {
             const Tried best = narrowed(*last, *here, 1e-6, [&](double aim) {
-                const Played next = play_bank(player, aim);
+                const Played next = played_at(player, aim, nullptr);
                 return next.cushion == played.cushion ? next.off : std::nullopt;
             });
-            if (play_bank(player, best.aim_deg).potted) {
+            if (played_at(player, best.aim_deg, nullptr).potted) {
                 Aim route;
-                route.cue = player.cue();
+                route.cue = *player.scene.cue;
                 route.cushion = cushion;
                 routes.push_back(route);
             }

@@ -3,31 +3,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/as_number.h"
+#include "base/draws.h"
 #include "carom/engine/printable.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/variation.h"
 
 namespace carom::games {
 namespace {
 
-/// What a good break of a game does, and more keys of [rack].
+/// The rack of a game, and what its good break does.
 struct BreakGame {
-    const char* rack;
+    RackGame rack;
+    std::optional<int> spot_ball;
     const char* want;
     std::optional<Game> game;
 };
 // In the order of kBreakGames.
 constexpr BreakGame kGames[] = {
-    {"spot_ball = 9\n", "any_pocketed and legal_break", Game::kNineBall},
-    {"", "any_pocketed and not scratch", std::nullopt},
-    {"", "any_pocketed and legal_break", Game::kEightBall},
+    {RackGame::kNineBall, 9, "any_pocketed and legal_break", Game::kNineBall},
+    {RackGame::kTenBall, {}, "any_pocketed and not scratch", {}},
+    {RackGame::kEightBall, {}, "any_pocketed and legal_break", Game::kEightBall},
 };
 static_assert(std::size(kGames) == kBreakGames.size());
 
@@ -39,17 +43,41 @@ const BreakGame& game_of(const std::string& name) {
     return kGames[found - kBreakGames.begin()];
 }
 
-/// The keys of [rack] for options.rack.
-std::string method_of(const std::string& rack) {
-    if (rack == "template" || rack == "triangle") return fmt::format("method = \"{}\"\n", rack);
-    double gap = -1.0;
-    const char* const end = rack.data() + rack.size();
-    if (rack.starts_with("gap=") && std::from_chars(rack.data() + 4, end, gap).ptr == end && gap >= 0.0 &&
-        gap <= kLargestGap)
-        return fmt::format("gap = {}\njitter = {}\n", gap, 0.5 * gap);
+/// Seeds of racks are from 1 to this: as many as integer(a,b) can draw.
+constexpr int kSeeds = 1000000000;
+
+Rack rack_of(const BreakGame& game, const BreakOptions& options) {
+    Rack rack;
+    rack.game = game.rack;
+    rack.spot_ball = game.spot_ball;
+    rack.radius_sd = options.radius_sd;
+    const std::string& how = options.rack;
+    if (how == "template" || how == "triangle") {
+        rack.method = how == "template" ? RackMethod::kTemplate : RackMethod::kTriangle;
+        return rack;
+    }
+    rack.gap = how.starts_with("gap=") ? as_number<double>(how.substr(4)).value_or(-1.0) : -1.0;
+    rack.jitter = 0.5 * rack.gap;
+    if (rack.gap >= 0.0 && rack.gap <= kLargestGap) return rack;
     throw std::invalid_argument(
         fmt::format("the rack {} is not known; use template, triangle or gap=METRES with 0 to {}",
-                    in_quotes(rack), kLargestGap));
+                    in_quotes(how), kLargestGap));
+}
+
+/// The table with the cue ball and a break cue.
+Scene without_rack(const BreakOptions& options) {
+    Scene scene;
+    scene.file = "break of " + options.game;
+    scene.table = make_table(options.table);
+    use_balls(scene, balls_for(options.table));
+    BallStart& ball = scene.ball.emplace_back();
+    ball.own = scene.cue_ball;
+    ball.position = {0.3, 0.3, scene.size_of(ball).R};
+    Cue& cue = scene.cue.emplace();
+    use_cue(cue, "break");
+    cue.side = cue.height = 0.0;
+    cue.speed = 5.0;
+    return scene;
 }
 
 }  // namespace
@@ -57,7 +85,8 @@ std::string method_of(const std::string& rack) {
 std::vector<Scene> racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed) {
     std::vector<Scene> racks;
     try {
-        const Variation each = Variation::from_text(text, name, {"rack.seed=integer(1,1000000000)"}, seed);
+        const Variation each =
+            Variation::from_text(text, name, {fmt::format("rack.seed=integer(1,{})", kSeeds)}, seed);
         for (int i = 0; count > 1 && i < count; ++i)
             if (auto shot = each.shot(static_cast<std::uint64_t>(i)); shot.scene)
                 racks.push_back(std::move(*shot.scene));
@@ -71,25 +100,23 @@ BreakSearch break_search(const BreakOptions& options) {
     const BreakGame& game = game_of(options.game);
     if (!(options.speed_max >= 1.0 && options.speed_max <= 20.0))
         throw std::invalid_argument("the largest speed of a break must be 1 to 20 m/s");
-    const std::string text = fmt::format(
-        "[table]\npreset = \"{}\"\n[balls]\nradius_sd = {}\n[rack]\ngame = \"{}\"\n{}{}"
-        "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[cue]\npreset = \"break\"\nball_speed = {}\noffset = "
-        "[0, "
-        "0]\n",
-        options.table, options.radius_sd, options.game, game.rack, method_of(options.rack),
-        options.speed_max);
-    const std::string name = "break of " + options.game;
+    Rack rack = rack_of(game, options);
+    const Scene bare = without_rack(options);
     BreakSearch search;
-    search.scene = parse_scene(text, name);
+    search.scene = bare;
     search.want = game.want;
     search.game = game.game;
-    search.layouts = racks_of(text, name, options.layouts, options.seed);
-    const Table& table = search.scene.table;
-    const double side = options.box ? 0.25 * table.width : search.scene.balls.R;
-    // The cue that gives the ball its largest speed.
-    const double fastest = search.scene.cue->speed;
-    search.ball_speed = options.speed_max / fastest;
-    search.scene.cue->speed = 5.0;
+    add_rack(search.scene, rack);
+    validate(search.scene);
+    for (int i = 0; options.layouts > 1 && i < options.layouts; ++i) {
+        SplitMix64 random = draws_of(options.seed, static_cast<std::uint64_t>(i), "rack.seed");
+        rack.seed = static_cast<std::uint64_t>(1 + random.below(kSeeds));
+        add_rack(search.layouts.emplace_back(bare), rack);
+    }
+    const Table& table = bare.table;
+    const double side = options.box ? 0.25 * table.width : bare.balls.R;
+    search.ball_speed = ball_speed_gain(*bare.cue, bare.size_of(bare.ball[0]));
+    const double fastest = options.speed_max / search.ball_speed;
     search.choices = {
         {"ball.cue.position.x", table.corner.x() + side + 1e-4, table.corner.x() + table.width - side - 1e-4},
         {"ball.cue.position.y", table.corner.y() + 0.1 * table.length,

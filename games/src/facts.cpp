@@ -1,8 +1,8 @@
 #include "facts.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "base/as_number.h"
 #include "carom/engine/tolerances.h"
 
 namespace carom::games::detail {
@@ -16,10 +16,7 @@ bool is_in(std::string_view ball, const std::vector<Respot>& respots) {
 }
 
 int number_of(std::string_view ball) {
-    int number = 0;
-    const char* end = ball.data() + ball.size();
-    const auto [stop, error] = std::from_chars(ball.data(), end, number);
-    return error == std::errc() && stop == end && number > 0 ? number : 0;
+    return std::max(0, as_number<int>(ball).value_or(0));
 }
 
 State other_players(const State& state, InHand in_hand) {

@@ -7,10 +7,6 @@
 
 namespace carom::games::detail {
 
-inline double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
 /// @throws std::invalid_argument if there is none
 const BallStart& ball_of(const Scene& scene, std::string_view id);
 const Pocket& pocket_of(const Scene& scene, std::string_view id);

@@ -4,25 +4,22 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "base/draws.h"
-#include "carom/engine/batch.h"
-#include "carom/engine/math.h"
-#include "carom/engine/printable.h"
-#include "carom/engine/strike.h"
 #include "carom/kernel/splitmix64.h"
+#include "trials.h"
 
 namespace carom::games {
 namespace {
+
+using detail::Candidate;
+using detail::Trials;
 
 // Shares of the budget: the first look at the whole space, the generations; the rest is for the figures.
 constexpr double kLook = 0.30, kBreed = 0.52, kReport = 0.10;
@@ -42,74 +39,24 @@ constexpr double kMap = 0.15, kReach = 3.0;
 // Errors whose cost is told.
 constexpr double kAimOff = 0.2, kSpeedOff = 0.05, kTipOff = 0.05, kPlaceOff = 0.01;
 
-struct Candidate {
-    std::vector<double> values;
-    std::size_t shots = 0, successes = 0, invalid = 0;
-    double score() const {
-        return shots == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(shots);
-    }
-};
-
-/// The errors of one stroke, and the layout that it meets.
-struct Draw {
-    double aim, speed, side, height, elevation;
-    std::size_t layout;
-};
-
 class Solver {
   public:
     Solver(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options)
-        : scene_(scene), want_(want), isa_(isa), options_(options) {
-        if (!scene.cue)
-            throw std::invalid_argument("the scene has no [cue]; add one, so that a ball is struck");
-        struck_ = static_cast<std::size_t>(std::max(0, index_of(scene.ball, scene.cue->ball)));
-        if (options.choices.empty()) throw std::invalid_argument("there is nothing to choose; give a range");
-        for (const Choice& choice : options.choices) {
-            if (!(choice.low <= choice.high) || !std::isfinite(choice.high - choice.low))
-                throw std::invalid_argument(choice.key + ": expected a range from a to b with a <= b");
-            if (choice.key.rfind("hit.", 0) == 0)
-                hit_ = ball_of(choice.key.substr(4));
-            else
-                check_varies(scene, choice.key);
-        }
-        // What every shot sets, whether it is chosen or not.
-        keys_ = {"cue.aim_deg", "cue.speed", "cue.offset.side", "cue.offset.height", "cue.elevation_deg"};
-        for (const Choice& choice : options.choices)
-            if (choice.key.rfind("hit.", 0) != 0 &&
-                std::find(keys_.begin(), keys_.end(), choice.key) == keys_.end())
-                keys_.push_back(choice.key);
-        chosen_ = keys_.size();
-        if (!options.layouts.empty()) {
-            for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-                const BallStart& ball = scene.ball[i];
-                const bool same_size = ball.own == options.layouts.front().ball.at(i).own;
-                for (const char* what : {"position.x", "position.y", "radius", "mass"}) {
-                    if (same_size && *what != 'p') continue;
-                    const std::string key = "ball." + ball.id + "." + what;
-                    if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
-                }
-            }
-        }
-        for (const Scene& layout : options.layouts) {
-            std::vector<double>& values = layouts_.emplace_back();
-            for (std::size_t k = chosen_; k < keys_.size(); ++k)
-                values.push_back(SceneNumber(layout, keys_[k]).value(layout));
-        }
-    }
+        : trials_(scene, want, isa, options), options_(options) {}
 
     std::vector<Solution> run() {
         std::vector<Candidate> best = look();
         double nearby = kNearby;
         // A small budget has fewer generations.
         const double bred = (kLook + kBreed) * static_cast<double>(options_.shots);
-        for (int generation = 0; generation < kGenerations && static_cast<double>(played_) < bred;
+        for (int generation = 0; generation < kGenerations && static_cast<double>(trials_.played()) < bred;
              ++generation, nearby *= kShrink)
             best = breed(std::move(best), nearby);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not seen.
         const auto each = std::max<std::size_t>(
             100, static_cast<std::size_t>(kReport * static_cast<double>(options_.shots)) / kinds.size());
-        fresh_ = true;
+        trials_.fresh = true;
         std::vector<Solution> solutions;
         solutions.reserve(kinds.size());
         for (const Candidate& kind : kinds) solutions.push_back(improved(solution(kind.values, each), each));
@@ -122,7 +69,7 @@ class Solver {
     SuccessMap map(const Solution& around) {
         if (options_.choices.size() < 2)
             throw std::invalid_argument("a map needs two inputs to choose; give two ranges");
-        fresh_ = true;
+        trials_.fresh = true;
         const std::size_t each = std::max<std::size_t>(
             8, static_cast<std::size_t>(kMap * static_cast<double>(options_.shots)) / (kSide * kSide));
         std::vector<std::pair<double, std::size_t>> order;
@@ -150,7 +97,7 @@ class Solver {
                 for (std::size_t axis = 0; axis < 2; ++axis)
                     cell.values[map.choices[axis]] = map.cells.back().place[axis];
             }
-        play(cells, each);
+        trials_.play(cells, each);
         for (std::size_t i = 0; i < cells.size(); ++i) map.cells[i].success = cells[i].score();
         return map;
     }
@@ -167,7 +114,7 @@ class Solver {
             double& value = off[i].values[k];
             value = std::clamp(value + (i % 2 == 0 ? -by : by), low, high);
         }
-        play(off, shots);
+        trials_.play(off, shots);
         double part = 1.0;
         for (std::size_t i = 0; i < kHalvings; ++i)
             if (off[2 * i].score() + off[2 * i + 1].score() < off.back().score())
@@ -175,129 +122,9 @@ class Solver {
         return part;
     }
 
-    int ball_of(const std::string& id) const {
-        const int ball = index_of(scene_.ball, id);
-        if (ball >= 0 && static_cast<std::size_t>(ball) == struck_)
-            throw std::invalid_argument("hit." + id +
-                                        ": the cue strikes this ball; name the ball that it is to hit");
-        if (ball >= 0) return ball;
-        throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
-    }
-
     static void sort(std::vector<Candidate>& list) {
         std::stable_sort(list.begin(), list.end(),
                          [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
-    }
-
-    /// Shot number `index` of every candidate has these errors.
-    Draw draw(std::uint64_t index) const {
-        SplitMix64 random(options_.seed * 0x9e3779b97f4a7c15u + 2 * index + (fresh_ ? 1 : 0));
-        const Hand& hand = options_.hand;
-        Draw d{};
-        d.aim = hand.aim_deg * standard_normal(random);
-        d.speed = hand.speed * standard_normal(random);
-        d.side = hand.tip * standard_normal(random);
-        d.height = hand.tip * standard_normal(random);
-        d.elevation = hand.elevation_deg * standard_normal(random);
-        if (!options_.layouts.empty())
-            d.layout = static_cast<std::size_t>(random.below(static_cast<int>(options_.layouts.size())));
-        return d;
-    }
-
-    /// The shot as it is meant: a value for each of the keys that are chosen.
-    std::vector<double> meant(const std::vector<double>& values) const {
-        const Cue& cue = *scene_.cue;
-        std::vector<double> row(chosen_);
-        const std::array<double, 5> base = {cue.aim_deg, cue.speed, cue.side, cue.height, cue.elevation_deg};
-        std::copy(base.begin(), base.end(), row.begin());
-        Vec2 place = planar(scene_.ball[struck_].position);
-        double hit = std::numeric_limits<double>::quiet_NaN();
-        for (std::size_t k = 0; k < values.size(); ++k) {
-            const std::string& key = options_.choices[k].key;
-            if (key.rfind("hit.", 0) == 0) {
-                hit = values[k];
-                continue;
-            }
-            row[static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin())] =
-                values[k];
-            if (key == "ball." + cue.ball + ".position.x") place.x() = values[k];
-            if (key == "ball." + cue.ball + ".position.y") place.y() = values[k];
-        }
-        if (std::isnan(hit)) return row;
-        const auto radius = [this](std::size_t ball) {
-            return scene_.ball[ball].own.value_or(scene_.balls.size()).R;
-        };
-        const auto target = static_cast<std::size_t>(hit_);
-        const Vec2 way = planar(scene_.ball[target].position) - place;
-        const double reach = (radius(struck_) + radius(target)) / std::max(way.norm(), 1e-9);
-        row[0] = carom::direction_deg(way.x(), way.y()) + 90.0 -
-                 arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
-        return row;
-    }
-
-    /// Plays the next shots of all candidates until each has `shots`.
-    void play(std::vector<Candidate>& candidates, std::size_t shots,
-              const std::function<void(std::size_t, const Record&)>& look = {}) {
-        // Rows of a batch are limited, so that memory is.
-        constexpr std::size_t kRows = 1 << 17;
-        for (std::size_t begin = 0; begin < candidates.size();) {
-            std::size_t rows = 0, end = begin;
-            while (end < candidates.size() && (rows == 0 || rows + shots <= kRows))
-                rows += shots - std::min(shots, candidates[end++].shots);
-            play_rows(std::span(candidates).subspan(begin, end - begin), shots, rows, look);
-            begin = end;
-        }
-    }
-
-    void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,
-                   const std::function<void(std::size_t, const Record&)>& look) {
-        if (rows == 0) return;
-        std::vector<std::vector<double>> columns(keys_.size());
-        for (auto& column : columns) column.reserve(rows);
-        std::vector<std::size_t> owner;
-        owner.reserve(rows);
-        for (std::size_t c = 0; c < candidates.size(); ++c) {
-            const std::vector<double> row = meant(candidates[c].values);
-            for (std::size_t i = candidates[c].shots; i < shots; ++i) {
-                const Draw d = draw(i);
-                owner.push_back(c);
-                columns[0].push_back(row[0] + turned_ + d.aim);
-                Cue cue = *scene_.cue;
-                cue.speed = row[1] * (1.0 + d.speed);
-                cue.side = row[2] + d.side;
-                cue.height = row[3] + d.height;
-                cue.elevation_deg = row[4] + d.elevation;
-                cue = legal_strike(cue);
-                columns[1].push_back(cue.speed);
-                columns[2].push_back(cue.side);
-                columns[3].push_back(cue.height);
-                columns[4].push_back(cue.elevation_deg);
-                for (std::size_t k = 5; k < chosen_; ++k) columns[k].push_back(row[k]);
-                for (std::size_t k = chosen_; k < keys_.size(); ++k)
-                    columns[k].push_back(layouts_[d.layout][k - chosen_]);
-            }
-        }
-        std::vector<BatchColumn> batch;
-        for (std::size_t k = 0; k < keys_.size(); ++k) batch.push_back({keys_[k], columns[k]});
-        std::vector<std::uint8_t> held(rows, 0);
-        BatchOptions how;
-        how.threads = options_.threads;
-        how.stop = options_.stop;
-        how.judge = [&](std::size_t shot, const Outcome&, const Record& record) {
-            held[shot] = record.stopped == StopReason::kAtRest && want_.holds(record);
-            if (look) look(shot, record);
-        };
-        std::vector<ShotStatus> status(rows);
-        BatchArrays out;
-        out.status = status.data();
-        simulate_many(scene_, rows, batch, isa_, how, out);
-        for (std::size_t i = 0; i < rows; ++i) {
-            candidates[owner[i]].successes += held[i];
-            candidates[owner[i]].invalid += status[i] == ShotStatus::kInvalid ? 1 : 0;
-        }
-        for (Candidate& candidate : candidates) candidate.shots = std::max(candidate.shots, shots);
-        played_ += rows;
-        if (options_.progress) options_.progress(std::min(played_, options_.shots));
     }
 
     /// Shots from which the cost of an error is taken.
@@ -328,7 +155,7 @@ class Solver {
         }
         std::size_t each = kFirst;
         for (std::size_t round = 0; round < kRounds; ++round, each *= kMore) {
-            play(all, each);
+            trials_.play(all, each);
             sort(all);
             if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
         }
@@ -355,11 +182,11 @@ class Solver {
                                              options_.choices[k].low, options_.choices[k].high);
             young.push_back(std::move(child));
         }
-        play(young, kYoung);
+        trials_.play(young, kYoung);
         sort(young);
         young.resize(std::max<std::size_t>(kParents, young.size() / 4));
-        play(young, kGrown);
-        play(parents, kGrown);
+        trials_.play(young, kGrown);
+        trials_.play(parents, kGrown);
         young.insert(young.end(), parents.begin(), parents.end());
         sort(young);
         return different(young, 0.5 * nearby, kParents);
@@ -422,7 +249,7 @@ class Solver {
         std::vector<Candidate> meant_so(1, Candidate{values});
         std::map<std::pair<int, int>, std::size_t> falls;
         std::mutex guard;
-        play(meant_so, shots, [&](std::size_t, const Record& record) {
+        trials_.play(meant_so, shots, [&](std::size_t, const Record& record) {
             const std::lock_guard lock(guard);
             for (const Event& event : record.events)
                 if (event.type == EventType::kBallPocket) ++falls[{event.a, event.b}];
@@ -432,9 +259,7 @@ class Solver {
         found.values = values;
         found.shots = candidate.shots;
         found.successes = candidate.successes;
-        found.scene = scene_;
-        const std::vector<double> row = meant(values);
-        for (std::size_t k = 0; k < chosen_; ++k) SceneNumber(scene_, keys_[k]).put(found.scene, row[k]);
+        found.scene = trials_.meant_scene(values);
         for (const auto& [fall, count] : falls) found.falls.push_back({fall.first, fall.second, count});
         std::stable_sort(found.falls.begin(), found.falls.end(),
                          [](const auto& one, const auto& two) { return one.count > two.count; });
@@ -454,8 +279,8 @@ class Solver {
                                          : "ball radii",
                                  [&, k](Candidate& c, double off) { c.values[k] += off; }));
         }
-        costs.push_back(
-            cost(candidate, "aim", kAimOff, "degrees", [this](Candidate&, double off) { turned_ = off; }));
+        costs.push_back(cost(candidate, "aim", kAimOff, "degrees",
+                             [this](Candidate&, double off) { trials_.turned = off; }));
     }
     template <class Off>
     Solution::Cost cost(const Candidate& candidate, const std::string& input, double by, const char* unit,
@@ -465,25 +290,15 @@ class Solver {
         for (const bool less : {true, false}) {
             std::vector<Candidate> moved(1, Candidate{candidate.values});
             off(moved[0], less ? -by : by);
-            play(moved, shots);
-            turned_ = 0.0;
+            trials_.play(moved, shots);
+            trials_.turned = 0.0;
             if (moved[0].invalid < shots) (less ? cost.less : cost.more) = moved[0].successes;
         }
         return cost;
     }
-    const Scene& scene_;
-    const Measure& want_;
-    kernel::Isa isa_;
+    Trials trials_;
     const SolveOptions& options_;
-    std::size_t struck_ = 0;
-    int hit_ = -1;
-    std::vector<std::string> keys_;
-    // The values of the keys after those that are chosen, in each layout.
-    std::vector<std::vector<double>> layouts_;
-    std::size_t chosen_ = 0, played_ = 0;
     std::uint64_t generation_ = 0;
-    bool fresh_ = false;
-    double turned_ = 0.0;  ///< [degrees] by which all aims are off
 };
 
 }  // namespace

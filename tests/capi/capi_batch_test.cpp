@@ -27,7 +27,7 @@ BatchPtr many(const carom_scene* scene, const std::vector<const char*>& keys,
 }
 
 TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
-    const ScenePtr scene = scene_of("side_bank");
+    const ScenePtr scene = shipped_scene("side_bank");
     const std::vector<const char*> keys = {"cue.aim_deg", "cue.speed", "ball.1.position.x"};
     const std::size_t shots = 40;
     std::vector<double> values;
@@ -45,7 +45,7 @@ TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
             cue.aim_deg = values[i];
             cue.speed = values[shots + i];
             cue.side = cue.height = 0.0;
-            const ScenePtr shot = scene_of("side_bank");
+            const ScenePtr shot = shipped_scene("side_bank");
             ASSERT_EQ(carom_scene_set_cue(shot.get(), "cue", &cue), CAROM_OK);
             const double one[9] = {values[2 * shots + i], 0.90, 0.028575};
             ASSERT_EQ(carom_scene_set_ball(shot.get(), "1", one), CAROM_OK);
@@ -90,8 +90,8 @@ TEST(CApiBatch, MoreShotsThanArraysHoldAreRefused) {
     carom_batch* batch = nullptr;
     for (const std::size_t shots : {SIZE_MAX, SIZE_MAX / 2, (std::size_t{1} << 31) + 1})
         for (const std::size_t keys : {0, 1}) {
-            EXPECT_EQ(carom_simulate_many(scene_of("side_bank").get(), shots, keys, &key, &value, -1.0, 1, 0,
-                                          &batch),
+            EXPECT_EQ(carom_simulate_many(shipped_scene("side_bank").get(), shots, keys, &key, &value, -1.0,
+                                          1, 0, &batch),
                       CAROM_BAD_ARGUMENT);
             EXPECT_EQ(std::string(carom_last_error()),
                       "shots = " + std::to_string(shots) + " is out of range; it must be at most 2147483648");
@@ -99,7 +99,7 @@ TEST(CApiBatch, MoreShotsThanArraysHoldAreRefused) {
 }
 
 TEST(CApiBatch, BadArgumentsAreNamed) {
-    const ScenePtr scene = scene_of("draw");
+    const ScenePtr scene = shipped_scene("draw");
     carom_batch* batch = nullptr;
     const char* keys[] = {"cue.sped"};
     const double values[] = {1.0};
@@ -126,7 +126,7 @@ TEST(CApiBatch, BadArgumentsAreNamed) {
 }
 
 TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
-    const ScenePtr scene = scene_of("side_bank");
+    const ScenePtr scene = shipped_scene("side_bank");
     const RecordPtr record = played(scene.get());
     std::vector<double> times;
     for (double t = -0.1; t < carom_record_duration(record.get()) + 0.2; t += 0.01) times.push_back(t);
@@ -174,7 +174,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
 
 // A shot from where the last one ended: fallen balls are gone, and the struck ball is chosen again.
 TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
-    const ScenePtr scene = scene_of("eight_ball_break");
+    const ScenePtr scene = shipped_scene("eight_ball_break");
     const RecordPtr first = played(scene.get());
     std::size_t fallen = 0;
     for (std::size_t e = 0; e < carom_record_event_count(first.get()); ++e) {
@@ -195,7 +195,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_GT(carom_record_duration(played(next).get()), 0.5);
 
     // Cut in two, the continued run ends where the whole shot does, except for the rounding of the times.
-    const ScenePtr bank = scene_of("side_bank");
+    const ScenePtr bank = shipped_scene("side_bank");
     const RecordPtr whole = played(bank.get()), half = played(bank.get(), 0.8);
     ASSERT_EQ(carom_scene_from_record(half.get(), &next), CAROM_OK);
     const ScenePtr other(next, carom_scene_free);
@@ -207,7 +207,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
 
 // Does in one call what a record and a cue do together, with the same checks.
 TEST(CApiBatch, TheNextSceneWithItsStrike) {
-    const RecordPtr first = played(scene_of("eight_ball_break").get());
+    const RecordPtr first = played(shipped_scene("eight_ball_break").get());
     carom_cue cue;
     carom_cue_init(&cue);
     cue.speed = 2.0;
@@ -225,7 +225,7 @@ TEST(CApiBatch, TheNextSceneWithItsStrike) {
     // A ball that does not exist, or is not at rest, cannot be struck.
     EXPECT_EQ(carom_next_scene(first.get(), "nobody", &cue, &next), CAROM_BAD_SCENE);
     EXPECT_EQ(next, nullptr);
-    const RecordPtr half = played(scene_of("side_bank").get(), 0.1);
+    const RecordPtr half = played(shipped_scene("side_bank").get(), 0.1);
     EXPECT_EQ(carom_next_scene(half.get(), "cue", &cue, &next), CAROM_BAD_SCENE);
     EXPECT_EQ(carom_next_scene(half.get(), "cue", nullptr, &next), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_next_scene(half.get(), nullptr, &cue, &next), CAROM_BAD_ARGUMENT);

@@ -12,8 +12,8 @@
 namespace carom::test {
 namespace {
 
-struct Shot {
-    explicit Shot(const std::string& text)
+struct PlayedShot {
+    explicit PlayedShot(const std::string& text)
         : scene_(parsed(text)), record_(played(scene_.get())), scene(scene_.get()), record(record_.get()) {}
 
   private:
@@ -36,7 +36,7 @@ const char* const kPot =
     "[cue]\nspeed = 2.25\naim_deg = 135\n";
 
 TEST(CApiTable, PartsDiamondsAndSpots) {
-    const Shot shot(kPot);
+    const PlayedShot shot(kPot);
     carom_table table;
     ASSERT_EQ(carom_scene_table(shot.scene, &table), CAROM_OK);
     EXPECT_EQ(table.width, 1.27);
@@ -54,7 +54,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     EXPECT_EQ(part.from[0], part.to[0]);
     EXPECT_EQ(carom_scene_part(shot.scene, CAROM_POCKET, 6, &part), CAROM_BAD_ARGUMENT);
     EXPECT_EQ(carom_scene_part(shot.scene, CAROM_BALL, 0, &part), CAROM_BAD_ARGUMENT);
-    const Shot round(
+    const PlayedShot round(
         "[[table.arc]]\ncenter = [0, 0]\nradius = 1\nheight = 0.03\nfrom_deg = 30\nto_deg = 90\n"
         "[[ball]]\nid = \"cue\"\nposition = [0, 0]\n[cue]\nspeed = 1\naim_deg = 60\n");
     ASSERT_EQ(carom_scene_part(round.scene, CAROM_JAW, 0, &part), CAROM_OK);
@@ -76,7 +76,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
 }
 
 TEST(CApiTable, AnEventTellsItsNumbers) {
-    const Shot shot(kBank);
+    const PlayedShot shot(kBank);
     carom_event_details d;
     ASSERT_EQ(carom_record_event_details(shot.record, 0, &d), CAROM_OK);
     EXPECT_EQ(d.type, CAROM_BALL_CUSHION);
@@ -101,7 +101,7 @@ TEST(CApiTable, AnEventTellsItsNumbers) {
 }
 
 TEST(CApiTable, TheSceneGivesBackWhatItHolds) {
-    const Shot shot(kPot);
+    const PlayedShot shot(kPot);
     carom_cue cue;
     const char* id;
     ASSERT_EQ(carom_scene_cue(shot.scene, &cue, &id), CAROM_OK);
@@ -127,7 +127,7 @@ TEST(CApiTable, TheSceneGivesBackWhatItHolds) {
 }
 
 TEST(CApiTable, ARecordIsWrittenAndReadAgain) {
-    const Shot shot(kPot), other(kBank);
+    const PlayedShot shot(kPot), other(kBank);
     std::string text(carom_record_text(shot.record, nullptr, 0) + 1, '\0');
     ASSERT_EQ(carom_record_text(shot.record, text.data(), text.size()) + 1, text.size());
     const std::string path = ::testing::TempDir() + "capi_record.json";
@@ -159,7 +159,7 @@ TEST(CApiTable, ARecordIsWrittenAndReadAgain) {
 }
 
 TEST(CApiTable, AimsPotTheBall) {
-    const Shot shot(kPot);
+    const PlayedShot shot(kPot);
     carom_pocket_line lines[6];
     ASSERT_EQ(carom_pocket_lines(shot.scene, "1", "cue", lines), CAROM_OK) << carom_last_error();
     EXPECT_GT(lines[2].width_deg, 0.0);
@@ -183,7 +183,7 @@ TEST(CApiTable, AimsPotTheBall) {
 }
 
 TEST(CApiTable, TheCueBallMayBePlacedWhereItIsInHand) {
-    const Shot shot(
+    const PlayedShot shot(
         "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[[ball]]\nid = \"1\"\nposition = [0.2, 0.2]\n"
         "[[ball]]\nid = \"9\"\nposition = [0.7, 1.0]\n[cue]\nspeed = 4.0\naim_deg = 225.0\n"
         "offset = [0.0, 0.4]\n");
@@ -199,7 +199,7 @@ TEST(CApiTable, TheCueBallMayBePlacedWhereItIsInHand) {
     EXPECT_EQ(allowed, 1);
     ASSERT_EQ(carom_may_place(shot.record, verdict, 0, taken, &allowed), CAROM_OK);
     EXPECT_EQ(allowed, 0);
-    const Shot other(kPot);
+    const PlayedShot other(kPot);
     EXPECT_EQ(carom_may_place(other.record, verdict, 0, free, &allowed), CAROM_BAD_ARGUMENT);
     carom_verdict_free(verdict);
 }

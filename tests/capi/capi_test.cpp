@@ -18,8 +18,8 @@ using reference::random_impacts;
 
 namespace {
 
-constexpr double kR = 0.028575;
-constexpr carom_impact_params kParams{kR, 0.17, 0.2, 0.2, 0.05, 0.95};
+constexpr double kPoolR = 0.028575;
+constexpr carom_impact_params kParams{kPoolR, 0.17, 0.2, 0.2, 0.05, 0.95};
 
 std::vector<double> rvw_of(const kernel::Ball& ball) {
     std::vector<double> rvw;
@@ -86,7 +86,7 @@ TEST(CApi, ABatchKeepsTheBoundOfSingleImpacts) {
 }
 
 TEST(CApi, ABadImpactIsNamedAndTheOthersAreSolved) {
-    const double cue[9] = {0, 0, kR, 0, 1, 0}, object[9] = {0, 2 * kR, kR};
+    const double cue[9] = {0, 0, kPoolR, 0, 1, 0}, object[9] = {0, 2 * kPoolR, kPoolR};
     std::vector<double> in1, in2;
     for (int i = 0; i < 70; ++i) {
         in1.insert(in1.end(), cue, cue + 9);
@@ -133,7 +133,7 @@ struct Handles {
 };
 
 TEST(CApi, AShotIsTheShotOfTheEngine) {
-    const RecordPtr c = played(scene_of("eight_ball_break").get());
+    const RecordPtr c = played(shipped_scene("eight_ball_break").get());
     const Record record =
         simulate(make_plan(read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml"), kernel::best_isa()));
     char hash[17];
@@ -169,7 +169,7 @@ TEST(CApi, AShotIsTheShotOfTheEngine) {
 
 TEST(CApi, AStateReadIsAStateThatCanBeSet) {
     Handles h, again;
-    const double start[9] = {0.6, 0.7, kR, 0.3, 1.5, 0, -20, 3, 11}, other[9] = {0.65, 1.6, kR};
+    const double start[9] = {0.6, 0.7, kPoolR, 0.3, 1.5, 0, -20, 3, 11}, other[9] = {0.65, 1.6, kPoolR};
     ASSERT_EQ(carom_scene_create("nine_foot", "pool", &h.scene), CAROM_OK);
     ASSERT_EQ(carom_scene_set_ball(h.scene, "a", start), CAROM_OK);
     ASSERT_EQ(carom_scene_set_ball(h.scene, "b", other), CAROM_OK);
@@ -195,7 +195,7 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     ASSERT_EQ(carom_scene_create("", "pool", &h.scene), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
     EXPECT_EQ(h.record, nullptr);
-    const double low[9] = {0, 0, 0}, fine[9] = {0, 0, kR};
+    const double low[9] = {0, 0, 0}, fine[9] = {0, 0, kPoolR};
     ASSERT_EQ(carom_scene_set_ball(h.scene, "cue", low), CAROM_OK);
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_BAD_SCENE);
     EXPECT_NE(std::string(carom_last_error()).find("set z to the sum of the two"), std::string::npos)
@@ -297,7 +297,7 @@ TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {
 }
 
 TEST(CApi, AnUnknownInstructionSetIsRefused) {
-    const double one[9] = {0, 0, kR, 0, 1, 0}, two[9] = {0, 2 * kR, kR};
+    const double one[9] = {0, 0, kPoolR, 0, 1, 0}, two[9] = {0, 2 * kPoolR, kPoolR};
     double after1[9], after2[9];
     ::setenv("CAROM_ISA", "v9", 1);
     EXPECT_EQ(carom_collide_balls(one, two, &kParams, 1e-6, after1, after2), CAROM_BAD_ARGUMENT);
@@ -308,7 +308,7 @@ TEST(CApi, AnUnknownInstructionSetIsRefused) {
 
 TEST(CApi, WritesTheSceneAsAFile) {
     Handles h, again;
-    const double at[9] = {0.5, 0.5, kR};
+    const double at[9] = {0.5, 0.5, kPoolR};
     ASSERT_EQ(carom_scene_create("seven_foot", "pool", &h.scene), CAROM_OK);
     ASSERT_EQ(carom_scene_set_ball(h.scene, "cue", at), CAROM_OK);
     const std::size_t length = carom_scene_text(h.scene, nullptr, 0);

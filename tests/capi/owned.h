@@ -21,7 +21,7 @@ inline ScenePtr parsed(const std::string& text) {
 }
 
 /// A scene of the repository.
-inline ScenePtr scene_of(const std::string& name) {
+inline ScenePtr shipped_scene(const std::string& name) {
     carom_scene* scene = nullptr;
     const std::string path = CAROM_SOURCE_DIR "/scenes/" + name + ".toml";
     EXPECT_EQ(carom_scene_read(path.c_str(), &scene), CAROM_OK) << carom_last_error();

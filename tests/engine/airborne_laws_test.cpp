@@ -21,12 +21,12 @@ namespace {
 using namespace test;
 using reference::Generator;
 
-constexpr double kR = 0.028575, kM = 0.170097, kG = 9.81;
+constexpr double kAirR = 0.028575, kAirM = 0.170097, kAirG = 9.81;
 
 BallParams balls() {
     BallParams p = pool_balls();
-    p.R = kR;
-    p.m = kM;
+    p.R = kAirR;
+    p.m = kAirM;
     p.mu_s = 0.2;
     p.mu_b = 0.05;
     p.mu_b_more = 0.0;
@@ -41,7 +41,7 @@ BallParams balls() {
 }
 
 MotionParams motion(bool spin_decay = false) {
-    MotionParams m = motion_params(balls(), kG, kR);
+    MotionParams m = motion_params(balls(), kAirG, kAirR);
     m.spin_decay = spin_decay;
     return m;
 }
@@ -53,21 +53,21 @@ void expect_close(const Vec3& got, const Vec3& want, const char* what) {
 }
 
 Velocities on_cloth(Velocities ball, const BallParams& p = balls(), bool spin_decay = false) {
-    MotionParams m = motion_params(p, kG, kR);
+    MotionParams m = motion_params(p, kAirG, kAirR);
     m.spin_decay = spin_decay;
     hit_cloth(p, m, ball);
     return ball;
 }
 
-double energy(const Velocities& b, double R = kR, double m = kM) {
+double energy(const Velocities& b, double R = kAirR, double m = kAirM) {
     return m * (0.5 * b.v.squaredNorm() + 0.2 * R * R * b.w.squaredNorm());
 }
 
 TEST(Cloth, TheSlowestBounce) {
-    const double v = bounce_end(kR, kG);
+    const double v = bounce_end(kAirR, kAirG);
     EXPECT_NEAR(v, 0.0502283460806744, 1e-15);
-    EXPECT_NEAR(v * v / (2.0 * kG), 0.0001285875, 1e-17);
-    EXPECT_NEAR(2.0 * v / kG, 0.0102402336555911, 1e-15);
+    EXPECT_NEAR(v * v / (2.0 * kAirG), 0.0001285875, 1e-17);
+    EXPECT_NEAR(2.0 * v / kAirG, 0.0102402336555911, 1e-15);
 }
 
 TEST(Cloth, LandingsOfTheReference) {
@@ -78,16 +78,16 @@ TEST(Cloth, LandingsOfTheReference) {
     } kRows[] = {
         {{{1.0, 0.0, -2.0}, {0.0, 0.0, 7.0}}, {0.714285714285714, 0.0, 1.0}, 0.714285714285714, 0.0},
         {{{3.0, 0.0, -1.0}, {0.0, 0.0, 7.0}}, {2.7, 0.0, 0.5}, 0.75, 1.95},
-        {{{1.0, 0.0, -2.0}, {0.0, -3.0 / kR, 7.0}}, {0.4, 0.0, 1.0}, -1.5, 1.9},
-        {{{1.0, 0.0, -2.0}, {0.0, 4.0 / kR, 7.0}}, {1.6, 0.0, 1.0}, 2.5, -0.9},
+        {{{1.0, 0.0, -2.0}, {0.0, -3.0 / kAirR, 7.0}}, {0.4, 0.0, 1.0}, -1.5, 1.9},
+        {{{1.0, 0.0, -2.0}, {0.0, 4.0 / kAirR, 7.0}}, {1.6, 0.0, 1.0}, 2.5, -0.9},
     };
     for (const auto& row : kRows) {
         const Velocities after = on_cloth(row.before);
         EXPECT_NEAR(after.v.x(), row.v.x(), 1e-14);
         EXPECT_EQ(after.v.y(), 0.0);
         EXPECT_EQ(after.v.z(), row.v.z());
-        EXPECT_NEAR(kR * after.w.y(), row.R_wy, 1e-14);
-        EXPECT_NEAR(after.v.x() - kR * after.w.y(), row.slip, 1e-14);
+        EXPECT_NEAR(kAirR * after.w.y(), row.R_wy, 1e-14);
+        EXPECT_NEAR(after.v.x() - kAirR * after.w.y(), row.slip, 1e-14);
         EXPECT_EQ(after.w.z(), 7.0) << "only pivot friction takes vertical spin";
     }
     const Velocities oblique = on_cloth({{1.2, -0.7, -3.0}, {20.0, -35.0, 50.0}});
@@ -112,14 +112,14 @@ TEST(Cloth, LandingsKeepTheirLaws) {
         b.v.z() = -random.uniform(0.2, 5.0);
         const Velocities a = on_cloth(b);
         const double V = -b.v.z(), J = std::hypot(a.v.x() - b.v.x(), a.v.y() - b.v.y());
-        const Vec2 slip = cloth_slip(b.v, b.w, kR), left = cloth_slip(a.v, a.w, kR);
-        EXPECT_NEAR(a.v.x() + 0.4 * kR * a.w.y(), b.v.x() + 0.4 * kR * b.w.y(), 1e-14);
-        EXPECT_NEAR(a.v.y() - 0.4 * kR * a.w.x(), b.v.y() - 0.4 * kR * b.w.x(), 1e-14);
+        const Vec2 slip = cloth_slip(b.v, b.w, kAirR), left = cloth_slip(a.v, a.w, kAirR);
+        EXPECT_NEAR(a.v.x() + 0.4 * kAirR * a.w.y(), b.v.x() + 0.4 * kAirR * b.w.y(), 1e-14);
+        EXPECT_NEAR(a.v.y() - 0.4 * kAirR * a.w.x(), b.v.y() - 0.4 * kAirR * b.w.x(), 1e-14);
         EXPECT_LE(std::abs(cross(slip, left)), 1e-13 * slip.norm());
         EXPECT_GE(dot(slip, left), -1e-13 * slip.norm());
         EXPECT_LE(J, 0.2 * 1.5 * V * (1.0 + 1e-13));
         gripped += left.norm() < 1e-13;
-        const double lost = (energy(b) - energy(a)) / kM;
+        const double lost = (energy(b) - energy(a)) / kAirM;
         EXPECT_NEAR(lost, 0.75 * 0.5 * V * V + J * slip.norm() - 1.75 * J * J, 1e-12);
         // Mirror images and quarter turns, to the bit.
         const auto turned = [](const Vec3& x) { return Vec3(-x.y(), x.x(), x.z()); };
@@ -143,39 +143,39 @@ TEST(Cloth, RestitutionMayFallWithTheSpeed) {
 }
 
 FreePair pair(double mu_b = 0.05) {
-    return {{kR, kM}, {kR, kM}, {mu_b}, balls().e_b};
+    return {{kAirR, kAirM}, {kAirR, kAirM}, {mu_b}, balls().e_b};
 }
 
 TEST(FreeBalls, AFullHitOfARollingBall) {
-    Velocities one{{2.0, 0.0, 0.0}, {0.0, 2.0 / kR, 0.0}}, two{Vec3::Zero(), Vec3::Zero()};
+    Velocities one{{2.0, 0.0, 0.0}, {0.0, 2.0 / kAirR, 0.0}}, two{Vec3::Zero(), Vec3::Zero()};
     hit_ball(pair(), {1.0, 0.0, 0.0}, one, two);
     EXPECT_NEAR(one.v.x(), 0.05, 1e-15);
     EXPECT_NEAR(one.v.z(), 0.0975, 1e-15);
-    EXPECT_NEAR(kR * one.w.y(), 1.75625, 1e-14);
+    EXPECT_NEAR(kAirR * one.w.y(), 1.75625, 1e-14);
     EXPECT_NEAR(two.v.x(), 1.95, 1e-15);
     EXPECT_NEAR(two.v.z(), -0.0975, 1e-15);
     const Velocities after = on_cloth(two);
     EXPECT_NEAR(after.v.x(), 1.9305, 1e-14);
     EXPECT_EQ(after.v.z(), 0.0) << "the rebound of 0.049 m/s is below bounce_end()";
-    EXPECT_NEAR(kR * after.w.y(), -0.195, 1e-14);
+    EXPECT_NEAR(kAirR * after.w.y(), -0.195, 1e-14);
 }
 
 TEST(FreeBalls, UnlikeBalls) {
     FreePair p = pair();
     p.size1 = {0.0603 / 2.0, 0.1987};
-    const double R1 = p.size1.R, sine = (kR - R1) / (R1 + kR);
+    const double R1 = p.size1.R, sine = (kAirR - R1) / (R1 + kAirR);
     EXPECT_NEAR(sine, -0.0268199233716475, 1e-15);
-    EXPECT_NEAR(contact_distance(R1, kR, false), 0.0587038755109064, 1e-15);
+    EXPECT_NEAR(contact_distance(R1, kAirR, false), 0.0587038755109064, 1e-15);
     const Vec3 n(std::sqrt(1.0 - sine * sine), 0.0, sine);
     Velocities one{{2.0, 0.0, 0.0}, {0.0, 2.0 / R1, 0.0}}, two{Vec3::Zero(), Vec3::Zero()};
     hit_ball(p, n, one, two);
     expect_close(one.v, {0.204942397219913, 0.0, 0.138098768339488}, "v1");
     expect_close(two.v, {2.09690909112097, 0.0, -0.161321041929347}, "v2");
     EXPECT_NEAR(R1 * one.w.y(), 1.77523553936006, 1e-13);
-    EXPECT_NEAR(kR * two.w.y(), -0.26256017642378, 1e-13);
+    EXPECT_NEAR(kAirR * two.w.y(), -0.26256017642378, 1e-13);
     const Velocities after = on_cloth(two);
     expect_close(after.v, {2.04851277854216, 0.0, 0.0806605209646737}, "v2 after the cloth");
-    EXPECT_NEAR(kR * after.w.y(), -0.14156939497677, 1e-13);
+    EXPECT_NEAR(kAirR * after.w.y(), -0.14156939497677, 1e-13);
 }
 
 double total_energy(const FreePair& p, const Velocities& one, const Velocities& two) {
@@ -231,9 +231,9 @@ TEST(FreeBalls, InThePlaneTheyAreTheInelasticModel) {
         if (!(dot3(b1.v, n) > 0.0)) continue;
         kernel::ImpactResult planar_result;
         const kernel::ImpactParams params{
-            .R = kR, .m = kM, .mu_s1 = 0.0, .mu_s2 = 0.0, .mu_b = 0.05, .e_b = 0.95};
-        model.collide({}, {{0, 0, kR}, {b1.v.x(), b1.v.y(), 0.0}, {0.0, 0.0, b1.w.z()}},
-                      {{2.0 * kR * n.x(), 2.0 * kR * n.y(), kR}, {0, 0, 0}, {0, 0, 0}}, params,
+            .R = kAirR, .m = kAirM, .mu_s1 = 0.0, .mu_s2 = 0.0, .mu_b = 0.05, .e_b = 0.95};
+        model.collide({}, {{0, 0, kAirR}, {b1.v.x(), b1.v.y(), 0.0}, {0.0, 0.0, b1.w.z()}},
+                      {{2.0 * kAirR * n.x(), 2.0 * kAirR * n.y(), kAirR}, {0, 0, 0}, {0, 0, 0}}, params,
                       planar_result);
         hit_ball(pair(), n, b1, b2);
         EXPECT_NEAR(b1.v.x(), planar_result.v1[0], 1e-14);
@@ -243,11 +243,11 @@ TEST(FreeBalls, InThePlaneTheyAreTheInelasticModel) {
 }
 
 TEST(FreeBalls, ASlowContactParts) {
-    const double parting = parting_speed(kR, kG), up = bounce_end(kR, kG);
+    const double parting = parting_speed(kAirR, kAirG), up = bounce_end(kAirR, kAirG);
     EXPECT_NEAR(parting, 0.1 * up, 1e-18);
     Velocities top{{0.0, 0.0, -1e-3}, Vec3::Zero()}, low{Vec3::Zero(), Vec3::Zero()};
     const Vec3 n(0.6, 0.0, -0.8);
-    part_slowly(pair(), n, {false, true}, kG, top, low);
+    part_slowly(pair(), n, {false, true}, kAirG, top, low);
     EXPECT_NEAR(dot3(top.v - low.v, n), -parting, 1e-16);
     EXPECT_EQ(low.v.z(), 0.0);
     EXPECT_GT(low.v.x(), 0.0);
@@ -266,29 +266,29 @@ TEST(Noses, HansEquationsWithTheVerticalSpeed) {
         // han_2005 takes sin = (h - R)/R; with the nose's
         // cylinder tan = (h - R)/R, so its normal is given here.
         const double s = row.height - 1.0, c = std::sqrt(1.0 - s * s);
-        Velocities ball{{row.v_X, 0.0, 0.0}, {0.0, row.R_wY / kR, 0.0}};
-        hit_nose(balls(), kR, kHan2005, {-c, 0.0, -s}, 0.0, ball);
+        Velocities ball{{row.v_X, 0.0, 0.0}, {0.0, row.R_wY / kAirR, 0.0}};
+        hit_nose(balls(), kAirR, kHan2005, {-c, 0.0, -s}, 0.0, ball);
         EXPECT_NEAR(ball.v.x(), row.after[0], 1e-13);
         EXPECT_NEAR(ball.v.z(), row.after[1], 1e-13);
-        EXPECT_NEAR(kR * ball.w.y(), row.after[2], 1e-13);
+        EXPECT_NEAR(kAirR * ball.w.y(), row.after[2], 1e-13);
     }
     const double s = 0.28, c = std::sqrt(1.0 - s * s);
     Velocities stun{{2.0, 0.0, 0.0}, Vec3::Zero()};
-    hit_nose(balls(), kR, kHan2005, {-c, 0.0, -s}, 0.0, stun);
-    expect_close({stun.v.x(), stun.v.z(), kR * stun.w.y()}, {-1.45472, -0.84096, -0.4}, "stun");
-    Velocities draw{{2.0, 0.0, 0.0}, {0.0, -2.0 / kR, 0.0}};
-    hit_nose(balls(), kR, kHan2005, {-c, 0.0, -s}, 0.0, draw);
-    expect_close({draw.v.x(), draw.v.z(), kR * draw.w.y()}, {-1.29472, -1.38953142857143, -0.971428571428571},
-                 "draw");
+    hit_nose(balls(), kAirR, kHan2005, {-c, 0.0, -s}, 0.0, stun);
+    expect_close({stun.v.x(), stun.v.z(), kAirR * stun.w.y()}, {-1.45472, -0.84096, -0.4}, "stun");
+    Velocities draw{{2.0, 0.0, 0.0}, {0.0, -2.0 / kAirR, 0.0}};
+    hit_nose(balls(), kAirR, kHan2005, {-c, 0.0, -s}, 0.0, draw);
+    expect_close({draw.v.x(), draw.v.z(), kAirR * draw.w.y()},
+                 {-1.29472, -1.38953142857143, -0.971428571428571}, "draw");
 }
 
 TEST(Noses, InTheAir) {
-    const double height = 1.28 * kR, rho = nose_reach(kR, height, 0.0);
+    const double height = 1.28 * kAirR, rho = nose_reach(kAirR, height, 0.0);
     EXPECT_NEAR(rho, 0.029674005897418, 1e-16);
-    EXPECT_NEAR(rho - kR, 0.00109900589741803, 1e-16);
-    const double q = 0.5 * kR, D = std::sqrt(rho * rho - q * q);
+    EXPECT_NEAR(rho - kAirR, 0.00109900589741803, 1e-16);
+    const double q = 0.5 * kAirR, D = std::sqrt(rho * rho - q * q);
     Velocities ball{{2.0, 0.3, 0.4}, {5.0, 30.0, -12.0}};
-    hit_nose(balls(), kR, kHan2005, {-D / rho, 0.0, q / rho}, 0.0, ball);
+    hit_nose(balls(), kAirR, kHan2005, {-D / rho, 0.0, q / rho}, 0.0, ball);
     expect_close(ball.v, {-0.592740417914752, 0.280498574654794, 1.67557743697222}, "v");
     expect_close(ball.w, {4.17851395710517, 41.4059844837882, -13.4953753931198}, "w");
 }
@@ -307,31 +307,32 @@ Cue cue_of(double mass, double speed, double elevation, double side, double heig
 }
 
 TEST(RaisedCue, AJumpCue) {
-    const StruckBall struck = strike(cue_of(0.25, 4.0, 35.0, 0.0, 0.0), {kR, kM}, true, Vertical::kKeep);
+    const StruckBall struck =
+        strike(cue_of(0.25, 4.0, 35.0, 0.0, 0.0), {kAirR, kAirM}, true, Vertical::kKeep);
     EXPECT_NEAR(struck.v.norm(), 4.76080524259873, 1e-13);
     const Velocities after = on_cloth({struck.v, struck.w});
     EXPECT_NEAR(after.v.x(), 3.08061763537315, 1e-13);
     EXPECT_NEAR(after.v.z(), 1.36534285260558, 1e-13);
-    const Segment hop = airborne_segment(0.0, {0.0, 0.0, kR}, after.v, after.w, motion());
+    const Segment hop = airborne_segment(0.0, {0.0, 0.0, kAirR}, after.v, after.w, motion());
     EXPECT_NEAR(hop.duration, 0.27835736036811, 1e-14);
     EXPECT_NEAR(hop.duration * after.v.x(), 0.85751259328592, 1e-13);
-    EXPECT_NEAR(placed_at(hop, 0.5 * hop.duration, kG).position.z() - kR, 0.0950133081121886, 1e-14);
+    EXPECT_NEAR(placed_at(hop, 0.5 * hop.duration, kAirG).position.z() - kAirR, 0.0950133081121886, 1e-14);
 }
 
 TEST(RaisedCue, TheTipIsEscapedUpToAnElevation) {
     for (const auto& [mass, most] : {std::pair{0.567, 35.5886375465806}, std::pair{0.25, 42.7311671880923}}) {
         for (const double off : {-1e-6, 1e-6}) {
             const Cue cue = cue_of(mass, 4.0, most + off, 0.0, 0.0);
-            const StruckBall struck = strike(cue, {kR, kM}, true, Vertical::kKeep);
+            const StruckBall struck = strike(cue, {kAirR, kAirM}, true, Vertical::kKeep);
             const Velocities after = on_cloth({struck.v, struck.w});
-            EXPECT_EQ(meets_tip_again(cue, {kR, kM}, after.v, after.w), off > 0.0) << mass;
+            EXPECT_EQ(meets_tip_again(cue, {kAirR, kAirM}, after.v, after.w), off > 0.0) << mass;
         }
     }
 }
 
 TEST(RaisedCue, AMasse) {
     const Cue cue = cue_of(0.567, 3.2, 45.0, 0.4, 0.1);
-    const StruckBall struck = strike(cue, {kR, kM}, true, Vertical::kKeep);
+    const StruckBall struck = strike(cue, {kAirR, kAirM}, true, Vertical::kKeep);
     EXPECT_NEAR(struck.v.norm(), 3.7101563075111, 1e-13);
     const Velocities after = on_cloth({struck.v, struck.w});
     expect_close(after.v, {2.19619983477814, 0.660962318167523, 1.31173834215157}, "v");
@@ -341,7 +342,8 @@ TEST(RaisedCue, AMasse) {
 // Coriolis: all forces of the cloth act at the contact, so the final rolling velocity depends neither on e_t,
 // nor on mu_s, nor on the number of bounces.
 TEST(RaisedCue, CoriolisTheorem) {
-    const StruckBall struck = strike(cue_of(0.567, 3.2, 45.0, 0.4, 0.1), {kR, kM}, true, Vertical::kKeep);
+    const StruckBall struck =
+        strike(cue_of(0.567, 3.2, 45.0, 0.4, 0.1), {kAirR, kAirM}, true, Vertical::kKeep);
     const Vec2 want(2.13892308218161, 0.749564766943755);
     for (const double e_t : {0.0, 0.3, 0.5, 0.8, 0.99}) {
         for (const double mu_s : {0.01, 0.2, 1.0}) {
@@ -351,7 +353,7 @@ TEST(RaisedCue, CoriolisTheorem) {
             Velocities ball{struck.v, struck.w};
             for (int bounce = 0; bounce < 40; ++bounce) {
                 ball = on_cloth(ball, p);
-                const Vec2 slip = cloth_slip(ball.v, ball.w, kR);
+                const Vec2 slip = cloth_slip(ball.v, ball.w, kAirR);
                 EXPECT_LE((planar(ball.v) - 2.0 / 7.0 * slip - want).norm(), 1e-14);
                 ball.v.z() = -ball.v.z();
             }
@@ -364,16 +366,16 @@ TEST(RaisedCue, CoriolisTheorem) {
 TEST(RaisedCue, Squirt) {
     Cue cue = cue_of(0.567, 3.0, 1e-9, 0.3, 0.0);
     cue.end_mass = 0.00567;
-    const StruckBall flat = strike(cue, {kR, kM}, true, Vertical::kDrop);
-    const StruckBall space = strike(cue, {kR, kM}, true, Vertical::kKeep);
+    const StruckBall flat = strike(cue, {kAirR, kAirM}, true, Vertical::kDrop);
+    const StruckBall space = strike(cue, {kAirR, kAirM}, true, Vertical::kKeep);
     EXPECT_LE((flat.v - space.v).norm(), 1e-9);
     cue.elevation_deg = 30.0;
     cue.side = 0.0;
     cue.height = 0.3;
-    const StruckBall down = strike(cue, {kR, kM}, true, Vertical::kKeep);
+    const StruckBall down = strike(cue, {kAirR, kAirM}, true, Vertical::kKeep);
     const double turn = std::atan2(-down.v.z(), down.v.x()) - 30.0 * 3.14159265358979324 / 180.0;
     const double r = 0.3, S = 2.5 * r * std::sqrt(1.0 - r * r);
-    EXPECT_NEAR(turn, std::atan2(S, 1.0 + kM / 0.00567 + 2.5 * (1.0 - r * r)), 1e-14);
+    EXPECT_NEAR(turn, std::atan2(S, 1.0 + kAirM / 0.00567 + 2.5 * (1.0 - r * r)), 1e-14);
 }
 
 }  // namespace

@@ -18,15 +18,12 @@
 #include "support/engine_cases.h"
 #include "support/pages.h"
 #include "support/random_scenes.h"
+#include "support/scenes.h"
 
 namespace carom::test {
 namespace {
 
 constexpr kernel::Isa kIsa = kernel::Isa::kScalar;
-
-Scene scene_of(const std::string& name) {
-    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
-}
 
 /// Columns of a batch with their values.
 struct Columns {
@@ -186,7 +183,7 @@ void expect_batch(const Scene& scene, const Columns& columns, std::size_t least_
 TEST(Batch, HasTheBitsOfSingleShots) {
     SplitMix64 random(3);
     for (const char* name : {"three_cushion", "draw", "side_bank", "eight_ball_break"}) {
-        const Scene scene = scene_of(name);
+        const Scene scene = shipped(name);
         Columns columns(name == std::string("eight_ball_break") ? 25 : 100);
         columns.add("cue.aim_deg", random, 0.0, 360.0).add("cue.speed", random, 0.5, 6.0);
         columns.add("cue.offset.side", random, -0.3, 0.3).add("cue.offset.1", random, -0.3, 0.3);
@@ -200,7 +197,7 @@ TEST(Batch, HasTheBitsOfSingleShots) {
 // Positions that overlap or are in a cushion, values out of range, speeds of a struck ball.
 TEST(Batch, WhatIsInvalidIsAStatus) {
     SplitMix64 random(4);
-    const Scene scene = scene_of("side_bank");
+    const Scene scene = shipped("side_bank");
     const std::string other = scene.ball[1].id;
     Columns columns(150);
     columns.add("ball.cue.position.x", random, 0.0, 1.27).add("ball.cue.position.y", random, -0.05, 2.6);
@@ -240,7 +237,7 @@ TEST(Batch, RandomScenesOfEveryKind) {
 
 // An effect that is refused is found by the plan.
 TEST(Batch, ARefusedEffectIsAStatusWithItsReason) {
-    Scene scene = scene_of("draw");
+    Scene scene = shipped("draw");
     scene.effects = {{"squirt", false, {}}};
     scene.cue->side = 0.0;
     Columns columns(2);
@@ -284,7 +281,7 @@ TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
 }
 
 TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
-    const Scene scene = scene_of("draw");
+    const Scene scene = shipped("draw");
     const std::vector<double> speeds = {2.0, -1.0, 3.0};
     const BatchColumn column{"cue.speed", speeds};
     BatchOptions options;
@@ -315,7 +312,7 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
 
 TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     SplitMix64 random(11);
-    const Scene scene = scene_of("eight_ball_break");
+    const Scene scene = shipped("eight_ball_break");
     const std::size_t balls = scene.ball.size();
     Columns columns(30);
     columns.add("cue.aim_deg", random, 80.0, 100.0).add("ball.1.position.y", random, 1.85, 1.9);
@@ -379,7 +376,7 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
 // batch.
 TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     SplitMix64 random(17);
-    const Scene scene = scene_of("side_bank");
+    const Scene scene = shipped("side_bank");
     const std::size_t balls = scene.ball.size();
     Columns columns(80);
     columns.add("cue.aim_deg", random, 0.0, 360.0).add("cue.speed", random, -0.5, 6.0);
@@ -493,7 +490,7 @@ TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
 
 TEST(Batch, StopsWhenAsked) {
     SplitMix64 random(1);
-    const Scene scene = scene_of("draw");
+    const Scene scene = shipped("draw");
     std::vector<double> speed(1000, 2.0);
     const BatchColumn column{"cue.speed", speed};
     BatchOptions options;
@@ -505,7 +502,7 @@ TEST(Batch, StopsWhenAsked) {
 }
 
 TEST(Batch, NoShotsAndNoColumns) {
-    const Scene scene = scene_of("draw");
+    const Scene scene = shipped("draw");
     EXPECT_EQ(simulate_many(scene, 0, {}, kIsa).status.size(), 0u);
     const Batch same = simulate_many(scene, 3, {}, kIsa);
     const Record record = simulate(make_plan(scene, kIsa));
@@ -513,7 +510,7 @@ TEST(Batch, NoShotsAndNoColumns) {
 }
 
 TEST(Batch, BadColumnsSayWhatToDo) {
-    const Scene scene = scene_of("draw");
+    const Scene scene = shipped("draw");
     const auto error = [&](const std::string& key, std::size_t values = 2) -> std::string {
         const std::vector<double> list(values, 1.0);
         const BatchColumn column{key, list};
@@ -559,7 +556,7 @@ TEST(SceneNumber, OfAFitLeavesTheOthersAndIsCheckedWithThem) {
 }
 
 TEST(SceneNumber, IntegersAreWhole) {
-    Scene scene = scene_of("draw");
+    Scene scene = shipped("draw");
     const SceneNumber events(scene, "stop.events"), steps(scene, "physics.substeps");
     EXPECT_EQ(events.put(scene, 7.0), Change::kNumbers);
     EXPECT_EQ(scene.stop.events, 7);
@@ -585,7 +582,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
     RunBuffers buffers;
     std::vector<Plan> plans;
     for (const char* name : {"eight_ball_break", "draw", "three_cushion", "side_bank", "hello"})
-        plans.push_back(make_plan(scene_of(name), kIsa));
+        plans.push_back(make_plan(shipped(name), kIsa));
     SimulateOptions options;
     options.hash = true;
     Record kept;
@@ -613,7 +610,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
 // A plan that is remade decides like a new one.
 TEST(Planner, DecidesAsMakePlan) {
     SplitMix64 random(8);
-    Scene scene = scene_of("side_bank");
+    Scene scene = shipped("side_bank");
     Planner planner(scene, kIsa);
     bool first = true;
     for (int i = 0; i < 200; ++i) {

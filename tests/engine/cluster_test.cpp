@@ -39,7 +39,7 @@ ClusterSettings settings(double mu_b, double mu_s, double e, double epsilon = kC
             kernel::contact_phase_function(kernel::best_isa())};
 }
 
-double energy(const std::vector<ClusterBall>& balls) {
+double energy_of(const std::vector<ClusterBall>& balls) {
     double sum = 0.0;
     for (const ClusterBall& b : balls) sum += 0.5 * b.v.squaredNorm() + 0.2 * kR * kR * b.w.squaredNorm();
     return sum;
@@ -61,11 +61,11 @@ std::vector<ClusterContact> contacts_of(const std::vector<ClusterBall>& balls) {
 }
 
 Result run(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
-    const double before = energy(balls);
+    const double before = energy_of(balls);
     ClusterMap map;
     const long steps = map.compliant(balls, contacts_of(balls), s, V);
     EXPECT_GT(steps, 0);
-    return {balls, energy(balls) / before, steps};
+    return {balls, energy_of(balls) / before, steps};
 }
 
 // The limit of a slow impact, whose balls do not move during the contact, so the normals stay. The power of 2

@@ -14,7 +14,7 @@
 namespace carom::test {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 /// Equal balls without friction that lose nothing, on an endless cloth.
 Scene ideal() {
@@ -68,7 +68,7 @@ TEST(EventDetails, ABankKnowsItsDiamondItsNoseAndWhatItLost) {
     EXPECT_NEAR(d.diamond, (0.5 + reach) / 2.0 * 8.0, 1e-12);
     EXPECT_NEAR(d.point.x(), 1.0, 1e-15);
     EXPECT_NEAR(d.point.z(), 0.036, 1e-15);
-    EXPECT_NEAR(d.cut, 45.0 * kDegree, 1e-12);
+    EXPECT_NEAR(d.cut, 45.0 * kOneDegree, 1e-12);
     EXPECT_NEAR(d.closing, 1.0, 1e-12);
     EXPECT_GT(d.lost, 0.0);
     EXPECT_EQ(met_name(record, record.events[index_of_first(record, EventType::kBallCushion)]), "right");

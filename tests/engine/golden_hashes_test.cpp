@@ -13,6 +13,7 @@
 
 #include "scene/rack.h"
 #include "support/hard_scenes.h"
+#include "support/scenes.h"
 
 namespace carom {
 namespace {
@@ -33,7 +34,7 @@ std::vector<std::pair<std::string, Scene>> golden_scenes() {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const char* file : {"draw", "eight_ball_break", "follow", "half_ball_throw", "hello",
                              "nine_ball_break", "snooker_break", "stop", "three_cushion"})
-        scenes.emplace_back(file, read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml"));
+        scenes.emplace_back(file, shipped(file));
     scenes.emplace_back("chaotic break, compliant", chaotic_break(ClusterModel::kCompliant));
     scenes.emplace_back("chaotic break, sequential", chaotic_break(ClusterModel::kSequential));
     return scenes;

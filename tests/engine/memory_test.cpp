@@ -11,6 +11,7 @@
 #include "carom/engine/batch.h"
 #include "carom/kernel/splitmix64.h"
 #include "support/gas.h"
+#include "support/scenes.h"
 
 namespace {
 std::atomic<long> allocations{0}, bytes{0};
@@ -125,8 +126,7 @@ TEST(Memory, NoAllocationInTheLoopOfABreakWithClusters) {
 
 TEST(Memory, NoAllocationInTheLoopOfAShot) {
     for (const char* file : {"draw", "hello", "three_cushion", "stop"}) {
-        const LoopCount count(
-            plan_of(read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml")));
+        const LoopCount count(plan_of(shipped(file)));
         EXPECT_EQ(count.in_loop(), 0) << file;
     }
 }
@@ -139,7 +139,7 @@ bool has_resting_contacts(const Record& record) {
 // In a batch, what the first shots took is enough for the others, unless balls rest against something.
 TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
     for (const char* file : {"draw", "three_cushion", "side_bank", "eight_ball_break"}) {
-        const Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + file + ".toml");
+        const Scene scene = shipped(file);
         const SceneNumber aim(scene, "cue.aim_deg"), speed(scene, "cue.speed"),
             side(scene, "cue.offset.side"), mu_r(scene, "balls.mu_r"),
             x(scene, "ball." + scene.cue->ball + ".position.x");

@@ -16,9 +16,9 @@ namespace {
 using namespace test;
 
 #ifdef CAROM_SANITIZED
-constexpr std::uint64_t kFew = 100, kMany = 2000;
+constexpr std::uint64_t kFewBreaks = 100, kManyBreaks = 2000;
 #else
-constexpr std::uint64_t kFew = 500, kMany = 30000;
+constexpr std::uint64_t kFewBreaks = 500, kManyBreaks = 30000;
 #endif
 constexpr std::uint64_t kParts = 20;
 
@@ -31,7 +31,7 @@ void come_to_rest(std::uint64_t from, std::uint64_t to) {
 }
 
 TEST(OddBreaks, Few) {
-    unsigned long from = 1000000, to = from + kFew;
+    unsigned long from = 1000000, to = from + kFewBreaks;
     if (const char* range = std::getenv("CAROM_ODD_BREAKS")) std::sscanf(range, "%lu:%lu", &from, &to);
     come_to_rest(from, to);
 }
@@ -39,7 +39,7 @@ TEST(OddBreaks, Few) {
 class ManyOddBreaks : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(ManyOddBreaks, ComeToRest) {
-    come_to_rest(GetParam() * (kMany / kParts), (GetParam() + 1) * (kMany / kParts));
+    come_to_rest(GetParam() * (kManyBreaks / kParts), (GetParam() + 1) * (kManyBreaks / kParts));
 }
 
 INSTANTIATE_TEST_SUITE_P(Part, ManyOddBreaks, testing::Range(std::uint64_t{0}, kParts));

@@ -14,7 +14,7 @@ using carom::parse_scene;
 using carom::Scene;
 using carom::Vec2;
 
-constexpr double kR = 0.028575;
+constexpr double kRackR = 0.028575;
 
 Scene rack(const std::string& keys, const std::string& table = "") {
     return parse_scene(table + "[rack]\n" + keys, "s.toml");
@@ -54,8 +54,8 @@ TEST(EightBall, TouchesExactlyAndMirrorsBitForBit) {
                               "[table]\npreset = \"carom\"\n[balls]\npreset = \"pool\"\n"}) {
         const Scene s = rack("gap = 0\n", table);
         ASSERT_EQ(s.ball.size(), 15u);
-        EXPECT_EQ(touching_pairs(s, 2 * kR), 30) << table;
-        EXPECT_GE(closest_pair(s), 2 * kR - 4e-16);
+        EXPECT_EQ(touching_pairs(s, 2 * kRackR), 30) << table;
+        EXPECT_GE(closest_pair(s), 2 * kRackR - 4e-16);
         const double axis = s.table.width / 2;
         for (std::size_t i = 0; i < 15; ++i) {
             int mirrored = 0;
@@ -74,15 +74,15 @@ TEST(EightBall, StandsAtTheFootSpotWithRowsUpTheTable) {
     for (std::size_t i = 0; i < 15; ++i) {
         at_spot += at(s, i) == spot;
         EXPECT_GE(at(s, i).y(), spot.y());
-        EXPECT_EQ(s.ball[i].position.z(), kR);
+        EXPECT_EQ(s.ball[i].position.z(), kRackR);
         EXPECT_EQ(s.ball[i].velocity.norm(), 0.0);
     }
     EXPECT_EQ(at_spot, 1);
-    EXPECT_EQ(touching_pairs(s, 2 * kR + 1e-4), 30);
+    EXPECT_EQ(touching_pairs(s, 2 * kRackR + 1e-4), 30);
 }
 
 TEST(EightBall, FollowsTheRulesForEverySeed) {
-    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    const double pitch = 2 * kRackR, row = pitch * std::sqrt(0.75);
     const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
     std::set<std::string> apexes;
     int solid_left = 0;
@@ -102,7 +102,7 @@ TEST(EightBall, FollowsTheRulesForEverySeed) {
 }
 
 TEST(NineBall, FollowsTheRulesForEverySeed) {
-    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    const double pitch = 2 * kRackR, row = pitch * std::sqrt(0.75);
     const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
     std::set<std::string> behind;
     for (int seed = 0; seed < 200; ++seed) {
@@ -123,7 +123,7 @@ TEST(Line, RunsUpTheTable) {
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_EQ(s.ball[i].id, std::to_string(i + 1));
         EXPECT_EQ(at(s, i).x(), 0.635);
-        EXPECT_NEAR(at(s, i).y(), 1.905 + static_cast<double>(i) * (2 * kR + 0.01), 1e-15);
+        EXPECT_NEAR(at(s, i).y(), 1.905 + static_cast<double>(i) * (2 * kRackR + 0.01), 1e-15);
     }
     EXPECT_EQ(rack("game = \"line\"\n").ball.size(), 5u);
 }
@@ -142,7 +142,7 @@ TEST(Racks, SeedsReproduceAndDiffer) {
 // Fixed values: a change of the generator, or of the order of its draws, would change everybody's racks.
 TEST(Racks, SeedOneIsThisRack) {
     const Scene s = rack("gap = 0\n");
-    const double pitch = 2 * kR, row = pitch * std::sqrt(0.75);
+    const double pitch = 2 * kRackR, row = pitch * std::sqrt(0.75);
     std::string order;
     for (int r = 0; r < 5; ++r) {
         for (int k = 0; k <= r; ++k)
@@ -158,7 +158,7 @@ TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
         for (int seed = 1; seed <= 200; ++seed) {
             const Scene s =
                 rack(std::string("jitter = 1e-4\ngap = ") + gap + "\nseed = " + std::to_string(seed) + "\n");
-            EXPECT_GE(closest_pair(s), 2 * kR - 1e-15);
+            EXPECT_GE(closest_pair(s), 2 * kRackR - 1e-15);
             for (std::size_t i = 0; i < 15; ++i) {
                 // The seed decides which ball is where: compare with the nearest place.
                 double best = 1e9;
@@ -245,9 +245,9 @@ TEST(TenBall, OneAndTenHaveTheirPlaces) {
     for (const char* seed : {"1", "2", "3", "4", "5"}) {
         const Scene s = rack(std::string("game = \"ten_ball\"\ngap = 0\nseed = ") + seed + "\n");
         ASSERT_EQ(s.ball.size(), 10u);
-        EXPECT_EQ(touching_pairs(s, 2 * kR), 18);
+        EXPECT_EQ(touching_pairs(s, 2 * kRackR), 18);
         EXPECT_EQ(ball_at(s, {0.635, 1.905}), "1");
-        EXPECT_EQ(ball_at(s, {0.635, 1.905 + 2 * std::sqrt(3.0) * kR}), "10");
+        EXPECT_EQ(ball_at(s, {0.635, 1.905 + 2 * std::sqrt(3.0) * kRackR}), "10");
         second_rows.insert(ball_at(s, {0.6, 1.96}));
     }
     EXPECT_GT(second_rows.size(), 2u);
@@ -273,7 +273,7 @@ TEST(Rack, PlaceAndAngle) {
         const Vec2 d = at(s, i) - Vec2(0.5, 0.7), e = at(turned, i) - Vec2(0.5, 0.7);
         EXPECT_NEAR((e - Vec2(-d.y(), d.x())).norm(), 0.0, 1e-15);
     }
-    EXPECT_EQ(touching_pairs(s, 2 * kR), 30);
+    EXPECT_EQ(touching_pairs(s, 2 * kRackR), 30);
 }
 
 TEST(Rack, AScatterIsUniformAndTouchesNothing) {
@@ -293,7 +293,7 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
         xx += std::pow(p.x() - 0.5 * kWidth, 2) / kRacks;
         yy += std::pow(p.y() - 0.5 * kLength, 2) / kRacks;
     }
-    const double across = kWidth - 2 * kR, along = kLength - 2 * kR;
+    const double across = kWidth - 2 * kRackR, along = kLength - 2 * kRackR;
     EXPECT_NEAR(x, 0.5 * kWidth, 4 * across / std::sqrt(12.0 * kRacks));
     EXPECT_NEAR(y, 0.5 * kLength, 4 * along / std::sqrt(12.0 * kRacks));
     // The jaws and pockets take a little from the corners.
@@ -305,10 +305,10 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
         ASSERT_EQ(s.ball.size(), 41u);
         EXPECT_EQ(s.ball[0].id, "cue");
         EXPECT_EQ(s.ball[40].id, "40");
-        EXPECT_GE(closest_pair(s), 2 * kR + 0.001 - 1e-15);
+        EXPECT_GE(closest_pair(s), 2 * kRackR + 0.001 - 1e-15);
         for (std::size_t i = 1; i < s.ball.size(); ++i) {
-            EXPECT_GE(std::fmin(at(s, i).x(), kWidth - at(s, i).x()), kR + 0.001 - 1e-15);
-            EXPECT_GE(std::fmin(at(s, i).y(), kLength - at(s, i).y()), kR + 0.001 - 1e-15);
+            EXPECT_GE(std::fmin(at(s, i).x(), kWidth - at(s, i).x()), kRackR + 0.001 - 1e-15);
+            EXPECT_GE(std::fmin(at(s, i).y(), kLength - at(s, i).y()), kRackR + 0.001 - 1e-15);
             for (const carom::Pocket& pocket : s.table.pockets)
                 EXPECT_GT((at(s, i) - pocket.center).norm(), pocket.radius);
         }
@@ -385,10 +385,10 @@ TEST(Rack, RadiiVaryAndMassesFollow) {
         EXPECT_FALSE(s.ball[0].own);
         for (std::size_t i = 1; i < s.ball.size(); ++i) {
             const carom::BallSize size = s.size_of(s.ball[i]);
-            EXPECT_NEAR(size.m / s.balls.m, std::pow(size.R / kR, 3), 1e-15);
+            EXPECT_NEAR(size.m / s.balls.m, std::pow(size.R / kRackR, 3), 1e-15);
             EXPECT_EQ(s.ball[i].position.z(), size.R);
             EXPECT_LT((at(s, i) - at(alike, i)).norm(), 0.001) << "the same ball lies there";
-            const double off = (size.R - kR) / kSd;
+            const double off = (size.R - kRackR) / kSd;
             sum += off, squares += off * off, ++n;
             most = std::fmax(most, std::abs(off));
         }

@@ -133,6 +133,20 @@ void every_cushion(int wanted) {
     for (const char* cushion : {"han_2005", "mathavan_2010", "stronge", "impulse", "smooth"})
         expect_right(wanted, "mathavan", cushion, [](Scene&) {});
 }
+/// Every ball has its own radius and mass.
+void unlike_balls(int wanted) {
+    std::uint64_t draws = 1000;
+    const auto change = [&draws](Scene& s) {
+        reference::Generator rng(++draws);
+        for (BallStart& ball : s.ball) {
+            const double R = s.balls.R * rng.uniform(0.8, 1.25);
+            ball.own = BallSize{R, s.balls.m * rng.uniform(0.5, 2.0)};
+            ball.position.z() = R;
+        }
+    };
+    for (const char* model : {"mathavan", "elastic"}) expect_right(wanted, model, "han_2005", change);
+    expect_right(wanted, "mathavan", "mathavan_2010", change);
+}
 void every_pair_of_balls(int wanted) {
     for (const char* model : {"inelastic", "elastic", "two_step"})
         expect_right(wanted, model, "han_2005", [](Scene&) {});
@@ -164,6 +178,12 @@ TEST(Tangents, EveryCushion) {
 }
 TEST(Tangents, EveryPairOfBalls) {
     every_pair_of_balls(kFew);
+}
+TEST(Tangents, BallsOfAnySize) {
+    unlike_balls(kFew);
+}
+TEST(Tangents, TwoHundredShotsOfBallsOfAnySize) {
+    unlike_balls(200);
 }
 TEST(Tangents, UnlikeBallsFitsAndFlights) {
     unlike_balls_fits_and_flights(kFew);

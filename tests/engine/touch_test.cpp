@@ -17,7 +17,7 @@ namespace {
 
 using Ball = BallAt<Vec3>;
 
-constexpr double kR = 0.03, kHeight = 0.04, kInset = 0.001;
+constexpr double kTouchR = 0.03, kHeight = 0.04, kInset = 0.001;
 // Along (0.6, 0.8), from (0.1, 0.2): its left is (-0.8, 0.6).
 const CushionLine kLine{{0.1, 0.2}, {0.6, 0.8}, 0.5, kHeight, kInset};
 
@@ -25,7 +25,7 @@ Nose nose(double radius, double inset = kInset, const ArcSpan& span = {}) {
     return {{0.3, -0.1}, radius, kHeight, EventType::kBallJaw, 0, inset, span};
 }
 
-Ball ball_at(const Vec3& r, bool flies = false, double R = kR) {
+Ball ball_at(const Vec3& r, bool flies = false, double R = kTouchR) {
     return {r, Vec3::Zero(), R, flies};
 }
 
@@ -51,12 +51,12 @@ TEST(Touch, StraightNoses) {
         const Vec2 place = kLine.from + 0.2 * kLine.direction + side * 0.05 * Vec2(-0.8, 0.6);
         const Touch<Vec3> level = touch_line(kLine, ball_at({place.x(), place.y(), 9.0}));
         expect_near(level.n, side * Vec3(0.8, -0.6, 0.0));
-        EXPECT_NEAR(level.gap, 0.05 - (kR - kInset), 1e-15);
+        EXPECT_NEAR(level.gap, 0.05 - (kTouchR - kInset), 1e-15);
         EXPECT_EQ(level.bend, 0.0);
         // From above: 0.05 aside and 0.12 up, 0.13 away.
         const Touch<Vec3> space = touch_line(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
         expect_near(space.n, Vec3(side * 0.8 * 5.0, side * -0.6 * 5.0, -12.0) / 13.0);
-        EXPECT_NEAR(space.gap, 0.13 - std::hypot(kR - kInset, kHeight - kR), 1e-15);
+        EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
     }
 }
 
@@ -67,16 +67,16 @@ TEST(Touch, RoundNosesFromOutsideAndInside) {
         const double sign = radius < 0.0 ? -1.0 : 1.0;
         const Touch<Vec3> level = touch_round(nose(radius), at(0.0, false));
         expect_near(level.n, -sign * Vec3(0.6, 0.8, 0.0));
-        EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kR - kInset), 1e-15) << radius;
+        EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kTouchR - kInset), 1e-15) << radius;
     }
     // 0.05 outside of the circle and 0.12 above it, 0.13 away.
     const Touch<Vec3> space = touch_round(nose(0.05), at(kHeight + 0.12, true));
     expect_near(space.n, Vec3(-0.6 * 5.0, -0.8 * 5.0, -12.0) / 13.0);
-    EXPECT_NEAR(space.gap, 0.13 - std::hypot(kR - kInset, kHeight - kR), 1e-15);
+    EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
 }
 
 TEST(Touch, TheCloth) {
-    const Touch<Vec3> touch = touch_cloth(Ball{{1.0, 2.0, 0.05}, {0.3, 0.0, -0.7}, kR, true});
+    const Touch<Vec3> touch = touch_cloth(Ball{{1.0, 2.0, 0.05}, {0.3, 0.0, -0.7}, kTouchR, true});
     expect_near(touch.n, -Vec3::UnitZ());
     EXPECT_NEAR(touch.gap, 0.02, 1e-16);
     EXPECT_EQ(touch.closing, 0.7);
@@ -99,7 +99,7 @@ std::vector<Kind> kinds() {
     for (const bool flies : {false, true}) {
         const std::string where = flies ? " in space" : " on the cloth";
         // The other ball rests.
-        const Ball other = ball_at({0.0, 0.0, kR}, false, 0.02);
+        const Ball other = ball_at({0.0, 0.0, kTouchR}, false, 0.02);
         kinds.push_back({"ball" + where, flies, [=](const Ball& b) {
                              return flies ? touch_ball(b, other) : touch_level(b, other, false);
                          }});
@@ -123,7 +123,7 @@ TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
     constexpr double kStep = 1e-4;
     for (const Kind& kind : kinds()) {
         for (int k = 0; k < 200; ++k) {
-            Ball ball{vec(0.15) + Vec3(0.3, 0.0, 0.3), vec(0.1), kR};
+            Ball ball{vec(0.15) + Vec3(0.3, 0.0, 0.3), vec(0.1), kTouchR};
             Vec3 a = vec(1.0);
             if (!kind.flies) ball.v.z() = a.z() = 0.0;
             // On the cloth the bend is that of a touching ball: move it there.
@@ -163,10 +163,10 @@ TEST(Touch, DualNumbersGiveTheGradient) {
     const Line line{{kLine.from.x(), kLine.from.y()}, {0.6, 0.8}, kHeight, kInset};
     for (const bool flies : {false, true}) {
         const Vec3 r(0.2, 0.1, 0.09), other(0.3, 0.2, 0.05);
-        BallAt<Dual3> ball{{r.x(), r.y(), r.z()}, {0.1, 0.2, flies ? 0.3 : 0.0}, kR, flies};
+        BallAt<Dual3> ball{{r.x(), r.y(), r.z()}, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
         for (int i = 0; i < 3; ++i) ball.r[i].d[i] = 1.0;
         ball.R.d[3] = 1.0;
-        const Ball numbers{r, {0.1, 0.2, flies ? 0.3 : 0.0}, kR, flies};
+        const Ball numbers{r, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
         const auto compare = [&](const Touch<Dual3>& dual, const Touch<Vec3>& touch) {
             EXPECT_NEAR(dual.gap.x, touch.gap, 1e-16);
             EXPECT_NEAR(dual.closing.x, touch.closing, 1e-16);
@@ -185,23 +185,23 @@ TEST(Touch, DualNumbersGiveTheGradient) {
         compare(pair, flies ? touch_ball(numbers, ball_at(other, false, 0.02))
                             : touch_level(numbers, ball_at(other, false, 0.02), false));
         // Of unlike balls on the cloth, 2 sqrt(R1 R2).
-        EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kR), 1e-15);
+        EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kTouchR), 1e-15);
     }
 }
 
 TEST(Touch, ABallIsBesideAPartBetweenItsEnds) {
     const CushionLine line{{0.0, 0.0}, {1.0, 0.0}, 0.5, kHeight};
     for (const double x : {-0.1, 0.0, 0.2, 0.5, 0.6})
-        EXPECT_EQ(beside(line, ball_at({x, 0.1, kR})), x >= 0.0 && x <= 0.5) << x;
+        EXPECT_EQ(beside(line, ball_at({x, 0.1, kTouchR})), x >= 0.0 && x <= 0.5) << x;
     Geometry table;
     table.cushions = {line};
     const Contact cushion{0, With::kCushion, 0};
     // Exactly at an end the direction of motion decides.
     for (const double speed : {-1.0, 1.0})
         for (const double end : {0.0, 0.5})
-            EXPECT_EQ(touches_part(table, cushion, {{end, kR, kR}, {speed, 0.0, 0.0}, kR}),
+            EXPECT_EQ(touches_part(table, cushion, {{end, kTouchR, kTouchR}, {speed, 0.0, 0.0}, kTouchR}),
                       end == 0.0 ? speed > 0.0 : speed < 0.0);
-    EXPECT_FALSE(touches_part(table, cushion, ball_at({0.2, kR + 1e-9, kR})));
+    EXPECT_FALSE(touches_part(table, cushion, ball_at({0.2, kTouchR + 1e-9, kTouchR})));
 }
 
 TEST(Touch, ABallIsBesideAnArcOnItsOwnSide) {
@@ -209,7 +209,7 @@ TEST(Touch, ABallIsBesideAnArcOnItsOwnSide) {
     Geometry table;
     table.noses = {nose(0.2, 0.0, quarter), nose(-0.2, 0.0, quarter), nose(0.2, 0.0)};
     const auto ball = [](double x, double y, bool flies = false) {
-        return ball_at({0.3 + x, -0.1 + y, kR}, flies);
+        return ball_at({0.3 + x, -0.1 + y, kTouchR}, flies);
     };
     for (const int wall : {0, 1}) {
         const Nose& arc = table.noses[wall];

@@ -15,22 +15,10 @@
 #include "base/draws.h"
 #include "scene/distribution.h"
 #include "support/process.h"
+#include "support/scenes.h"
 
 namespace carom::test {
 namespace {
-
-constexpr char kScene[] = R"([table]
-cushion = [{from = [0, 0], to = [0, 3], height = 0.03}, {from = [2, 0], to = [2, 3], height = 0.03}]
-pocket = [{center = [1.0, 3.0], radius = 0.06}]
-[[ball]]
-position = [0.635, 0.50]
-[[ball]]
-id = "ball.2"
-position = [0.60, 2]
-[cue]
-speed = 4
-offset = [0.2, 0.1]
-)";
 
 class VariationTest : public testing::Test {
   protected:
@@ -49,17 +37,17 @@ class VariationTest : public testing::Test {
         return "";
     }
     TemporaryFolder folder_;
-    std::string text_ = kScene;
+    std::string text_ = kSmallScene;
 };
 
 TEST_F(VariationTest, OfATextIsThatOfAFileWithIt) {
     const std::vector<std::string> rules = {"cue.speed=uniform(1,5)"};
-    const Variation file = vary(rules), text = Variation::from_text(kScene, "a text", rules, 1);
+    const Variation file = vary(rules), text = Variation::from_text(kSmallScene, "a text", rules, 1);
     EXPECT_EQ(file.fingerprint(), text.fingerprint());
     EXPECT_EQ(file.shot(3).values, text.shot(3).values);
     EXPECT_EQ(text.base().file, "a text");
     EXPECT_THROW(Variation::from_text("[[ball]", "a text", rules, 1), SceneError);
-    EXPECT_THROW(Variation::from_text(kScene, "a text", {"cue.haste=uniform(1,5)"}, 1), VariationError);
+    EXPECT_THROW(Variation::from_text(kSmallScene, "a text", {"cue.haste=uniform(1,5)"}, 1), VariationError);
 }
 
 TEST_F(VariationTest, EveryKindOfKeyReachesItsValue) {
@@ -379,13 +367,13 @@ TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
 }
 
 TEST(NewValues, StandInTheFileAsIfTheyHadBeenWrittenThere) {
-    const std::string text = with_values(kScene, "s.toml",
+    const std::string text = with_values(kSmallScene, "s.toml",
                                          {{"cue.speed", "0.1"},
                                           {"cue.offset.side", "-0.25"},
                                           {"ball.ball.2.position", "[0.7, 1.7]"},
                                           {"physics.cushion", "\"stronge\""},
                                           {"table.pocket.p1.radius", "0.05"}});
-    const Scene scene = parse_scene(text, "s.toml"), before = parse_scene(kScene, "s.toml");
+    const Scene scene = parse_scene(text, "s.toml"), before = parse_scene(kSmallScene, "s.toml");
     EXPECT_EQ(scene.cue->speed, 0.1);
     EXPECT_EQ(scene.cue->side, -0.25);
     EXPECT_EQ(scene.cue->height, 0.1);
@@ -393,13 +381,13 @@ TEST(NewValues, StandInTheFileAsIfTheyHadBeenWrittenThere) {
     EXPECT_EQ(scene.physics.cushion, cushion_model("stronge"));
     EXPECT_EQ(scene.table.pockets[0].radius, 0.05);
     EXPECT_EQ(scene.table.cushions, before.table.cushions);
-    EXPECT_EQ(scene_text(parse_scene(with_values(kScene, "s.toml", {}), "s.toml")), scene_text(before));
+    EXPECT_EQ(scene_text(parse_scene(with_values(kSmallScene, "s.toml", {}), "s.toml")), scene_text(before));
 }
 
 TEST(NewValues, SayWhatIsWrong) {
     const auto error_of = [](const std::string& key, const std::string& value) -> std::string {
         try {
-            return with_values(kScene, "s.toml", {{key, value}});
+            return with_values(kSmallScene, "s.toml", {{key, value}});
         } catch (const VariationError& error) {
             return error.what();
         }

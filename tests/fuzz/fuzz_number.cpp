@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         expect(*scene.stop.events == std::strtoll(text.c_str(), nullptr, 10));
     } catch (const carom::SceneError&) {
     }
-    for (const std::string rule :
+    for (const std::string& rule :
          {"cue.speed=list(" + text + ")", "cue.speed=uniform(" + text + "," + text + ")",
           "cue.speed=normal(" + text + ",0)", "rack.seed=list(" + text + ")",
           "rack.seed=integer(" + text + "," + text + ")"}) {

@@ -15,6 +15,7 @@
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
 #include "carom/kernel/splitmix64.h"
+#include "support/scenes.h"
 
 namespace carom::games {
 namespace {
@@ -23,7 +24,7 @@ const std::vector<std::string> kVary{"balls.mu_s",      "balls.mu_r", "balls.e_c
                                      "balls.f_c_fit.0", "cue.speed",  "cue.aim_deg"};
 
 Scene three_cushion() {
-    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/three_cushion.toml");
+    return test::shipped("three_cushion");
 }
 
 /// Places of the balls 60 times a second, with normal errors.

@@ -21,7 +21,7 @@ using games::Noise;
 using games::noise_by_name;
 using games::with_noise;
 
-constexpr double kR = 0.028575;
+constexpr double kNoiseR = 0.028575;
 constexpr Noise kOwn = {0.2, 0.3, 0.4, 0.01, 0.02};
 
 Cue meant() {
@@ -35,15 +35,15 @@ Cue meant() {
 }
 
 TEST(Noise, ByNameHasThePublishedDeviations) {
-    EXPECT_EQ(noise_by_name("none", kR), Noise());
-    EXPECT_EQ(noise_by_name("ai3603", kR), (Noise{0.1, 0.1, 0.1, 0.003, 0.003}));
-    const Noise fastfiz = noise_by_name("fastfiz", kR);
+    EXPECT_EQ(noise_by_name("none", kNoiseR), Noise());
+    EXPECT_EQ(noise_by_name("ai3603", kNoiseR), (Noise{0.1, 0.1, 0.1, 0.003, 0.003}));
+    const Noise fastfiz = noise_by_name("fastfiz", kNoiseR);
     EXPECT_EQ(fastfiz.speed, 0.075);
     EXPECT_EQ(fastfiz.aim_deg, 0.125);
     EXPECT_EQ(fastfiz.elevation_deg, 0.1);
-    EXPECT_NEAR(fastfiz.side * kR, 0.0005, 1e-18);
-    EXPECT_NEAR(fastfiz.height * kR, 0.0005, 1e-18);
-    EXPECT_THROW(noise_by_name("fastfitz", kR), std::invalid_argument);
+    EXPECT_NEAR(fastfiz.side * kNoiseR, 0.0005, 1e-18);
+    EXPECT_NEAR(fastfiz.height * kNoiseR, 0.0005, 1e-18);
+    EXPECT_THROW(noise_by_name("fastfitz", kNoiseR), std::invalid_argument);
     EXPECT_THROW(noise_by_name("fastfiz", 0.0), std::invalid_argument);
 }
 

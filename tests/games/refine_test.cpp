@@ -8,13 +8,10 @@
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"
+#include "support/scenes.h"
 
 namespace carom::games {
 namespace {
-
-Scene scene_of(const std::string& name) {
-    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
-}
 
 const std::vector<Choice> kStroke{{"cue.aim_deg", -360.0, 360.0},
                                   {"cue.speed", 0.5, 6.0},
@@ -27,8 +24,8 @@ Vec2 end_of(const Scene& scene, int ball) {
 }
 
 /// The shipped shot only just touches a ball at its end, so that no place is far from another order.
-Scene three_cushion() {
-    Scene scene = scene_of("three_cushion");
+Scene aimed_three_cushion() {
+    Scene scene = test::shipped("three_cushion");
     scene.cue->aim_deg = -7.0;
     return scene;
 }
@@ -39,9 +36,9 @@ TEST(Refine, MovesABallToItsPlace) {
         Scene scene;
         Vec2 by;
     };
-    for (const Case& c :
-         {Case{"draw", scene_of("draw"), {-0.06, 0.05}}, Case{"draw", scene_of("draw"), {0.04, 0.02}},
-          Case{"three_cushion", three_cushion(), {0.003, 0.005}}}) {
+    for (const Case& c : {Case{"draw", test::shipped("draw"), {-0.06, 0.05}},
+                          Case{"draw", test::shipped("draw"), {0.04, 0.02}},
+                          Case{"three_cushion", aimed_three_cushion(), {0.003, 0.005}}}) {
         const Scene& scene = c.scene;
         const Vec2 place = end_of(scene, 0) + c.by;
         const std::vector<Place> places{{0, place}};
@@ -54,7 +51,7 @@ TEST(Refine, MovesABallToItsPlace) {
 }
 
 TEST(Refine, TwoBallsAtOnce) {
-    const Scene scene = three_cushion();
+    const Scene scene = aimed_three_cushion();
     const std::vector<Place> places{{0, end_of(scene, 0) + Vec2(0.002, 0.001)},
                                     {1, end_of(scene, 1) + Vec2(0.001, 0.002)}};
     const Refined found = refine(scene, kStroke, places, kernel::Isa::kScalar);
@@ -63,7 +60,7 @@ TEST(Refine, TwoBallsAtOnce) {
 }
 
 TEST(Refine, KnowsThePlacesOfAWant) {
-    const Scene scene = scene_of("draw");
+    const Scene scene = test::shipped("draw");
     const auto places = [&](const char* want) { return Measure(want, scene).places(); };
     const std::vector<Place> two =
         places("not scratch and (cue near (0.6, 1.2, 0.05) and 1 near (0.2, 0.3))");
@@ -78,7 +75,7 @@ TEST(Refine, KnowsThePlacesOfAWant) {
 }
 
 TEST(Refine, SaysIfItCannot) {
-    const Scene scene = scene_of("draw");
+    const Scene scene = test::shipped("draw");
     // Behind the rail; and a ball that falls.
     const std::vector<Place> outside{{0, Vec2(-1.0, 1.0)}}, fallen{{1, Vec2(0.5, 0.5)}};
     EXPECT_NE(refine(scene, kStroke, outside, kernel::Isa::kScalar).trouble, "");

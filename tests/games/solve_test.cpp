@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/engine_cases.h"
+#include "support/scenes.h"
 
 namespace carom::test {
 namespace {
@@ -19,10 +20,6 @@ namespace {
 using games::Measure;
 using games::Solution;
 using games::SolveOptions;
-
-Scene scene_named(const std::string& name) {
-    return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
-}
 
 SolveOptions small() {
     SolveOptions options;
@@ -32,7 +29,7 @@ SolveOptions small() {
 }
 
 TEST(Solve, FindsAPotFromAnyDirection) {
-    const Scene scene = scene_named("draw");
+    const Scene scene = shipped("draw");
     const Measure want("\"1\" in pocketed and not scratch", scene);
     SolveOptions options = small();
     options.choices = {{"cue.aim_deg", 0.0, 360.0}, {"cue.speed", 0.5, 6.0}};
@@ -48,7 +45,7 @@ TEST(Solve, FindsAPotFromAnyDirection) {
 }
 
 TEST(Solve, HitAimsAtItsBall) {
-    const Scene scene = scene_named("draw");
+    const Scene scene = shipped("draw");
     SolveOptions options = small();
     options.shots = 3000;
     options.choices = {{"hit.1", 0.0, 0.0}, {"cue.speed", 2.0, 2.0}};
@@ -105,7 +102,7 @@ TEST(Solve, LayoutsOfUnlikeBalls) {
 }
 
 TEST(Solve, ThreadsAndTheOrderOfPlayChangeNothing) {
-    const Scene scene = scene_named("side_bank");
+    const Scene scene = shipped("side_bank");
     const Measure want("\"1\" in pocketed", scene);
     SolveOptions options = small();
     options.best = 3;
@@ -123,7 +120,7 @@ TEST(Solve, ThreadsAndTheOrderOfPlayChangeNothing) {
 
 TEST(Solve, TheFiguresAreOfShotsThatTheSearchHasNotSeen) {
     // A coin: no input decides, so that the best is half, however many candidates were tried.
-    const Scene scene = scene_named("draw");
+    const Scene scene = shipped("draw");
     const Measure want("x(cue) > 0.748", scene);
     SolveOptions options = small();
     options.choices = {{"cue.speed", 2.24, 2.26}};
@@ -140,7 +137,7 @@ TEST(Solve, TheFiguresAreOfShotsThatTheSearchHasNotSeen) {
 }
 
 TEST(Solve, MistakesAreRefused) {
-    const Scene scene = scene_named("draw");
+    const Scene scene = shipped("draw");
     const Measure want("scratch", scene);
     const auto refused = [&](std::vector<games::Choice> choices) {
         SolveOptions options = small();

@@ -10,24 +10,14 @@
 #include <variant>
 #include <vector>
 
+#include "support/scenes.h"
+
 namespace carom::games {
 namespace {
 
-constexpr char kScene[] = R"([table]
-cushion = [{from = [0, 0], to = [0, 3], height = 0.03}, {from = [2, 0], to = [2, 3], height = 0.03}]
-pocket = [{center = [1.0, 3.0], radius = 0.06}]
-[[ball]]
-position = [0.635, 0.50]
-[[ball]]
-id = "ball.2"
-position = [0.60, 2]
-[cue]
-speed = 4
-)";
-
 TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
     const std::vector<std::string> measures = {"travel(cue)", "pocketed"};
-    const Sweep sweep(Variation::from_text(kScene, "s.toml",
+    const Sweep sweep(Variation::from_text(test::kSmallScene, "s.toml",
                                            {"cue.speed=list(0x2,2.5)", "stop.events=list(0b11,0o17)",
                                             "physics.cushion=list(\"none\",\"smooth\")",
                                             "cue.aim_deg=uniform(80,90)", "cue.elevation_deg=integer(0,1)"},
@@ -80,8 +70,8 @@ TEST(Sweep, ColumnsHaveTheirKindsAndValues) {
 
 TEST(Sweep, AMeasureThatDoesNotApplyIsNamed) {
     const std::vector<std::string> measures = {"foul"};
-    const Sweep sweep(Variation::from_text(kScene, "s.toml", {"cue.speed=uniform(1,2)"}, 1), measures,
-                      Game::kEightBall);
+    const Sweep sweep(Variation::from_text(test::kSmallScene, "s.toml", {"cue.speed=uniform(1,2)"}, 1),
+                      measures, Game::kEightBall);
     Batch batch(2, 2);
     try {
         sweep.play(0, 2, kernel::best_isa(), {}, batch.arrays());

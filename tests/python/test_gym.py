@@ -470,9 +470,11 @@ def test_a_rollout_is_what_a_step_would_be():
 
 def test_reset_takes_a_scene_and_says_what_is_wrong():
     env = carom.gym.make_env("Pot")
-    scene = carom.Scene.load(SOURCE / "scenes/draw.toml")
-    env.reset(options={"scene": scene})
-    assert np.array_equal(env.states.xy[0], scene.positions)
+    path = SOURCE / "scenes/draw.toml"
+    scene = carom.Scene.load(path)
+    for same in (scene, path, str(path), scene.to_dict()):
+        env.reset(options={"scene": same})
+        assert np.array_equal(env.states.xy[0], scene.positions)
     many = carom.gym.make_vector_env("Pot", 3)
     each = np.array([[[0.5, 0.5], [0.5, 0.9 + 0.1 * i]] for i in range(3)])
     many.reset(options={"xy": each})

@@ -155,19 +155,27 @@ std::string reason_not_to_run(const Clone& clone, const std::string& condition) 
 struct Paragraph {
     std::vector<std::string> comments;
     std::string text;
+    bool sentences = true;  ///< neither a heading, a table nor code
 };
 
 std::vector<Paragraph> paragraphs_of(const std::string& page) {
     std::vector<Paragraph> all(1);
+    const auto begin = [&all] {
+        if (!all.back().text.empty()) all.emplace_back();
+    };
+    bool fenced = false;
     for (const std::string& line : lines_of(page)) {
-        if (is_checked_number(line)) {
-            if (!all.back().text.empty()) all.emplace_back();
-            all.back().comments.push_back(line);
-        } else if (!line.empty() && !starts_with(line, "<!-- ")) {
-            all.back().text += line + " ";
-        } else if (!all.back().text.empty()) {
-            all.emplace_back();
+        const bool fence = starts_with(line, "```"), code = fence || fenced;
+        fenced = fenced != fence;
+        if (!code && (line.empty() || starts_with(line, "<!-- "))) {
+            begin();
+            if (is_checked_number(line)) all.back().comments.push_back(line);
+            continue;
         }
+        const bool sentences = !code && line.find_first_of("#|") != 0;
+        if (all.back().sentences != sentences) begin();
+        all.back().sentences = sentences;
+        all.back().text += line + " ";
     }
     return all;
 }
@@ -213,13 +221,8 @@ std::vector<std::string> figure_faults(const std::string& page,
 std::vector<std::string> unchecked(const std::string& page, const std::regex& claim) {
     static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)");
     std::vector<std::string> found;
-    bool fenced = false;
     for (const Paragraph& paragraph : paragraphs_of(page)) {
-        const bool fence = contains(paragraph.text, "```");
-        if (fence || fenced || paragraph.text.find_first_of("#|") == 0) {
-            fenced = fenced != fence && !contains(paragraph.text.substr(3), "```");
-            continue;
-        }
+        if (!paragraph.sentences) continue;
         std::string said;
         for (const std::string& comment : paragraph.comments) said += comment;
         const std::string text = std::regex_replace(paragraph.text, left_out, "");
@@ -266,6 +269,9 @@ TEST(Figures, AFalseOneIsSeen) {
     EXPECT_EQ(unchecked_promises("It pots four of five.\n\nFive lessons, in `81 %`, within 3 s.\n").size(),
               2u);
     EXPECT_EQ(unchecked_promises("<!-- figure: 81 % ; c -->\nIt pots 81 %, not 82 %.\n").size(), 1u);
+    // A sentence without an empty line above it is one, too.
+    for (const char* above : {"```\n81 %\n```", "```sh\na\n\n# 81 %\n```", "# Title", "| 81 % |", "- 3 s"})
+        EXPECT_EQ(unchecked_promises(above + std::string("\nIt pots four of five.\n")).size(), 1u) << above;
 }
 
 TEST(Figures, EveryShareAndCountThatAGuidePromisesHasItsSource) {

@@ -100,6 +100,18 @@ test("a value that is no number is told by its key", () => {
   assert.throws(() => scene.with({cue: {offset: [0, NaN]}}), {message: /^cue.offset\[1\] is NaN/});
 });
 
+test("many keys at once are the same as one by one", () => {
+  const keys = ["cue.speed", "cue.aim_deg", "balls.mu_s", "balls.e_b", "ball.cue.position.x"], changes = {};
+  let one = draw();
+  for (let k = 0; k < 500; ++k) {
+    const key = keys[k % keys.length], value = 0.5 + 1e-4 * k;
+    one = one.with({[key]: value});
+    changes[key] = value;
+  }
+  assert.equal(draw().with(changes).everything, one.everything);
+  assert.equal(Scene.parse(one.toml).everything, one.everything);
+});
+
 test("the quick path and the file give the same bits", () => {
   const scene = Scene.parse(sceneText("eight_ball_break.toml"));
   const quick = scene.with({"cue.speed": 6.1, "cue.offset.side": 0.05, "ball.cue.position.x": 0.5});

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -17,6 +16,8 @@
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include "base/as_number.h"
 
 namespace carom {
 
@@ -32,10 +33,7 @@ int descriptor(std::string_view path) {
     if (path == "/dev/stderr") return STDERR_FILENO;
     constexpr std::string_view kFolder = "/dev/fd/";
     if (!path.starts_with(kFolder)) return -1;
-    path.remove_prefix(kFolder.size());
-    int number = -1;
-    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
-    return error == std::errc() && end == path.data() + path.size() ? number : -1;
+    return as_number<int>(path.substr(kFolder.size())).value_or(-1);
 }
 
 /// Removes what killed programs left in a folder: temporary files that nobody has locked. Once per folder,

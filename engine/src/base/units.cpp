@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <stdexcept>
-#include <system_error>
 
+#include "base/as_number.h"
 #include "carom/engine/printable.h"
 
 namespace carom::detail {
@@ -67,10 +66,9 @@ double number_with_unit(std::string_view text, std::string_view wanted) {
             if (digits.find_first_of("eE") != digits.npos) break;
             written += fmt::format("e{}", unit.ten);
         }
-        double value = 0.0;
-        const auto [last, error] = std::from_chars(written.data(), written.data() + written.size(), value);
-        if (error != std::errc() || last != written.data() + written.size()) break;
-        return unit.factor != 0.0 ? value * unit.factor : value;
+        const auto value = as_number<double>(written);
+        if (!value) break;
+        return unit.factor != 0.0 ? *value * unit.factor : *value;
     }
     refuse(text, wanted);
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "base/as_number.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/scene.h"
 
@@ -181,13 +182,10 @@ double JsonValue::positive() const {
 
 std::int64_t JsonValue::integer(std::int64_t least, std::int64_t most) const {
     if (most < least) fail("this index has nothing to refer to");
-    const std::string_view digits = token();
-    std::int64_t value = 0;
-    const char* const last = digits.data() + digits.size();
-    const auto [end, error] = std::from_chars(digits.data(), last, value);
-    if (error != std::errc() || end != last || value < least || value > most)
+    const auto value = as_number<std::int64_t>(token());
+    if (!value || *value < least || *value > most)
         fail("expected an integer from " + std::to_string(least) + " to " + std::to_string(most));
-    return value;
+    return *value;
 }
 
 bool JsonValue::boolean() const {

@@ -6,7 +6,7 @@
 
 #include "carom/engine/event_details.h"
 #include "carom/engine/math.h"
-#include "physics/cue.h"
+#include "carom/engine/strike.h"
 
 namespace carom::detail {
 namespace {
@@ -83,10 +83,7 @@ class Aim {
     double speed() const {
         const double wanted =
             s_.number_of(*s_.node("ball_speed"), "cue.ball_speed", at_least(0.0, kMaxSpeed, "m/s"));
-        Cue one = cue_;
-        one.speed = 1.0;
-        const BallSize size = ball_of("ball", cue_.ball).own.value_or(scene_.balls.size());
-        const double gain = strike(one, size).v.norm();
+        const double gain = ball_speed_gain(cue_, scene_.size_of(ball_of("ball", cue_.ball)));
         if (!(wanted <= kMaxSpeed * gain))
             s_.fail("ball_speed", "cue.ball_speed = {} needs a cue faster than {} m/s; lower it", wanted,
                     kMaxSpeed);

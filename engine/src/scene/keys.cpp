@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/as_number.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/table.h"
 #include "scene/distribution.h"
@@ -48,12 +49,8 @@ std::size_t element_index(std::string_view name) {
     } kNames[] = {{"x", 0}, {"y", 1}, {"z", 2}, {"side", 0}, {"height", 1}, {"width", 0}};
     for (const auto& known : kNames)
         if (name == known.name) return known.index;
-    std::size_t index = 0;
-    const auto [rest, error] = std::from_chars(name.data(), name.data() + name.size(), index);
-    if (error != std::errc() || rest != name.data() + name.size())
-        fail("{} is not an element of an array; use x, y, z, side, height or an index from 0",
-             in_quotes(name));
-    return index;
+    if (const auto index = as_number<std::size_t>(name)) return *index;
+    fail("{} is not an element of an array; use x, y, z, side, height or an index from 0", in_quotes(name));
 }
 
 void take_list(std::string_view& key, KeyPath& path) {

@@ -19,7 +19,8 @@
 #include "scene/aim.h"
 #include "scene/rack.h"
 
-namespace carom::detail {
+namespace carom {
+namespace detail {
 namespace {
 
 // [m] Between balls in a wooden triangle, on average.
@@ -38,13 +39,6 @@ BallStart read_ball(const Section& s, const BallSize& common, const std::optiona
     check_id(s, ball.id);
     ball.position.z() = size.R + ball.height;
     return ball;
-}
-
-/// The ball preset that belongs to a table preset.
-const char* balls_of_table(std::string_view table) {
-    for (const char* own : {"carom", "snooker", "english_pool", "pyramid"})
-        if (table.starts_with(own)) return own;
-    return "pool";
 }
 
 /// The keys of a section whose rows are in two tables.
@@ -80,11 +74,64 @@ void apply_method(const Section& s, Rack& rack) {
     rack.gap = 0.0;
 }
 
+/// Puts the balls of a rack behind the others.
+void place_rack(const Section& top, const Section& s, const Rack& rack, Scene& scene) {
+    if (rack.radius_sd > kMostOfRadius * scene.balls.R)
+        top.fail(top.where("balls", "radius_sd"),
+                 "balls.radius_sd = {} is more than a 200th of the radius, {} m; make it smaller",
+                 rack.radius_sd, scene.balls.R);
+    const bool lattice = rack.radius_sd > 0.0 && rack.game != RackGame::kScatter;
+    if (lattice && balls_of(rack) > kMaxPressedBalls)
+        s.fail(s.has("rows") ? "rows" : "count",
+               "at most {} balls of unlike size can be racked, not {}; leave some out", kMaxPressedBalls,
+               balls_of(rack));
+    const bool scatter = rack.game == RackGame::kScatter;
+    if (s.has("count") && rack.game != RackGame::kLine && !scatter)
+        s.fail("count",
+               "rack.count belongs to the games line and scatter; leave it out or set game = \"line\"");
+    if (s.has("rows") && rack.game != RackGame::kTriangle)
+        s.fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
+    const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
+    for (const char* key : {"position", "spot_ball", "angle_deg"})
+        if (spots && s.has(key))
+            s.fail(key,
+                   "rack.{} moves a rack, but the balls of this game have spots of their own; leave it out",
+                   key);
+    for (const char* key : {"jitter", "position", "spot_ball", "angle_deg"})
+        if (scatter && s.has(key))
+            s.fail(key, "rack.{} is for balls that lie together, and a scatter spreads them; leave it out",
+                   key);
+    if (scatter && scene.table.preset.empty())
+        s.fail("game",
+               "a scatter needs the rectangle between the cushions of a table; choose one by its preset");
+    if (spots && !(scene.table.length > 0.0)) {
+        s.fail("game", "this layout needs the spots of a table, but the cloth is endless; choose a table");
+    }
+    if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
+        s.fail("spot_ball", "rack.spot_ball = {} is not in this rack; choose 1 to {}", *rack.spot_ball,
+               balls_of(rack));
+    std::vector<RackedBall> racked;
+    try {
+        racked = make_rack(rack, scene.table, scene.balls.R, scene.ball);
+    } catch (const std::invalid_argument& error) {
+        s.fail(s.has("count") ? "count" : "game", "{}", error.what());
+    }
+    for (const RackedBall& ball : racked) {
+        if (scene.ball.size() == kMaxBalls)
+            s.fail(s.where(), "more than {} balls; leave some out", kMaxBalls);
+        BallStart start;
+        start.id = ball.id;
+        ball.put(start, scene.balls.size());
+        start.where = s.where();
+        scene.ball.push_back(start);
+    }
+}
+
 }  // namespace
 
 void read_balls(const Section& top, Scene& scene) {
     const auto s = balls_section(top);
-    scene.ball_preset = balls_of_table(top.peek("table", "preset").value_or(""));
+    scene.ball_preset = balls_for(top.peek("table", "preset").value_or(""));
     if (s) s->read(kBallPresetFields, scene);
     use_balls(scene, scene.ball_preset);
     if (!s) return;
@@ -125,57 +172,7 @@ std::optional<Section> read_rack_keys(const Section& top, Rack& rack) {
 
 void read_rack(const Section& top, Scene& scene) {
     Rack rack;
-    const auto s = read_rack_keys(top, rack);
-    if (!s) return;
-    if (rack.radius_sd > kMostOfRadius * scene.balls.R)
-        top.fail(top.where("balls", "radius_sd"),
-                 "balls.radius_sd = {} is more than a 200th of the radius, {} m; make it smaller",
-                 rack.radius_sd, scene.balls.R);
-    const bool lattice = rack.radius_sd > 0.0 && rack.game != RackGame::kScatter;
-    if (lattice && balls_of(rack) > kMaxPressedBalls)
-        s->fail(s->has("rows") ? "rows" : "count",
-                "at most {} balls of unlike size can be racked, not {}; leave some out", kMaxPressedBalls,
-                balls_of(rack));
-    const bool scatter = rack.game == RackGame::kScatter;
-    if (s->has("count") && rack.game != RackGame::kLine && !scatter)
-        s->fail("count",
-                "rack.count belongs to the games line and scatter; leave it out or set game = \"line\"");
-    if (s->has("rows") && rack.game != RackGame::kTriangle)
-        s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
-    const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
-    for (const char* key : {"position", "spot_ball", "angle_deg"})
-        if (spots && s->has(key))
-            s->fail(key,
-                    "rack.{} moves a rack, but the balls of this game have spots of their own; leave it out",
-                    key);
-    for (const char* key : {"jitter", "position", "spot_ball", "angle_deg"})
-        if (scatter && s->has(key))
-            s->fail(key, "rack.{} is for balls that lie together, and a scatter spreads them; leave it out",
-                    key);
-    if (scatter && scene.table.preset.empty())
-        s->fail("game",
-                "a scatter needs the rectangle between the cushions of a table; choose one by its preset");
-    if (spots && !(scene.table.length > 0.0)) {
-        s->fail("game", "this layout needs the spots of a table, but the cloth is endless; choose a table");
-    }
-    if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
-        s->fail("spot_ball", "rack.spot_ball = {} is not in this rack; choose 1 to {}", *rack.spot_ball,
-                balls_of(rack));
-    std::vector<RackedBall> racked;
-    try {
-        racked = make_rack(rack, scene.table, scene.balls.R, scene.ball);
-    } catch (const std::invalid_argument& error) {
-        s->fail(s->has("count") ? "count" : "game", "{}", error.what());
-    }
-    for (const RackedBall& ball : racked) {
-        if (scene.ball.size() == kMaxBalls)
-            s->fail(s->where(), "more than {} balls; leave some out", kMaxBalls);
-        BallStart start;
-        start.id = ball.id;
-        ball.put(start, scene.balls.size());
-        start.where = s->where();
-        scene.ball.push_back(start);
-    }
+    if (const auto s = read_rack_keys(top, rack)) place_rack(top, *s, rack, scene);
 }
 
 void read_cue(const Section& top, Scene& scene) {
@@ -229,4 +226,15 @@ void read_render(const Section& top, Scene& scene) {
     check_camera(*s, r);
 }
 
-}  // namespace carom::detail
+}  // namespace detail
+
+void add_rack(Scene& scene, Rack rack) {
+    using detail::Section;
+    const Section s(scene.file, "rack");
+    s.check(kRackFields, rack);
+    Section(scene.file, "balls").check(kRackedBallFields, rack);
+    detail::apply_method(s, rack);
+    detail::place_rack(Section(scene.file, ""), s, rack, scene);
+}
+
+}  // namespace carom

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/cue.h"
+
 namespace carom {
 namespace {
 
@@ -47,6 +49,11 @@ Cue legal_strike(Cue cue) {
         cue.height *= scale;
     }
     return cue;
+}
+
+double ball_speed_gain(Cue cue, const BallSize& ball) {
+    cue.speed = 1.0;
+    return strike(cue, ball).v.norm();
 }
 
 }  // namespace carom

@@ -103,7 +103,7 @@ inline Vec operator*(const Vec& a, const Vec& b) {
 inline Floats dot(const Vec& a, const Vec& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Vec cross(const Vec& a, const Vec& b) {
+inline Vec cross3(const Vec& a, const Vec& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline Vec mix(const Vec& a, const Vec& b, Floats t) {

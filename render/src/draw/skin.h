@@ -45,7 +45,7 @@ class Skin {
     // At the normal n; w is the width of a pixel in radii. shine: how much of the lamp's mirror image is
     // visible; print must stay legible.
     Vec albedo(const Vec& n, Floats w, Floats& shine) const {
-        const Vec b = n + cross(axis_, cross(axis_, n) + n * turn_) * all(2.0F);
+        const Vec b = n + cross3(axis_, cross3(axis_, n) + n * turn_) * all(2.0F);
         Vec base = colors_.base;
         const Vec& ivory = colors_.ivory;
         shine = all(1.0F);

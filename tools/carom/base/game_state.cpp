@@ -17,10 +17,11 @@
 #include "carom/engine/printable.h"
 
 namespace carom::tools {
-namespace {
 
 using Json = nlohmann::ordered_json;
 using games::State;
+
+namespace {
 
 // [bytes] A state takes about three hundred.
 constexpr std::uintmax_t kLargestState = 1 << 16;

@@ -3,26 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
-#include <optional>
-#include <string_view>
-#include <system_error>
 
+#include "base/as_number.h"
 #include "base/console.h"
 #include "carom/engine/printable.h"
 
 namespace carom::tools {
-namespace {
-
-std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
-}  // namespace
 
 games::Hand read_hand(const std::string& text) {
     games::Hand hand;
@@ -34,7 +21,7 @@ games::Hand read_hand(const std::string& text) {
         std::string value = part.substr(std::min(equals + 1, part.size()));
         const bool percent = value.ends_with('%');
         if (percent) value.pop_back();
-        const auto read = number(value);
+        const auto read = as_number<double>(value);
         if (!read || *read < 0.0 || *read > 100.0 || percent != (name == "speed"))
             throw UsageError(
                 fmt::format("--hand {}: expected aim=DEGREES,speed=PERCENT%,tip=RADII,elevation=DEGREES, "

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/as_number.h"
 #include "base/console.h"
 #include "base/nearest.h"
 #include "base/output_file.h"
@@ -69,10 +69,7 @@ void restrict(CLI::Option& option, CLI::App& app, const Option& row) {
 
 /// Checks for a whole, non-negative number; CLI11 would read -1 as the largest one.
 std::string is_count(const std::string& text) {
-    std::uint64_t number = 0;
-    const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, number);
-    return error == std::errc() && rest == end ? "" : text + ": expected 0 to 18446744073709551615";
+    return as_number<std::uint64_t>(text) ? "" : text + ": expected 0 to 18446744073709551615";
 }
 
 template <class T>

@@ -550,6 +550,9 @@ double cut_off_deg(double mouth, double R);
 BallParams make_ball_params(std::string_view preset);
 /// Gives a scene the balls of a preset, and the cushion model that belongs to them.
 void use_balls(Scene& scene, std::string_view preset);
+/// Adds the balls of a rack to a scene whose table and balls are known. validate() checks their places.
+/// @throws SceneError for numbers that no [rack] may have
+void add_rack(Scene& scene, Rack rack);
 /// Rolling friction of a cloth by name.
 double cloth_mu_r(std::string_view cloth);
 

@@ -19,6 +19,9 @@ inline constexpr double kMiscueOffset = 0.5;
 /// @throws std::invalid_argument for a number that is not finite
 Cue legal_strike(Cue cue);
 
+/// [-] The speed of a ball on the cloth for each m/s of the cue.
+double ball_speed_gain(Cue cue, const BallSize& ball);
+
 /// Whether the cue itself has room: one of 1.47 m, 13 mm thick at the tip and 29 mm at the butt.
 struct CueRoom {
     std::string in;  ///< what it would be in: "cushion c3", "ball 7"; "" if nothing

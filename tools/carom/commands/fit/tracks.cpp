@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/as_number.h"
 #include "base/console.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/tolerances.h"
@@ -94,17 +94,15 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         };
         const auto number = [&](std::size_t k) {
             const Word at = word(k);
-            double value = std::nan("");
-            if (at.text.empty() && k >= 2) return value;
-            const auto [stop, error] =
-                std::from_chars(at.text.data(), at.text.data() + at.text.size(), value);
-            if (error != std::errc() || stop != at.text.data() + at.text.size() || (k < 2 && !(value >= 0.0)))
+            if (at.text.empty() && k >= 2) return std::nan("");
+            const auto value = as_number<double>(at.text);
+            if (!value || (k < 2 && !(*value >= 0.0)))
                 fail(at.column,
                      fmt::format("{} is no {}; write a number in {}", in_quotes(std::string(at.text)),
                                  k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m"));
-            if (std::isinf(value))
+            if (std::isinf(*value))
                 fail(at.column, "a place must be finite; leave it empty if it was not seen");
-            return value;
+            return *value;
         };
         const double t = number(0), x = number(2), y = number(3);
         const Word id = word(1);

@@ -28,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The text of one of them, or "" if there is none.
-std::string text_of(std::string_view name) {
+std::string embedded(std::string_view name) {
     for (const PageFile& file : play_files())
         if (file.name == name) return file.text;
     return "";
@@ -75,7 +75,7 @@ Json shipped_scenes() {
 
 /// The keys that a page can set, by section: numbers, names and lists of numbers.
 Json keys_to_set() {
-    const Json sections = Json::parse(text_of("scene.schema.json")).at("properties");
+    const Json sections = Json::parse(embedded("scene.schema.json")).at("properties");
     Json keys;
     for (const char* section : {"table", "balls", "physics"}) {
         for (const auto& [key, about] : sections.at(section).at("properties").items()) {
@@ -112,7 +112,7 @@ Json start_of(const PlayArgs& args) {
 int run(const PlayArgs& args) {
     check_page_path("-o", args.output);
     const Json page = start_of(args);
-    const std::string wasm = text_of("carom.wasm.gz.b64");
+    const std::string wasm = embedded("carom.wasm.gz.b64");
     if (wasm.empty())
         throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
     add_page_files(play_files());

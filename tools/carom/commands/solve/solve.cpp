@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,9 +9,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
+#include "base/as_number.h"
 #include "base/console.h"
 #include "base/game_state.h"
 #include "base/options.h"
@@ -38,20 +37,13 @@ struct SolveArgs {
     SearchArgs search;
 };
 
-std::optional<double> bound(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
-
 /// "cue.speed=uniform(1,5)"
 Choice read_choice(const std::string& text) {
     const std::size_t equals = text.find('='), open = text.find("uniform("), comma = text.rfind(',');
     if (equals != text.npos && open == equals + 1 && comma != text.npos && text.back() == ')') {
         const std::string_view whole = text;
-        const auto low = bound(whole.substr(open + 8, comma - open - 8)),
-                   high = bound(whole.substr(comma + 1, text.size() - comma - 2));
+        const auto low = as_number<double>(whole.substr(open + 8, comma - open - 8)),
+                   high = as_number<double>(whole.substr(comma + 1, text.size() - comma - 2));
         if (low && high && *low <= *high) return {text.substr(0, equals), *low, *high};
     }
     throw UsageError(fmt::format(

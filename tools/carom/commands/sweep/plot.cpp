@@ -1,11 +1,10 @@
 #include "commands/sweep/plot.h"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
-#include <system_error>
 #include <variant>
 
+#include "base/as_number.h"
 #include "base/console.h"
 #include "base/output_file.h"
 #include "report/diagram.h"
@@ -28,13 +27,6 @@ std::vector<std::string_view> cells_of(std::string_view line) {
         begin = i + 1;
     }
     return cells;
-}
-
-template <class Number>
-Number number_in(std::string_view cell, Number none) {
-    Number number = none;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-    return error == std::errc() ? number : none;
 }
 
 }  // namespace
@@ -81,8 +73,8 @@ void PlottedSweep::add(std::string_view rows) {
     for (; !rows.empty(); rows.remove_prefix(std::min(rows.size(), rows.find('\n') + 1))) {
         const std::vector<std::string_view> cells = cells_of(rows.substr(0, rows.find('\n')));
         if (cells.size() <= measure) continue;
-        add(number_in(cells[0], std::uint64_t{0}),
-            number_in(cells[measure], std::numeric_limits<double>::quiet_NaN()));
+        add(as_number<std::uint64_t>(cells[0]).value_or(0),
+            as_number<double>(cells[measure]).value_or(std::numeric_limits<double>::quiet_NaN()));
     }
 }
 

@@ -1,0 +1,62 @@
+// Candidate shots of a search, played with the errors of a hand and in the layouts of its options.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carom/games/solve.h"
+
+namespace carom::games::detail {
+
+struct Candidate {
+    std::vector<double> values;
+    std::size_t shots = 0, successes = 0, invalid = 0;
+    double score() const {
+        return shots == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(shots);
+    }
+};
+
+class Trials {
+  public:
+    /// @throws std::invalid_argument as solve()
+    Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options);
+
+    /// Plays the next shots of all candidates until each has `shots`.
+    void play(std::vector<Candidate>& candidates, std::size_t shots,
+              const std::function<void(std::size_t, const Record&)>& look = {});
+    /// The scene of a shot as it is meant.
+    Scene meant_scene(const std::vector<double>& values) const;
+    std::size_t played() const { return played_; }
+
+    bool fresh = false;   ///< draws errors that no shot before has had
+    double turned = 0.0;  ///< [degrees] by which all aims are off
+
+  private:
+    /// The errors of one stroke, and the layout that it meets.
+    struct Draw {
+        double aim, speed, side, height, elevation;
+        std::size_t layout;
+    };
+    int ball_of(const std::string& id) const;
+    Draw draw(std::uint64_t index) const;
+    std::vector<double> meant(const std::vector<double>& values) const;
+    void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,
+                   const std::function<void(std::size_t, const Record&)>& look);
+
+    const Scene& scene_;
+    const Measure& want_;
+    kernel::Isa isa_;
+    const SolveOptions& options_;
+    std::size_t struck_ = 0;
+    int hit_ = -1;
+    std::vector<std::string> keys_;
+    // The values of the keys after those that are chosen, in each layout.
+    std::vector<std::vector<double>> layouts_;
+    std::size_t chosen_ = 0, played_ = 0;
+};
+
+}  // namespace carom::games::detail
