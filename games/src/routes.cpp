@@ -74,7 +74,7 @@ using P = const PlayedShot&;
 using A = const Arguments&;
 using V = MeasureValue;
 
-const MeasureRow kRows[] = {
+const MeasureRow kRouteRows[] = {
     {{"cushions_before", "BALL", "", "cushions before the struck ball hits this ball; empty if it does not"},
      [](P p, A of) -> V {
          for (const Touch& touch : meetings(p))
@@ -116,7 +116,7 @@ const MeasureRow kRows[] = {
 }  // namespace
 
 std::span<const MeasureRow> route_rows() {
-    return kRows;
+    return kRouteRows;
 }
 
 std::vector<std::size_t> driven(const PlayedShot& played, int ball) {
