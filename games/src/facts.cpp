@@ -1,6 +1,11 @@
 #include "facts.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/as_number.h"
 #include "carom/engine/tolerances.h"
@@ -33,6 +38,31 @@ State won_by(State state, int winner) {
     return state;
 }
 
+State scored(State state, int player, int points) {
+    int& sum = state.points[static_cast<std::size_t>(player)];
+    sum += points;
+    return state.target > 0 && sum >= state.target ? won_by(state, player) : state;
+}
+
+State broken_by(const State& state, int breaker) {
+    State next = new_game(state.game, breaker, state.target);
+    next.rules = state.rules;
+    next.points = state.points;
+    return next;
+}
+
+std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::string>& balls) {
+    std::vector<Respot> respots;
+    std::vector<Lying> others = facts.lying(kSpotGap, 0.0, balls);
+    for (const std::string& ball : balls) {
+        const double R = facts.radius(ball);
+        const Table& table = facts.record.table;
+        respots.push_back({ball, spot_on_long_string(table, foot_spot(table), R, others)});
+        others.push_back({respots.back().place, R, 0.0});
+    }
+    return respots;
+}
+
 Verdict one_way(std::vector<Foul> fouls, const Option& option) {
     Verdict verdict;
     verdict.fouls = std::move(fouls);
@@ -53,9 +83,12 @@ bool Facts::left(std::string_view ball) const {
     return index >= 0 && shot.left(index);
 }
 
+int Facts::objects_fallen() const {
+    return static_cast<int>(shot.pocketed.size()) - (shot.fell(shot.struck) ? 1 : 0);
+}
+
 bool Facts::any_object_fell() const {
-    return std::any_of(shot.pocketed.begin(), shot.pocketed.end(),
-                       [this](const Shot::Fallen& f) { return f.ball != shot.struck; });
+    return objects_fallen() > 0;
 }
 
 int Facts::objects_off() const {

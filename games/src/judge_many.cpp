@@ -10,9 +10,7 @@
 #include "facts.h"
 
 namespace carom::games {
-namespace {
 
-/// The call of a player who knows what will fall: the first of the balls that count.
 Call lucky_call(const State& state, const Record& record) {
     const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
     if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
@@ -25,6 +23,8 @@ Call lucky_call(const State& state, const Record& record) {
     }
     return {};
 }
+
+namespace {
 
 /// Judges a shot into its row of the arrays. @param base the scene with all balls; the shot may lack some of
 /// them
@@ -57,7 +57,7 @@ void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& out
             y = back.place.y();
         }
     }
-    const bool pool = game == Game::kEightBall || game == Game::kNineBall;
+    const bool pool = game == Game::kEightBall || game == Game::kNineBall || game == Game::kTenBall;
     to.points[row] = !pool ? verdict.points : verdict.fouls.empty() ? fallen : 0;
 }
 

@@ -44,6 +44,20 @@ TEST(Solve, FindsAPotFromAnyDirection) {
     }
 }
 
+TEST(Solve, FindsAPointOfThreeCushionAndAKickByItsRoute) {
+    const Scene scene = scene_named("three_cushion");
+    SolveOptions options = small();
+    options.choices = games::default_choices();
+    const Measure point("point", scene, games::Game::kThreeCushion);
+    const Solution found = games::solve(scene, point, kernel::best_isa(), options).at(0);
+    EXPECT_GT(static_cast<double>(found.successes), 0.5 * static_cast<double>(found.shots));
+    EXPECT_TRUE(Measure("point(three_cushion) and carom", scene).holds(simulate(plan_of(found.scene))));
+    const Scene draw = scene_named("draw");
+    const Measure kick("cushions_before(1) == 2 and route == \"left, head\"", draw);
+    const Solution kicked = games::solve(draw, kick, kernel::best_isa(), options).at(0);
+    EXPECT_GT(static_cast<double>(kicked.successes), 0.5 * static_cast<double>(kicked.shots));
+}
+
 TEST(Solve, HitAimsAtItsBall) {
     const Scene scene = shipped("draw");
     SolveOptions options = small();

@@ -72,5 +72,70 @@ TEST_F(CliGames, AFoulGivesTheCueBallInHand) {
     EXPECT_EQ(next.ball[0].position.y(), 0.7);
 }
 
+TEST_F(CliGames, OptionsOfTheRulesAreKeptInTheState) {
+    const std::string open = CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml";
+    const ProcessResult judged = carom({"judge", open, "--game", "eight_ball", "--rules", "call=none",
+                                        "--rules", "in_hand=behind_line", "--state-out", file("state.json")});
+    ASSERT_EQ(judged.status, 0) << judged.err;
+    const Json state = Json::parse(read_file(file("state.json")));
+    EXPECT_EQ(state.at("rules"), Json({"call=none", "in_hand=behind_line"}));
+    const ProcessResult none = carom({"judge", open, "--game", "eight_ball", "--rules", "push_out=true"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_EQ(none.err,
+              "carom: --rules eight_ball has no option \"push_out\"; it has call, eight_on_break, in_hand, "
+              "jump\n");
+    const ProcessResult value = carom({"judge", open, "--game", "eight_ball", "--rules", "call=some"});
+    EXPECT_EQ(value.status, 2);
+    EXPECT_EQ(value.err, "carom: --rules call=some: expected call=all|eight|none\n");
+    std::ofstream(file("bad.json")) << R"({"game": "snooker", "rules": ["call=all"]})";
+    const ProcessResult bad = carom({"judge", open, "--state", file("bad.json")});
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_TRUE(contains(bad.err, "bad.json: rules: snooker has no option \"call\"; it has miss")) << bad.err;
+    const ProcessResult listed = carom({"describe", "games"});
+    EXPECT_TRUE(contains(listed.out, "  nine_on_break = wins | respot\n")) << listed.out;
+}
+
+TEST_F(CliGames, FourteenBallsAreRackedAroundTheBreakBall) {
+    const std::string pot = folder_.write("pot.toml",
+                                          "[table]\npreset = \"nine_foot\"\n"
+                                          "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n"
+                                          "[[ball]]\nid = \"7\"\nposition = [0.2, 0.2]\n"
+                                          "[[ball]]\nid = \"9\"\nposition = [0.9, 1.6]\n"
+                                          "[cue]\nspeed = 1.5\naim_deg = 225\noffset = [0, -0.2]\n");
+    std::ofstream(file("state.json")) << R"({"game": "straight_pool", "opening": false, "in_hand": "no"})";
+    const std::vector<std::string> called = {"--state", file("state.json"), "--ball", "7", "--pocket", "p1"};
+    std::vector<std::string> judge = {"judge", pot}, next = {"next", pot, "-o", file("n.toml")};
+    judge.insert(judge.end(), called.begin(), called.end());
+    next.insert(next.end(), called.begin(), called.end());
+    const ProcessResult judged = carom(judge);
+    EXPECT_EQ(judged.out, "fair\n1 point scored\nplayer 1 shoots\n14 balls are put on the table\n");
+    ASSERT_EQ(carom(next).status, 0);
+    const Scene racked = read_scene(file("n.toml"));
+    ASSERT_EQ(racked.ball.size(), 16u);
+    EXPECT_EQ(planar(racked.ball[index_of(racked.ball, "9")].position), Vec2(0.9, 1.6));
+    EXPECT_EQ(carom({"check", file("n.toml")}).status, 0);
+}
+
+TEST_F(CliGames, AMissMayBeReplayed) {
+    const std::string miss = folder_.write("miss.toml",
+                                           "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n"
+                                           "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.4]\n"
+                                           "[[ball]]\nid = \"1\"\nposition = [1.0, 2.0]\n"
+                                           "[[ball]]\nid = \"black\"\nposition = [0.5, 3.0]\n"
+                                           "[cue]\nspeed = 0.5\naim_deg = 0\noffset = [0, 0]\n");
+    std::ofstream(file("state.json")) << R"({"game": "snooker", "opening": false, "in_hand": "no"})";
+    const std::vector<std::string> all = {"next",    miss,           "--state",     file("state.json"),
+                                          "--rules", "miss=true",    "--option",    "3",
+                                          "-o",      file("n.toml"), "--state-out", file("after.json")};
+    const ProcessResult result = carom(all);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Scene again = read_scene(file("n.toml"));
+    EXPECT_EQ(planar(again.ball[0].position), Vec2(0.3, 0.4));
+    const Json after = Json::parse(read_file(file("after.json")));
+    EXPECT_EQ(after.at("points"), Json({0, 4}));
+    EXPECT_EQ(after.at("fouls"), Json({1, 0}));
+    EXPECT_EQ(after.at("turn"), 0);
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/games/measures.h"
 #include "carom/games/rules.h"
 
 namespace carom::tools {
@@ -17,6 +18,9 @@ std::string next_text(const games::State& state);
 
 /// The verdict as `carom judge --json` prints it.
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
+
+/// The value of a measure: a number or null, a truth, or texts. @throws std::invalid_argument as Measure::of
+nlohmann::ordered_json measure_json(const games::Measure& measure, const Record& record);
 
 /// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
 /// side.
