@@ -22,6 +22,19 @@ int number_of(std::string_view ball) {
     return error == std::errc() && stop == end && number > 0 ? number : 0;
 }
 
+Call lucky_call(const State& state, const Record& record) {
+    const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
+    if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
+    const std::vector<std::string> callable = legal(state, ids_of(record.tracks)).callable;
+    for (const Event& event : record.events) {
+        if (!falls(event)) continue;
+        const std::string& ball = record.tracks[static_cast<std::size_t>(event.a)].id;
+        if (is_in(ball, callable))
+            return {.ball = ball, .pocket = record.table.pockets[static_cast<std::size_t>(event.b)].id};
+    }
+    return {};
+}
+
 State other_players(const State& state, InHand in_hand) {
     State next = state;
     next.turn = 1 - state.turn;

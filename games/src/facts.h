@@ -69,6 +69,9 @@ inline const char* own_ball(int player) {
     return player == 0 ? "white" : "yellow";
 }
 
+/// The call of a player who knows what will fall: the first of the balls that count. Empty if none falls.
+Call lucky_call(const State& state, const Record& record);
+
 /// The state for the other player's turn, with the cue ball in hand as given.
 State other_players(const State& state, InHand in_hand);
 /// Ends a game.

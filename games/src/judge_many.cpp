@@ -12,26 +12,12 @@
 namespace carom::games {
 namespace {
 
-/// The call of a player who knows what will fall: the first of the balls that count.
-Call lucky_call(const State& state, const Record& record) {
-    const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
-    if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
-    const std::vector<std::string> callable = legal(state, ids_of(record.tracks)).callable;
-    for (const Event& event : record.events) {
-        if (!falls(event)) continue;
-        const std::string& ball = record.tracks[static_cast<std::size_t>(event.a)].id;
-        if (detail::is_in(ball, callable))
-            return {.ball = ball, .pocket = record.table.pockets[static_cast<std::size_t>(event.b)].id};
-    }
-    return {};
-}
-
 /// Judges a shot into its row of the arrays. @param base the scene with all balls; the shot may lack some of
 /// them
 void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& outcome, const Record& record,
                const JudgedArrays& to) {
     const State before = state_of_turn(game, static_cast<Group>(to.group[row]));
-    const Verdict verdict = judge(before, record, lucky_call(before, record));
+    const Verdict verdict = judge(before, record, detail::lucky_call(before, record));
     const State& next = verdict.next();
     to.foul[row] = verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front());
     // In a game of one player, a turn that passes is over, and nobody makes the other player's choices.
