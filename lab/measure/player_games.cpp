@@ -2,9 +2,12 @@
 //
 //     player_games alone LEVEL [RACKS [GAME]]           from the break until the turn is lost
 //     player_games match LEVEL LEVEL [RACKS [GAME]]     the break alternates
+//     player_games positions LEVEL LEVEL [RACKS [GAME]]  the same; prints the features of every position, and
+//                                                       whether the player to shoot wins, for player_fit.py
 //
 // LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz").
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cstdint>
@@ -13,12 +16,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/draws.h"
 #include "carom/engine/record.h"
 #include "carom/engine/simulate.h"
 #include "carom/games/player.h"
+#include "player/lie.h"
 
 using namespace carom;
 using namespace carom::games;
@@ -28,7 +33,8 @@ namespace {
 constexpr double kR = 0.028575;
 
 struct Count {
-    int racks = 0, breaks = 0, cleared = 0, tried = 0, made = 0, safeties = 0, fouls = 0, decisions = 0, shots = 0;
+    int racks = 0, breaks = 0, cleared = 0, tried = 0, made = 0, safeties = 0, fouls = 0, decisions = 0,
+        shots = 0;
     double foretold = 0.0, seconds = 0.0;
     std::array<int, 2> wins{};
 };
@@ -51,15 +57,17 @@ Skill skill_of(const std::string& text) {
 }
 
 Scene rack(const std::string& game, std::uint64_t seed) {
-    return parse_scene(fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = "
-                                   "\"{}\"\nseed = {}\n{}[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[cue]\n",
-                                   game, seed % 1000000007 + 1, game == "nine_ball" ? "spot_ball = 9\n" : ""),
-                       "rack");
+    return parse_scene(
+        fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = "
+                    "\"{}\"\nseed = {}\n{}[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[cue]\n",
+                    game, seed % 1000000007 + 1, game == "nine_ball" ? "spot_ball = 9\n" : ""),
+        "rack");
 }
 
 /// One rack. @param alone  it ends when the breaker's turn does
-void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint64_t seed, int breaker, bool alone,
-          Count& count) {
+void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint64_t seed, int breaker,
+          bool alone, bool positions, Count& count) {
+    std::vector<std::pair<int, std::string>> told;
     State state = new_game(game == "nine_ball" ? Game::kNineBall : Game::kEightBall, breaker);
     const kernel::Isa isa = kernel::best_isa();
     SplitMix64 random = draws_of(seed, 0, "rack");
@@ -74,6 +82,11 @@ void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint
         const Advice advice = advise(state, scene, skill, isa, options).front();
         count.seconds += cpu() - start;
         ++count.decisions;
+        if (positions && !state.opening) {
+            games::detail::Lie lie = games::detail::lie_of(scene);
+            const auto features = games::detail::Potting(scene, skill.noise.aim_deg / 57.3).features(state, lie);
+            told.emplace_back(state.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
+        }
         if (advice.place) {
             bool there = false;
             for (BallStart& ball : scene.ball) {
@@ -113,11 +126,13 @@ void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint
         if (std::getenv("TELL") != nullptr)
             fmt::print("{} player {} {} v {:.2f} worth {:.2f} makes {:.2f} -> {}{}\n", shot, me,
                        words_of(advice, scene.table), advice.cue.speed, advice.worth, advice.makes.value,
-                       made ? "made" : "missed", verdict.fouls.empty() ? "" : std::string(" foul: ") + name(verdict.fouls[0]));
+                       made ? "made" : "missed",
+                       verdict.fouls.empty() ? "" : std::string(" foul: ") + name(verdict.fouls[0]));
         if (opening && shot == 0) count.breaks += next.turn == breaker && !taken.rerack() && !next.over;
         if (next.over) {
             ++count.racks;
             ++count.wins[static_cast<std::size_t>(next.winner)];
+            for (const auto& [player, text] : told) fmt::print("{} {:d}\n", text, player == next.winner);
             count.cleared += alone && next.winner == breaker;
             return;
         }
@@ -126,14 +141,18 @@ void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint
             return;
         }
         state = next;
-        scene = taken.rerack() ? rack(game, random.next()) : table_after(scene, record, taken);
+        std::optional<Vec2> place;
+        if (state.in_hand != InHand::kNo && !taken.rerack())
+            place = free_place(record, taken, head_spot(scene.table));
+        scene = taken.rerack() ? rack(game, random.next()) : table_after(scene, record, taken, place);
     }
     ++count.racks;  // nobody has won
 }
 
 std::string share(int part, int whole) {
     const Share s = share_of(static_cast<std::size_t>(part), static_cast<std::size_t>(whole > 0 ? whole : 1));
-    return fmt::format("{:.1f} % ({:.0f} to {:.0f}) of {}", 100.0 * s.value, 100.0 * s.low, 100.0 * s.high, whole);
+    return fmt::format("{:.1f} % ({:.0f} to {:.0f}) of {}", 100.0 * s.value, 100.0 * s.low, 100.0 * s.high,
+                       whole);
 }
 
 }  // namespace
@@ -148,7 +167,9 @@ int main(int argc, char** argv) {
     const std::string game = words.size() > levels + 2 ? words[levels + 2] : "eight_ball";
     Count count;
     for (int k = 0; k < racks; ++k)
-        play(skills, game, static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone, count);
+        play(skills, game, static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
+             words[0] == "positions", count);
+    if (words[0] == "positions") return 0;
     fmt::print("{} racks, {} shots; {:.3f} CPU s a decision\n", count.racks, count.shots,
                count.seconds / count.decisions);
     fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));
@@ -158,5 +179,6 @@ int main(int argc, char** argv) {
     if (alone)
         fmt::print("cleared after a good break     {}\n", share(count.cleared, count.breaks));
     else
-        fmt::print("won by the first               {}\n", share(count.wins[0], count.wins[0] + count.wins[1]));
+        fmt::print("won by the first               {}\n",
+                   share(count.wins[0], count.wins[0] + count.wins[1]));
 }

@@ -34,13 +34,12 @@ double error_function(double x) {
     return 1.0 - 1.0 / (eighth * eighth);
 }
 
-/// Weights of the logistic value, guessed once.
-struct Weights {
-    double constant, first, second, third, mean, least, own, other, money, other_mean, last;
-};
-constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 0.25, 0.2, -0.5, 1.5};
-// Both players have the same balls to pot, in order.
-constexpr Weights kNineBall = {-1.6, 3.4, 0.0, 0.0, 1.2, 0.5, -0.25, 0.0, 0.2, 0.0, 1.5};
+/// Weights of Potting::features().
+using Weights = std::array<double, Potting::kFeatures>;
+constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
+constexpr Weights kNineBall = {-0.3, 1.5, 0.0, 0.0, 0.6, 0.2, -0.10, 1.0, 1.0, 0.0, 0.0, 0.0};
+/// [-] Estimate of how often a player gets from one ball to a good place for the next.
+constexpr double kGetsThere = 0.95;
 
 Numbers all_of(const Lie& lie) {
     Numbers all = 0;
@@ -232,47 +231,58 @@ int Potting::surest(const State& state, const Lie& lie) const {
     return best->now > 0.0 ? static_cast<int>(best - chances.begin()) : 0;
 }
 
-double Potting::value(const State& state, const Lie& lie) const {
-    if (lie.balls.empty()) return 0.0;
-    const bool eight = state.game == Game::kEightBall;
-    const Numbers mine = targets(state, lie), all = all_of(lie);
-    const int money = eight ? 8 : 9;
-    const std::array<Chance, kNumbers> chances =
-        this->chances(lie, state.in_hand == InHand::kNo ? mine : Numbers{0});
-    // The balls that a player must pot, the money ball apart.
-    const auto left = [&](int player, Numbers may) {
-        if (!eight) return std::popcount(all) - 1;
-        return state.group[static_cast<std::size_t>(player)] == Group::kOpen
-                   ? 7
-                   : std::popcount(may & ~only(money));
+std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
+    const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
+    const Numbers mine = targets(state, lie), all = all_of(lie), money = only(eight ? 8 : 9);
+    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
+    // What a player must pot before the money ball, and how likely that is from good places.
+    struct Task {
+        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
+    };
+    const auto task_of = [&](int player, Numbers may) {
+        Task task;
+        const Numbers needed = (eight ? may : all) | money;
+        for (int n = 1; n < kNumbers; ++n) {
+            if ((needed & only(n)) == 0) continue;
+            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
+            task.mean += ideal / std::popcount(needed);
+            task.least = std::min(task.least, ideal);
+            task.run *= kGetsThere * ideal;
+        }
+        const bool open = eight && state.group[static_cast<std::size_t>(player)] == Group::kOpen;
+        task.left = open ? 7 : std::popcount(needed) - 1;
+        return task;
     };
     std::array<double, 3> best{};
-    double sum = 0.0, least = 1.0;
-    const Numbers needed = eight ? mine : all;
     for (int n = 1; n < kNumbers; ++n) {
-        const Chance& chance = chances[static_cast<std::size_t>(n)];
-        if ((needed & only(n)) != 0) {
-            sum += chance.ideal;
-            least = std::min(least, chance.ideal);
-        }
         if ((mine & only(n)) == 0) continue;
-        double now = state.in_hand == InHand::kNo ? chance.now : chance.ideal;
+        const Chance& chance = chances[static_cast<std::size_t>(n)];
+        double now = in_hand ? chance.ideal : chance.now;
         for (double& other : best)
             if (now > other) std::swap(now, other);
     }
-    const int own = left(state.turn, mine);
-    const Weights& w = eight ? kEightBall : kNineBall;
-    double x = w.constant + w.first * best[0] + w.second * best[1] + w.third * best[2] +
-               w.mean * sum / std::popcount(needed) + w.least * least + w.own * own +
-               w.money * chances[static_cast<std::size_t>(money)].ideal;
-    if (own == 0) x += w.last * best[0];
-    if (eight) {
-        const Numbers theirs = targets(of_other(state), lie);
-        double other = 0.0;
-        for (int n = 1; n < kNumbers; ++n)
-            if ((theirs & only(n)) != 0) other += chances[static_cast<std::size_t>(n)].ideal;
-        x += w.other * left(1 - state.turn, theirs) + w.other_mean * other / std::popcount(theirs);
-    }
+    const Task own = task_of(state.turn, mine);
+    const Task other = eight ? task_of(1 - state.turn, targets(of_other(state), lie)) : own;
+    return {1.0,
+            best[0],
+            best[1],
+            best[2],
+            own.mean,
+            own.least,
+            own.left,
+            own.left == 0.0 ? best[0] : 0.0,
+            best[0] * own.run,
+            other.left,
+            other.mean,
+            other.run};
+}
+
+double Potting::value(const State& state, const Lie& lie) const {
+    if (lie.balls.empty()) return 0.0;
+    const std::array<double, kFeatures> features = this->features(state, lie);
+    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kNineBall;
+    double x = 0.0;
+    for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));
 }
 

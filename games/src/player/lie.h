@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -57,8 +58,10 @@ class Potting {
     };
     /// By number. @param now  the balls whose Chance::now is wanted
     std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now) const;
-    /// [-] The value of a position to the player whose turn it is: 1 is a game won, 0 one lost. A guess, not
-    /// a calibrated chance.
+    /// What a value is made of, for the player whose turn it is.
+    static constexpr std::size_t kFeatures = 12;
+    std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
+    /// [-] The chance to win for the player whose turn it is: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;
     /// The number of the ball with the surest pot for the player to shoot; 0: there is none.
     int surest(const State& state, const Lie& lie) const;
