@@ -84,22 +84,11 @@ void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint
         ++count.decisions;
         if (positions && !state.opening) {
             games::detail::Lie lie = games::detail::lie_of(scene);
-            const auto features = games::detail::Potting(scene, skill.noise.aim_deg / 57.3).features(state, lie);
+            const auto features =
+                games::detail::Potting(scene, skill.noise.aim_deg / 57.3).features(state, lie);
             told.emplace_back(state.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
         }
-        if (advice.place) {
-            bool there = false;
-            for (BallStart& ball : scene.ball) {
-                if (ball.id != "cue") continue;
-                ball.position.head<2>() = *advice.place;
-                there = true;
-            }
-            if (!there) {
-                BallStart ball;
-                ball.position = {advice.place->x(), advice.place->y(), kR};
-                scene.ball.push_back(ball);
-            }
-        }
+        scene = scene_with(scene, advice);
         scene.cue = with_noise(advice.cue, skill.noise, seed ^ 0x5eed, static_cast<std::uint64_t>(shot));
         validate(scene);
         const Record record = simulate(make_plan(scene, isa));

@@ -58,28 +58,35 @@ void check_balls(const State& state, const Scene& scene) {
     }
 }
 
+/// Puts the cue ball of the scene's cue there.
+Scene placed(Scene scene, const Vec2& place) {
+    if (index_of(scene.ball, scene.cue->ball) < 0) {
+        BallStart ball;
+        ball.id = scene.cue->ball;
+        scene.ball.insert(scene.ball.begin(), ball);
+    }
+    BallStart& ball = scene.ball[static_cast<std::size_t>(index_of(scene.ball, scene.cue->ball))];
+    ball.position = {place.x(), place.y(), scene.size_of(ball).R};
+    return scene;
+}
+
 /// The scene with a cue, and a cue ball: one in hand lies on a free place.
 Scene completed(const State& state, Scene scene) {
-    const std::string id = cue_ball(state);
     Cue cue = scene.cue.value_or(Cue{});
-    cue.ball = id;
+    cue.ball = cue_ball(state);
     scene.cue = cue;
-    if (index_of(scene.ball, id) >= 0) return scene;
+    if (index_of(scene.ball, cue.ball) >= 0) return scene;
     if (state.in_hand == InHand::kNo)
         throw std::invalid_argument("there is no cue ball, and it is not in hand");
-    const double R = scene.balls.R;
+    const double R = scene.balls.R, beside = R + kSpotGap;
     std::vector<Lying> others;
     for (const BallStart& ball : scene.ball)
         others.push_back({planar(ball.position), scene.size_of(ball).R, kSpotGap});
     // Behind the head string, so that it may lie there in any game.
-    const Vec2 from(scene.table.corner.x() + R + kSpotGap, scene.table.corner.y() + 0.2 * scene.table.length);
-    const auto place = nearest_free(from, {1.0, 0.0}, scene.table.width - 2.0 * (R + kSpotGap), R, others);
+    const Vec2 from = scene.table.corner + Vec2(beside, 0.2 * scene.table.length);
+    const auto place = nearest_free(from, {1.0, 0.0}, scene.table.width - 2.0 * beside, R, others);
     if (!place) throw std::invalid_argument("there is no room for the cue ball");
-    BallStart ball;
-    ball.id = id;
-    ball.position = {place->x(), place->y(), R};
-    scene.ball.insert(scene.ball.begin(), ball);
-    return scene;
+    return placed(std::move(scene), *place);
 }
 
 Candidate break_of(const State& state, const Scene& scene) {
@@ -194,6 +201,12 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     for (const Candidate* candidate : chosen)
         advice.push_back(advice_of(*candidate, scene, in_hand || state.opening));
     return advice;
+}
+
+Scene scene_with(const Scene& scene, const Advice& advice) {
+    Scene shot = scene;
+    shot.cue = advice.cue;
+    return advice.place ? placed(std::move(shot), *advice.place) : shot;
 }
 
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill) {

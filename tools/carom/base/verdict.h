@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/games/player.h"
 #include "carom/games/rules.h"
 
 namespace carom::tools {
@@ -17,6 +18,9 @@ std::string next_text(const games::State& state);
 
 /// The verdict as `carom judge --json` prints it.
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
+
+/// The advice as `carom advise --json` prints it.
+nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const Table& table);
 
 /// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
 /// side.

@@ -77,6 +77,9 @@ struct AdviceOptions {
 std::vector<Advice> advise(const State& state, const Scene& scene, const Skill& skill, kernel::Isa isa,
                            const AdviceOptions& options = {});
 
+/// The scene of an advised shot: with its cue, and the cue ball where it is placed.
+Scene scene_with(const Scene& scene, const Advice& advice);
+
 /// The index of the option that is best for the player who may choose. @param record of the judged shot
 /// @throws std::invalid_argument for a game without a player
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill);
