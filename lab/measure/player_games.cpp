@@ -13,17 +13,14 @@
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "base/draws.h"
-#include "carom/engine/record.h"
-#include "carom/engine/simulate.h"
+#include "carom/engine/math.h"
 #include "carom/games/player.h"
 #include "player/lie.h"
+#include "support/player_racks.h"
 
 using namespace carom;
 using namespace carom::games;
@@ -56,86 +53,53 @@ Skill skill_of(const std::string& text) {
     return skill;
 }
 
-Scene rack(const std::string& game, std::uint64_t seed) {
-    return parse_scene(
-        fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = "
-                    "\"{}\"\nseed = {}\n{}[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[cue]\n",
-                    game, seed % 1000000007 + 1, game == "nine_ball" ? "spot_ball = 9\n" : ""),
-        "rack");
-}
-
 /// One rack. @param alone  it ends when the breaker's turn does
-void play(const std::array<Skill, 2>& skills, const std::string& game, std::uint64_t seed, int breaker,
-          bool alone, bool positions, Count& count) {
+void play(const std::array<Skill, 2>& skills, Game game, std::uint64_t seed, int breaker, bool alone,
+          bool positions, Count& count) {
     std::vector<std::pair<int, std::string>> told;
-    State state = new_game(game == "nine_ball" ? Game::kNineBall : Game::kEightBall, breaker);
-    const kernel::Isa isa = kernel::best_isa();
-    SplitMix64 random = draws_of(seed, 0, "rack");
-    Scene scene = rack(game, random.next());
-    for (int shot = 0; shot < 300; ++shot) {
-        const Skill& skill = skills[static_cast<std::size_t>(state.turn)];
-        AdviceOptions options;
-        options.seed = seed * 1000 + static_cast<std::uint64_t>(shot);
-        options.best = 1;
-        options.fresh = state.opening ? 1 : 0;
-        const double start = cpu();
-        const Advice advice = advise(state, scene, skill, isa, options).front();
-        count.seconds += cpu() - start;
-        ++count.decisions;
-        if (positions && !state.opening) {
-            games::detail::Lie lie = games::detail::lie_of(scene);
-            const auto features =
-                games::detail::Potting(scene, skill.noise.aim_deg / 57.3).features(state, lie);
-            told.emplace_back(state.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
+    bool first = true;
+    const auto timed = [&](const Skill& skill) -> test::Adviser {
+        return [&, ask = test::adviser(skill)](const State& state, const Scene& scene, std::uint64_t number) {
+            const double start = cpu();
+            const Advice advice = ask(state, scene, number);
+            count.seconds += cpu() - start;
+            ++count.decisions;
+            return advice;
+        };
+    };
+    const auto each = [&](const test::RackShot& shot) {
+        const State& before = shot.before;
+        const bool opening = before.opening, made = shot.made();
+        if (positions && !opening) {
+            const Skill& skill = skills[static_cast<std::size_t>(before.turn)];
+            const auto features = games::detail::Potting(shot.table, skill.noise.aim_deg / kDegrees)
+                                      .features(before, games::detail::lie_of(shot.table));
+            told.emplace_back(before.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
         }
-        scene = scene_with(scene, advice);
-        scene.cue = with_noise(advice.cue, skill.noise, seed ^ 0x5eed, static_cast<std::uint64_t>(shot));
-        validate(scene);
-        const Record record = simulate(make_plan(scene, isa));
-        const Verdict verdict = judge(state, record, advice.call);
-        ++count.shots;
-        const int me = state.turn;
-        const bool opening = state.opening;
-        std::size_t option = 0;
-        if (verdict.options.size() > 1)
-            option = choose(verdict, record, skills[static_cast<std::size_t>(verdict.chooser)]);
-        const Option& taken = verdict.options[option];
-        const State& next = taken.state;
-        const bool made = next.over ? next.winner == me : next.turn == me && verdict.fouls.empty();
-        if (!opening) {
-            if (advice.ball.empty()) {
-                ++count.safeties;
-            } else {
-                ++count.tried;
-                count.made += made;
-                count.foretold += advice.makes.value;
-            }
-            count.fouls += !verdict.fouls.empty();
+        if (!opening && shot.advice.ball.empty()) ++count.safeties;
+        if (!opening && !shot.advice.ball.empty()) {
+            ++count.tried;
+            count.made += made;
+            count.foretold += shot.advice.makes.value;
         }
+        if (!opening) count.fouls += !shot.verdict.fouls.empty();
         if (std::getenv("TELL") != nullptr)
-            fmt::print("{} player {} {} v {:.2f} worth {:.2f} makes {:.2f} -> {}{}\n", shot, me,
-                       words_of(advice, scene.table), advice.cue.speed, advice.worth, advice.makes.value,
-                       made ? "made" : "missed",
-                       verdict.fouls.empty() ? "" : std::string(" foul: ") + name(verdict.fouls[0]));
-        if (opening && shot == 0) count.breaks += next.turn == breaker && !taken.rerack() && !next.over;
-        if (next.over) {
-            ++count.racks;
-            ++count.wins[static_cast<std::size_t>(next.winner)];
-            for (const auto& [player, text] : told) fmt::print("{} {:d}\n", text, player == next.winner);
-            count.cleared += alone && next.winner == breaker;
-            return;
-        }
-        if (alone && (next.turn != breaker || taken.rerack())) {
-            ++count.racks;
-            return;
-        }
-        state = next;
-        std::optional<Vec2> place;
-        if (state.in_hand != InHand::kNo && !taken.rerack())
-            place = free_place(record, taken, head_spot(scene.table));
-        scene = taken.rerack() ? rack(game, random.next()) : table_after(scene, record, taken, place);
-    }
-    ++count.racks;  // nobody has won
+            fmt::print(
+                "player {}: {}, foretold {:.2f}, worth {:.2f}: {}{}\n", before.turn + 1,
+                words_of(shot.advice, shot.table.table), shot.advice.makes.value, shot.advice.worth,
+                made ? "made" : "missed",
+                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0]));
+        if (first) count.breaks += made && !shot.taken.state.over;
+        first = false;
+        return !alone || made;
+    };
+    const int winner =
+        test::play_rack(game, skills, {timed(skills[0]), timed(skills[1])}, seed, breaker, each);
+    ++count.racks;
+    if (winner < 0) return;
+    ++count.wins[static_cast<std::size_t>(winner)];
+    count.cleared += winner == breaker;
+    for (const auto& [player, text] : told) fmt::print("{} {:d}\n", text, player == winner);
 }
 
 std::string share(int part, int whole) {
@@ -153,13 +117,14 @@ int main(int argc, char** argv) {
     const std::size_t levels = alone ? 1 : 2;
     const std::array<Skill, 2> skills = {skill_of(words[1]), skill_of(words[levels])};
     const int racks = words.size() > levels + 1 ? std::stoi(words[levels + 1]) : 20;
-    const std::string game = words.size() > levels + 2 ? words[levels + 2] : "eight_ball";
+    const bool nine = words.size() > levels + 2 && words[levels + 2] == "nine_ball";
+    const Game game = nine ? Game::kNineBall : Game::kEightBall;
     Count count;
     for (int k = 0; k < racks; ++k)
         play(skills, game, static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
              words[0] == "positions", count);
     if (words[0] == "positions") return 0;
-    fmt::print("{} racks, {} shots; {:.3f} CPU s a decision\n", count.racks, count.shots,
+    fmt::print("{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
                count.seconds / count.decisions);
     fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));
     fmt::print("pots made                      {}; foretold {:.1f} %\n", share(count.made, count.tried),
