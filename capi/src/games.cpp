@@ -20,7 +20,7 @@ namespace {
 
 namespace games = carom::games;
 
-static_assert(CAROM_SUM_TO_THREE == static_cast<int>(games::Game::kSumToThree));
+static_assert(CAROM_FOUR_BALL == static_cast<int>(games::Game::kFourBall));
 static_assert(CAROM_IN_THE_D == static_cast<int>(games::InHand::kD));
 
 /// A value of an enumeration. @throws BadArgument
@@ -33,9 +33,13 @@ E value_of(const char* what, int32_t value) {
     return static_cast<E>(value);
 }
 
+// The options of the rules are above the game, because the size of the struct is promised.
+constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1;
+
 games::State state_of(const carom_game_state& s) {
     games::State state;
-    state.game = value_of<games::Game>("game", s.game);
+    state.game = value_of<games::Game>("game", s.game & kGameMask);
+    state.rules = static_cast<std::uint32_t>(s.game) >> kGameBits;
     state.turn = s.turn;
     state.opening = s.opening != 0;
     state.in_hand = value_of<games::InHand>("in_hand", s.in_hand);
@@ -53,7 +57,7 @@ games::State state_of(const carom_game_state& s) {
 
 carom_game_state state_of(const games::State& s) {
     carom_game_state state{};
-    state.game = static_cast<int32_t>(s.game);
+    state.game = static_cast<int32_t>(static_cast<std::uint32_t>(s.game) | s.rules << kGameBits);
     state.turn = s.turn;
     state.opening = s.opening ? 1 : 0;
     state.in_hand = static_cast<int32_t>(s.in_hand);
@@ -93,6 +97,18 @@ carom_status carom_game_new(carom_game game, int first, int target, carom_game_s
         need({state});
         const auto of = value_of<games::Game>("game", static_cast<int32_t>(game));
         *state = asked([&] { return state_of(games::new_game(of, first, target)); });
+    });
+}
+
+carom_status carom_game_rule(carom_game_state* state, const char* option) {
+    return guarded([&] {
+        need({state, option});
+        games::State with = state_of(*state);
+        asked([&] {
+            games::set_rule(with, option);
+            return true;
+        });
+        *state = state_of(with);
     });
 }
 

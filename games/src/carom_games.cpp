@@ -1,50 +1,79 @@
-// Three-cushion by the Union Mondiale de Billard, and sum to three.
+// Carom games: three-cushion, one-cushion and straight rail by the Union Mondiale de Billard, four-ball as in
+// Korea; and sum to three.
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "carom/engine/tolerances.h"
 #include "facts.h"
 
 namespace carom::games::detail {
 namespace {
 
-constexpr int kCushions = 3;
 const std::string kRed = "red";
 
-/// Where a ball of three-cushion is respotted for the next player: the red on the foot spot, the cue ball on
-/// the head spot, the other one in the centre.
-Vec2 own_spot(const Table& table, const std::string& ball, int shooter) {
-    if (ball == kRed) return foot_spot(table);
-    return ball == own_ball(shooter) ? head_spot(table) : center_spot(table);
+/// A carom game: the cue ball has to meet two balls, and cushions before the second one.
+struct CaromGame {
+    Game game;
+    int cushions;
+    bool all_back;  ///< whether all balls are spotted if one must be
+};
+constexpr CaromGame kCaromGames[] = {{Game::kThreeCushion, 3, false},
+                                     {Game::kStraightRail, 0, true},
+                                     {Game::kOneCushion, 1, true},
+                                     {Game::kFourBall, 0, false}};
+
+const CaromGame& carom_game(Game game) {
+    return *std::find_if(std::begin(kCaromGames), std::end(kCaromGames),
+                         [game](const CaromGame& row) { return row.game == game; });
 }
 
-/// A ball whose spot is taken goes to the spot of the ball in the way.
+bool is_red(std::string_view ball) {
+    return ball.starts_with(kRed);
+}
+
+/// Where a ball is respotted for the next player. Three-cushion: the red on the foot spot, the cue ball on
+/// the head spot, the other one in the centre. Straight rail and one-cushion: as at the start, and as
+/// four-ball.
+Vec2 own_spot(const Table& table, Game game, const std::string& ball, int shooter) {
+    const bool own = ball == own_ball(shooter);
+    if (ball == "red1") return head_spot(table);
+    if (is_red(ball)) return foot_spot(table);
+    if (game == Game::kThreeCushion) return own ? head_spot(table) : center_spot(table);
+    if (own) return opening_spot(table);
+    return game == Game::kFourBall ? center_spot(table) : head_spot(table);
+}
+
+/// A ball whose spot is taken goes to the spot of the ball in the way, or else as near to its own as it can.
 std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& balls, int shooter) {
-    if (balls.empty()) return {};
     std::vector<Respot> respots;
-    const auto lies = [&](const std::string& other) {
-        for (const Respot& done : respots)
-            if (done.ball == other) return done.place;
-        return facts.rest(other);
-    };
-    std::vector<std::string> on_table;
-    for (const std::string& ball : facts.ids())
-        if (!is_in(ball, balls)) on_table.push_back(ball);
+    const Table& table = facts.record.table;
+    const Game game = facts.state.game;
+    std::vector<std::string> ids;
+    std::vector<Lying> lying;
+    for (const std::string& ball : facts.ids()) {
+        if (is_in(ball, balls)) continue;
+        ids.push_back(ball);
+        lying.push_back({facts.rest(ball), facts.radius(ball), 0.0});
+    }
     for (const std::string& ball : balls) {
         const double R = facts.radius(ball);
-        Vec2 place = own_spot(facts.record.table, ball, shooter);
+        Vec2 place = own_spot(table, game, ball, shooter);
         for (int tries = 0; tries < 3; ++tries) {
-            const auto masked = std::find_if(on_table.begin(), on_table.end(), [&](const std::string& other) {
-                const Lying there = {lies(other), facts.radius(other), 0.0};
+            const auto masked = std::find_if(lying.begin(), lying.end(), [&](const Lying& there) {
                 return !is_free(place, R, std::span(&there, 1));
             });
-            if (masked == on_table.end()) break;
-            place = own_spot(facts.record.table, *masked, shooter);
+            if (masked == lying.end()) break;
+            place = own_spot(table, game, ids[static_cast<std::size_t>(masked - lying.begin())], shooter);
         }
+        if (!is_free(place, R, lying)) place = spot_on_long_string(table, place, R, lying);
         respots.push_back({ball, place});
-        on_table.push_back(ball);
+        ids.push_back(ball);
+        lying.push_back({place, R, 0.0});
     }
     return respots;
 }
@@ -57,17 +86,23 @@ std::vector<std::string> touching(const Facts& facts, int shooter) {
     return list;
 }
 
-/// Whether the cue ball hit both others, the second one after three cushions.
-bool made_three_cushions(const Facts& facts) {
+/// Whether the other player's ball counts as a red.
+bool opponents_counts(const State& state) {
+    return state.game != Game::kFourBall || rule(state, "opponents_ball") == "counts";
+}
+
+/// Whether the cue ball met two balls that count, the second one after the game's cushions.
+bool made_carom(const Facts& facts) {
     int cushions = 0;
     std::vector<int> met;
     for (const Touch& touch : facts.shot.touches) {
         if (touch.ball != facts.shot.struck) continue;
         if (touch.cushion()) {
             cushions += touch.driven ? 1 : 0;
-        } else if (std::find(met.begin(), met.end(), touch.other) == met.end()) {
+        } else if ((is_red(facts.id(touch.other)) || opponents_counts(facts.state)) &&
+                   std::find(met.begin(), met.end(), touch.other) == met.end()) {
             met.push_back(touch.other);
-            if (met.size() == 2) return cushions >= kCushions;
+            if (met.size() == 2) return cushions >= carom_game(facts.state.game).cushions;
         }
     }
     return false;
@@ -78,40 +113,59 @@ State after(const State& before, bool point) {
     State next = before;
     next.opening = false;
     next.in_hand = InHand::kNo;
-    if (!point) return other_players(next, InHand::kNo);
-    int& points = next.points[static_cast<std::size_t>(before.turn)];
-    ++points;
-    return before.target > 0 && points >= before.target ? won_by(next, before.turn) : next;
+    return point ? scored(next, before.turn, 1) : other_players(next, InHand::kNo);
 }
 
-}  // namespace
-
-Legal legal_three_cushion(const State& state, const std::vector<std::string>& balls) {
-    Legal legal;
-    legal.cue_balls = {own_ball(state.turn)};
-    for (const std::string& ball : balls)
-        if (ball != legal.cue_balls[0] && (!state.opening || ball == kRed)) legal.first.push_back(ball);
-    return legal;
-}
-
-Verdict judge_three_cushion(const Facts& facts) {
+std::vector<Foul> carom_fouls(const Facts& facts) {
     const State& state = facts.state;
     std::vector<Foul> fouls;
     if (!facts.struck(own_ball(state.turn))) fouls.push_back(Foul::kWrongCueBall);
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
-    const bool first_is_red = facts.first_is_one_of({kRed});
-    if (state.opening && !facts.shot.first_hits.empty() && !first_is_red)
-        fouls.push_back(Foul::kOpeningNotRed);
-    const bool point = fouls.empty() && made_three_cushions(facts);
-    const State next = after(state, point);
+    const bool hits = !facts.shot.first_hits.empty();
+    const bool first_is_red = std::any_of(facts.shot.first_hits.begin(), facts.shot.first_hits.end(),
+                                          [&](int ball) { return is_red(facts.id(ball)); });
+    if (state.opening && hits && !first_is_red) fouls.push_back(Foul::kOpeningNotRed);
+    if (state.game != Game::kFourBall) return fouls;
+    if (!hits) fouls.push_back(Foul::kNoBallHit);
+    const bool opponents =
+        std::any_of(facts.shot.touches.begin(), facts.shot.touches.end(), [&](const Touch& touch) {
+            return touch.ball == facts.shot.struck && !touch.cushion() && !is_red(facts.id(touch.other));
+        });
+    if (opponents && !opponents_counts(state)) fouls.push_back(Foul::kOpponentsBall);
+    return fouls;
+}
+
+}  // namespace
+
+Legal legal_carom(const State& state, const std::vector<std::string>& balls) {
+    Legal legal;
+    legal.cue_balls = {own_ball(state.turn)};
+    for (const std::string& ball : balls)
+        if (ball != legal.cue_balls[0] && (is_red(ball) || (!state.opening && opponents_counts(state))))
+            legal.first.push_back(ball);
+    return legal;
+}
+
+Verdict judge_carom(const Facts& facts) {
+    const State& state = facts.state;
+    std::vector<Foul> fouls = carom_fouls(facts);
+    const bool point = fouls.empty() && made_carom(facts);
+    const bool loses = !fouls.empty() && state.game == Game::kFourBall;
+    State next = after(state, point);
+    if (loses) --next.points[static_cast<std::size_t>(state.turn)];
+    const auto back = [&](std::vector<std::string> balls) {
+        if (!balls.empty() && carom_game(state.game).all_back) balls = facts.ids();
+        return spotted(facts, balls, next.turn);
+    };
     std::vector<std::string> off;
     for (const int ball : facts.shot.out) off.push_back(facts.id(ball));
-    Verdict verdict = one_way(std::move(fouls), {Decision::kPlayOn, next, spotted(facts, off, next.turn)});
-    verdict.points = point ? 1 : 0;
-    const std::vector<std::string> against =
-        off.empty() && !next.over ? touching(facts, next.turn) : std::vector<std::string>();
+    Verdict verdict = one_way(std::move(fouls), {Decision::kPlayOn, next, back(off)});
+    verdict.points = point ? 1 : loses ? -1 : 0;
+    const std::vector<std::string> against = off.empty() && !next.over && state.game != Game::kFourBall
+                                                 ? touching(facts, next.turn)
+                                                 : std::vector<std::string>();
     if (!against.empty()) {
-        verdict.options.push_back({Decision::kSpotTouching, next, spotted(facts, against, next.turn)});
+        verdict.options.push_back({Decision::kSpotTouching, next, back(against)});
         verdict.chooser = next.turn;
     }
     return verdict;
@@ -126,11 +180,12 @@ Legal legal_sum_to_three(const State&, const std::vector<std::string>& balls) {
 }
 
 Verdict judge_sum_to_three(const Facts& facts) {
+    constexpr int kSum = 3;
     const auto cushions = std::count_if(facts.shot.touches.begin(), facts.shot.touches.end(),
                                         [](const Touch& touch) { return touch.cushion(); });
     std::vector<Foul> fouls;
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
-    const bool point = fouls.empty() && !facts.shot.first_hits.empty() && cushions == kCushions;
+    const bool point = fouls.empty() && !facts.shot.first_hits.empty() && cushions == kSum;
     // The game has no rule for lost balls: the cue ball returns behind the head spot, the other one behind
     // the foot spot.
     Option next = {Decision::kPlayOn, after(facts.state, point), {}};

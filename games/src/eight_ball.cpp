@@ -30,27 +30,32 @@ std::vector<std::string> targets(const State& state, const std::vector<std::stri
     return list;
 }
 
-Respot eight_on_its_spot(const Facts& facts) {
-    const double R = facts.radius(kEight);
-    return {kEight, spot_on_long_string(facts.record.table, foot_spot(facts.record.table), R,
-                                        facts.lying(kSpotGap, 0.0))};
+std::vector<Respot> eight_on_its_spot(const Facts& facts) {
+    return on_foot_spot(facts, {kEight});
 }
 
 Option rerack(const State& state, Decision decision, int breaker) {
-    return {decision, new_game(state.game, breaker, state.target), {}};
+    return {decision, broken_by(state, breaker), {}};
 }
 
-/// 3.3 (e) and (f): the eight is respotted, or the player who chooses breaks again.
+/// 3.3 (e) and (f): the eight is respotted, or the player who chooses breaks again. By option, one of them,
+/// or it decides the game.
 void eight_on_the_break(const Facts& facts, const State& next, Verdict& verdict) {
-    verdict.chooser = next.turn;
-    verdict.options = {{Decision::kSpotEight, next, {eight_on_its_spot(facts)}},
-                       rerack(facts.state, Decision::kRerack, next.turn)};
+    const std::string_view option = rule(facts.state, "eight_on_break");
+    if (option == "wins")
+        verdict.options = {{Decision::kPlayOn, won_by(next, next.turn), {}}};
+    else if (option == "rerack")
+        verdict.options = {rerack(facts.state, Decision::kRerack, next.turn)};
+    else
+        verdict.options = {{Decision::kSpotEight, next, eight_on_its_spot(facts)},
+                           rerack(facts.state, Decision::kRerack, next.turn)};
+    verdict.chooser = verdict.options.size() > 1 ? next.turn : -1;
 }
 
 /// 3.3 (d), (g) and (h): the other player's options after an illegal or foul break.
 void bad_break(const Facts& facts, State next, bool illegal, Verdict& verdict) {
     std::vector<Respot> respots;
-    if (facts.left(kEight)) respots = {eight_on_its_spot(facts)};
+    if (facts.left(kEight)) respots = eight_on_its_spot(facts);
     verdict.chooser = next.turn;
     next.in_hand = InHand::kNo;
     if (!facts.shot.gone(facts.shot.struck)) verdict.options.push_back({Decision::kPlayOn, next, respots});
@@ -63,10 +68,16 @@ void bad_break(const Facts& facts, State next, bool illegal, Verdict& verdict) {
     if (verdict.options.size() == 1) verdict.chooser = -1;
 }
 
+void add_fouls(const Facts& facts, const std::vector<std::string>& first, bool need_cushion,
+               std::vector<Foul>& fouls) {
+    facts.add_pool_fouls(fouls, first, need_cushion);
+    if (rule(facts.state, "jump") == "foul" && facts.jumps()) fouls.push_back(Foul::kJumpShot);
+}
+
 Verdict judge_break(const Facts& facts) {
     Verdict verdict;
     // 3.3 (b): any ball may be hit first.
-    facts.add_pool_fouls(verdict.fouls, facts.ids(), true);
+    add_fouls(facts, facts.ids(), true, verdict.fouls);
     const bool illegal = !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak;
     State next = facts.state;
     next.opening = false;
@@ -93,8 +104,19 @@ bool wins(const Facts& facts, const std::vector<Foul>& fouls, const std::vector<
     const bool behind_the_group =
         facts.state.group[static_cast<std::size_t>(facts.state.turn)] != Group::kOpen &&
         is_in(kEight, targets);
-    return fouls.empty() && behind_the_group && !facts.call.safety && facts.call.ball == kEight &&
-           facts.fell_as_called();
+    const bool as_called = facts.call.ball == kEight && facts.fell_as_called();
+    return fouls.empty() && behind_the_group && !facts.call.safety && facts.fell(kEight) &&
+           (as_called || rule(facts.state, "call") == "none");
+}
+
+/// The ball that lets the player continue, or "": the called one, or the first one of the player's own.
+std::string made(const Facts& facts, const std::vector<std::string>& own) {
+    if (facts.call.safety) return "";
+    if (rule(facts.state, "call") == "all")
+        return is_in(facts.call.ball, own) && facts.fell_as_called() ? facts.call.ball : "";
+    for (const Shot::Fallen& fallen : facts.shot.pocketed)
+        if (is_in(facts.id(fallen.ball), own)) return facts.id(fallen.ball);
+    return "";
 }
 
 }  // namespace
@@ -107,7 +129,9 @@ Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls
             if (number_of(ball) > 0) legal.first.push_back(ball);
         return legal;
     }
-    legal.first = legal.callable = targets(state, balls);
+    legal.first = targets(state, balls);
+    const std::string_view call = rule(state, "call");
+    if (call == "all" || (call == "eight" && is_in(kEight, legal.first))) legal.callable = legal.first;
     return legal;
 }
 
@@ -116,21 +140,22 @@ Verdict judge_eight_ball(const Facts& facts) {
     const State& state = facts.state;
     const std::vector<std::string> own = targets(state, facts.ids());
     std::vector<Foul> fouls;
-    facts.add_pool_fouls(fouls, own, !facts.any_object_fell());
+    add_fouls(facts, own, !facts.any_object_fell(), fouls);
     State next = state;
     next.in_hand = InHand::kNo;
     if (facts.gone(kEight)) {
         const int winner = wins(facts, fouls, own) ? state.turn : 1 - state.turn;
         return one_way(std::move(fouls), {Decision::kPlayOn, won_by(next, winner), {}});
     }
+    const InHand where = rule(state, "in_hand") == "anywhere" ? InHand::kAnywhere : InHand::kHeadString;
     if (!fouls.empty())
-        return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, InHand::kAnywhere), {}});
-    const bool made = !facts.call.safety && is_in(facts.call.ball, own) && facts.fell_as_called();
-    if (!made) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
-    // 3.4: the first called ball that falls decides the groups.
+        return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, where), {}});
+    const std::string ball = made(facts, own);
+    if (ball.empty()) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
+    // 3.4: the first ball that counts decides the groups.
     const auto me = static_cast<std::size_t>(state.turn);
     if (state.group[me] == Group::kOpen) {
-        next.group[me] = group_of(facts.call.ball);
+        next.group[me] = group_of(ball);
         next.group[1 - me] = next.group[me] == Group::kSolids ? Group::kStripes : Group::kSolids;
     }
     Verdict verdict = one_way({}, {Decision::kPlayOn, next, {}});

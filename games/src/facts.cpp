@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "carom/engine/tolerances.h"
 
@@ -22,19 +27,6 @@ int number_of(std::string_view ball) {
     return error == std::errc() && stop == end && number > 0 ? number : 0;
 }
 
-Call lucky_call(const State& state, const Record& record) {
-    const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
-    if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
-    const std::vector<std::string> callable = legal(state, ids_of(record.tracks)).callable;
-    for (const Event& event : record.events) {
-        if (!falls(event)) continue;
-        const std::string& ball = record.tracks[static_cast<std::size_t>(event.a)].id;
-        if (is_in(ball, callable))
-            return {.ball = ball, .pocket = record.table.pockets[static_cast<std::size_t>(event.b)].id};
-    }
-    return {};
-}
-
 State other_players(const State& state, InHand in_hand) {
     State next = state;
     next.turn = 1 - state.turn;
@@ -47,6 +39,31 @@ State won_by(State state, int winner) {
     state.winner = winner;
     state.in_hand = InHand::kNo;
     return state;
+}
+
+State scored(State state, int player, int points) {
+    int& sum = state.points[static_cast<std::size_t>(player)];
+    sum += points;
+    return state.target > 0 && sum >= state.target ? won_by(state, player) : state;
+}
+
+State broken_by(const State& state, int breaker) {
+    State next = new_game(state.game, breaker, state.target);
+    next.rules = state.rules;
+    next.points = state.points;
+    return next;
+}
+
+std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::string>& balls) {
+    std::vector<Respot> respots;
+    std::vector<Lying> others = facts.lying(kSpotGap, 0.0, balls);
+    for (const std::string& ball : balls) {
+        const double R = facts.radius(ball);
+        const Table& table = facts.record.table;
+        respots.push_back({ball, spot_on_long_string(table, foot_spot(table), R, others)});
+        others.push_back({respots.back().place, R, 0.0});
+    }
+    return respots;
 }
 
 Verdict one_way(std::vector<Foul> fouls, const Option& option) {
@@ -69,9 +86,12 @@ bool Facts::left(std::string_view ball) const {
     return index >= 0 && shot.left(index);
 }
 
+int Facts::objects_fallen() const {
+    return static_cast<int>(shot.pocketed.size()) - (shot.fell(shot.struck) ? 1 : 0);
+}
+
 bool Facts::any_object_fell() const {
-    return std::any_of(shot.pocketed.begin(), shot.pocketed.end(),
-                       [this](const Shot::Fallen& f) { return f.ball != shot.struck; });
+    return objects_fallen() > 0;
 }
 
 int Facts::objects_off() const {

@@ -1,6 +1,7 @@
 // What the rules of all games share.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,10 @@ class Facts {
     Shot shot;
 
     const std::string& id(int ball) const { return record.tracks[static_cast<std::size_t>(ball)].id; }
-    double radius(std::string_view ball) const { return record.size(index_of(record, ball)).R; }
+    double radius(std::string_view ball) const {
+        const int index = index_of(record, ball);
+        return index < 0 ? record.balls.R : record.size(index).R;
+    }
     /// Where a ball rests.
     Vec2 rest(int ball) const { return planar(record.state_at(ball, record.duration).position); }
     Vec2 rest(std::string_view ball) const { return rest(index_of(record, ball)); }
@@ -30,6 +34,7 @@ class Facts {
     bool gone(std::string_view ball) const { return fell(ball) || left(ball); }
     bool any_object_fell() const;  ///< any ball except the struck one
     int objects_off() const;       ///< balls that left the table, except the struck one
+    int objects_fallen() const;    ///< balls that fell, except the struck one
     int objects_driven() const;    ///< balls driven to a cushion, except the struck one
     /// Whether the call names this ball and the pocket that holds it.
     bool fell_as_called() const;
@@ -52,8 +57,7 @@ class Facts {
     /// ball off the table, placement.
     void add_pool_fouls(std::vector<Foul>& fouls, const std::vector<std::string>& first,
                         bool need_cushion) const;
-
-  private:
+    /// Adds the fouls of a cue ball in hand: placed outside, a ball behind the head string first.
     void add_placement_fouls(std::vector<Foul>& fouls) const;
 };
 
@@ -64,29 +68,74 @@ int number_of(std::string_view ball);
 /// [-] Object balls that a break must drive to a cushion if nothing falls (WPA 2.3, 3.3).
 inline constexpr int kDrivenOnBreak = 4;
 
-/// A player's cue ball in three-cushion: player 0 has the white one.
+/// A player's cue ball in carom games: player 0 has the white one.
 inline const char* own_ball(int player) {
     return player == 0 ? "white" : "yellow";
 }
 
-/// The call of a player who knows what will fall: the first of the balls that count. Empty if none falls.
-Call lucky_call(const State& state, const Record& record);
+/// The chosen value of an option that the state's game has.
+std::string_view rule(const State& state, std::string_view key);
+/// Whether the options are those of the state's game.
+bool has_its_rules(const State& state);
 
 /// The state for the other player's turn, with the cue ball in hand as given.
 State other_players(const State& state, InHand in_hand);
 /// Ends a game.
 State won_by(State state, int winner);
+/// Gives points to a player, and ends the game at its target.
+State scored(State state, int player, int points);
+/// The state of a new break in the same game, by its rules.
+State broken_by(const State& state, int breaker);
 /// The verdict with a single option.
 Verdict one_way(std::vector<Foul> fouls, const Option& option);
+/// These balls, each spotted on the long string from the foot spot (WPA 1.4).
+std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::string>& balls);
+
+// Rotation games: nine-ball, ten-ball.
+/// The ball with the lowest number; none on an empty table.
+std::vector<std::string> lowest(const std::vector<std::string>& balls);
+/// The state after a shot that is no foul and passes no turn.
+State after_break(const State& state);
+/// The last ball, spotted if it is gone.
+std::vector<Respot> last_ball_back(const Facts& facts, const std::string& last);
+/// A foul: the cue ball is in hand, and the third in a row loses (WPA 6.14).
+Verdict rotation_foul(const Facts& facts, std::vector<Foul> fouls, State next, const std::string& last);
+/// The fouls of a shot that is not a push out, and of a break.
+std::vector<Foul> rotation_fouls(const Facts& facts, bool push);
+/// The other player's choice after a push out (WPA 2.4, 9.4), or after a ball that does not count (9.7).
+Verdict shoot_or_pass_back(const State& next, const std::vector<Respot>& respots);
+
+/// What a game is: a row of a table in the order of Game.
+struct GameRules {
+    enum class Book : std::uint8_t { kPool, kCarom, kSnooker, kPyramid, kFourBall };
+    enum class Struck : std::uint8_t { kCueBall, kOwn, kAny };
+    const char* book_name;
+    Legal (*legal)(const State& state, const std::vector<std::string>& balls);
+    Verdict (*judge)(const Facts& facts);
+    InHand start;                         ///< where the cue ball starts
+    std::vector<std::string_view> balls;  ///< that the game needs
+    Book book = Book::kPool;              ///< whose rules its fouls break
+    Struck struck = Struck::kCueBall;
+    int target = 0;               ///< points that win, if none are given
+    bool below_zero = false;      ///< whether points may be
+    const char* break_rule = "";  ///< the rule of Foul::kFewCushionsOnBreak
+};
+const GameRules& rules_of(Game game);
 
 Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls);
 Legal legal_nine_ball(const State& state, const std::vector<std::string>& balls);
-Legal legal_three_cushion(const State& state, const std::vector<std::string>& balls);
+Legal legal_ten_ball(const State& state, const std::vector<std::string>& balls);
+Legal legal_straight_pool(const State& state, const std::vector<std::string>& balls);
+Legal legal_free_pyramid(const State& state, const std::vector<std::string>& balls);
+Legal legal_carom(const State& state, const std::vector<std::string>& balls);
 Legal legal_snooker(const State& state, const std::vector<std::string>& balls);
 Legal legal_sum_to_three(const State& state, const std::vector<std::string>& balls);
 Verdict judge_eight_ball(const Facts& facts);
 Verdict judge_nine_ball(const Facts& facts);
-Verdict judge_three_cushion(const Facts& facts);
+Verdict judge_ten_ball(const Facts& facts);
+Verdict judge_straight_pool(const Facts& facts);
+Verdict judge_free_pyramid(const Facts& facts);
+Verdict judge_carom(const Facts& facts);
 Verdict judge_snooker(const Facts& facts);
 Verdict judge_sum_to_three(const Facts& facts);
 

@@ -10,6 +10,20 @@
 #include "facts.h"
 
 namespace carom::games {
+
+Call lucky_call(const State& state, const Record& record) {
+    const auto falls = [](const Event& event) { return event.type == EventType::kBallPocket; };
+    if (std::none_of(record.events.begin(), record.events.end(), falls)) return {};
+    const std::vector<std::string> callable = legal(state, ids_of(record.tracks)).callable;
+    for (const Event& event : record.events) {
+        if (!falls(event)) continue;
+        const std::string& ball = record.tracks[static_cast<std::size_t>(event.a)].id;
+        if (detail::is_in(ball, callable))
+            return {.ball = ball, .pocket = record.table.pockets[static_cast<std::size_t>(event.b)].id};
+    }
+    return {};
+}
+
 namespace {
 
 /// Judges a shot into its row of the arrays. @param base the scene with all balls; the shot may lack some of
@@ -17,7 +31,7 @@ namespace {
 void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& outcome, const Record& record,
                const JudgedArrays& to) {
     const State before = state_of_turn(game, static_cast<Group>(to.group[row]));
-    const Verdict verdict = judge(before, record, detail::lucky_call(before, record));
+    const Verdict verdict = judge(before, record, lucky_call(before, record));
     const State& next = verdict.next();
     to.foul[row] = verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front());
     // In a game of one player, a turn that passes is over, and nobody makes the other player's choices.
@@ -43,7 +57,7 @@ void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& out
             y = back.place.y();
         }
     }
-    const bool pool = game == Game::kEightBall || game == Game::kNineBall;
+    const bool pool = game == Game::kEightBall || game == Game::kNineBall || game == Game::kTenBall;
     to.points[row] = !pool ? verdict.points : verdict.fouls.empty() ? fallen : 0;
 }
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "carom/engine/event_details.h"
-#include "carom/engine/frozen.h"
-#include "carom/games/judge_many.h"
 #include "carom/games/spots.h"
 
 namespace carom::games::detail {
@@ -32,24 +31,8 @@ double count(const PlayedShot& played, EventType type, bool struck) {
         }));
 }
 
-/// The events in which the struck ball is driven to a cushion or a jaw.
-std::vector<std::size_t> driven(const PlayedShot& played) {
-    std::vector<std::size_t> events;
-    const int ball = played.struck();
-    for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
-        const Event& event = played.record.events[i];
-        const EventKind& of = kind(event.type);
-        const bool wall = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
-        if (!wall || event.a != ball || of.phase == EventPhase::kRelease) continue;
-        const auto& segments = played.record.tracks[static_cast<std::size_t>(ball)].segments;
-        if (!still_frozen(played.record.table, event, segments, played.record.size(ball).R))
-            events.push_back(i);
-    }
-    return events;
-}
-
 std::optional<std::size_t> cushion(const PlayedShot& played, double number) {
-    const std::vector<std::size_t> events = driven(played);
+    const std::vector<std::size_t> events = driven(played, played.struck());
     const auto index = static_cast<std::size_t>(number) - 1;
     return index < events.size() ? std::optional(events[index]) : std::nullopt;
 }
@@ -90,9 +73,8 @@ double distance(const PlayedShot& played, const Arguments& of) {
 }
 
 Texts fouls(const PlayedShot& played, const Arguments& of, bool opening) {
-    const State state = opening ? new_game(*of.game) : state_of_turn(*of.game, Group::kOpen);
     Texts texts;
-    for (const Foul foul : judge(state, played.record).fouls) texts.emplace_back(name(foul));
+    for (const Foul foul : judged(played, *of.game, opening).fouls) texts.emplace_back(name(foul));
     return texts;
 }
 
@@ -134,7 +116,8 @@ const MeasureRow kRows[] = {
     {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
      [](P p, A) -> V {
          Texts texts;
-         for (const std::size_t i : driven(p)) texts.push_back(p.record.partner_id(p.record.events[i]));
+         for (const std::size_t i : driven(p, p.struck()))
+             texts.push_back(p.record.partner_id(p.record.events[i]));
          return texts;
      }},
     {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
@@ -220,7 +203,12 @@ const MeasureRow kRows[] = {
 }  // namespace
 
 std::span<const MeasureRow> measure_rows() {
-    return kRows;
+    static const std::vector<MeasureRow> kAll = [] {
+        std::vector<MeasureRow> all(std::begin(kRows), std::end(kRows));
+        all.insert(all.end(), route_rows().begin(), route_rows().end());
+        return all;
+    }();
+    return kAll;
 }
 
 }  // namespace carom::games::detail

@@ -1,6 +1,7 @@
 // The measures that expressions name.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -47,5 +48,15 @@ struct MeasureRow {
     MeasureValue (*value)(const PlayedShot&, const Arguments&);
 };
 std::span<const MeasureRow> measure_rows();
+/// Those of a ball's route, and of the points that it scores (routes.cpp).
+std::span<const MeasureRow> route_rows();
+
+/// The events in which a ball is driven to a cushion or a jaw.
+std::vector<std::size_t> driven(const PlayedShot& played, int ball);
+/// The verdict on a shot as a break, or in the middle of a game; in eight-ball with an open table. What falls
+/// counts as called.
+Verdict judged(const PlayedShot& played, Game game, bool opening);
+/// The rails of a table: "left", "foot", ...; the id of a cushion without a name.
+Texts rails_of(const Table& table);
 
 }  // namespace carom::games::detail

@@ -64,7 +64,17 @@ std::optional<Known> known_texts(std::string_view measure, const Scene& scene) {
     if (measure == "pocket_of") return Known{"pocket", ids(scene.table.pockets, {"out"})};
     if (measure == "cushions")
         return Known{"cushion or jaw", ids(scene.table.jaws, ids(scene.table.cushions))};
+    if (measure == "route") return Known{"rail", detail::rails_of(scene.table)};
     return std::nullopt;
+}
+
+/// Reads "left, foot" beside a list as its items, which tables join by ";".
+void as_list(Node& text, const Node& measure) {
+    const bool list = measure.row != nullptr && std::string_view(measure.row->info.unit) == "list";
+    if (!list || text.kind != Node::Kind::kValue || !std::holds_alternative<Texts>(text.value)) return;
+    std::string whole = text_of(text.value);
+    for (std::size_t at = 0; (at = whole.find(", ", at)) != std::string::npos;) whole.replace(at, 2, ";");
+    text.value = Texts{whole};
 }
 
 bool is_number(const Node& node) {
@@ -200,6 +210,8 @@ class Reader {
             const bool order = word[0] == '<' || word[0] == '>';
             if (order && !(is_number(left) && is_number(right)))
                 fail("expected numbers beside " + std::string(word));
+            as_list(left, right);
+            as_list(right, left);
             check_texts(left, right);
             check_texts(right, left);
             return pair(Node::Kind::kCompare, word, std::move(left), std::move(right));

@@ -15,14 +15,20 @@
 namespace carom::games {
 namespace {
 
-/// The ball of an option. @throws std::invalid_argument if the record has none: the option belongs to another
-/// record
-int ball_of(const Record& record, const std::string& id) {
+/// The ball of an option, or -1 for one that is racked anew. @throws std::invalid_argument if the record has
+/// none: the option belongs to another record
+int ball_of(const Record& record, const Option& option, const std::string& id) {
     const int index = index_of(record, id);
-    if (index < 0)
+    const bool anew = option.decision == Decision::kRackFourteen && detail::is_in(id, option.respots);
+    if (index < 0 && !anew)
         throw std::invalid_argument("the record has no ball " + in_quotes(id) +
                                     "; give the record from which the option was judged");
     return index;
+}
+
+double radius_of(const Record& record, const Option& option, const std::string& id) {
+    const int index = ball_of(record, option, id);
+    return index < 0 ? record.balls.R : record.size(index).R;
 }
 
 /// Puts a ball of the previous shot back on the cloth.
@@ -35,17 +41,37 @@ BallStart placed(const BallStart& before, double R, const Vec2& place) {
     return ball;
 }
 
+/// Whether the cue ball cannot stay where it is: it is gone, or another ball is put there.
+bool must_place(const Record& record, const Option& option, const std::string& cue) {
+    if (detail::is_in(cue, option.respots)) return false;
+    const bool any = detail::rules_of(option.state.game).struck == detail::GameRules::Struck::kAny;
+    const int index =
+        any && option.state.in_hand == InHand::kNo ? index_of(record, cue) : ball_of(record, option, cue);
+    const BallState end = index < 0 ? BallState{} : record.state_at(index, record.duration);
+    if (index < 0 || is_gone(end.state)) return !any || option.state.in_hand != InHand::kNo;
+    return std::any_of(option.respots.begin(), option.respots.end(), [&](const Respot& back) {
+        const Lying there = {back.place, radius_of(record, option, back.ball), 0.0};
+        return option.state.in_hand != InHand::kNo &&
+               !is_free(planar(end.position), record.size(index).R, std::span(&there, 1));
+    });
+}
+
 }  // namespace
 
 const char* cue_ball(const State& state) {
-    if (state.game != Game::kThreeCushion) return "cue";
-    return detail::own_ball(state.turn);
+    const bool own = detail::rules_of(state.game).struck == detail::GameRules::Struck::kOwn;
+    return own ? detail::own_ball(state.turn) : "cue";
+}
+
+std::string struck_next(const State& state, std::span<const std::string> balls) {
+    const std::vector<std::string> may = legal(state, balls).cue_balls;
+    return detail::is_in(cue_ball(state), may) ? cue_ball(state) : may.front();
 }
 
 bool may_place(const Record& record, const Option& option, const Vec2& place) {
     const std::string cue = cue_ball(option.state);
-    const int index = ball_of(record, cue);
-    for (const Respot& back : option.respots) ball_of(record, back.ball);
+    const int index = ball_of(record, option, cue);
+    for (const Respot& back : option.respots) ball_of(record, option, back.ball);
     if (!in_area(record.table, option.state.in_hand, place)) return false;
     const double R = record.size(index).R;
     const Vec2 from = place - record.table.corner;
@@ -60,12 +86,12 @@ bool may_place(const Record& record, const Option& option, const Vec2& place) {
             others.push_back({planar(end.position), record.size(ball).R, 0.0});
     }
     for (const Respot& back : option.respots)
-        others.push_back({back.place, record.size(ball_of(record, back.ball)).R, 0.0});
+        others.push_back({back.place, radius_of(record, option, back.ball), 0.0});
     return is_free(place, R, others);
 }
 
 Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted) {
-    const double step = record.size(ball_of(record, cue_ball(option.state))).R / 4.0;
+    const double step = radius_of(record, option, cue_ball(option.state)) / 4.0;
     // Rings of a lattice: whole numbers, whose distances have the same order on every processor.
     for (int ring = 0; ring * step <= record.table.width + record.table.length; ++ring) {
         std::vector<std::array<int, 3>> places;  // square of the distance, x, y
@@ -87,10 +113,8 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
         throw std::invalid_argument("the balls are racked again; use the scene of a new break");
     if (option.state.over) throw std::invalid_argument("the game is over; there is no next shot");
     const std::string cue = cue_ball(option.state);
-    const int index = ball_of(record, cue);
-    for (const Respot& back : option.respots) ball_of(record, back.ball);
-    if (!place && !detail::is_in(cue, option.respots) &&
-        is_gone(record.state_at(index, record.duration).state))
+    for (const Respot& back : option.respots) ball_of(record, option, back.ball);
+    if (!place && must_place(record, option, cue))
         throw std::invalid_argument("the cue ball is in hand; give its place");
     if (place && !may_place(record, option, *place))
         throw std::invalid_argument(std::string("the cue ball may not be placed there (in hand: ") +
@@ -110,6 +134,12 @@ Scene table_after(const Scene& scene, const Record& record, const Option& option
             next.ball.push_back(placed(start, R, back->place));
         else if (there >= 0)
             next.ball.push_back(rest.ball[there]);
+    }
+    for (const Respot& back : option.respots) {
+        if (option.decision != Decision::kRackFourteen || index_of(scene.ball, back.ball) >= 0) continue;
+        BallStart ball;
+        ball.id = back.ball;
+        next.ball.push_back(placed(ball, scene.balls.R, back.place));
     }
     return next;
 }

@@ -16,46 +16,33 @@
 namespace carom::games {
 namespace {
 
-/// What a game is: a row of kGames, in the order of Game.
-struct GameRules {
-    Legal (*legal)(const State& state, const std::vector<std::string>& balls);
-    Verdict (*judge)(const detail::Facts& facts);
-    InHand start;                         ///< where the cue ball starts
-    std::vector<std::string_view> balls;  ///< that the game needs
-};
+using detail::GameRules;
+using Book = GameRules::Book;
 
-const GameRules& rules_of(Game game) {
-    static const std::array<GameRules, 5> kGames = {
-        {{detail::legal_eight_ball, detail::judge_eight_ball, InHand::kHeadString, {"cue", "8"}},
-         {detail::legal_nine_ball, detail::judge_nine_ball, InHand::kHeadString, {"cue", "9"}},
-         {detail::legal_three_cushion, detail::judge_three_cushion, InHand::kNo, {"white", "yellow", "red"}},
-         {detail::legal_snooker, detail::judge_snooker, InHand::kD, {"cue", "black"}},
-         {detail::legal_sum_to_three, detail::judge_sum_to_three, InHand::kNo, {"cue"}}}};
-    return kGames.at(static_cast<std::size_t>(game));
-}
-
-/// The rule behind a foul: of pool, of three-cushion, of snooker.
+/// The rule behind a foul, by the order of Book.
 struct FoulRules {
     Foul foul;
-    const char *pool, *carom, *snooker;
+    std::array<const char*, 5> of;
 };
+constexpr const char* kPenalty = "WPBSA 3, penalties";
 constexpr FoulRules kFoulRules[] = {
-    {Foul::kCueBallPocketed, "WPA 6.1", "", "WPBSA 3, penalties"},
-    {Foul::kCueBallOff, "WPA 6.1", "", "WPBSA 3, penalties"},
-    {Foul::kNoBallHit, "WPA 6.3", "", "WPBSA 3, penalties"},
-    {Foul::kWrongBallFirst, "WPA 6.2", "", "WPBSA 3, penalties"},
-    {Foul::kNoCushion, "WPA 6.3", "", ""},
-    {Foul::kFewCushionsOnBreak, "WPA 2.3", "", ""},
-    {Foul::kBallOff, "WPA 6.5", "UMB, fouls", "WPBSA 3, penalties"},
-    {Foul::kPlacedOutside, "WPA 6.10", "", "WPBSA 3, penalties"},
-    {Foul::kBehindHeadString, "WPA 6.11", "", ""},
-    {Foul::kThirdFoul, "WPA 6.14", "", ""},
-    {Foul::kWrongCueBall, "", "UMB, fouls", ""},
-    {Foul::kOpeningNotRed, "", "UMB, starting position", ""},
-    {Foul::kWrongBallPocketed, "", "", "WPBSA 3, penalties"},
-    {Foul::kTwoBallsAtOnce, "", "", "WPBSA 3, penalties"},
-    {Foul::kJumpShot, "", "", "WPBSA 3, penalties"},
-    {Foul::kBehindTheFreeBall, "", "", "WPBSA 3, free ball"},
+    {Foul::kCueBallPocketed, {"WPA 6.1", "", kPenalty, "", ""}},
+    {Foul::kCueBallOff, {"WPA 6.1", "", kPenalty, "", ""}},
+    {Foul::kNoBallHit, {"WPA 6.3", "", kPenalty, "pyramid, fouls", "four-ball, no ball hit"}},
+    {Foul::kWrongBallFirst, {"WPA 6.2", "", kPenalty, "", ""}},
+    {Foul::kNoCushion, {"WPA 6.3", "", "", "pyramid, fouls", ""}},
+    {Foul::kBallOff, {"WPA 6.5", "UMB, fouls", kPenalty, "pyramid, fouls", "four-ball, ball off"}},
+    {Foul::kPlacedOutside, {"WPA 6.10", "", kPenalty, "pyramid, break", ""}},
+    {Foul::kBehindHeadString, {"WPA 6.11", "", "", "pyramid, break", ""}},
+    {Foul::kThirdFoul, {"WPA 6.14", "", "WPBSA 3.14", "", ""}},
+    {Foul::kWrongCueBall, {"", "UMB, fouls", "", "pyramid, break", "four-ball, cue balls"}},
+    {Foul::kOpeningNotRed, {"", "UMB, starting position", "", "", "four-ball, starting position"}},
+    {Foul::kWrongBallPocketed, {"", "", kPenalty, "", ""}},
+    {Foul::kTwoBallsAtOnce, {"", "", kPenalty, "", ""}},
+    {Foul::kJumpShot, {"option jump", "", kPenalty, "", ""}},
+    {Foul::kBehindTheFreeBall, {"", "", "WPBSA 3, free ball", "", ""}},
+    {Foul::kMiss, {"", "", "WPBSA 3.14", "", ""}},
+    {Foul::kOpponentsBall, {"", "", "", "", "four-ball, opponent's ball"}},
 };
 
 void check(const State& state) {
@@ -65,35 +52,146 @@ void check(const State& state) {
                                                    {"fouls", state.fouls[0]},
                                                    {"fouls", state.fouls[1]},
                                                    {"target", state.target}};
-    for (const auto& [what, number] : numbers)
-        if (number < 0 || number > kMostPoints)
+    const bool below_zero = detail::rules_of(state.game).below_zero;
+    for (const auto& [what, number] : numbers) {
+        const int least = below_zero && std::string_view(what) == "points" ? -kMostPoints : 0;
+        if (number < least || number > kMostPoints)
             throw std::invalid_argument(std::string(what) + " = " + std::to_string(number) +
-                                        " is out of range; it must be 0 to " + std::to_string(kMostPoints));
+                                        " is out of range; it must be " + std::to_string(least) + " to " +
+                                        std::to_string(kMostPoints));
+    }
+    if (!detail::has_its_rules(state))
+        throw std::invalid_argument(std::string("the options of the rules are not those of ") +
+                                    name(state.game) + "; begin a new game and set them");
     if (state.over) throw std::invalid_argument("the game is over; begin a new one");
 }
 
 }  // namespace
 
+const GameRules& detail::rules_of(Game game) {
+    using Struck = GameRules::Struck;
+    constexpr InHand kHead = InHand::kHeadString, kNo = InHand::kNo;
+    constexpr Struck kCue = Struck::kCueBall, kOwn = Struck::kOwn;
+    static const std::array<GameRules, 11> kGames = {{
+        {"World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 3",
+         legal_eight_ball,
+         judge_eight_ball,
+         kHead,
+         {"cue", "8"},
+         Book::kPool,
+         kCue,
+         0,
+         false,
+         "WPA 3.3"},
+        {"World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 2",
+         legal_nine_ball,
+         judge_nine_ball,
+         kHead,
+         {"cue", "9"},
+         Book::kPool,
+         kCue,
+         0,
+         false,
+         "WPA 2.3"},
+        {"Union Mondiale de Billard, World rules of carom billiard",
+         legal_carom,
+         judge_carom,
+         kNo,
+         {"white", "yellow", "red"},
+         Book::kCarom,
+         kOwn},
+        {"World Professional Billiards and Snooker Association, Official rules: section 3",
+         legal_snooker,
+         judge_snooker,
+         InHand::kD,
+         {"cue", "black"},
+         Book::kSnooker},
+        {"pooltool 0.6.0 and LightZero's zoo",
+         legal_sum_to_three,
+         judge_sum_to_three,
+         kNo,
+         {"cue"},
+         Book::kCarom},
+        {"World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 9",
+         legal_ten_ball,
+         judge_ten_ball,
+         kHead,
+         {"cue", "10"},
+         Book::kPool,
+         kCue,
+         0,
+         false,
+         "WPA 9.3"},
+        {"World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 4",
+         legal_straight_pool,
+         judge_straight_pool,
+         kHead,
+         {"cue"},
+         Book::kPool,
+         kCue,
+         0,
+         true,
+         "WPA 4.10"},
+        {"Free Pyramid and Pyramid general rules, duplet.news, read in November 2026",
+         legal_free_pyramid,
+         judge_free_pyramid,
+         kHead,
+         {},
+         Book::kPyramid,
+         Struck::kAny,
+         8},
+        {"Union Mondiale de Billard, World rules of carom billiard: free game",
+         legal_carom,
+         judge_carom,
+         kNo,
+         {"white", "yellow", "red"},
+         Book::kCarom,
+         kOwn},
+        {"Union Mondiale de Billard, World rules of carom billiard: one cushion",
+         legal_carom,
+         judge_carom,
+         kNo,
+         {"white", "yellow", "red"},
+         Book::kCarom,
+         kOwn},
+        {"the Korean game of Wikipedia, Four-ball billiards, read in November 2026",
+         legal_carom,
+         judge_carom,
+         kNo,
+         {"white", "yellow", "red1", "red2"},
+         Book::kFourBall,
+         kOwn,
+         0,
+         true},
+    }};
+    return kGames.at(static_cast<std::size_t>(game));
+}
+
 State new_game(Game game, int first, int target) {
     State state;
     state.game = game;
     state.turn = first;
-    state.target = target;
-    state.in_hand = rules_of(game).start;
+    state.target = target != 0 ? target : detail::rules_of(game).target;
+    state.in_hand = detail::rules_of(game).start;
     check(state);
     return state;
 }
 
+const char* book_of(Game game) {
+    return detail::rules_of(game).book_name;
+}
+
 const char* rule_of(Game game, Foul foul) {
+    const GameRules& rules = detail::rules_of(game);
+    if (foul == Foul::kFewCushionsOnBreak) return rules.break_rule;
     const auto* row = std::find_if(std::begin(kFoulRules), std::end(kFoulRules),
                                    [foul](const FoulRules& r) { return r.foul == foul; });
-    if (game == Game::kSnooker) return row->snooker;
-    return game == Game::kEightBall || game == Game::kNineBall ? row->pool : row->carom;
+    return row->of.at(static_cast<std::size_t>(rules.book));
 }
 
 Legal legal(const State& state, std::span<const std::string> balls) {
     check(state);
-    Legal legal = rules_of(state.game).legal(state, {balls.begin(), balls.end()});
+    Legal legal = detail::rules_of(state.game).legal(state, {balls.begin(), balls.end()});
     if (legal.first.empty()) throw std::invalid_argument("no ball is left to play at");
     legal.in_hand = state.in_hand;
     return legal;
@@ -101,13 +199,13 @@ Legal legal(const State& state, std::span<const std::string> balls) {
 
 Verdict judge(const State& state, const Record& record, const Call& call) {
     check(state);
-    const GameRules& rules = rules_of(state.game);
+    const GameRules& rules = detail::rules_of(state.game);
     for (const std::string_view ball : rules.balls)
         if (index_of(record, ball) < 0)
             throw std::invalid_argument("there is no ball \"" + std::string(ball) + "\" in the record; " +
                                         name(state.game) + " needs it");
     const detail::Facts facts(state, record, call);
-    if (state.game != Game::kThreeCushion && !facts.struck("cue"))
+    if (rules.struck == GameRules::Struck::kCueBall && !facts.struck("cue"))
         throw std::invalid_argument("the cue strikes ball \"" + facts.id(facts.shot.struck) +
                                     "\" and not the cue ball");
     return rules.judge(facts);

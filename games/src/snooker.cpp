@@ -1,8 +1,10 @@
-// Snooker by the World Professional Billiards and Snooker Association, section 3, except misses, which a
-// referee judges.
+// Snooker by the World Professional Billiards and Snooker Association, section 3. A miss is judged only if a
+// straight path to a ball on was clear; a referee judges all others.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,7 +16,7 @@
 namespace carom::games::detail {
 namespace {
 
-constexpr int kLeastPenalty = 4, kRedPoints = 1;
+constexpr int kLeastPenalty = 4, kRedPoints = 1, kMissesThatLose = 3;
 
 int points_of(std::string_view ball) {
     if (number_of(ball) > 0) return kRedPoints;
@@ -71,6 +73,9 @@ class Stroke {
     int points() const;
     std::vector<Respot> respots() const;
     BallOn next_on(const std::vector<std::string>& on_table) const;
+    /// Whether no ball on was hit first, though a straight path to any part of one, or to a full ball, was
+    /// clear (3.14).
+    bool missed(bool full) const;
 
     std::vector<Foul> fouls;
 
@@ -220,6 +225,69 @@ BallOn Stroke::next_on(const std::vector<std::string>& on_table) const {
     return facts_.state.on == BallOn::kRed && points() > 0 ? BallOn::kColour : lowest_on(on_table);
 }
 
+bool Stroke::missed(bool full) const {
+    const bool hit = std::none_of(fouls.begin(), fouls.end(), [](Foul foul) {
+        return foul == Foul::kNoBallHit || foul == Foul::kWrongBallFirst;
+    });
+    if (hit) return false;
+    const std::vector<std::string> on = on_.empty() ? balls_on(facts_.state.on, facts_.ids()) : on_;
+    const auto at = [&](int ball) { return planar(facts_.record.state_at(ball, 0.0).position); };
+    std::vector<Lying> not_on, balls;
+    for (int ball = 0; ball < static_cast<int>(facts_.record.tracks.size()); ++ball)
+        if (ball != facts_.shot.struck)
+            (is_in(facts_.id(ball), on) ? balls : not_on)
+                .push_back({at(ball), facts_.record.size(ball).R, 0.0});
+    const double R = facts_.record.size(facts_.shot.struck).R;
+    const Vec2 from = at(facts_.shot.struck);
+    return std::any_of(balls.begin(), balls.end(), [&](const Lying& ball) {
+        const Vec2 to = (ball.place - from) / length(ball.place - from);
+        constexpr int kParts = 20;  // of half a ball
+        for (int part = full ? 0 : 1 - kParts; part <= (full ? 0 : kParts - 1); ++part) {
+            // The cue ball's place when it hits this part.
+            const double sin = static_cast<double>(part) / kParts, cos = std::sqrt(1.0 - sin * sin);
+            const Vec2 back(-cos * to.x() - sin * to.y(), sin * to.x() - cos * to.y());
+            if (is_clear(from, ball.place + (R + ball.R) * back, R, not_on)) return true;
+        }
+        return false;
+    });
+}
+
+/// Points that are left on the table.
+int points_left(BallOn on, const std::vector<std::string>& balls) {
+    int points = on == BallOn::kColour ? points_of("black") : 0;
+    for (const std::string& ball : balls)
+        points += number_of(ball) > 0 ? kRedPoints + points_of("black") : points_of(ball);
+    return points;
+}
+
+/// 3.14: adds what follows a miss. The other player may have the balls replaced. The third one in a row with
+/// a clear path to a full ball loses the frame.
+void add_miss(const Facts& facts, const Stroke& stroke, const std::vector<std::string>& on_table,
+              Verdict& verdict) {
+    const State& state = facts.state;
+    const auto me = static_cast<std::size_t>(state.turn);
+    const auto needs_fouls = [](const State& at, const std::vector<std::string>& balls) {
+        return std::abs(at.points[0] - at.points[1]) >= points_left(at.on, balls);
+    };
+    const bool excused = state.fouls[me] == 0 &&
+                         (needs_fouls(state, facts.ids()) || needs_fouls(verdict.options[0].state, on_table));
+    if (rule(state, "miss") == "false" || excused || !stroke.missed(false)) return;
+    verdict.fouls.push_back(Foul::kMiss);
+    Option replay{Decision::kReplace, state, {}};
+    replay.state.points = verdict.options[0].state.points;
+    replay.state.in_hand = InHand::kNo;
+    replay.state.fouls[me] = stroke.missed(true) ? state.fouls[me] + 1 : 0;
+    if (replay.state.fouls[me] >= kMissesThatLose) {
+        verdict.fouls.push_back(Foul::kThirdFoul);
+        verdict.options = {{Decision::kPlayOn, won_by(replay.state, 1 - state.turn), {}}};
+        verdict.chooser = -1;
+        return;
+    }
+    for (int ball = 0; ball < static_cast<int>(facts.record.tracks.size()); ++ball)
+        replay.respots.push_back({facts.id(ball), planar(facts.record.state_at(ball, 0.0).position)});
+    verdict.options.push_back(replay);
+}
+
 /// Whether the cue ball ends snookered: no ball on can be hit on both edges. If it is in hand: from no place
 /// of a lattice in the D.
 bool is_snookered(const Facts& facts, const State& next, const std::vector<Respot>& respots,
@@ -292,6 +360,7 @@ Verdict judge_snooker(const Facts& facts) {
     const auto me = static_cast<std::size_t>(state.turn);
     State next = state;
     next.opening = next.free_ball = false;
+    next.fouls = {0, 0};
     next.in_hand = facts.shot.gone(facts.shot.struck) ? InHand::kD : InHand::kNo;
     next.points[me] += stroke.points();
     next.points[1 - me] += stroke.penalty();
@@ -311,6 +380,7 @@ Verdict judge_snooker(const Facts& facts) {
             verdict.options[0].state.free_ball = is_snookered(facts, other, respots, on_table);
             verdict.options.push_back({Decision::kPassBack, next, respots});
             verdict.chooser = other.turn;
+            add_miss(facts, stroke, on_table, verdict);
         }
     }
     verdict.points = stroke.points();

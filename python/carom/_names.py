@@ -6,7 +6,9 @@ from typing import Literal, TypeAlias
 
 from carom._arguments import may_be
 
-GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three"]
+GameName: TypeAlias = Literal["eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three",
+                              "ten_ball", "straight_pool", "free_pyramid", "straight_rail", "one_cushion",
+                              "four_ball"]
 RackName: TypeAlias = Literal["nine_ball", "ten_ball", "eight_ball"]
 TableName: TypeAlias = Literal["seven_foot", "seven_foot_bar", "eight_foot", "nine_foot", "snooker",
                                "english_pool", "carom", "carom_ten_foot"]

@@ -28,7 +28,7 @@ using Two = std::pair<T, T>;
 using Place = Two<double>;
 /// In the order of carom.games.State.
 using StateRow = std::tuple<std::string, int, bool, std::string, Two<int>, int, bool, int, Two<std::string>,
-                            bool, Two<int>, std::string, bool>;
+                            bool, Two<int>, std::string, bool, std::vector<std::string>>;
 using CallRow = std::tuple<std::string, std::string, bool, bool>;
 using RespotRow = std::pair<std::string, Place>;
 using OptionRow = std::tuple<std::string, StateRow, std::vector<RespotRow>>;
@@ -51,7 +51,8 @@ StateRow row_of(const games::State& s) {
             s.may_push_out,
             {s.fouls[0], s.fouls[1]},
             name(s.on),
-            s.free_ball};
+            s.free_ball,
+            games::chosen_rules(s)};
 }
 
 games::State state_of(const StateRow& row) {
@@ -59,14 +60,16 @@ games::State state_of(const StateRow& row) {
     std::string game, in_hand, on;
     Two<int> points, fouls;
     Two<std::string> group;
+    std::vector<std::string> rules;
     std::tie(game, s.turn, s.opening, in_hand, points, s.target, s.over, s.winner, group, s.may_push_out,
-             fouls, on, s.free_ball) = row;
+             fouls, on, s.free_ball, rules) = row;
     s.game = value_of<games::Game>("game", game);
     s.in_hand = value_of<games::InHand>("place in hand", in_hand);
     s.points = {points.first, points.second};
     s.group = {value_of<games::Group>("group", group.first), value_of<games::Group>("group", group.second)};
     s.fouls = {fouls.first, fouls.second};
     s.on = value_of<games::BallOn>("ball on", on);
+    for (const std::string& option : rules) games::set_rule(s, option);
     return s;
 }
 
@@ -135,11 +138,24 @@ std::vector<std::pair<std::string, Place>> spots(const NativeRecord& record) {
 }  // namespace
 
 void add_games_rules(nb::module_& m) {
-    m.def("new_game", [](const std::string& game, int first, int target) {
-        return row_of(games::new_game(value_of<games::Game>("game", game), first, target));
+    m.def("new_game",
+          [](const std::string& game, int first, int target, const std::vector<std::string>& rules) {
+              games::State state = games::new_game(value_of<games::Game>("game", game), first, target);
+              for (const std::string& option : rules) games::set_rule(state, option);
+              return row_of(state);
+          });
+    m.def("rule_options", [] {
+        std::vector<std::tuple<std::string, std::string, std::vector<std::string>, std::string>> rows;
+        for (const games::RuleOption& o : games::rule_options())
+            rows.emplace_back(name(o.game), o.key, std::vector<std::string>(o.values.begin(), o.values.end()),
+                              o.what);
+        return rows;
     });
     m.def("legal", legal);
     m.def("judge", judge);
+    m.def("book_of", [](const std::string& game) {
+        return std::string(games::book_of(value_of<games::Game>("game", game)));
+    });
     m.def("cue_ball", [](const StateRow& state) { return std::string(games::cue_ball(state_of(state))); });
     m.def("may_place", may_place);
     m.def("free_place", free_place);

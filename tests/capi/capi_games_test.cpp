@@ -38,6 +38,25 @@ carom_game_state nine_ball() {
     return state;
 }
 
+TEST(CApiGames, AnOptionOfTheRulesIsKept) {
+    carom_game_state state = nine_ball();
+    state.may_push_out = 1;
+    EXPECT_EQ(carom_game_rule(&state, "nine_on_break=respot"), CAROM_OK);
+    EXPECT_EQ(state.game % 256, CAROM_NINE_BALL);
+    EXPECT_EQ(carom_game_rule(&state, "call=all"), CAROM_BAD_ARGUMENT);
+    EXPECT_STREQ(carom_last_error(),
+                 "nine_ball has no option \"call\"; it has push_out, three_fouls, nine_on_break");
+    const RecordPtr record = played(parsed(kScratch).get());
+    carom_option option;
+    ASSERT_EQ(carom_verdict_option(judged(state, record.get()).get(), 0, &option), CAROM_OK);
+    EXPECT_EQ(option.state.game, state.game);
+    EXPECT_EQ(carom_game_rule(&state, "nine_on_break=wins"), CAROM_OK);
+    EXPECT_EQ(state.game, CAROM_NINE_BALL);
+    state.game = 3 << 8 | CAROM_THREE_CUSHION;
+    carom_verdict* none = nullptr;
+    EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &none), CAROM_BAD_ARGUMENT);
+}
+
 TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     const carom_game_state state = nine_ball();
     const char* ids[] = {"cue", "9", "1"};

@@ -68,6 +68,53 @@ TEST(Measures, CushionsOfTheStruckBallInOrder) {
     EXPECT_EQ(asked("cushion_y(5)", scene, record), "");
 }
 
+TEST(Measures, TheRouteOfAShotAndItsPoints) {
+    const Scene scene = scene_named("three_cushion");
+    const Record record = simulate(plan_of(scene));
+    const auto is = [&](const std::string& text, const std::string& value) {
+        EXPECT_EQ(asked(text, scene, record), value) << text;
+    };
+    is("route", "head;right;left;foot");
+    is("route == \"head, right, left, foot\"", "1");
+    is("\"foot\" in route and not (\"foot\" == route)", "1");
+    is("cushions_before(yellow)", "0");
+    is("cushions_before(red)", "4");
+    is("cushions_before_first", "0");
+    is("cushions_between", "4");
+    is("carom and not kick and not bank and not combination", "1");
+    for (const char* game : {"three_cushion", "one_cushion", "straight_rail"})
+        is(std::string("point(") + game + ")", "1");
+    EXPECT_THROW(asked("\"top\" in route", scene, record), MeasureError);
+    // Nothing is met.
+    Scene alone = scene;
+    alone.ball.resize(1);
+    const Record miss = simulate(plan_of(alone));
+    EXPECT_EQ(asked("cushions_before_first", alone, miss), "");
+    EXPECT_EQ(asked("kick or carom", alone, miss), "0");
+}
+
+// The cue ball comes to ball 1 off the head rail; ball 2 off a rail into a corner; ball 4 pushed by ball 3.
+TEST(Measures, KicksBanksAndCombinations) {
+    const auto shot = [](const std::string& balls) {
+        return parse_scene("[table]\npreset = \"nine_foot\"\n" + balls, "shot.toml");
+    };
+    const Scene kick = shot(
+        "[[ball]]\nposition = [0.635, 0.6]\n[[ball]]\nid = \"1\"\nposition = [0.635, 0.9]\n"
+        "[cue]\nspeed = 2\naim_deg = 270\noffset = [0, 0]\n");
+    const Record kicked = simulate(plan_of(kick));
+    EXPECT_EQ(asked("kick and cushions_before(1) == 1", kick, kicked), "1");
+    EXPECT_EQ(asked("route", kick, kicked).substr(0, 4), "head");
+    EXPECT_EQ(asked("bank or combination or carom", kick, kicked), "0");
+    const Scene both = shot(
+        "[[ball]]\nposition = [0.635, 2.0]\n[cue]\nspeed = 0.2\naim_deg = 0\noffset = [0, 0]\n"
+        "[[ball]]\nid = \"3\"\nposition = [1.0, 2.27]\nvelocity = [1.5, 1.5]\n"
+        "[[ball]]\nid = \"4\"\nposition = [1.16, 2.43]\n");
+    const Record combined = simulate(plan_of(both));
+    EXPECT_EQ(asked("\"4\" in pocketed and combination and not bank", both, combined), "1");
+    const Scene bank = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/side_bank.toml");
+    EXPECT_EQ(asked("bank and not combination and not kick", bank, simulate(plan_of(bank))), "1");
+}
+
 TEST(Measures, TravelIsThePathThatSamplesAdd) {
     for (const char* name : {"three_cushion", "eight_ball_break", "jump", "masse"}) {
         SCOPED_TRACE(name);

@@ -7,7 +7,7 @@ import pickle
 
 import numpy as np
 import pytest
-from conftest import program_sweep
+from conftest import SOURCE, program_sweep
 
 import carom
 from carom import games
@@ -70,7 +70,15 @@ RACKS = {
                 "ball": [{"id": "cue", "position": [0.8, 0.6]}]},
     "sum_to_three": {"table": "carom", "balls": "carom",
                      "ball": [{"id": "cue", "position": [0.5, 0.5]}, {"id": "1", "position": [0.7, 2.0]}]},
+    "ten_ball": {"table": "nine_foot", "balls": "pool", "rack": "ten_ball",
+                 "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "straight_pool": {"table": "nine_foot", "balls": "pool", "rack": "triangle",
+                      "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "free_pyramid": {"table": "pyramid", "balls": "pyramid", "rack": "pyramid",
+                     "ball": [{"id": "cue", "position": [0.6, 0.5]}]},
+    "four_ball": {"table": "carom", "balls": "carom", "rack": "four_ball"},
 }
+RACKS["straight_rail"] = RACKS["one_cushion"] = RACKS["three_cushion"]
 
 
 def test_a_new_game_and_what_is_legal():
@@ -211,12 +219,13 @@ def test_whole_games_of_random_strikes(game):
     state, scene = games.new_game(game, target=3), carom.Scene(**RACKS[game])
     for _ in range(60):
         legal = games.legal(state, scene)
+        struck = legal.cue_balls[0]
         cue, target = (
             scene.positions[scene.ids.index(ball)]
-            for ball in (state.cue_ball, str(random.choice(legal.first))))
+            for ball in (struck, str(random.choice([ball for ball in legal.first if ball != struck]))))
         aim = float(np.degrees(np.arctan2(*(target - cue)[::-1]))) + random.normal(0.0, 1.0)
         scene = scene.replace(
-            cue={"ball": state.cue_ball, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
+            cue={"ball": struck, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
         record = carom.simulate(scene)
         verdict = games.judge(state, record, games.Call(
             str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}"))
@@ -234,6 +243,39 @@ def test_whole_games_of_random_strikes(game):
                 place = random.uniform(0.0, 1.0, 2) * (record.table.width, record.table.length)
         scene = games.next_scene(record, option, place=place)
     assert state.game == game
+
+
+def test_options_of_a_game():
+    state = games.new_game("nine_ball", rules={"push_out": False, "nine_on_break": "respot"})
+    assert state.rules == ["push_out=false", "nine_on_break=respot"]
+    assert games.new_game("nine_ball", rules={"push_out": True}).rules == []
+    options = {option.key: option for option in games.rule_options() if option.game == "snooker"}
+    assert options["miss"].values == ["false", "true"] and "miss" in options["miss"].what
+    assert "rule 9" in games.book_of("ten_ball")
+    for rules, message in (({"cal": "all"}, "it has call, eight_on_break, in_hand, jump"),
+                           ({"call": "some"}, r"expected call=all\|eight\|none")):
+        with pytest.raises(ValueError, match=message):
+            games.new_game("eight_ball", rules=rules)
+    # An eight that falls without a call wins only if no shot is called.
+    scene = carom.Scene(
+        table="nine_foot", balls="pool",
+        ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "8", "position": [0.2, 0.2]}],
+        cue={"speed": 1.5, "aim_deg": 225.0, "offset": [0.0, -0.2]})
+    record = carom.simulate(scene)
+    for rules, winner in (({}, 1), ({"call": "eight"}, 1), ({"call": "none"}, 0)):
+        state = games.new_game("eight_ball", rules=rules)._replace(
+            opening=False, in_hand="no", group=("solids", "stripes"))
+        assert games.judge(state, record).next.winner == winner
+
+
+def test_the_route_of_a_shot_and_its_point():
+    scene = carom.Scene.load(SOURCE / "scenes" / "three_cushion.toml")
+    record = carom.simulate(scene)
+    assert record.measure("route") == ["head", "right", "left", "foot"]
+    assert record.measure("cushions_before(red)") == 4 and record.measure("cushions_before(yellow)") == 0
+    assert record.measure("point", game="three_cushion") is True
+    assert record.measure("points(straight_rail)") == 1
+    assert record.measure("kick") is False and record.measure("carom") is True
 
 
 def pool(*balls, **cue):

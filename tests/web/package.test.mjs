@@ -180,6 +180,22 @@ test("games judge shots and give the next scene", () => {
   assert.deepEqual([other.fouls, other.points], [[], 1]);
 });
 
+test("a game has options, and a shot a route", () => {
+  const state = games.start("eight_ball", {rules: {call: "none", in_hand: "behind_line"}});
+  assert.deepEqual(state.rules, ["call=none", "in_hand=behind_line"]);
+  assert.deepEqual(games.start("nine_ball", {rules: {push_out: false}}).rules, ["push_out=false"]);
+  const [miss] = games.options("snooker");
+  assert.deepEqual([miss.key, miss.values], ["miss", ["false", "true"]]);
+  assert.throws(() => games.start("eight_ball", {rules: {cal: "all"}}), /it has call, eight_on_break/);
+  const shot = simulate(Scene.parse(sceneText("three_cushion.toml")));
+  assert.deepEqual(shot.measure("route"), ["head", "right", "left", "foot"]);
+  assert.equal(shot.measure("cushions_before(red)"), 4);
+  assert.equal(shot.measure("point", {game: "three_cushion"}), true);
+  assert.equal(shot.measure("points(one_cushion)"), 1);
+  assert.throws(() => shot.measure("rout"), CaromError);
+  assert.throws(() => shot.measure("point"), CaromError);
+});
+
 test("a thousand shots do not fill the memory", () => {
   const scene = draw();
   for (let i = 0; i < 1000; ++i) {

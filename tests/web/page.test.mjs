@@ -131,7 +131,8 @@ test("a shot is played, stepped and followed by the next", skip, async () => {
 });
 
 test("games are played by their rules", skip, async () => {
-  for (const game of ["eight_ball", "nine_ball", "three_cushion"]) {
+  for (const game of ["eight_ball", "nine_ball", "three_cushion", "straight_pool", "free_pyramid",
+    "four_ball"]) {
     await open();
     await value(`caromPlay.newGame("${game}")`);
     await settled();

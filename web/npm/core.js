@@ -261,6 +261,11 @@ export class Shot extends Held {
     const at = (k) => Array.from(numbers.subarray(9 * i + k, 9 * i + k + 3));
     return {state: STATES[states[i]], position: at(0), velocity: at(3), spin: at(6)};
   }
+  measure(expression, {game = ""} = {}) {
+    expectText("expression", expression);
+    expectText("game", game);
+    return JSON.parse(call("carom_shot_measure", this.handle, expression, game));
+  }
   after() {
     call("carom_shot_after", this.handle);
     return new Scene();
@@ -327,13 +332,20 @@ export class Verdict extends Held {
   }
 }
 
-/** Rules of games: "eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three". */
+/** Rules of games. */
 export const games = {
-  start(game, {first = 0, target = 0} = {}) {
+  start(game, {first = 0, target = 0, rules = {}} = {}) {
     expectText("game", game);
     expectWhole("first", first);
     expectWhole("target", target);
-    return JSON.parse(call("carom_game_new", game, first, target));
+    expectObject("rules", rules);
+    const state = call("carom_game_new", game, first, target);
+    const chosen = Object.entries(rules).map(([key, value]) => `${key}=${value}`);
+    return JSON.parse(call("carom_game_rules", state, JSON.stringify(chosen)));
+  },
+  options(game) {
+    expectText("game", game);
+    return JSON.parse(call("carom_game_options")).filter((option) => option.game === game);
   },
   legal(state, scene) {
     expectObject("state", state);

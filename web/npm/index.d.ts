@@ -162,6 +162,9 @@ export class Shot {
   };
   /** The table as it rests, without pocketed balls and with the same cue. */
   after(): Scene;
+  /** A measure or an expression, as `carom describe measures` lists them: shot.measure("route"). `game`: the
+   * rules that "point" and others judge by. @throws CaromError */
+  measure(expression: string, options?: {game?: Game}): number | boolean | null | string[];
   free(): void;
 }
 
@@ -200,7 +203,16 @@ export interface Batch {
 export function simulateMany(scene: Scene, columns: {[key: string]: ArrayLike<number>},
   options?: {hash?: boolean}): Batch;
 
-export type Game = "eight_ball" | "nine_ball" | "three_cushion" | "snooker" | "sum_to_three";
+export type Game = "eight_ball" | "nine_ball" | "three_cushion" | "snooker" | "sum_to_three"
+  | "ten_ball" | "straight_pool" | "free_pyramid" | "straight_rail" | "one_cushion" | "four_ball";
+
+/** An option of a game's rules; the first value is the default. */
+export interface RuleOption {
+  game: Game;
+  key: string;
+  values: string[];
+  what: string;
+}
 
 /** What a game remembers between two shots, as `carom judge --state-out` writes it. Players are 0 and 1. */
 export interface GameState {
@@ -217,6 +229,8 @@ export interface GameState {
   fouls: [number, number];
   on: string;
   free_ball: boolean;
+  /** Options of the rules that are not defaults: "call=eight". */
+  rules?: string[];
 }
 
 export class Verdict {
@@ -243,8 +257,12 @@ export class Verdict {
 }
 
 export const games: {
-  /** The state before the first shot. `target`: points that win a carom game, 0 for no end. */
-  start(game: Game, options?: {first?: 0 | 1; target?: number}): GameState;
+  /** The state before the first shot. `target`: points that win, 0 for no end (free pyramid: 8). `rules`:
+   * options that are not defaults, {call: "eight"}. */
+  start(game: Game,
+    options?: {first?: 0 | 1; target?: number; rules?: {[key: string]: string | boolean}}): GameState;
+  /** The options of a game. */
+  options(game: Game): RuleOption[];
   /** What the next shot may do. */
   legal(state: GameState, scene: Scene): {
     cueBalls: string[];

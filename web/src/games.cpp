@@ -44,6 +44,27 @@ CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int 
         give(nullptr, dumped(tools::state_json(games::new_game(game, first, target))));
     });
 }
+/// @param rules a list of options: ["call=eight"]
+CAROM_WEB int carom_game_rules(const char* state, std::size_t size, const char* rules,
+                               std::size_t rules_size) {
+    return guarded([&] {
+        games::State with = state_at(state, size);
+        for (const Json& option : Json::parse(rules, rules + rules_size))
+            games::set_rule(with, option.get<std::string>());
+        give(nullptr, dumped(tools::state_json(with)));
+    });
+}
+CAROM_WEB int carom_game_options() {
+    return guarded([&] {
+        Json list = Json::array();
+        for (const games::RuleOption& option : games::rule_options())
+            list.push_back({{"game", name(option.game)},
+                            {"key", option.key},
+                            {"values", option.values},
+                            {"what", option.what}});
+        give(nullptr, dumped(list));
+    });
+}
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
         const games::State before = state_at(state, size);
@@ -94,8 +115,10 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
         else if (option.state.in_hand != games::InHand::kNo)
             place = games::free_place(shot->record, option, head_spot(shot->record.table));
         Scene next = games::table_after(shot->scene, shot->record, option, place);
-        next.cue = tools::next_cue(next, shot->scene.cue.value_or(Cue{}), games::cue_ball(option.state),
-                                   games::legal(option.state, ids_of(next.ball)).first);
+        const std::vector<std::string> balls = ids_of(next.ball);
+        next.cue =
+            tools::next_cue(next, shot->scene.cue.value_or(Cue{}), games::struck_next(option.state, balls),
+                            games::legal(option.state, balls).first);
         give_scene(std::move(next));
     });
 }

@@ -4,13 +4,17 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/game_state.h"
+#include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/plan.h"
+#include "carom/games/measures.h"
 #include "web.h"
 
 namespace carom::web {
@@ -124,6 +128,16 @@ CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds
         // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
         const Json brief = {shot->record.duration, shot->record.events.size()};
         give(shot.release(), brief.dump());
+    });
+}
+/// The value of a measure: a number, a truth, null, or texts. @param game "" for none
+CAROM_WEB int carom_shot_measure(const WebShot* shot, const char* text, std::size_t size, const char* game,
+                                 std::size_t game_size) {
+    return guarded([&] {
+        std::optional<games::Game> of;
+        if (game_size > 0) of = tools::game_of(std::string(game, game_size));
+        const games::Measure measure(std::string(text, size), shot->scene, of);
+        give(nullptr, dumped(tools::measure_json(measure, shot->record)));
     });
 }
 CAROM_WEB int carom_shot_hash(const WebShot* shot) {

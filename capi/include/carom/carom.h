@@ -226,7 +226,13 @@ typedef enum carom_game {
     CAROM_NINE_BALL = 1,     /* the same */
     CAROM_THREE_CUSHION = 2, /* Union Mondiale de Billard */
     CAROM_SNOOKER = 3,       /* World Professional Billiards and Snooker Association */
-    CAROM_SUM_TO_THREE = 4
+    CAROM_SUM_TO_THREE = 4,
+    CAROM_TEN_BALL = 5,
+    CAROM_STRAIGHT_POOL = 6,
+    CAROM_FREE_PYRAMID = 7,
+    CAROM_STRAIGHT_RAIL = 8,
+    CAROM_ONE_CUSHION = 9,
+    CAROM_FOUR_BALL = 10
 } carom_game;
 
 /* Where the cue ball may be placed: not at all, anywhere, behind the head string, in the D. */
@@ -239,7 +245,7 @@ typedef enum carom_in_hand {
 
 /* Everything a game remembers between two shots, besides the positions of the balls. Players are 0 and 1. */
 typedef struct carom_game_state {
-    int32_t game;    /* a carom_game */
+    int32_t game;    /* a carom_game, plus 256 times the options that carom_game_rule sets */
     int32_t turn;    /* whose shot it is */
     int32_t opening; /* 1: the break, or the first shot of a carom game */
     int32_t in_hand; /* a carom_in_hand */
@@ -256,6 +262,10 @@ typedef struct carom_game_state {
 
 /* The state before the first shot; `first` is the player who begins. */
 CAROM_API carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state);
+
+/* Chooses an option of the game's rules, such as "call=eight"; `carom describe games` lists them. Fails with
+ * a message that lists the keys or values, if the game has no such option. */
+CAROM_API carom_status carom_game_rule(carom_game_state* state, const char* option);
 
 /* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive
  * 1 or 0 for each: whether the ball may be struck, may be hit first by the cue ball, and may be called. Each

@@ -18,7 +18,7 @@ namespace {
 
 /// Number of balls in each row, from the apex.
 std::vector<int> rows_of(const Rack& rack) {
-    if (rack.game == RackGame::kThreeCushion) return {};
+    if (rack.game == RackGame::kThreeCushion || rack.game == RackGame::kFourBall) return {};
     if (rack.game == RackGame::kNineBall) return {1, 2, 3, 2, 1};
     if (rack.game == RackGame::kTenBall) return {1, 2, 3, 4};
     if (rack.game == RackGame::kLine || rack.game == RackGame::kScatter)
@@ -73,40 +73,17 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
 
 constexpr std::size_t kPink = 4;  // among the colours of snooker
 
-/// Balls that have spots. Three-cushion: white is 182.5 mm to the left of yellow, which is on the head spot
-/// (opening position of the rules of the UMB; measured in the first shot of a match: 178.5 +- 2 mm).
+/// Balls that have spots.
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
-    if (rack.game == RackGame::kThreeCushion) {
-        const double aside = 0.1825 * (table.length / 2.84);
-        return {{"white", spot_on_axis(table, table.length / 4.0, -aside)},
-                {"yellow", head_spot(table)},
-                {"red", foot_spot(table)}};
-    }
+    const Vec2 beside = opening_spot(table), head = head_spot(table), foot = foot_spot(table);
+    if (rack.game == RackGame::kThreeCushion) return {{"white", beside}, {"yellow", head}, {"red", foot}};
+    if (rack.game == RackGame::kFourBall)
+        return {{"white", beside}, {"yellow", foot + head - beside}, {"red1", head}, {"red2", foot}};
     std::vector<RackedBall> balls;
     if (rack.game == RackGame::kSnooker)
         for (const char* colour : {"yellow", "green", "brown", "blue", "pink", "black"})
             balls.push_back({colour, snooker_spot(table, colour)});
     return balls;
-}
-
-/// Positions without jitter, row by row from left to right.
-std::vector<Vec2> slots_of(const Rack& rack, const Vec2& apex, double R) {
-    const double pitch = 2.0 * R + rack.gap;
-    const double row_pitch = rack.game == RackGame::kLine ? pitch : pitch * (std::sqrt(3.0) / 2.0);
-    std::vector<Vec2> out;
-    const std::vector<int> rows = rows_of(rack);
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        const double y = apex.y() + static_cast<double>(row) * row_pitch;
-        for (int k = 0; k < rows[row]; ++k) {
-            const int twice = 2 * k - (rows[row] - 1);  // half pitches from the axis, with sign
-            const double aside = std::abs(twice) * (0.5 * pitch);
-            // With the offset rounded to what apex.x + aside can represent, apex.x +- offset are both exact,
-            // so that left and right mirror each other bit for bit.
-            const double offset = (std::abs(apex.x()) + aside) - std::abs(apex.x());
-            out.emplace_back(twice < 0 ? apex.x() - offset : apex.x() + offset, y);
-        }
-    }
-    return out;
 }
 
 /// Metropolis sampling of hard discs, starting with the rack without jitter. Every step is a valid rack.
@@ -207,6 +184,25 @@ int balls_of(const Rack& rack) {
     return std::accumulate(rows.begin(), rows.end(), 0);
 }
 
+std::vector<Vec2> rack_slots(const Rack& rack, const Vec2& apex, double R) {
+    const double pitch = 2.0 * R + rack.gap;
+    const double row_pitch = rack.game == RackGame::kLine ? pitch : pitch * (std::sqrt(3.0) / 2.0);
+    std::vector<Vec2> out;
+    const std::vector<int> rows = rows_of(rack);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const double y = apex.y() + static_cast<double>(row) * row_pitch;
+        for (int k = 0; k < rows[row]; ++k) {
+            const int twice = 2 * k - (rows[row] - 1);  // half pitches from the axis, with sign
+            const double aside = std::abs(twice) * (0.5 * pitch);
+            // With the offset rounded to what apex.x + aside can represent, apex.x +- offset are both exact,
+            // so that left and right mirror each other bit for bit.
+            const double offset = (std::abs(apex.x()) + aside) - std::abs(apex.x());
+            out.emplace_back(twice < 0 ? apex.x() - offset : apex.x() + offset, y);
+        }
+    }
+    return out;
+}
+
 std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R,
                                   std::span<const BallStart> others) {
     const std::vector<RackedBall> fixed = spotted(rack, table);
@@ -220,13 +216,13 @@ std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R
         apex.y() += contact_distance(radii[0], radii[racked + kPink], false) + rack.gap;
     SplitMix64 random(rack.seed);
     const std::vector<int> numbers = numbers_of(rack, random);
-    std::vector<Vec2> slots = slots_of(rack, apex, R);
+    std::vector<Vec2> slots = rack_slots(rack, apex, R);
     std::size_t spot = 0;
     if (rack.spot_ball) {
         spot = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), *rack.spot_ball) -
                                         numbers.begin());
         apex = place - (slots[spot] - place);
-        slots = slots_of(rack, apex, R);
+        slots = rack_slots(rack, apex, R);
     }
     std::vector<double> by_slot(racked);
     for (std::size_t i = 0; i < racked; ++i) by_slot[i] = radii[static_cast<std::size_t>(numbers[i]) - 1];

@@ -64,7 +64,8 @@ std::optional<Section> balls_section(const Section& top) {
 /// What the method of a rack says of its other keys, and what it leaves no room for.
 void apply_method(const Section& s, Rack& rack) {
     if (rack.method == RackMethod::kGap) return;
-    for (const RackGame game : {RackGame::kThreeCushion, RackGame::kLine, RackGame::kScatter})
+    for (const RackGame game :
+         {RackGame::kThreeCushion, RackGame::kFourBall, RackGame::kLine, RackGame::kScatter})
         if (rack.game == game)
             s.fail("method", "rack.method is for balls racked in rows; leave it out or choose another game");
     if (rack.method == RackMethod::kTriangle) {
@@ -142,7 +143,8 @@ void read_rack(const Section& top, Scene& scene) {
                 "rack.count belongs to the games line and scatter; leave it out or set game = \"line\"");
     if (s->has("rows") && rack.game != RackGame::kTriangle)
         s->fail("rows", "rack.rows belongs to the game triangle; leave it out or set game = \"triangle\"");
-    const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion;
+    const bool spots = rack.game == RackGame::kSnooker || rack.game == RackGame::kThreeCushion ||
+                       rack.game == RackGame::kFourBall;
     for (const char* key : {"position", "spot_ball", "angle_deg"})
         if (spots && s->has(key))
             s->fail(key,

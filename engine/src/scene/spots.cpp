@@ -28,6 +28,12 @@ Vec2 foot_spot(const Table& table) {
     return spot_on_axis(table, 3.0 * table.length / 4.0);
 }
 
+Vec2 opening_spot(const Table& table) {
+    // 182.5 mm to the left of the head spot (rules of the UMB; measured in the first shot of a match:
+    // 178.5 +- 2 mm).
+    return spot_on_axis(table, table.length / 4.0, -0.1825 * (table.length / 2.84));
+}
+
 Vec2 snooker_spot(const Table& table, std::string_view colour) {
     const double scale = table.length / kFullLength, baulk = kBaulk * scale, d = kRadiusOfD * scale;
     if (colour == "yellow") return spot_on_axis(table, baulk, d);

@@ -35,12 +35,19 @@ struct BreakStroke {
 constexpr BreakStroke kBreaks[] = {
     {Game::kEightBall, 0.30, 0.23, 0.0, 9.0, 0.0},
     {Game::kNineBall, 0.30, 0.23, 0.0, 9.0, 0.0},
+    {Game::kTenBall, 0.30, 0.23, 0.0, 9.0, 0.0},
 };
+
+std::vector<std::string> player_games() {
+    std::vector<std::string> names;
+    for (const BreakStroke& row : kBreaks) names.emplace_back(name(row.game));
+    return names;
+}
 
 void check_game(Game game) {
     if (std::none_of(std::begin(kBreaks), std::end(kBreaks), [&](const auto& b) { return b.game == game; }))
-        throw std::invalid_argument(
-            fmt::format("there is no player of {}; it plays eight_ball and nine_ball", name(game)));
+        throw std::invalid_argument(fmt::format("there is no player of {}; it plays {}", name(game),
+                                                fmt::join(player_games(), ", ")));
 }
 
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game

@@ -37,9 +37,15 @@ double error_function(double x) {
 /// Weights of Potting::features().
 using Weights = std::array<double, Potting::kFeatures>;
 constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
-constexpr Weights kNineBall = {-0.3, 1.5, 0.0, 0.0, 0.6, 0.2, -0.10, 1.0, 1.0, 0.0, 0.0, 0.0};
+// The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
+constexpr Weights kRotation = {-0.3, 1.5, 0.0, 0.0, 0.6, 0.2, -0.10, 1.0, 1.0, 0.0, 0.0, 0.0};
 /// [-] Estimate of how often a player gets from one ball to a good place for the next.
 constexpr double kGetsThere = 0.95;
+
+/// The ball that wins.
+int money_ball(Game game) {
+    return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
+}
 
 Numbers all_of(const Lie& lie) {
     Numbers all = 0;
@@ -92,10 +98,10 @@ Numbers targets(const State& state, const Lie& lie) {
     std::vector<std::string> ids;
     for (const Lie::Ball& ball : lie.balls) ids.push_back(std::to_string(ball.number));
     const Legal allowed = legal(state, ids);
-    Numbers set = 0;
-    for (const std::string& id : allowed.callable.empty() ? allowed.first : allowed.callable)
-        set |= only(number_of(id));
-    return set;
+    Numbers first = 0, callable = 0;
+    for (const std::string& id : allowed.first) first |= only(number_of(id));
+    for (const std::string& id : allowed.callable) callable |= only(number_of(id));
+    return allowed.callable.empty() ? first : first & callable;
 }
 
 Potting::Potting(const Scene& scene, double sd_aim)
@@ -233,7 +239,7 @@ int Potting::surest(const State& state, const Lie& lie) const {
 
 std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
-    const Numbers mine = targets(state, lie), all = all_of(lie), money = only(eight ? 8 : 9);
+    const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
     const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
     // What a player must pot before the money ball, and how likely that is from good places.
     struct Task {
@@ -280,7 +286,7 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
 double Potting::value(const State& state, const Lie& lie) const {
     if (lie.balls.empty()) return 0.0;
     const std::array<double, kFeatures> features = this->features(state, lie);
-    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kNineBall;
+    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kRotation;
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));

@@ -31,7 +31,7 @@ Lie lie_of(const Scene& scene);
 /// After a shot, with what an option of its verdict respots.
 Lie lie_of(const Record& record, const Option& option);
 
-/// What the player to shoot may pot.
+/// What the player to shoot may hit first and pot.
 Numbers targets(const State& state, const Lie& lie);
 
 /// A direct pot: the cue ball goes straight to the ghost ball, and the object ball straight into a pocket.

@@ -11,6 +11,7 @@
 #include "carom/engine/math.h"
 #include "carom/engine/strike.h"
 #include "carom/games/aim.h"
+#include "carom/games/judge_many.h"
 #include "carom/games/shot.h"
 #include "facts.h"
 #include "lines.h"

@@ -30,36 +30,39 @@ class State(NamedTuple):
     opening: bool  # this is the break, or the first shot of a carom game
     in_hand: str  # the cue ball: "no", "anywhere", "head string" (behind it) or "D"
     points: tuple[int, int]
-    target: int  # points that win a carom game; 0: no end
+    target: int  # points that win; 0: no end
     over: bool
     winner: int  # -1: none, or not yet
     group: tuple[str, str]  # eight-ball, for each player: "open", "solids" or "stripes"
-    may_push_out: bool  # nine-ball: this is the shot after the break
-    fouls: tuple[int, int]  # nine-ball, for each player: consecutive fouls
+    may_push_out: bool  # nine-ball, ten-ball: this is the shot after the break
+    # nine-ball, ten-ball, straight pool, for each player: consecutive fouls; snooker: misses in a row
+    fouls: tuple[int, int]
     on: str  # snooker: "red", "colour" (any), "yellow", ..., "black"
     free_ball: bool  # snooker: any ball may be nominated as the ball on
+    rules: tuple[str, ...] | list[str] = ()  # options that are not defaults: "call=eight" (`rule_options`)
 
     @property
     def cue_ball(self) -> str:
-        """The ball that the player strikes: "cue", or in three-cushion "white" or "yellow"."""
+        """The ball that the player strikes: "cue", or in carom games "white" or "yellow". In free pyramid any
+        other will do, too."""
         return _carom.cue_ball(_fitting(self))
 
 
 class Call(NamedTuple):
     """What a player calls before a shot."""
 
-    # eight-ball: the ball that will fall; snooker: the nominated colour or free ball, "" for the ball hit
-    # first
+    # eight-ball, ten-ball, straight pool: the ball that will fall; snooker: the nominated colour or free
+    # ball, "" for the ball hit first
     ball: str = ""
-    pocket: str = ""  # eight-ball: "p1", ...
-    safety: bool = False  # eight-ball: the turn ends whatever falls
-    push_out: bool = False  # nine-ball
+    pocket: str = ""  # the pocket that the ball will fall into: "p1", ...
+    safety: bool = False  # the turn ends whatever falls
+    push_out: bool = False  # nine-ball, ten-ball
 
 
 class Legal(NamedTuple):
     """What the rules allow for the next shot."""
 
-    cue_balls: list[str]  # the balls that may be struck: one id
+    cue_balls: list[str]  # the balls that may be struck: one id, in free pyramid any
     first: list[str]  # the balls that the cue ball may meet first
     callable: list[str]  # the balls that may be called; empty if the game has no calls
     in_hand: str  # as State.in_hand
@@ -120,20 +123,43 @@ class Verdict(NamedTuple):
         return self.options[0].respots
 
 
+class RuleOption(NamedTuple):
+    """An option of a game's rules: the first value is the default."""
+
+    game: str
+    key: str
+    values: list[str]
+    what: str
+
+
+def rule_options() -> list[RuleOption]:
+    """The options of the games, as `carom describe games` prints them."""
+    return [RuleOption(*row) for row in _carom.rule_options()]
+
+
 @checked
-def new_game(game: GameName, first: int = 0, target: int = 0) -> State:
+def book_of(game: GameName) -> str:
+    """The published rules of a game, with their edition."""
+    return _carom.book_of(game)
+
+
+@checked
+def new_game(
+    game: GameName, first: int = 0, target: int = 0, *, rules: Mapping[str, str | bool] | None = None
+) -> State:
     """The state before the first shot.
 
-    game: "eight_ball", "nine_ball" (World Pool-Billiard Association), "three_cushion" (Union Mondiale de
-        Billard), "snooker" (World Professional Billiards and Snooker Association) or "sum_to_three"
+    game: one of `GAMES`; `book_of` names its rules
     first: the player who begins
-    target: points that win a carom game; 0: no end
+    target: points that win; 0: no end, in free pyramid 8
+    rules: options that are not defaults: {"call": "eight"}, {"push_out": False}
 
-    Raises ValueError for another game.
+    Raises ValueError for another game, and for an option or value that it does not have.
     """
     _check_whole("first", first)
     _check_whole("target", target)
-    return State(*_carom.new_game(game, first, target))
+    chosen = [f"{key}={str(value).lower()}" for key, value in (rules or {}).items()]
+    return State(*_carom.new_game(game, first, target, chosen))
 
 
 @checked
@@ -141,7 +167,7 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
     """What the rules allow for the next shot.
 
     balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
-        "yellow", "red"; in snooker, numbered reds and colours by name
+        "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name
 
     Raises ValueError if the game is over or no ball is left to play at.
     """
@@ -155,8 +181,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     state: before the shot
     call: what the player called
 
-    What no record shows is not judged: feet on the floor, touched balls, double hits, push shots, time, and
-    misses in snooker.
+    What no record shows is not judged: feet on the floor, touched balls, double hits, push shots, and time.
 
     Raises ValueError if the game is over, or the record does not end at rest, has no cue strike, or lacks the
     game's balls.

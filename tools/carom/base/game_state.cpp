@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,23 @@ struct Reader {
     void whole(const char* key, int& value, int least, int most) const {
         if (json.contains(key)) value = whole(json[key], key, least, most);
     }
-    void pair(const char* key, std::array<int, 2>& value, int most) const {
+    void pair(const char* key, std::array<int, 2>& value, int least, int most) const {
         if (!json.contains(key)) return;
         if (!json[key].is_array() || json[key].size() != 2) fail(key, "one whole number for each player");
-        for (std::size_t i = 0; i < 2; ++i) value[i] = whole(json[key][i], key, 0, most);
+        for (std::size_t i = 0; i < 2; ++i) value[i] = whole(json[key][i], key, least, most);
+    }
+    void rules(State& state) const {
+        if (!json.contains("rules")) return;
+        const char* const expected = "a list of options, such as [\"call=eight\"]";
+        if (!json["rules"].is_array()) fail("rules", expected);
+        for (const Json& option : json["rules"]) {
+            if (!option.is_string()) fail("rules", expected);
+            try {
+                games::set_rule(state, option.get<std::string>());
+            } catch (const std::invalid_argument& refused) {
+                throw UsageError(fmt::format("{}: rules: {}", path, refused.what()));
+            }
+        }
     }
     template <class Enum>
     Enum named(const Json& of, const char* key) const {
@@ -66,8 +80,9 @@ struct Reader {
     }
 };
 
-constexpr const char* kKeys[] = {"game",   "turn",  "opening",      "in_hand", "points", "target",   "over",
-                                 "winner", "group", "may_push_out", "fouls",   "on",     "free_ball"};
+constexpr const char* kKeys[] = {"game",   "turn", "opening",   "in_hand", "points",
+                                 "target", "over", "winner",    "group",   "may_push_out",
+                                 "fouls",  "on",   "free_ball", "rules"};
 
 }  // namespace
 
@@ -96,7 +111,8 @@ Json state_json(const State& state) {
             {"may_push_out", state.may_push_out},
             {"fouls", state.fouls},
             {"on", name(state.on)},
-            {"free_ball", state.free_ball}};
+            {"free_ball", state.free_ball},
+            {"rules", games::chosen_rules(state)}};
 }
 
 State read_state(const std::string& path) {
@@ -127,7 +143,7 @@ State parse_state(const std::string& text, const std::string& shown) {
     read.whole("turn", state.turn, 0, 1);
     read.truth("opening", state.opening);
     read.named("in_hand", state.in_hand);
-    read.pair("points", state.points, games::kMostPoints);
+    read.pair("points", state.points, -games::kMostPoints, games::kMostPoints);
     read.whole("target", state.target, 0, games::kMostPoints);
     read.truth("over", state.over);
     read.whole("winner", state.winner, -1, 1);
@@ -138,9 +154,10 @@ State parse_state(const std::string& text, const std::string& shown) {
             state.group[i] = read.named<games::Group>(json["group"][i], "group");
     }
     read.truth("may_push_out", state.may_push_out);
-    read.pair("fouls", state.fouls, games::kMostPoints);
+    read.pair("fouls", state.fouls, 0, games::kMostPoints);
     read.named("on", state.on);
     read.truth("free_ball", state.free_ball);
+    read.rules(state);
     return state;
 }
 

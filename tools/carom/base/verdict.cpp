@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "base/game_state.h"
 #include "carom/engine/math.h"
@@ -79,6 +82,14 @@ Json advice_json(const std::vector<games::Advice>& advice, const Table& table) {
                         {"leaves", a.leaves}});
     }
     return list;
+}
+
+Json measure_json(const games::Measure& measure, const Record& record) {
+    const games::MeasureValue value = measure.of(record);
+    if (!measure.is_number()) return std::get<std::vector<std::string>>(value);
+    const double number = std::get<double>(value);
+    if (measure.is_truth()) return number != 0.0;
+    return std::isnan(number) ? Json() : Json(number);
 }
 
 Cue next_cue(const Scene& table, const Cue& before, const std::string& ball,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/games/measures.h"
 #include "carom/games/player.h"
 #include "carom/games/rules.h"
 
@@ -21,6 +22,9 @@ nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game g
 
 /// The advice as `carom advise --json` prints it.
 nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const Table& table);
+
+/// The value of a measure: a number or null, a truth, or texts. @throws std::invalid_argument as Measure::of
+nlohmann::ordered_json measure_json(const games::Measure& measure, const Record& record);
 
 /// The cue of the previous shot, aimed at the nearest ball that may be hit first, at its height and without
 /// side.

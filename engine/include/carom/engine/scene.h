@@ -224,11 +224,12 @@ enum class RackGame : std::uint8_t {
     kTriangle,
     kLine,
     kScatter,
-    kPyramid
+    kPyramid,
+    kFourBall
 };
 constexpr auto names_of(RackGame) {
     return std::array{"eight_ball", "nine_ball", "ten_ball", "snooker", "three_cushion",
-                      "triangle",   "line",      "scatter",  "pyramid"};
+                      "triangle",   "line",      "scatter",  "pyramid", "four_ball"};
 }
 
 /// How balls are put into a rack: as gap and jitter say; pressed together; or in a wooden triangle, which
@@ -270,6 +271,9 @@ inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::angle_deg>("angle_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                             "rotation of the rack about that ball; 0: rows towards +y"),
 };
+/// Positions of a rack without jitter, row by row from left to right. @param R  ball radius [m]
+std::vector<Vec2> rack_slots(const Rack& rack, const Vec2& apex, double R);
+
 /// A key of [balls] that only a rack feels.
 inline constexpr Field<Rack> kRackedBallFields[] = {
     field<&Rack::radius_sd>("radius_sd", at_least(0.0, kMaxRadiusSd, "m"),

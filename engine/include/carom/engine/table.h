@@ -210,6 +210,8 @@ Vec2 spot_on_axis(const Table& table, double y, double aside = 0.0);
 Vec2 head_spot(const Table& table);
 Vec2 center_spot(const Table& table);
 Vec2 foot_spot(const Table& table);
+/// The cue ball's place at the start of a carom game, beside the head spot.
+Vec2 opening_spot(const Table& table);
 /// The colours of snooker, from the highest value, 7, down to 2.
 inline constexpr std::array<std::string_view, 6> kColours = {"black", "pink",  "blue",
                                                              "brown", "green", "yellow"};

@@ -28,6 +28,9 @@ struct JudgedArrays {
 /// The state of a game in the middle of a turn of player 0, who has this group in eight-ball.
 State state_of_turn(Game game, Group group);
 
+/// The call of a player who knows what will fall: the first of the balls that count.
+Call lucky_call(const State& state, const Record& record);
+
 /// Plays shots as simulate_many() does; each thread judges what it has played, by judge(), for player 0 in
 /// the middle of a turn. In eight-ball, the first ball that counts and falls is taken as called.
 /// @param options `judge` is ignored

@@ -1,5 +1,5 @@
 // A player of pool: the best shot of a position, how sure it is, and what to choose where the rules offer a
-// choice. Eight-ball and nine-ball.
+// choice. Eight-ball, nine-ball and ten-ball.
 //
 // The search samples noisy shots of candidates and values the positions that they leave, one shot deep, after
 // Smith, "PickPocket: A computer billiards shark", Artificial Intelligence 171 (2007).

@@ -1,13 +1,10 @@
 // Rules of games: what is legal, and the outcome of a shot. Pure functions of a state, the balls and a
 // record.
 //
-// Eight-ball and nine-ball: World Pool-Billiard Association, The Rules of Play, effective 15 March 2016
-// ("WPA"). Three-cushion: Union Mondiale de Billard, World rules of carom billiard ("UMB"). Snooker: World
-// Professional Billiards and Snooker Association, Official rules, section 3 ("WPBSA"). Sum to three: the game
-// of that name in pooltool 0.6.0 and LightZero's zoo.
+// book_of() names the published rules of each game.
 //
 // Rules about things that a record does not show are not judged: feet, touched balls, double hits, pushes,
-// time, misses in snooker.
+// time.
 #pragma once
 
 #include <array>
@@ -15,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/engine/record.h"
@@ -22,9 +20,23 @@
 
 namespace carom::games {
 
-enum class Game : std::uint8_t { kEightBall, kNineBall, kThreeCushion, kSnooker, kSumToThree };
+enum class Game : std::uint8_t {
+    kEightBall,
+    kNineBall,
+    kThreeCushion,
+    kSnooker,
+    kSumToThree,
+    kTenBall,
+    kStraightPool,
+    kFreePyramid,
+    kStraightRail,
+    kOneCushion,
+    kFourBall
+};
 constexpr auto names_of(Game) {
-    return std::array{"eight_ball", "nine_ball", "three_cushion", "snooker", "sum_to_three"};
+    return std::array{"eight_ball",    "nine_ball",   "three_cushion", "snooker",
+                      "sum_to_three",  "ten_ball",    "straight_pool", "free_pyramid",
+                      "straight_rail", "one_cushion", "four_ball"};
 }
 
 /// A player's balls in eight-ball.
@@ -46,37 +58,59 @@ inline constexpr int kMostPoints = 1000000000;
 /// game reads only its own fields.
 struct State {
     Game game = Game::kEightBall;
-    int turn = 0;                        ///< whose shot it is
-    bool opening = true;                 ///< the break, or the first shot of a carom game
-    InHand in_hand = InHand::kNo;        ///< where the player whose turn it is may place the cue ball
-    std::array<int, 2> points = {0, 0};  ///< each 0 to kMostPoints, as are target and fouls
-    int target = 0;                      ///< three-cushion, sum to three: points that win; 0: no end
+    int turn = 0;                  ///< whose shot it is
+    bool opening = true;           ///< the break, or the first shot of a carom game
+    InHand in_hand = InHand::kNo;  ///< where the player whose turn it is may place the cue ball
+    /// each at most kMostPoints, as are target and fouls; below 0 in straight pool and four-ball only
+    std::array<int, 2> points = {0, 0};
+    int target = 0;  ///< points that win; 0: no end
     bool over = false;
     int winner = -1;                                            ///< -1: none, or not yet
     std::array<Group, 2> group = {Group::kOpen, Group::kOpen};  ///< eight-ball
-    bool may_push_out = false;          ///< nine-ball: this is the shot after the break
-    std::array<int, 2> fouls = {0, 0};  ///< nine-ball: consecutive fouls of each player
-    BallOn on = BallOn::kRed;           ///< snooker
-    bool free_ball = false;             ///< snooker: any ball may be nominated as the ball on
+    bool may_push_out = false;  ///< nine-ball, ten-ball: this is the shot after the break
+    /// consecutive fouls of each player: nine-ball, ten-ball, straight pool; snooker: misses in a row with a
+    /// clear path to a full ball
+    std::array<int, 2> fouls = {0, 0};
+    BallOn on = BallOn::kRed;  ///< snooker
+    bool free_ball = false;    ///< snooker: any ball may be nominated as the ball on
+    std::uint32_t rules = 0;   ///< the options that set_rule() chose; 0: all by their defaults
     bool operator==(const State&) const = default;
 };
 
-/// A new game. @param first the player who begins @param target as in State::target
+/// A new game. @param first the player who begins @param target as in State::target; 0: as the game has it,
+/// 8 in free pyramid
 State new_game(Game game, int first = 0, int target = 0);
+
+/// The published rules of a game, with their edition.
+const char* book_of(Game game);
+
+/// An option of a game's rules.
+struct RuleOption {
+    Game game;
+    const char* key;
+    std::vector<const char*> values;  ///< at most four; the first one is the default
+    const char* what;
+};
+std::span<const RuleOption> rule_options();
+/// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for a key or
+/// value that the game does not have; it lists those it has
+void set_rule(State& state, std::string_view option);
+/// The chosen options that are not defaults, as set_rule() reads them.
+std::vector<std::string> chosen_rules(const State& state);
 
 /// What a player announces before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
 /// empty, the ball that is hit first.
 struct Call {
     std::string ball;       ///< id, or ""
     std::string pocket;     ///< id, "p1", ...
-    bool safety = false;    ///< eight-ball: the turn ends whatever falls
-    bool push_out = false;  ///< nine-ball
+    bool safety = false;    ///< eight-ball, ten-ball, straight pool: the turn ends whatever falls
+    bool push_out = false;  ///< nine-ball, ten-ball
     bool operator==(const Call&) const = default;
 };
 
 /// What the next shot may do.
 struct Legal {
-    std::vector<std::string> cue_balls;  ///< ids that may be struck: one
+    std::vector<std::string> cue_balls;  ///< ids that may be struck: one, in free pyramid any
     std::vector<std::string> first;      ///< what the cue ball may hit first
     std::vector<std::string> callable;   ///< what may be called; empty if the game has no calls
     InHand in_hand = InHand::kNo;
@@ -85,8 +119,8 @@ struct Legal {
 };
 
 /// @param balls ids of the balls on the table. The cue ball may be missing while it is in hand. Ids are those
-/// of racks: cue, 1 to 15; white, yellow, red; snooker numbers its reds. @throws std::invalid_argument if no
-/// ball is left to play
+/// of racks: cue, 1 to 15; white, yellow, red (four-ball: red1, red2); snooker numbers its reds. @throws
+/// std::invalid_argument if no ball is left to play
 Legal legal(const State& state, std::span<const std::string> balls);
 
 enum class Foul : std::uint8_t {
@@ -106,6 +140,8 @@ enum class Foul : std::uint8_t {
     kTwoBallsAtOnce,
     kJumpShot,           ///< the cue ball passed over a ball before it hit one
     kBehindTheFreeBall,  ///< the nominated free ball snookers the other player
+    kMiss,               ///< snooker: no ball on was hit first, though a straight path to one was clear
+    kOpponentsBall,      ///< four-ball: the cue ball hit the other player's
 };
 constexpr auto names_of(Foul) {
     return std::array{"cue ball pocketed",
@@ -123,7 +159,9 @@ constexpr auto names_of(Foul) {
                       "wrong ball pocketed",
                       "two balls hit at once",
                       "jump shot",
-                      "snooker behind the free ball"};
+                      "snooker behind the free ball",
+                      "miss",
+                      "opponent's cue ball hit"};
 }
 /// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
 const char* rule_of(Game game, Foul foul);
@@ -143,11 +181,14 @@ enum class Decision : std::uint8_t {
     kRerack,          ///< the player who decides breaks again
     kRerackForOther,  ///< the other player breaks again
     kSpotEight,       ///< the eight is respotted, and play continues
-    kSpotTouching,    ///< three-cushion: the cue ball and the balls touching it are spotted
+    kSpotTouching,    ///< carom games: the cue ball and the balls touching it are spotted
+    kReplace,         ///< snooker: the balls return to where they were, and the same player shoots
+    kRackFourteen,    ///< straight pool: the pocketed balls are racked; respots has their places
 };
 constexpr auto names_of(Decision) {
-    return std::array{"play on",          "take in hand",   "pass back",          "rerack",
-                      "rerack for other", "spot the eight", "spot touching balls"};
+    return std::array{"play on",          "take in hand",   "pass back",           "rerack",
+                      "rerack for other", "spot the eight", "spot touching balls", "replace the balls",
+                      "rack fourteen"};
 }
 
 struct Option {
@@ -175,8 +216,11 @@ struct Verdict {
 /// game's balls, and for a game that is over
 Verdict judge(const State& state, const Record& record, const Call& call = {});
 
-/// The ball that the player to shoot strikes: "cue", or in three-cushion "white" or "yellow".
+/// The ball that the player to shoot strikes: "cue", or in carom games "white" or "yellow". In free pyramid
+/// any other will do, too.
 const char* cue_ball(const State& state);
+/// The same, or in free pyramid another ball if it is gone. @param balls as in legal()
+std::string struck_next(const State& state, std::span<const std::string> balls);
 
 /// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table
 /// between the noses, and overlaps no ball. @param record of the previous shot

@@ -34,7 +34,7 @@ struct AdviseArgs {
 
 /// [-] Object balls of a full rack.
 std::size_t rack_of(games::Game game) {
-    return game == games::Game::kNineBall ? 9 : 15;
+    return game == games::Game::kNineBall ? 9 : game == games::Game::kTenBall ? 10 : 15;
 }
 
 /// That of the file; otherwise a break if the rack is full, and the middle of a turn if it is not.
@@ -109,10 +109,8 @@ void add_advise(Options& program) {
     auto [command, args] = program.command<AdviseArgs>(
         "advise", "Say which shot to play: the best that differ in kind, and how sure each is", run_advise);
     command.argument("SCENE", args.scene, "Scene file (TOML): the balls as they lie").required = true;
-    command
-        .option("--game", &args.game, "GAME",
-                "eight_ball or nine_ball; a state names it, too (default: eight_ball)")
-        .one_of({"eight_ball", "nine_ball"});
+    command.option("--game", &args.game, "GAME", "The game; a state names it, too (default: eight_ball)")
+        .one_of({"eight_ball", "nine_ball", "ten_ball"});
     command.option(
         "--state", &args.state, "FILE.json",
         "The state of the game, from carom judge or next (default: a break if the rack is full, else "

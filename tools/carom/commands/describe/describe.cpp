@@ -302,6 +302,20 @@ std::string measures_text() {
     return out + "\nBALL is an id, K counts from 1, X and Y are in m, GAME is a game of carom judge.\n";
 }
 
+std::string games_text() {
+    std::string out =
+        "Games of carom judge --game, with the options of --rules. The first value is the default.\n";
+    for (std::size_t i = 0; i < games::names_of(games::Game{}).size(); ++i) {
+        const auto game = static_cast<games::Game>(i);
+        out += fmt::format("\n{:<16}{}\n", name(game), games::book_of(game));
+        for (const games::RuleOption& option : games::rule_options())
+            if (option.game == game)
+                out += fmt::format("  {} = {}\n      {}\n", option.key, fmt::join(option.values, " | "),
+                                   option.what);
+    }
+    return out;
+}
+
 std::string events_text() {
     std::string out =
         "Columns of carom simulate --events, after time, type, a, b and what --profile adds. A column "
@@ -326,6 +340,7 @@ constexpr struct {
                 {"record-schema", [](const Options&) { return record_schema(); }},
                 {"scene-format", [](const Options&) { return scene_format(); }},
                 {"measures", [](const Options&) { return measures_text(); }},
+                {"games", [](const Options&) { return games_text(); }},
                 {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {

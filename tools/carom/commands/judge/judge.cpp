@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -34,6 +35,7 @@ using games::Verdict;
 /// What both commands ask about the game.
 struct GameArgs {
     std::string game, state, state_out, ball, pocket;
+    std::vector<std::string> rules;
     bool safety = false, push_out = false;
     int option = 1;
 };
@@ -75,6 +77,13 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
     } else {
         before = games::new_game(game_of(args.game));
     }
+    for (const std::string& option : args.rules) {
+        try {
+            games::set_rule(before, option);
+        } catch (const std::invalid_argument& refused) {
+            throw UsageError(fmt::format("--rules {}", refused.what()));
+        }
+    }
     const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
     Verdict verdict = asked(shot, [&] { return games::judge(before, record, call); });
     const auto options = static_cast<int>(verdict.options.size());
@@ -92,7 +101,9 @@ std::string verdict_text(const Judged& judged) {
     for (std::size_t i = 0; i < verdict.fouls.size(); ++i)
         text += (i == 0 ? ": " : ", ") + foul_text(game, verdict.fouls[i]);
     text += "\n";
-    if (verdict.points != 0) text += counted(static_cast<std::size_t>(verdict.points), "point") + " scored\n";
+    if (verdict.points != 0)
+        text += counted(static_cast<std::size_t>(std::abs(verdict.points)), "point") +
+                (verdict.points > 0 ? " scored\n" : " lost\n");
     if (verdict.penalty != 0)
         text += counted(static_cast<std::size_t>(verdict.penalty), "point") + " for the other player\n";
     if (verdict.options.size() > 1) text += fmt::format("player {} chooses one of\n", verdict.chooser + 1);
@@ -101,10 +112,15 @@ std::string verdict_text(const Judged& judged) {
         if (verdict.options.size() > 1)
             text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
         text += next_text(option.state) + "\n";
-        for (const games::Respot& back : option.respots)
-            text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",
-                                verdict.options.size() > 1 ? "     " : "", back.ball, back.place.x(),
-                                back.place.y());
+        constexpr std::size_t kMany = 6;
+        if (option.respots.size() > kMany)
+            text += fmt::format("{}{} are put on the table\n", verdict.options.size() > 1 ? "     " : "",
+                                counted(option.respots.size(), "ball"));
+        else
+            for (const games::Respot& back : option.respots)
+                text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",
+                                    verdict.options.size() > 1 ? "     " : "", back.ball, back.place.x(),
+                                    back.place.y());
     }
     return text;
 }
@@ -170,8 +186,8 @@ int run_next(const NextArgs& args) {
         next = asked(args.scene, [&] {
             return games::table_after(plan.scene, record, option, place_of(args, record, option));
         });
-        ball = games::cue_ball(option.state);
-        first = asked(args.scene, [&] { return games::legal(option.state, ids_of(next.ball)).first; });
+        ball = asked(args.scene, [&] { return games::struck_next(option.state, ids_of(next.ball)); });
+        first = games::legal(option.state, ids_of(next.ball)).first;
         said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
                             next_text(option.state));
         write_report(args.game.state_out, state_json(option.state).dump(2) + "\n");
@@ -195,8 +211,12 @@ void add_game(Options& command, GameArgs& args) {
                    "Write the state after the shot (default: not written)");
     command.option("--ball", &args.ball, "ID", "The ball that was called (default: none)");
     command.option("--pocket", &args.pocket, "ID", "The pocket that was called (default: none)");
-    command.flag("--safety", args.safety, "Eight-ball: a safety was called (default: off)");
-    command.flag("--push-out", args.push_out, "Nine-ball: a push out was called (default: off)");
+    command.option(
+        "--rules", &args.rules, "KEY=VALUE",
+        "An option of the game, which carom describe games lists; may be repeated (default: none)");
+    command.flag("--safety", args.safety,
+                 "Eight-ball, ten-ball, straight pool: a safety was called (default: off)");
+    command.flag("--push-out", args.push_out, "Nine-ball, ten-ball: a push out was called (default: off)");
     command.option("--option", &args.option, "N", "The choice that is taken, if there are several").in(1, 9);
 }
 

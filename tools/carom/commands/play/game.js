@@ -1,20 +1,26 @@
 // Games: who may do what, the verdict on a shot, and what comes after it.
 
 import {begin, enter} from "./shots.js";
-import {startOf} from "./tables.js";
+import {CAROM, startOf} from "./tables.js";
 
-const TABLES = {eight_ball: "nine_foot", nine_ball: "nine_foot", three_cushion: "carom"};
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
 const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** Begins a game, or goes on without one if the name is "". */
-export function newGame(state, name) {
+/** The table of a game; null for the present one. */
+function tableOf(name, preset) {
+  if (CAROM.includes(name)) return "carom";
+  if (name === "free_pyramid") return "pyramid";
+  return name !== "" && (preset === "carom" || preset === "pyramid") ? "nine_foot" : preset;
+}
+
+/** Begins a game by these options of its rules, or goes on without one if the name is "". */
+export function newGame(state, name, rules = {}) {
   const {carom} = state, {preset} = state.scene.table;
-  const table = preset === "carom" || name === "three_cushion" ? TABLES[name] : preset;
-  const target = name === "three_cushion" ? 15 : 0;
-  const game = name === "" ? null : {state: carom.games.start(name, {target}), option: 0};
+  const table = tableOf(name, preset);
+  const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
+  const game = name === "" ? null : {state: carom.games.start(name, {target, rules}), option: 0};
   begin(state, startOf(carom, name, table || preset || "nine_foot", randomSeed()), {game});
 }
 
@@ -28,7 +34,7 @@ export function legal({carom, game, scene}) {
   } catch (error) {
     return {text: error.reason || error.message, callable: [], mayPushOut: false};
   }
-  const score = now.points.some((x) => x > 0) ? ` Points: ${now.points.join(" to ")}.` : "";
+  const score = now.points.some((x) => x !== 0) ? ` Points: ${now.points.join(" to ")}.` : "";
   const group = now.game === "eight_ball" && now.group[now.turn] !== "open"
     ? ` Plays ${now.group[now.turn]}.` : "";
   const few = may.first.length > 0 && may.first.length < 8;

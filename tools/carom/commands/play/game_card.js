@@ -47,8 +47,32 @@ function verdictParts(state) {
   })];
 }
 
+/** A choice for each option of the game's rules; another choice begins anew. */
+function ruleChoices(state) {
+  const row = make("div", {class: "bar"});
+  let game = "", rules = {};
+  const start = (name) => newGame(state, name, name === game ? rules : {});
+  const show = (name) => {
+    if (name === game) return;
+    [game, rules] = [name, {}];
+    row.replaceChildren(...(name === "" ? [] : state.carom.games.options(name)).map(({key, values, what}) => {
+      const title = key.replaceAll("_", " ");
+      const box = select(title, values.map((value) => [value, `${title}: ${value.replaceAll("_", " ")}`]), "",
+        (value) => {
+          rules[key] = value;
+          start(game);
+        });
+      box.title = what;
+      box.disabled = state.fixed || state.locked("table");
+      return box;
+    }));
+  };
+  return {row, show, start};
+}
+
 export function gameCard(state) {
-  const box = select("Game", GAMES, "", (name) => newGame(state, name));
+  const rules = ruleChoices(state);
+  const box = select("Game", GAMES, "", rules.start);
   box.disabled = state.fixed || state.locked("table");
   const text = make("p", {class: "game-text", role: "status", "aria-live": "polite"});
   const {rows, show} = announcements(state), options = make("div", {class: "bar"});
@@ -59,12 +83,13 @@ export function gameCard(state) {
   };
   state.on("table", () => {
     box.value = state.game ? state.game.state.game : "";
+    rules.show(box.value);
     options.replaceChildren();
     tell();
   });
   state.on("lists", tell);
   state.on("judged", () => options.replaceChildren(...verdictParts(state)));
   return make("section", {class: "card"}, make("h2", {}, "Game"), make("div", {class: "bar"}, box,
-    button("Start again", () => newGame(state, box.value), {disabled: state.fixed ? "" : null})),
-  text, ...rows, options);
+    button("Start again", () => rules.start(box.value), {disabled: state.fixed ? "" : null})),
+  rules.row, text, ...rows, options);
 }

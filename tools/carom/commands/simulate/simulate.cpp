@@ -6,15 +6,20 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/console.h"
+#include "base/game_state.h"
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/shown_units.h"
+#include "base/verdict.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
+#include "carom/games/measures.h"
 #include "commands/simulate/story.h"
 #include "report/csv.h"
 #include "report/table.h"
@@ -38,7 +43,34 @@ struct SimulateArgs {
     std::string units = kUnits[0];
     bool verify = false;     ///< check the physical laws after every event
     bool no_record = false;  ///< only the final state
+    std::vector<std::string> measures;
+    std::string game;  ///< that measures judge by
 };
+
+/// What --measure asks for.
+std::vector<games::Measure> measures_of(const SimulateArgs& args, const Scene& scene) {
+    std::optional<games::Game> game;
+    if (!args.game.empty()) game = game_of(args.game);
+    std::vector<games::Measure> list;
+    for (const std::string& text : args.measures) {
+        try {
+            list.emplace_back(text, scene, game);
+        } catch (const games::MeasureError& error) {
+            throw UsageError(fmt::format("--measure {}", error.what()));
+        }
+    }
+    return list;
+}
+
+/// What a function says of a measure, or why the game cannot judge the shot.
+template <class F>
+auto measured(const games::Measure& measure, F&& f) {
+    try {
+        return f();
+    } catch (const std::invalid_argument& refused) {
+        throw UsageError(fmt::format("--measure {}: {}", measure.text(), refused.what()));
+    }
+}
 
 /// The total cost of a profiled run's events, by kind. The text shows the means.
 Table costs_by_kind(const Record& record) {
@@ -63,7 +95,7 @@ Table costs_by_kind(const Record& record) {
     return table;
 }
 
-std::string result_json(const Record& record) {
+std::string result_json(const Record& record, const std::vector<games::Measure>& measures) {
     const auto numbers = [](const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); };
     Json balls = Json::array();
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
@@ -87,6 +119,8 @@ std::string result_json(const Record& record) {
                 {"events_by_kind", kinds},
                 {"hash", record.hash()},
                 {"balls", balls}};
+    for (const games::Measure& measure : measures)
+        all["measures"][measure.text()] = measured(measure, [&] { return measure_json(measure, record); });
     if (!record.costs.empty()) {
         all["profile"] = {{"setup_detect_ns", record.setup_detect_ns},
                           {"kinds", table_json(costs_by_kind(record))}};
@@ -94,7 +128,8 @@ std::string result_json(const Record& record) {
     return all.dump() + "\n";
 }
 
-std::string summary(const Record& record, const std::string& scene, const SimulateArgs& args) {
+std::string summary(const Record& record, const std::string& scene, const SimulateArgs& args,
+                    const std::vector<games::Measure>& measures) {
     fmt::memory_buffer out;
     const auto line = std::back_inserter(out);
     const Units units = units_of(args.units);
@@ -125,6 +160,11 @@ std::string summary(const Record& record, const std::string& scene, const Simula
         const BallState s = record.state_at(static_cast<int>(i), record.duration);
         fmt::format_to(line, "  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", record.tracks[i].id, name(s.state),
                        s.position.x() * length.factor, s.position.y() * length.factor);
+    }
+    if (!measures.empty()) fmt::format_to(line, "\nmeasures\n");
+    for (const games::Measure& measure : measures) {
+        const std::string value = measured(measure, [&] { return text_of(measure.of(record)); });
+        fmt::format_to(line, "  {:<24} {}\n", measure.text(), value.empty() ? "(none)" : value);
     }
     return fmt::to_string(out);
 }
@@ -167,6 +207,7 @@ int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions opti
                                                   {"--list", args.list},
                                                   {"--hash", args.hash},
                                                   {"--profile", args.profile},
+                                                  {"--measure", !args.measures.empty()},
                                                   {"--verify", args.verify}};
     for (const auto& [option, given] : asked)
         if (given) throw UsageError(fmt::format("{} needs a record; leave out --no-record", option));
@@ -236,19 +277,20 @@ int run(const SimulateArgs& args) {
     options.profile = args.profile;
     options.until = args.until;
     if (args.no_record) return final_state(args, plan, options);
+    const std::vector<games::Measure> measures = measures_of(args, plan.scene);
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
     const int status = args.verify ? verified(record, plan) : kOk;
     // --hash replaces the summary, so that the output is one line. JSON always contains the hash.
     if (args.json) {
-        print(result_json(record));
+        print(result_json(record, measures));
         return status;
     }
     const bool taken = is_stdout(args.record) || is_stdout(args.events) || is_stdout(args.samples);
     if (args.hash)
         print(record.hash() + "\n");
     else if (!taken)
-        print(summary(record, args.scene, args));
+        print(summary(record, args.scene, args, measures));
     if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
     if (args.profile) print(profile_report(record));
     return status;
@@ -284,6 +326,11 @@ void add_simulate(Options& program) {
     command.flag("--profile", args.profile,
                  "Time every event: cost by kind, kernel cost by ball-ball event, extra columns in the "
                  "events file (default: off)");
+    command.option("--measure", &args.measures, "EXPRESSION",
+                   "Print a measure that carom describe measures lists, or an expression; may be repeated "
+                   "(default: none)");
+    command.option("--game", &args.game, "GAME", "What measures such as point judge by (default: none)")
+        .one_of(game_names());
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.flag("--verify", args.verify,
                  "Check the physical laws after every event; report the first one broken, with exit status 1 "

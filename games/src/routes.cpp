@@ -1,0 +1,151 @@
+// Measures of a shot by its route, and by the points that it scores.
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carom/engine/frozen.h"
+#include "carom/games/judge_many.h"
+#include "facts.h"
+#include "measure_rows.h"
+
+namespace carom::games::detail {
+namespace {
+
+/// The struck ball's first contact with each ball that it hits, in order.
+std::vector<Touch> meetings(const PlayedShot& played) {
+    std::vector<Touch> met;
+    for (const Touch& touch : played.shot().touches) {
+        const bool again = std::any_of(met.begin(), met.end(),
+                                       [&](const Touch& before) { return before.other == touch.other; });
+        if (!touch.cushion() && !again) met.push_back(touch);
+    }
+    return met;
+}
+
+/// The cushions that the struck ball is driven to before a contact; all if there is none.
+std::vector<std::size_t> cushions_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
+    std::vector<std::size_t> events = driven(played, played.struck());
+    if (meeting)
+        std::erase_if(events, [&](std::size_t i) { return played.record.events[i].time >= meeting->time; });
+    return events;
+}
+
+/// The K-th ball that the struck ball hits, from 0.
+std::optional<Touch> meeting(const PlayedShot& played, std::size_t number) {
+    const std::vector<Touch> met = meetings(played);
+    return number < met.size() ? std::optional(met[number]) : std::nullopt;
+}
+
+/// How many cushions come before a contact; NaN if there is none.
+double count_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
+    return meeting ? double(cushions_before(played, meeting).size()) : kNone;
+}
+
+std::string rail(const Cushion& cushion) {
+    const std::size_t end = cushion.name.find(" rail");
+    return end == std::string::npos ? cushion.id : cushion.name.substr(0, end);
+}
+
+Texts route(const PlayedShot& played) {
+    Texts rails;
+    const Record& record = played.record;
+    for (const std::size_t i : cushions_before(played, meeting(played, 1))) {
+        const Event& event = record.events[i];
+        rails.push_back(kind(event.type).partner == Partner::kCushion
+                            ? rail(record.table.cushions[static_cast<std::size_t>(event.b)])
+                            : record.partner_id(event));
+    }
+    return rails;
+}
+
+/// Whether a ball fell, other than the struck one, of which this holds.
+template <class Test>
+double any_fell(const PlayedShot& played, Test&& test) {
+    const Shot& shot = played.shot();
+    return double(std::any_of(shot.pocketed.begin(), shot.pocketed.end(), [&](const Shot::Fallen& fallen) {
+        return fallen.ball != shot.struck && test(fallen.ball);
+    }));
+}
+
+using P = const PlayedShot&;
+using A = const Arguments&;
+using V = MeasureValue;
+
+const MeasureRow kRows[] = {
+    {{"cushions_before", "BALL", "", "cushions before the struck ball hits this ball; empty if it does not"},
+     [](P p, A of) -> V {
+         for (const Touch& touch : meetings(p))
+             if (touch.other == of.ball) return count_before(p, touch);
+         return kNone;
+     }},
+    {{"cushions_before_first", "", "", "cushions before the struck ball hits its first ball"},
+     [](P p, A) -> V { return count_before(p, meeting(p, 0)); }},
+    {{"cushions_between", "", "", "cushions between its first and its second ball"},
+     [](P p, A) -> V { return count_before(p, meeting(p, 1)) - count_before(p, meeting(p, 0)); }},
+    {{"route", "", "list", "rails before its second ball, in order; all if it hits fewer than two"},
+     [](P p, A) -> V { return route(p); }},
+    {{"kick", "", "truth", "whether the struck ball is driven to a cushion before it hits a ball"},
+     [](P p, A) -> V { return double(count_before(p, meeting(p, 0)) > 0.0); }},
+    {{"bank", "", "truth", "whether a ball fell that was driven to a rail before"},
+     [](P p, A) -> V {
+         return any_fell(p, [&p](int ball) {
+             const std::vector<std::size_t> events = driven(p, ball);
+             return std::any_of(events.begin(), events.end(), [&p](std::size_t i) {
+                 return kind(p.record.events[i].type).partner == Partner::kCushion;
+             });
+         });
+     }},
+    {{"combination", "", "truth", "whether a ball fell that the struck ball did not hit"},
+     [](P p, A) -> V {
+         const std::vector<Touch> met = meetings(p);
+         return any_fell(p, [&met](int ball) {
+             return std::none_of(met.begin(), met.end(), [ball](const Touch& t) { return t.other == ball; });
+         });
+     }},
+    {{"carom", "", "truth", "whether the struck ball hits two balls"},
+     [](P p, A) -> V { return double(meeting(p, 1).has_value()); }},
+    {{"point", "GAME", "truth", "whether the shot scores in the middle of a game; what falls is called"},
+     [](P p, A of) -> V { return double(judged(p, *of.game, false).points > 0); }},
+    {{"points", "GAME", "", "points that it scores; below 0 if it costs some"},
+     [](P p, A of) -> V { return double(judged(p, *of.game, false).points); }},
+};
+
+}  // namespace
+
+std::span<const MeasureRow> route_rows() {
+    return kRows;
+}
+
+std::vector<std::size_t> driven(const PlayedShot& played, int ball) {
+    std::vector<std::size_t> events;
+    for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
+        const Event& event = played.record.events[i];
+        const EventKind& of = kind(event.type);
+        const bool wall = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
+        if (!wall || event.a != ball || of.phase == EventPhase::kRelease) continue;
+        const auto& segments = played.record.tracks[static_cast<std::size_t>(ball)].segments;
+        if (!still_frozen(played.record.table, event, segments, played.record.size(ball).R))
+            events.push_back(i);
+    }
+    return events;
+}
+
+Verdict judged(const PlayedShot& played, Game game, bool opening) {
+    State state = opening ? new_game(game) : state_of_turn(game, Group::kOpen);
+    // In a carom game, the player whose ball is struck.
+    if (rules_of(game).struck == GameRules::Struck::kOwn && played.struck() >= 0 &&
+        played.id(played.struck()) == own_ball(1))
+        state.turn = 1;
+    return judge(state, played.record, opening ? Call() : lucky_call(state, played.record));
+}
+
+Texts rails_of(const Table& table) {
+    Texts rails;
+    for (const Cushion& cushion : table.cushions) rails.push_back(rail(cushion));
+    return rails;
+}
+
+}  // namespace carom::games::detail

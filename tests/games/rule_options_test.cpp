@@ -1,0 +1,105 @@
+// Options of the games' rules: what is accepted, what is refused and how, and what outlives a new rack.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/scene.h"
+#include "carom/games/rules.h"
+#include "made_record.h"
+#include "support/engine_cases.h"
+#include "support/files.h"
+
+namespace carom::test {
+namespace {
+
+using games::Game;
+using games::set_rule;
+using games::State;
+
+std::string refused(Game game, const std::string& option) {
+    State state = games::new_game(game);
+    try {
+        set_rule(state, option);
+    } catch (const std::invalid_argument& error) {
+        EXPECT_EQ(state, games::new_game(game));
+        return error.what();
+    }
+    return "";
+}
+
+TEST(RuleOptions, EveryValueOfEveryOptionIsReadBack) {
+    for (const games::RuleOption& option : games::rule_options()) {
+        SCOPED_TRACE(option.key);
+        ASSERT_GE(option.values.size(), 2u);
+        ASSERT_LE(option.values.size(), 4u);
+        for (const char* value : option.values) {
+            State state = games::new_game(option.game);
+            const std::string text = std::string(option.key) + "=" + value;
+            set_rule(state, text);
+            const bool standard = value == option.values[0];
+            EXPECT_EQ(games::chosen_rules(state), standard ? std::vector<std::string>() : std::vector{text});
+            set_rule(state, std::string(option.key) + "=" + option.values[0]);
+            EXPECT_EQ(state, games::new_game(option.game));
+        }
+    }
+}
+
+TEST(RuleOptions, WhatAGameDoesNotHaveIsRefusedWithWhatItHas) {
+    EXPECT_EQ(refused(Game::kEightBall, "push_out=true"),
+              "eight_ball has no option \"push_out\"; it has call, eight_on_break, in_hand, jump");
+    EXPECT_EQ(refused(Game::kThreeCushion, "call=all"),
+              "three_cushion has no options, so there is no \"call\"");
+    EXPECT_EQ(refused(Game::kEightBall, "call=maybe"), "call=maybe: expected call=all|eight|none");
+    EXPECT_EQ(refused(Game::kEightBall, "call"), "call: expected call=all|eight|none");
+    EXPECT_EQ(refused(Game::kSnooker, ""), "snooker has no option \"\"; it has miss");
+    State other = games::new_game(Game::kEightBall);
+    set_rule(other, "call=none");
+    other.game = Game::kThreeCushion;
+    EXPECT_THROW(games::legal(other, std::vector<std::string>{"white", "red"}), std::invalid_argument);
+}
+
+TEST(RuleOptions, OutliveANewRack) {
+    State state = games::new_game(Game::kEightBall);
+    set_rule(state, "call=none");
+    const Record record =
+        Told().ball("cue", 0.6, 0.3).balls(numbered(1, 15)).strike("cue").hit("cue", "1").record();
+    const games::Verdict verdict = games::judge(state, record);
+    ASSERT_EQ(verdict.options.size(), 4u);
+    for (const games::Option& option : verdict.options)
+        EXPECT_EQ(games::chosen_rules(option.state), std::vector<std::string>{"call=none"});
+}
+
+// The light cue ball of scenes/jump.toml passes over the eight and hits the one.
+TEST(RuleOptions, AJumpIsAFoulIfTheGameSaysSo) {
+    std::string text = read_file(std::string(CAROM_SOURCE_DIR) + "/scenes/jump.toml");
+    for (const auto& [from, to] :
+         {std::pair{"\"white\"", "\"cue\""}, {"\"red\"", "\"8\""}, {"\"yellow\"", "\"1\""}})
+        for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;)
+            text.replace(at, std::string(from).size(), to);
+    const Record record = simulate(plan_of(parse_scene(text, "jump.toml")));
+    State state = games::new_game(Game::kEightBall);
+    state.opening = false;
+    const auto jumps = [&] {
+        const std::vector<games::Foul> fouls = games::judge(state, record).fouls;
+        return std::count(fouls.begin(), fouls.end(), games::Foul::kJumpShot);
+    };
+    EXPECT_EQ(jumps(), 0);
+    set_rule(state, "jump=foul");
+    EXPECT_EQ(jumps(), 1);
+    EXPECT_STREQ(games::rule_of(Game::kEightBall, games::Foul::kJumpShot), "option jump");
+}
+
+TEST(RuleOptions, EveryGameHasABook) {
+    std::set<std::string> books;
+    for (std::size_t i = 0; i < games::names_of(Game{}).size(); ++i)
+        books.insert(games::book_of(static_cast<Game>(i)));
+    EXPECT_EQ(books.size(), games::names_of(Game{}).size());
+}
+
+}  // namespace
+}  // namespace carom::test
