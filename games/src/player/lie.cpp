@@ -38,7 +38,7 @@ double error_function(double x) {
 using Weights = std::array<double, Potting::kFeatures>;
 constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
 // The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
-constexpr Weights kRotation = {-0.3, 1.5, 0.0, 0.0, 0.6, 0.2, -0.10, 1.0, 1.0, 0.0, 0.0, 0.0};
+constexpr Weights kRotation = {0.57, -0.17, 0.0, 0.0, 0.09, -1.05, -0.04, 1.72, 1.83, -0.04, 0.09, 0.36};
 /// [-] Estimate of how often a player gets from one ball to a good place for the next.
 constexpr double kGetsThere = 0.95;
 

@@ -163,7 +163,7 @@ std::string summary(const Record& record, const std::string& scene, const Simula
     }
     if (!measures.empty()) fmt::format_to(line, "\nmeasures\n");
     for (const games::Measure& measure : measures) {
-        const std::string value = measured(measure, [&] { return text_of(measure.of(record)); });
+        const std::string value = measured(measure, [&] { return games::text_of(measure.of(record)); });
         fmt::format_to(line, "  {:<24} {}\n", measure.text(), value.empty() ? "(none)" : value);
     }
     return fmt::to_string(out);
