@@ -23,13 +23,15 @@ Legal legal_free_pyramid(const State& state, const std::vector<std::string>& bal
 Verdict judge_free_pyramid(const Facts& facts) {
     const State& state = facts.state;
     std::vector<Foul> fouls;
-    if (state.opening && !facts.struck("cue")) fouls.push_back(Foul::kWrongCueBall);
+    if (state.opening && facts.struck("cue"))
+        facts.add_placement_fouls(fouls);
+    else if (state.opening)
+        fouls.push_back(Foul::kWrongCueBall);
     if (facts.shot.first_hits.empty())
         fouls.push_back(Foul::kNoBallHit);
     else if (facts.shot.driven_after(facts.shot.first_time).empty())
         fouls.push_back(Foul::kNoCushion);
     if (!facts.shot.out.empty()) fouls.push_back(Foul::kBallOff);
-    if (state.opening) facts.add_placement_fouls(fouls);
     State next = state;
     next.opening = false;
     next.in_hand = InHand::kNo;

@@ -1,6 +1,7 @@
 // The cases of tests/data/games: every sentence of a rule book that a record can show, as a shot.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <filesystem>

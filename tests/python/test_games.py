@@ -247,8 +247,8 @@ def test_whole_games_of_random_strikes(game):
 
 def test_options_of_a_game():
     state = games.new_game("nine_ball", rules={"push_out": False, "nine_on_break": "respot"})
-    assert state.rules == ["push_out=false", "nine_on_break=respot"]
-    assert games.new_game("nine_ball", rules={"push_out": True}).rules == []
+    assert state.rules == ("push_out=false", "nine_on_break=respot")
+    assert games.new_game("nine_ball", rules={"push_out": True}).rules == ()
     options = {option.key: option for option in games.rule_options() if option.game == "snooker"}
     assert options["miss"].values == ["false", "true"] and "miss" in options["miss"].what
     assert "rule 9" in games.book_of("ten_ball")

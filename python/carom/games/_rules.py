@@ -39,7 +39,7 @@ class State(NamedTuple):
     fouls: tuple[int, int]
     on: str  # snooker: "red", "colour" (any), "yellow", ..., "black"
     free_ball: bool  # snooker: any ball may be nominated as the ball on
-    rules: tuple[str, ...] | list[str] = ()  # options that are not defaults: "call=eight" (`rule_options`)
+    rules: tuple[str, ...] = ()  # options that are not defaults: "call=eight" (`rule_options`)
 
     @property
     def cue_ball(self) -> str:
@@ -159,7 +159,7 @@ def new_game(
     _check_whole("first", first)
     _check_whole("target", target)
     chosen = [f"{key}={str(value).lower()}" for key, value in (rules or {}).items()]
-    return State(*_carom.new_game(game, first, target, chosen))
+    return _state(_carom.new_game(game, first, target, chosen))
 
 
 @checked
@@ -191,8 +191,13 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     return Verdict([Foul(*foul) for foul in fouls], points, penalty, listed, chooser)
 
 
+def _state(row: tuple[Any, ...]) -> State:
+    *fields, rules = row
+    return State(*fields, tuple(rules))
+
+
 def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
-    option = Option(decision, State(*state), [Respot(*respot) for respot in respots])
+    option = Option(decision, _state(state), [Respot(*respot) for respot in respots])
     option._record = record
     return option
 
