@@ -63,15 +63,18 @@ Vec2 direction(double deg) {
     return {cos, sin};
 }
 
-/// How the ball fell: directly, off a cushion, off another ball, or after a cushion of the cue ball.
-ShotKind kind_of(const Shot& shot, int ball) {
+/// How the ball fell: directly, off a rail, off another ball, or after a cushion of the cue ball.
+ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
     for (const Touch& touch : shot.touches)
         if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time)
             return ShotKind::kKick;
-    if (shot.first_hits.empty() || shot.first_hits[0] != ball) return ShotKind::kCombination;
-    const bool bank = std::any_of(shot.touches.begin(), shot.touches.end(),
-                                  [&](const Touch& touch) { return touch.cushion() && touch.ball == ball; });
-    return bank ? ShotKind::kBank : ShotKind::kPot;
+    if (shot.first_hits.empty() || shot.first_hits[0] != fallen.ball) return ShotKind::kCombination;
+    return is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
+}
+
+/// How far a direction turns to the left to become another one [degrees].
+double turn_deg(const Vec2& from, const Vec2& to) {
+    return direction_deg({dot(from, to), cross(from, to)});
 }
 
 double sd_of_aim(const Noise& noise) {
@@ -188,7 +191,7 @@ void Search::correct(std::vector<Line>& lines) const {
                 // Squirt carries the cue ball past the ball: the aim moves back by as much.
                 const Vec2 way = line.ghost - line.candidate.place,
                            went = planar(record.state_at(shot.struck, 0.0).velocity);
-                line.candidate.cue.aim_deg -= direction_deg({dot(way, went), cross(way, went)});
+                line.candidate.cue.aim_deg -= turn_deg(way, went);
                 return;
             }
             const Event* stop = next_stop(record, ball, shot.first_time);
@@ -214,8 +217,7 @@ std::vector<Candidate> Search::pots(std::span<const Vec2> places) const {
             candidate.place = place;
             candidate.ball = pot.ball;
             candidate.pocket = pot.pocket;
-            candidate.cut_deg =
-                direction_deg({dot(pot.ghost - place, pot.towards), cross(pot.ghost - place, pot.towards)});
+            candidate.cut_deg = turn_deg(pot.ghost - place, pot.towards);
             if (!legal(state_, ids_of(scene_.ball)).callable.empty())
                 candidate.call = {.ball = std::to_string(pot.ball),
                                   .pocket = scene_.table.pockets[static_cast<std::size_t>(pot.pocket)].id};
@@ -283,9 +285,13 @@ std::vector<Candidate> Search::sweep(const Vec2& place) const {
             for (const Shot::Fallen& fallen : shot.pocketed) {
                 const std::string& id = record.tracks[static_cast<std::size_t>(fallen.ball)].id;
                 if (fallen.ball == shot.struck || (calls && id != candidate.call.ball)) continue;
-                candidate.kind = kind_of(shot, fallen.ball);
+                candidate.kind = kind_of(record, shot, fallen);
                 candidate.ball = number_of(id);
                 candidate.pocket = fallen.pocket;
+                const auto at = [&](int which) {
+                    return planar(record.state_at(which, shot.first_time).position);
+                };
+                candidate.cut_deg = turn_deg(at(shot.struck) - place, at(fallen.ball) - at(shot.struck));
                 break;
             }
         }
