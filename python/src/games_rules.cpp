@@ -118,11 +118,16 @@ Place free_place(const NativeRecord& record, const OptionRow& option, const Plac
     return {place.x(), place.y()};
 }
 
-/// The table before the next shot, with `cue`: a section of a scene file, or nothing.
+/// The table before the next shot, with `cue`: a section of a scene file, or nothing. Without a cue, a ball
+/// in hand may lie on the free place nearest to the head spot, as in carom next.
 NativeScene next_table(const NativeRecord& record, const NativeScene* other, const OptionRow& option,
                        const std::optional<Place>& place, const std::string& cue) {
     const Scene& scene = scene_of(record, other);
-    return with_cue(cue, games::table_after(scene, *record.record, option_of(option), vec2(place)));
+    const games::Option taken = option_of(option);
+    std::optional<Vec2> at = vec2(place);
+    if (!at && cue.empty() && taken.state.in_hand != games::InHand::kNo)
+        at = games::free_place(*record.record, taken, head_spot(record.record->table));
+    return with_cue(cue, games::table_after(scene, *record.record, taken, at));
 }
 
 using ShareRow = std::tuple<double, double, double>;
@@ -194,6 +199,15 @@ void add_games_rules(nb::module_& m) {
           nb::arg("place").none(), nb::arg("cue"));
     m.def("spots", spots);
     m.def("advise", advise);
+    // The table with a strike, and the cue ball at a place.
+    m.def(
+        "struck",
+        [](const NativeScene& scene, const std::optional<Place>& place, const std::string& cue) {
+            games::Advice advice;
+            advice.place = vec2(place);
+            return with_cue(cue, games::scene_with(*scene.scene, advice));
+        },
+        nb::arg("scene"), nb::arg("place").none(), nb::arg("cue"));
     m.def("skills", [] { return std::vector<std::string>(games::kSkills.begin(), games::kSkills.end()); });
     m.def("noise_of_skill", [](const std::string& skill, double radius) {
         const games::Noise sd = games::skill_by_name(skill, radius).noise;

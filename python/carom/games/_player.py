@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from carom import _carom
 from carom._arguments import checked
-from carom._scene import SceneLike, as_scene
+from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 from carom.games._noise import Noise, noisy
 from carom.games._rules import Call, State, _fitting
 
@@ -65,9 +65,19 @@ def advise(
         Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), Call(*row[6]), *row[7:]) for row in rows]
 
 
+class PlayerShot(NamedTuple):
+    """What a player does, with its errors."""
+
+    words: str  # what it means to do
+    scene: Scene  # the shot
+    call: Call
+    cue: dict[str, Any]  # the strike, as for `carom.Scene`
+    place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
+
+
 @checked
 class Player:
-    """Somebody to play against: what it intends is the best advice, and its strike has the errors of its level.
+    """Somebody to play against: it means to play the best advice, and strikes with the errors of its level.
 
     skill: one of `SKILLS`
     """
@@ -77,12 +87,13 @@ class Player:
             raise ValueError(f"skill={skill!r}: expected {', '.join(SKILLS)}")
         self.skill, self.seed, self._shots = skill, seed, 0
 
-    def shot(self, state: State, scene: SceneLike) -> tuple[dict[str, Any], Call, tuple[float, float] | None]:
-        """The next shot: the strike, as a mapping for `carom.Scene` or `carom.games.next_scene`; the call; and
-        the place of a cue ball in hand. Raises ValueError as `advise`."""
+    def shot(self, state: State, scene: SceneLike) -> PlayerShot:
+        """The next shot from a table at rest. Raises ValueError as `advise`."""
         self._shots += 1
         table = as_scene(scene)
         seed = (self.seed * 1_000_003 + self._shots) % 2**63
-        first = advise(state, table, self.skill, seed=seed, best=1, shots=0)[0]
+        best = advise(state, table, self.skill, seed=seed, best=1, shots=0)[0]
         noise = Noise(*_carom.noise_of_skill(self.skill, 0.028575))
-        return noisy(first.cue._asdict(), noise, self.seed, self._shots), first.call, first.place
+        cue = noisy(best.cue._asdict(), noise, self.seed, self._shots)
+        shot = scene_with_cue(cue, lambda section: _carom.struck(table._native, best.place, section))
+        return PlayerShot(best.words, shot, best.call, cue, best.place)

@@ -227,11 +227,12 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             self._player is not None and self._state.turn == 1
             and not any(self.terminations.values()) and not any(self.truncations.values())
         ):
-            cue, call, place = self._player.shot(self._state, self._game.scene_of(self._xy))
-            if place is not None:
-                self._place_at = self._xy[self._game.cue_ball] = place
+            shot = self._player.shot(self._state, self._game.scene_of(self._xy))
+            if shot.place is not None:
+                self._place_at = self._xy[self._game.cue_ball] = shot.place
+            cue = shot.cue
             strike = [cue["speed"], cue["aim_deg"], cue["elevation_deg"], *cue["offset"]]
-            self._play(np.array(strike), call)
+            self._play(np.array(strike), shot.call)
 
     def _play(self, cue: NDArray[np.float64], call: games.Call | None) -> None:
         """Plays and judges a strike: an array of `carom.games.STRIKE`."""
