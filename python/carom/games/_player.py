@@ -34,8 +34,8 @@ class Advice(NamedTuple):
     cue: Cue
     call: Call
     place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
-    # From shots that the search has not seen: how often the turn or the game is won, and how often the shot is
-    # a foul; each with its interval of 95 %.
+    # From shots that the search has not seen: how often the turn or the game is won, and how often the shot
+    # is a foul; each with its interval of 95 %.
     makes: tuple[float, float, float]
     fouls: tuple[float, float, float]
     worth: float  # mean value of what the shot leaves: 1 is a game won, 0 one lost
