@@ -1,5 +1,7 @@
 #include "player/lie.h"
 
+#include <array>
+#include <vector>
 #include <algorithm>
 #include <bit>
 #include <cmath>

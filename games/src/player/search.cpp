@@ -1,5 +1,7 @@
 #include "player/search.h"
 
+#include <span>
+#include <vector>
 #include <algorithm>
 #include <array>
 #include <cmath>
