@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "carom/games/noise.h"
+#include "carom/games/player.h"
 #include "cue.h"
 #include "guard.h"
 #include "handles.h"
@@ -219,6 +220,55 @@ carom_status carom_next_shot(const carom_record* record, const carom_verdict* ve
         if (place != nullptr) put = carom::Vec2(place[0], place[1]);
         const carom::Cue strike = cue_of(games::cue_ball(of.state), *cue);
         s.scene = asked([&] { return games::next_scene(record->scene, record->record, of, strike, put); });
+    });
+}
+
+carom_status carom_advise(const carom_game_state* state, const carom_scene* scene, const char* skill,
+                          uint64_t seed, size_t best, carom_advice** advice) {
+    return made(advice, [&](carom_advice& a) {
+        need({state, scene, skill});
+        games::AdviceOptions options;
+        options.seed = seed;
+        options.best = best;
+        const games::State before = state_of(*state);
+        a.shots = asked([&] {
+            const games::Skill level = games::skill_by_name(skill, scene->scene.balls.R);
+            return games::advise(before, scene->scene, level, carom::kernel::best_isa(), options);
+        });
+        for (const games::Advice& shot : a.shots)
+            a.words.push_back(games::words_of(shot, scene->scene.table));
+    });
+}
+
+void carom_advice_free(carom_advice* advice) {
+    delete advice;
+}
+
+size_t carom_advice_count(const carom_advice* advice) {
+    return advice != nullptr ? advice->shots.size() : 0;
+}
+
+carom_status carom_advice_shot(const carom_advice* advice, size_t index, carom_advised* shot) {
+    return guarded([&] {
+        need({advice, shot});
+        check_index(index, advice->shots.size(), "shot");
+        const games::Advice& of = advice->shots[index];
+        *shot = {};
+        shot->words = advice->words[index].c_str();
+        shot->kind = carom::name(of.kind);
+        for (const auto& [theirs, ours] : kCueNumbers) shot->cue.*theirs = of.cue.*ours;
+        shot->call = {of.call.ball.c_str(), of.call.pocket.c_str(), of.call.safety ? 1 : 0,
+                      of.call.push_out ? 1 : 0};
+        shot->placed = of.place ? 1 : 0;
+        if (of.place) std::copy_n(of.place->data(), 2, shot->place);
+        const auto fill = [](double* out, const games::Share& share) {
+            out[0] = share.value;
+            out[1] = share.low;
+            out[2] = share.high;
+        };
+        fill(shot->makes, of.makes);
+        fill(shot->fouls, of.fouls);
+        shot->worth = of.worth;
     });
 }
 

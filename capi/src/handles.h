@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "carom/engine/batch.h"
 #include "carom/engine/record.h"
+#include "carom/games/player.h"
 #include "carom/games/rules.h"
 
 struct carom_scene {
@@ -20,6 +22,11 @@ struct carom_verdict {
     carom::games::Verdict verdict;
     carom::games::Game game;
     std::string record;  // hash of the record that was judged
+};
+
+struct carom_advice {
+    std::vector<carom::games::Advice> shots;
+    std::vector<std::string> words;
 };
 
 struct carom_batch {

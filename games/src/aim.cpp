@@ -23,9 +23,6 @@ namespace {
 constexpr int kDirections = 144;
 /// [-] Bisections between a direction that enters and one that does not: to 1e-11 of the gap.
 constexpr int kHalvings = 36;
-/// [-] Cosine of the largest angle between a path and the axis of a pocket's mouth at which a ball that rubs
-/// a facing is expected to fall: 50 degrees. Along a rail into the corner it is 45.
-constexpr double kSteepest = 0.643;
 /// [ball radii] Rounding of positions: a ball against a cushion may run along it.
 constexpr double kAlongCushion = 1e-9;
 
@@ -52,27 +49,15 @@ double way_to_circle(const Pocket& pocket, const Vec2& from, const Vec2& towards
     return std::max(0.0, along - std::sqrt(pocket.radius * pocket.radius - aside * aside));
 }
 
-/// The mouth of a pocket, between the two jaws nearest to it; empty if there are none.
-std::optional<std::pair<Vec2, Vec2>> mouth_of(const Table& table, const Pocket& pocket) {
-    std::vector<Vec2> jaws;
-    for (const Jaw& jaw : table.jaws)
-        if (!jaw.is_arc()) jaws.push_back(jaw.center);
-    if (jaws.size() < 2) return std::nullopt;
-    std::partial_sort(jaws.begin(), jaws.begin() + 2, jaws.end(), [&](const Vec2& a, const Vec2& b) {
-        return (a - pocket.center).squaredNorm() < (b - pocket.center).squaredNorm();
-    });
-    return std::pair(jaws[0], jaws[1]);
-}
-
 /// Distance through a pocket's mouth to the circle's edge, or beside it; infinite if the line misses the
 /// mouth, or is too flat to it.
 double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& from, const Vec2& towards) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    const auto mouth = mouth_of(table, pocket);
-    if (!mouth) return kNever;
-    const Vec2 across = mouth->second - mouth->first, to = mouth->first - from;
+    const auto jaws = detail::jaws_of(table, pocket);
+    if (!jaws) return kNever;
+    const Vec2 across = jaws->second->center - jaws->first->center, to = jaws->first->center - from;
     const double turn = cross(towards, across);
-    if (std::abs(turn) < kSteepest * length(across)) return kNever;
+    if (std::abs(turn) < detail::kSteepest * length(across)) return kNever;
     const double way = cross(to, across) / turn, share = cross(to, towards) / turn;
     return way > 0.0 && share > 0.0 && share < 1.0 ? way : kNever;
 }
@@ -159,6 +144,17 @@ const BallStart& ball_of(const Scene& scene, std::string_view id) {
 const Pocket& pocket_of(const Scene& scene, std::string_view id) {
     if (const int p = index_of(scene.table.pockets, id); p >= 0) return scene.table.pockets[p];
     throw std::invalid_argument("there is no pocket \"" + std::string(id) + "\" on the table");
+}
+
+std::optional<std::pair<const Jaw*, const Jaw*>> jaws_of(const Table& table, const Pocket& pocket) {
+    std::vector<const Jaw*> jaws;
+    for (const Jaw& jaw : table.jaws)
+        if (!jaw.is_arc()) jaws.push_back(&jaw);
+    if (jaws.size() < 2) return std::nullopt;
+    std::partial_sort(jaws.begin(), jaws.begin() + 2, jaws.end(), [&](const Jaw* a, const Jaw* b) {
+        return (a->center - pocket.center).squaredNorm() < (b->center - pocket.center).squaredNorm();
+    });
+    return std::pair(jaws[0], jaws[1]);
 }
 
 PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R) {

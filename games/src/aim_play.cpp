@@ -20,6 +20,10 @@
 namespace carom::games {
 namespace {
 
+using detail::missed;
+using detail::next_stop;
+using detail::off_line;
+
 /// [-] Doubling steps that bracket the wanted aim, and steps that then narrow it down.
 constexpr int kBrackets = 14, kNarrow = 40;
 /// [-] Corrections of a strike that misses the ball.
@@ -67,30 +71,6 @@ struct Player {
     int shots = 0;
 };
 
-/// Why the cue ball does not hit this ball first, or "".
-std::string missed(const Record& record, const Shot& shot, int ball) {
-    if (shot.first_hits.empty()) return "the cue ball meets no ball";
-    if (shot.first_hits.size() > 1) return "the cue ball meets two balls at once";
-    if (shot.first_hits[0] != ball)
-        return "the cue ball meets ball " + record.tracks[static_cast<std::size_t>(shot.first_hits[0])].id +
-               " first";
-    for (const Touch& t : shot.touches)
-        if (t.cushion() && t.ball == shot.struck && t.time < shot.first_time)
-            return "the cue ball meets a cushion first";
-    return "";
-}
-
-/// The first thing after `time` that ends a ball's straight run: a cushion, a ball, a pocket, or rest.
-const Event* next_stop(const Record& record, int ball, double time) {
-    for (const Event& e : record.events) {
-        const EventKind& of = kind(e.type);
-        const bool other = of.partner == Partner::kBall && e.b == ball;
-        const bool mine = e.a == ball && (of.partner != Partner::kNone || e.type == EventType::kBallOut);
-        if (e.time > time && (mine || other)) return &e;
-    }
-    return nullptr;
-}
-
 Vec2 place_at(const Record& record, int ball, double time) {
     return planar(record.state_at(ball, time).position);
 }
@@ -98,16 +78,6 @@ Vec2 place_at(const Record& record, int ball, double time) {
 bool fell_into(const Shot& shot, int ball, int pocket) {
     return std::find(shot.pocketed.begin(), shot.pocketed.end(), Shot::Fallen{ball, pocket}) !=
            shot.pocketed.end();
-}
-
-/// How far a ball deviates from the direction `towards` between two events.
-std::optional<double> off_line(const Record& record, int ball, double from, const Event* stop,
-                               const Vec2& towards) {
-    const Vec2 way =
-        place_at(record, ball, stop != nullptr ? stop->time : record.duration) - place_at(record, ball, from);
-    const double size = length(way);
-    if (!(size > 0.0)) return std::nullopt;
-    return cross(towards, way) / size;
 }
 
 /// One strike. @param towards  the ball should run along it; null: into the pocket after its first cushion
@@ -199,6 +169,41 @@ std::string refused(const Player& player, const PocketLine& line, double cut_deg
 }
 
 }  // namespace
+
+namespace detail {
+
+std::string missed(const Record& record, const Shot& shot, int ball) {
+    if (shot.first_hits.empty()) return "the cue ball meets no ball";
+    if (shot.first_hits.size() > 1) return "the cue ball meets two balls at once";
+    if (shot.first_hits[0] != ball)
+        return "the cue ball meets ball " + record.tracks[static_cast<std::size_t>(shot.first_hits[0])].id +
+               " first";
+    for (const Touch& t : shot.touches)
+        if (t.cushion() && t.ball == shot.struck && t.time < shot.first_time)
+            return "the cue ball meets a cushion first";
+    return "";
+}
+
+const Event* next_stop(const Record& record, int ball, double time) {
+    for (const Event& e : record.events) {
+        const EventKind& of = kind(e.type);
+        const bool other = of.partner == Partner::kBall && e.b == ball;
+        const bool mine = e.a == ball && (of.partner != Partner::kNone || e.type == EventType::kBallOut);
+        if (e.time > time && (mine || other)) return &e;
+    }
+    return nullptr;
+}
+
+std::optional<double> off_line(const Record& record, int ball, double from, const Event* stop,
+                               const Vec2& towards) {
+    const Vec2 way =
+        place_at(record, ball, stop != nullptr ? stop->time : record.duration) - place_at(record, ball, from);
+    const double size = length(way);
+    if (!(size > 0.0)) return std::nullopt;
+    return cross(towards, way) / size;
+}
+
+}  // namespace detail
 
 Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::string_view pocket) {
     Player player(scene, how, ball, pocket);

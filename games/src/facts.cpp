@@ -20,6 +20,17 @@ bool is_in(std::string_view ball, const std::vector<Respot>& respots) {
     return std::any_of(respots.begin(), respots.end(), [&](const Respot& r) { return r.ball == ball; });
 }
 
+bool is_bank(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
+    // [-] Of the table's width.
+    constexpr double kFar = 0.25;
+    const Vec2 pocket = record.table.pockets[static_cast<std::size_t>(fallen.pocket)].center;
+    return std::any_of(shot.touches.begin(), shot.touches.end(), [&](const Touch& touch) {
+        if (!touch.cushion() || !touch.driven || touch.ball != fallen.ball) return false;
+        return length(planar(record.state_at(touch.ball, touch.time).position) - pocket) >
+               kFar * record.table.width;
+    });
+}
+
 int number_of(std::string_view ball) {
     return std::max(0, as_number<int>(ball).value_or(0));
 }

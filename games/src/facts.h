@@ -63,6 +63,9 @@ class Facts {
 
 bool is_in(std::string_view ball, const std::vector<std::string>& list);
 bool is_in(std::string_view ball, const std::vector<Respot>& respots);
+/// Whether a ball that fell was driven to a rail far from the pocket: not one that rubs a rail, a facing or a
+/// jaw at its mouth.
+bool is_bank(const Record& record, const Shot& shot, const Shot::Fallen& fallen);
 /// The number of a numbered ball, or 0.
 int number_of(std::string_view ball);
 /// [-] Object balls that a break must drive to a cushion if nothing falls (WPA 2.3, 3.3).

@@ -66,7 +66,7 @@ template <class Test>
 double any_fell(const PlayedShot& played, Test&& test) {
     const Shot& shot = played.shot();
     return double(std::any_of(shot.pocketed.begin(), shot.pocketed.end(), [&](const Shot::Fallen& fallen) {
-        return fallen.ball != shot.struck && test(fallen.ball);
+        return fallen.ball != shot.struck && test(fallen);
     }));
 }
 
@@ -89,20 +89,16 @@ const MeasureRow kRouteRows[] = {
      [](P p, A) -> V { return route(p); }},
     {{"kick", "", "truth", "whether the struck ball is driven to a cushion before it hits a ball"},
      [](P p, A) -> V { return double(count_before(p, meeting(p, 0)) > 0.0); }},
-    {{"bank", "", "truth", "whether a ball fell that was driven to a rail before"},
+    {{"bank", "", "truth", "whether a ball fell that was driven to a rail far from the pocket before"},
      [](P p, A) -> V {
-         return any_fell(p, [&p](int ball) {
-             const std::vector<std::size_t> events = driven(p, ball);
-             return std::any_of(events.begin(), events.end(), [&p](std::size_t i) {
-                 return kind(p.record.events[i].type).partner == Partner::kCushion;
-             });
-         });
+         return any_fell(p, [&p](const Shot::Fallen& fallen) { return is_bank(p.record, p.shot(), fallen); });
      }},
     {{"combination", "", "truth", "whether a ball fell that the struck ball did not hit"},
      [](P p, A) -> V {
          const std::vector<Touch> met = meetings(p);
-         return any_fell(p, [&met](int ball) {
-             return std::none_of(met.begin(), met.end(), [ball](const Touch& t) { return t.other == ball; });
+         return any_fell(p, [&met](const Shot::Fallen& fallen) {
+             return std::none_of(met.begin(), met.end(),
+                                 [&](const Touch& t) { return t.other == fallen.ball; });
          });
      }},
     {{"carom", "", "truth", "whether the struck ball hits two balls"},

@@ -310,7 +310,8 @@ Share share_of(std::size_t part, std::size_t whole) {
     const double n = static_cast<double>(whole), p = static_cast<double>(part) / n, z2 = kZ * kZ / n;
     const double middle = (p + 0.5 * z2) / (1.0 + z2);
     const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
-    return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+    // At 0 and 1, rounding must not part the interval from the share.
+    return {p, part == 0 ? 0.0 : middle - half, part == whole ? 1.0 : middle + half};
 }
 
 std::vector<Choice> default_choices() {

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/games/player.h"
 #include "carom/games/rules.h"
 #include "carom/games/spots.h"
 #include "native.h"
@@ -117,11 +118,46 @@ Place free_place(const NativeRecord& record, const OptionRow& option, const Plac
     return {place.x(), place.y()};
 }
 
-/// The table before the next shot, with `cue`: a section of a scene file, or nothing.
+/// The table before the next shot, with `cue`: a section of a scene file, or nothing. Without a cue, a ball
+/// in hand may lie on the free place nearest to the head spot, as in carom next.
 NativeScene next_table(const NativeRecord& record, const NativeScene* other, const OptionRow& option,
                        const std::optional<Place>& place, const std::string& cue) {
     const Scene& scene = scene_of(record, other);
-    return with_cue(cue, games::table_after(scene, *record.record, option_of(option), vec2(place)));
+    const games::Option taken = option_of(option);
+    std::optional<Vec2> at = vec2(place);
+    if (!at && cue.empty() && taken.state.in_hand != games::InHand::kNo)
+        at = games::free_place(*record.record, taken, head_spot(record.record->table));
+    return with_cue(cue, games::table_after(scene, *record.record, taken, at));
+}
+
+using ShareRow = std::tuple<double, double, double>;
+using CueRow = std::tuple<double, double, double, double, double>;
+/// In the order of carom.games.Advice.
+using AdviceRow = std::tuple<std::string, std::string, std::string, std::string, double, CueRow, CallRow,
+                             std::optional<Place>, ShareRow, ShareRow, double, std::vector<std::string>>;
+
+std::vector<AdviceRow> advise(const StateRow& state, const NativeScene& scene, const std::string& skill,
+                              std::uint64_t seed, std::size_t best, std::size_t fresh, int threads) {
+    const Scene& table = *scene.scene;
+    games::AdviceOptions options;
+    options.seed = seed;
+    options.best = best;
+    options.fresh = fresh;
+    options.threads = threads;
+    const games::State before = state_of(state);
+    const nb::gil_scoped_release no_gil;
+    const games::Skill level = games::skill_by_name(skill, table.balls.R);
+    std::vector<AdviceRow> rows;
+    for (const games::Advice& a : games::advise(before, table, level, kernel::best_isa(), options)) {
+        const auto share = [](const games::Share& s) { return ShareRow(s.value, s.low, s.high); };
+        std::optional<Place> place;
+        if (a.place) place = {a.place->x(), a.place->y()};
+        rows.emplace_back(games::words_of(a, table.table), name(a.kind), a.ball, a.pocket, a.cut_deg,
+                          CueRow(a.cue.speed, a.cue.aim_deg, a.cue.elevation_deg, a.cue.side, a.cue.height),
+                          CallRow(a.call.ball, a.call.pocket, a.call.safety, a.call.push_out), place,
+                          share(a.makes), share(a.fouls), a.worth, a.leaves);
+    }
+    return rows;
 }
 
 std::vector<std::pair<std::string, Place>> spots(const NativeRecord& record) {
@@ -162,6 +198,21 @@ void add_games_rules(nb::module_& m) {
     m.def("next_table", next_table, nb::arg("record"), nb::arg("scene").none(), nb::arg("option"),
           nb::arg("place").none(), nb::arg("cue"));
     m.def("spots", spots);
+    m.def("advise", advise);
+    // The table with a strike, and the cue ball at a place.
+    m.def(
+        "struck",
+        [](const NativeScene& scene, const std::optional<Place>& place, const std::string& cue) {
+            games::Advice advice;
+            advice.place = vec2(place);
+            return with_cue(cue, games::scene_with(*scene.scene, advice));
+        },
+        nb::arg("scene"), nb::arg("place").none(), nb::arg("cue"));
+    m.def("skills", [] { return std::vector<std::string>(games::kSkills.begin(), games::kSkills.end()); });
+    m.def("noise_of_skill", [](const std::string& skill, double radius) {
+        const games::Noise sd = games::skill_by_name(skill, radius).noise;
+        return CueRow(sd.speed, sd.aim_deg, sd.elevation_deg, sd.side, sd.height);
+    });
 }
 
 }  // namespace carom::python

@@ -57,6 +57,30 @@ TEST(CApiGames, AnOptionOfTheRulesIsKept) {
     EXPECT_EQ(carom_judge(&state, record.get(), nullptr, &none), CAROM_BAD_ARGUMENT);
 }
 
+TEST(CApiGames, AdviceIsAStrikeThatPots) {
+    carom_game_state state = nine_ball();
+    const ScenePtr table = parsed(
+        "[[ball]]\nid = \"cue\"\nposition = [0.6, 0.6]\n[[ball]]\nid = \"1\"\nposition = [0.3, 0.3]\n"
+        "[[ball]]\nid = \"9\"\nposition = [0.7, 2.0]\n");
+    carom_advice* advice = nullptr;
+    ASSERT_EQ(carom_advise(&state, table.get(), "club", 1, 2, &advice), CAROM_OK) << carom_last_error();
+    ASSERT_GE(carom_advice_count(advice), 1u);
+    carom_advised shot;
+    ASSERT_EQ(carom_advice_shot(advice, 0, &shot), CAROM_OK);
+    EXPECT_STREQ(shot.kind, "pot");
+    EXPECT_EQ(std::string(shot.words).substr(0, 7), "1 into ");
+    EXPECT_EQ(shot.placed, 0);
+    EXPECT_GT(shot.makes[0], 0.8);
+    EXPECT_GT(shot.cue.mass, 0.1);
+    EXPECT_EQ(carom_advice_shot(advice, 9, &shot), CAROM_BAD_ARGUMENT);
+    carom_advice_free(advice);
+    EXPECT_EQ(carom_advise(&state, table.get(), "wizard", 1, 2, &advice), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(advice, nullptr);
+    EXPECT_STREQ(carom_last_error(),
+                 "unknown level \"wizard\"; use beginner, club, league, professional, machine");
+    carom_advice_free(nullptr);
+}
+
 TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     const carom_game_state state = nine_ball();
     const char* ids[] = {"cue", "9", "1"};

@@ -116,7 +116,9 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
     assert verdict.next.turn == 1 and verdict.next.in_hand == "anywhere" and verdict.next.fouls == (1, 0)
     assert [option.decision for option in verdict.options] == ["take in hand"]
     with pytest.raises(ValueError, match="give its place"):
-        games.next_scene(record, verdict)
+        games.next_scene(record, verdict, {"speed": 2.0})
+    table = games.next_scene(record, verdict)
+    assert games.may_place(record, verdict.options[0], table.positions[table.ids.index("cue")])
     assert not games.may_place(record, verdict.options[0], (0.7, 1.02))
     with pytest.raises(ValueError, match="not free"):
         games.next_scene(record, verdict, place=(0.7, 1.02))

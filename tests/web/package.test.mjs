@@ -251,3 +251,18 @@ test("a machine without SIMD gets the plain module, and the same bits", {skip: w
   const plain = execFileSync(process.execPath, traced, {encoding: "utf8"}).trim();
   assert.equal(plain, simulate(Scene.parse(sceneText("eight_ball_break.toml"))).hash);
 });
+
+test("advice is a shot that can be played and judged", () => {
+  const ball = (id, x, y) => `[[ball]]\nid = "${id}"\nposition = [${x}, ${y}]\n`;
+  const scene = Scene.parse(ball("cue", 0.6, 0.6) + ball("3", 0.3, 0.3) + ball("8", 1.0, 2.3) + "[cue]\n");
+  const state = {...games.start("eight_ball"), opening: false, in_hand: "no", group: ["solids", "stripes"]};
+  const [best] = games.advise(state, scene, {skill: "club", best: 1});
+  assert.deepEqual([best.kind, best.ball, best.call.pocket], ["pot", "3", best.pocket]);
+  const {speed, aim_deg, elevation_deg, offset: [side, height]} = best.cue;
+  const shot = simulate(scene.with({
+    "cue.speed": speed, "cue.aim_deg": aim_deg, "cue.elevation_deg": elevation_deg,
+    "cue.offset.side": side, "cue.offset.height": height}));
+  assert.equal(games.judge(state, shot, best.call).points, 1);
+  assert.throws(() => games.advise(state, scene, {skill: "wizard"}), /beginner, club/);
+  assert.throws(() => games.advise(state, scene, {seed: 0.5}), TypeError);
+});

@@ -14,6 +14,7 @@ void add_render(Options& program);
 void add_view(Options& program);
 void add_play(Options& program);
 void add_diagram(Options& program);
+void add_advise(Options& program);
 void add_judge(Options& program);
 void add_next(Options& program);
 void add_export(Options& program);
@@ -47,7 +48,7 @@ int run(int argc, char** argv) {
             program.commands.back().group = group;
         }
     };
-    add("Play", {add_simulate, add_play, add_next, add_judge});
+    add("Play", {add_simulate, add_play, add_next, add_judge, add_advise});
     add("Look", {add_view, add_render, add_diagram, add_export, add_compare});
     add("Many shots", {add_sweep, add_break, add_solve, add_sensitivity, add_fit});
     add("Ask", {add_check, add_accuracy, add_margin});

@@ -352,6 +352,15 @@ export const games = {
     expectOf(Scene, "scene", scene);
     return JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle));
   },
+  advise(state, scene, {skill = "professional", seed = 1, best = 3, shots = 400} = {}) {
+    expectObject("state", state);
+    expectOf(Scene, "scene", scene);
+    expectText("skill", skill);
+    for (const [key, value] of Object.entries({seed, best, shots})) expectWhole(key, value);
+    const options = JSON.stringify({skill, seed, best, shots});
+    return JSON.parse(call("carom_game_advise", JSON.stringify(state), scene.handle, options)).map(
+      ({call: {push_out: pushOut, ...announced}, ...advice}) => ({...advice, call: {...announced, pushOut}}));
+  },
   judge(state, shot, announced = {}) {
     expectObject("state", state);
     expectOf(Shot, "shot", shot);

@@ -233,6 +233,27 @@ export interface GameState {
   rules?: string[];
 }
 
+/** A shot to play, and how sure it is. Shares have their intervals of 95 %: [share, low, high]. */
+export interface Advice {
+  words: string;
+  kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
+  /** What it pots, and where; "" for other kinds. */
+  ball: string;
+  pocket: string;
+  cut_deg: number;
+  cue: {speed: number; aim_deg: number; elevation_deg: number; offset: [number, number]};
+  /** As judge() takes it. */
+  call: {ball: string; pocket: string; safety: boolean; pushOut: boolean};
+  /** Of the cue ball in hand [m]. */
+  place: [number, number] | null;
+  /** Of shots that the search has not seen: those that win the turn or the game, and fouls. */
+  makes: [number, number, number];
+  fouls: [number, number, number];
+  /** Mean value of what the shot leaves: 1 is a game won, 0 one lost. */
+  worth: number;
+  leaves: string[];
+}
+
 export class Verdict {
   /** Empty for a fair shot. */
   readonly fouls: {foul: string; rule: string}[];
@@ -272,6 +293,11 @@ export const games: {
     mayPushOut: boolean;
     text: string;
   };
+  /** The best shots that differ in kind, ball or pocket, the best first; at least one. `skill`: "beginner",
+   * "club", "league", "professional" or "machine"; `shots` that check each of them, 0 for none. It takes some
+   * tenths of a second: call it in a Worker. Eight-ball, nine-ball and ten-ball. @throws CaromError */
+  advise(state: GameState, scene: Scene,
+    options?: {skill?: string; seed?: number; best?: number; shots?: number}): Advice[];
   judge(state: GameState, shot: Shot,
     announced?: {ball?: string; pocket?: string; safety?: boolean; pushOut?: boolean}): Verdict;
 };

@@ -1,4 +1,5 @@
 // Games: what is legal, the verdict on a shot, the next scene.
+#include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "base/game_state.h"
 #include "base/verdict.h"
+#include "carom/games/player.h"
 #include "carom/games/rules.h"
 #include "web.h"
 
@@ -91,6 +93,22 @@ CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size
         }
         std::string text = dumped(json);
         give(verdict.release(), std::move(text));
+    });
+}
+/// @param options {"skill", "seed", "best", "shots"}
+CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebScene* scene,
+                                const char* options, std::size_t options_size) {
+    return guarded([&] {
+        const Json asked = Json::parse(options, options + options_size);
+        const Scene& table = scene->scene;
+        games::AdviceOptions how;
+        how.seed = asked.at("seed").get<std::uint64_t>();
+        how.best = asked.at("best").get<std::size_t>();
+        how.fresh = asked.at("shots").get<std::size_t>();
+        const games::Skill skill = games::skill_by_name(asked.at("skill").get<std::string>(), table.balls.R);
+        const games::State before = state_at(state, size);
+        give(nullptr, dumped(tools::advice_json(games::advise(before, table, skill, kernel::best_isa(), how),
+                                                table.table)));
     });
 }
 CAROM_WEB void carom_free_verdict(WebVerdict* verdict) {

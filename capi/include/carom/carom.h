@@ -331,6 +331,31 @@ CAROM_API carom_status carom_noisy_cue(const carom_cue* cue, const double deviat
 /* The deviations of "none", "fastfiz" or "ai3603" for a ball of this radius [m]. */
 CAROM_API carom_status carom_noise(const char* name, double radius, double deviations[5]);
 
+/* A player's advice on what to play: eight-ball, nine-ball, ten-ball. */
+typedef struct carom_advice carom_advice;
+/* One of its shots. Texts are valid as long as the advice exists. */
+typedef struct carom_advised {
+    const char* words; /* "3 into p6 (head-right corner pocket), cut 20 degrees right, hard, low" */
+    const char* kind;  /* "pot", "combination", "bank", "kick", "safety", "push out", "break" */
+    carom_cue cue;
+    carom_call call;
+    int32_t placed;  /* 1: the cue ball is in hand, and belongs at `place` */
+    double place[2]; /* [m] */
+    /* Shares of shots that the search has not seen, each with its interval of 95 %: that win the turn or the
+     * game, and that are fouls. */
+    double makes[3], fouls[3];
+    double worth; /* mean value of what the shot leaves: 1 is a game won, 0 one lost */
+} carom_advised;
+
+/* The best shots that differ in kind, ball or pocket, at most `best`, the best first. `skill`: "beginner",
+ * "club", "league", "professional" or "machine". The balls of the scene must lie still; its cue ball may be
+ * missing while it is in hand. The same seed gives the same advice. On failure *advice is NULL. */
+CAROM_API carom_status carom_advise(const carom_game_state* state, const carom_scene* scene,
+                                    const char* skill, uint64_t seed, size_t best, carom_advice** advice);
+CAROM_API void carom_advice_free(carom_advice* advice); /* NULL is allowed */
+CAROM_API size_t carom_advice_count(const carom_advice* advice);
+CAROM_API carom_status carom_advice_shot(const carom_advice* advice, size_t index, carom_advised* shot);
+
 /* ---- What a game draws and asks ----
  *
  * Texts in these structs are valid as long as the scene or record exists and is not changed. */

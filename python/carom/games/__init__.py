@@ -6,6 +6,7 @@ Pure functions, the same as in C++ (`carom/games/*.h`). A game is a loop: `new_g
 
 from carom.games._aim import Aim, PocketLine, aim_pot, bank_routes, cut_angle_deg, ghost_ball, pocket_lines
 from carom.games._noise import STRIKE, Noise, noisy
+from carom.games._player import SKILLS, Advice, Cue, Player, PlayerShot, advise
 from carom.games._rules import (
     GAMES,
     Call,
@@ -28,18 +29,24 @@ from carom.games._rules import (
 
 __all__ = [
     "GAMES",
+    "SKILLS",
     "STRIKE",
+    "Advice",
     "Aim",
     "Call",
+    "Cue",
     "Foul",
     "Legal",
     "Noise",
     "Option",
+    "Player",
+    "PlayerShot",
     "PocketLine",
     "Respot",
     "RuleOption",
     "State",
     "Verdict",
+    "advise",
     "aim_pot",
     "bank_routes",
     "book_of",

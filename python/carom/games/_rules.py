@@ -246,7 +246,8 @@ def next_scene(
 
     option: one of the verdict's that does not rack again; a verdict stands for its first option
     cue: the strike, as for Scene; without "ball" it strikes the cue ball; None for none
-    place: of the cue ball [m]; needed if the cue ball is gone, allowed if it is in hand
+    place: of the cue ball [m]; needed if the cue ball is gone, allowed if it is in hand. Without a cue, a
+        ball in hand may lie on the free place nearest to the head spot
     scene: the scene that was played; needed if the record was loaded from a file
 
     Raises ValueError for a missing or forbidden place, an option of another record, a new rack, or a finished

@@ -54,8 +54,9 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`, except that speed is (0.3, 8.0)
     called=False: eight-ball: two more numbers of an action call the ball, among those that may be called, and
-    the pocket. Otherwise your first ball to fall counts as called, so luck helps most_shots=1000: a game with
-    this many shots is truncated
+        the pocket. Otherwise your first ball to fall counts as called, so luck helps
+    opponent: a level of `carom.games.SKILLS` that plays player_1 inside `step`; None: you play both
+    most_shots=1000: a game with this many shots is truncated
     render_mode, size: as for `carom.gym.TableEnv`
 
     An action is Box(-1, 1): a strike, as for the other environments. Placing a cue ball in hand is a separate
@@ -78,6 +79,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         game: str,
         *,
         called: bool = False,
+        opponent: str | None = None,
         most_shots: int = 1000,
         **options: Any,
     ) -> None:
@@ -86,6 +88,9 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             raise ValueError(f"game={game!r}: expected {', '.join(_GAMES)}")
         if called and game != "EightBall":
             raise ValueError("called: only eight-ball has calls; leave it out")
+        if opponent is not None and game == "Snooker":
+            raise ValueError("opponent: there is no player of snooker; leave it out")
+        self._player = None if opponent is None else games.Player(opponent)
         self._rules, self._table, self._break_from = _GAMES[game]
         self._options = Options(**{"speed": (0.3, 8.0)} | options)
         self._strikes = self._options.strikes()
@@ -136,6 +141,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         self.truncations = dict.fromkeys(self.agents, False)
         self.infos: dict[str, dict[str, Any]] = {agent: {} for agent in self.agents}
         self._shots = 0
+        if self._player is not None:
+            self._player = games.Player(self._player.skill, self._noise_seed)
         self._begin(games.new_game(self._rules))
 
     def observe(self, agent: str) -> dict[str, Any]:
@@ -165,6 +172,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             self._place(act)
         else:
             self._strike(act)
+        self._let_opponent_play()
         self._accumulate_rewards()
 
     def render(self) -> NDArray[np.uint8] | None:
@@ -209,10 +217,26 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         struck, act_cue = self._game.cue_ball, act[None, : self._strikes.size]
         cue = self._strikes.cue(act_cue, self._xy[None], struck, legal[None], self._game.radii)[0]
         call = self._call(act) if self._called else None
-        self._shots += 1
         if not np.isfinite(cue).all():
             return self._stop(ShotStatus.INVALID, "the action is not a number")
-        cue = games.noisy(cue, self._noise, self._noise_seed, self._shots)
+        self._play(games.noisy(cue, self._noise, self._noise_seed, self._shots + 1), call)
+
+    def _let_opponent_play(self) -> None:
+        """While it is the opponent's turn, it plays."""
+        while (
+            self._player is not None and self._state.turn == 1
+            and not any(self.terminations.values()) and not any(self.truncations.values())
+        ):
+            shot = self._player.shot(self._state, self._game.scene_of(self._xy))
+            if shot.place is not None:
+                self._place_at = self._xy[self._game.cue_ball] = shot.place
+            cue = shot.cue
+            strike = [cue["speed"], cue["aim_deg"], cue["elevation_deg"], *cue["offset"]]
+            self._play(np.array(strike), shot.call)
+
+    def _play(self, cue: NDArray[np.float64], call: games.Call | None) -> None:
+        """Plays and judges a strike: an array of `carom.games.STRIKE`."""
+        self._shots += 1
         speed, aim, elevation, side, height = cue.tolist()
         strike = {"speed": speed, "aim_deg": aim, "elevation_deg": elevation, "offset": [side, height]}
         try:

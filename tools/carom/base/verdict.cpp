@@ -54,6 +54,36 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
             {"options", options}};
 }
 
+Json advice_json(const std::vector<games::Advice>& advice, const Table& table) {
+    Json list = Json::array();
+    for (const games::Advice& a : advice) {
+        const auto share = [](const games::Share& s) { return Json{s.value, s.low, s.high}; };
+        Json place;
+        if (a.place) place = {a.place->x(), a.place->y()};
+        list.push_back({{"words", games::words_of(a, table)},
+                        {"kind", carom::name(a.kind)},
+                        {"ball", a.ball},
+                        {"pocket", a.pocket},
+                        {"cut_deg", a.cut_deg},
+                        {"cue",
+                         {{"speed", a.cue.speed},
+                          {"aim_deg", a.cue.aim_deg},
+                          {"elevation_deg", a.cue.elevation_deg},
+                          {"offset", {a.cue.side, a.cue.height}}}},
+                        {"call",
+                         {{"ball", a.call.ball},
+                          {"pocket", a.call.pocket},
+                          {"safety", a.call.safety},
+                          {"push_out", a.call.push_out}}},
+                        {"place", place},
+                        {"makes", share(a.makes)},
+                        {"fouls", share(a.fouls)},
+                        {"worth", a.worth},
+                        {"leaves", a.leaves}});
+    }
+    return list;
+}
+
 Json measure_json(const games::Measure& measure, const Record& record) {
     const games::MeasureValue value = measure.of(record);
     if (!measure.is_number()) return std::get<std::vector<std::string>>(value);

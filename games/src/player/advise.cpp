@@ -1,0 +1,261 @@
+// What a player plays, chooses and says.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/math.h"
+#include "carom/engine/printable.h"
+#include "carom/games/aim.h"
+#include "carom/games/player.h"
+#include "facts.h"
+#include "player/lie.h"
+#include "player/search.h"
+
+namespace carom::games {
+namespace {
+
+using detail::Candidate;
+using detail::Lie;
+using detail::Search;
+
+/// A break that was searched on many racks: where the cue ball lies, in parts of the table's width and
+/// length, and how it is struck.
+struct BreakStroke {
+    Game game;
+    double x, y;
+    double hit;  ///< [-] of the apex ball: 0 is full, 1 a graze on its right
+    double speed, height;
+};
+constexpr BreakStroke kBreaks[] = {
+    {Game::kEightBall, 0.30, 0.23, 0.0, 9.0, 0.0},
+    {Game::kNineBall, 0.30, 0.23, 0.0, 9.0, 0.0},
+    {Game::kTenBall, 0.30, 0.23, 0.0, 9.0, 0.0},
+};
+
+std::vector<std::string> player_games() {
+    std::vector<std::string> names;
+    for (const BreakStroke& row : kBreaks) names.emplace_back(name(row.game));
+    return names;
+}
+
+void check_game(Game game) {
+    if (std::none_of(std::begin(kBreaks), std::end(kBreaks), [&](const auto& b) { return b.game == game; }))
+        throw std::invalid_argument(fmt::format("there is no player of {}; it plays {}", name(game),
+                                                fmt::join(player_games(), ", ")));
+}
+
+/// @throws std::invalid_argument for a scene that cannot be a position of the state's game
+void check_balls(const State& state, const Scene& scene) {
+    for (const BallStart& ball : scene.ball) {
+        if (detail::number_of(ball.id) == 0 && ball.id != cue_ball(state))
+            throw std::invalid_argument(
+                fmt::format("ball {} is not one of {}", in_quotes(ball.id), name(state.game)));
+        if (detail::number_of(ball.id) >= detail::kNumbers)
+            throw std::invalid_argument(
+                fmt::format("ball {} is not one of {}", in_quotes(ball.id), name(state.game)));
+        if (ball.velocity != Vec3::Zero() || ball.spin != Vec3::Zero() || ball.height > 0.0)
+            throw std::invalid_argument(
+                fmt::format("ball {} moves; give a table at rest", in_quotes(ball.id)));
+    }
+}
+
+/// Puts the cue ball of the scene's cue there.
+Scene placed(Scene scene, const Vec2& place) {
+    if (index_of(scene.ball, scene.cue->ball) < 0) {
+        BallStart ball;
+        ball.id = scene.cue->ball;
+        scene.ball.insert(scene.ball.begin(), ball);
+    }
+    BallStart& ball = scene.ball[static_cast<std::size_t>(index_of(scene.ball, scene.cue->ball))];
+    ball.position = {place.x(), place.y(), scene.size_of(ball).R};
+    return scene;
+}
+
+/// The scene with a cue, and a cue ball: one in hand lies on a free place.
+Scene completed(const State& state, Scene scene) {
+    Cue cue = scene.cue.value_or(Cue{});
+    cue.ball = cue_ball(state);
+    scene.cue = cue;
+    if (index_of(scene.ball, cue.ball) >= 0) return scene;
+    if (state.in_hand == InHand::kNo)
+        throw std::invalid_argument("there is no cue ball, and it is not in hand");
+    const double R = scene.balls.R, beside = R + kSpotGap;
+    std::vector<Lying> others;
+    for (const BallStart& ball : scene.ball)
+        others.push_back({planar(ball.position), scene.size_of(ball).R, kSpotGap});
+    // Behind the head string, so that it may lie there in any game.
+    const Vec2 from = scene.table.corner + Vec2(beside, 0.2 * scene.table.length);
+    const auto place = nearest_free(from, {1.0, 0.0}, scene.table.width - 2.0 * beside, R, others);
+    if (!place) throw std::invalid_argument("there is no room for the cue ball");
+    return placed(std::move(scene), *place);
+}
+
+Candidate break_of(const State& state, const Scene& scene) {
+    const auto& b = *std::find_if(std::begin(kBreaks), std::end(kBreaks),
+                                  [&](const auto& row) { return row.game == state.game; });
+    const int apex = index_of(scene.ball, "1"), cue = index_of(scene.ball, cue_ball(state));
+    if (apex < 0) throw std::invalid_argument("there is no rack; give the scene of a break");
+    const Table& table = scene.table;
+    Candidate candidate;
+    candidate.place = table.corner + Vec2(b.x * table.width, b.y * table.length);
+    candidate.cue = *scene.cue;
+    candidate.cue.speed = b.speed;
+    candidate.cue.side = 0.0;
+    candidate.cue.height = b.height;
+    candidate.kind = ShotKind::kBreak;
+    const auto ball = [&](int i) -> const BallStart& { return scene.ball[static_cast<std::size_t>(i)]; };
+    const Vec2 way = planar(ball(apex).position) - candidate.place;
+    const double both = scene.size_of(ball(apex)).R + scene.size_of(ball(cue)).R;
+    candidate.cue.aim_deg = direction_deg(way) + 90.0 - arc_cos(b.hit * both / length(way)) * kDegrees;
+    return candidate;
+}
+
+Advice advice_of(const Candidate& candidate, const Scene& scene, bool in_hand) {
+    Advice advice;
+    advice.cue = candidate.cue;
+    advice.call = candidate.call;
+    if (in_hand) advice.place = candidate.place;
+    advice.kind = candidate.kind;
+    if (candidate.ball > 0) {
+        advice.ball = std::to_string(candidate.ball);
+        advice.pocket = scene.table.pockets[static_cast<std::size_t>(candidate.pocket)].id;
+    }
+    advice.cut_deg = candidate.cut_deg;
+    const detail::Tally& tally = candidate.tally;
+    advice.makes = share_of(tally.made, tally.shots);
+    advice.fouls = share_of(tally.fouls, tally.shots);
+    advice.worth = tally.mean();
+    std::vector<int> balls;
+    for (int n = 1; n < detail::kNumbers; ++n)
+        if (tally.leaves[static_cast<std::size_t>(n)] > 0) balls.push_back(n);
+    std::stable_sort(balls.begin(), balls.end(), [&](int a, int b) {
+        return tally.leaves[static_cast<std::size_t>(a)] > tally.leaves[static_cast<std::size_t>(b)];
+    });
+    constexpr std::size_t kMostLeft = 3;
+    for (std::size_t i = 0; i < std::min(kMostLeft, balls.size()); ++i)
+        advice.leaves.push_back(std::to_string(balls[i]));
+    return advice;
+}
+
+const char* speed_word(double speed) {
+    return speed < 1.0   ? "soft"
+           : speed < 1.6 ? "slow"
+           : speed < 2.4 ? "medium"
+           : speed < 3.6 ? "hard"
+                         : "very hard";
+}
+
+}  // namespace
+
+Skill skill_by_name(std::string_view name, double R) {
+    constexpr struct {
+        double errors;
+        Look look;
+    } kLevels[] = {{4.0, Look::kPot},
+                   {2.0, Look::kQuick},
+                   {1.0, Look::kQuick},
+                   {1.0, Look::kWhole},
+                   {0.5, Look::kWhole}};
+    static_assert(std::size(kLevels) == kSkills.size());
+    const auto found = std::find(kSkills.begin(), kSkills.end(), name);
+    if (found == kSkills.end())
+        throw std::invalid_argument(
+            fmt::format("unknown level {}; use {}", in_quotes(name), fmt::join(kSkills, ", ")));
+    const auto& level = kLevels[found - kSkills.begin()];
+    Skill skill{noise_by_name("fastfiz", R), level.look};
+    for (double* error : {&skill.noise.speed, &skill.noise.aim_deg, &skill.noise.elevation_deg,
+                          &skill.noise.side, &skill.noise.height})
+        *error *= level.errors;
+    return skill;
+}
+
+std::vector<Advice> advise(const State& state, const Scene& given, const Skill& skill, kernel::Isa isa,
+                           const AdviceOptions& options) {
+    check_game(state.game);
+    if (state.over) throw std::invalid_argument("the game is over; there is no next shot");
+    check_balls(state, given);
+    const Scene scene = completed(state, given);
+    Search search(state, scene, skill, isa, options);
+    const bool in_hand = state.in_hand != InHand::kNo;
+    std::vector<Candidate> best;
+    if (state.opening)
+        best.push_back(break_of(state, scene));
+    else
+        best = search.best();
+    std::vector<Candidate*> chosen;
+    for (Candidate& candidate : best) {
+        const bool like = std::any_of(chosen.begin(), chosen.end(), [&](const Candidate* other) {
+            return other->kind == candidate.kind && other->ball == candidate.ball &&
+                   other->pocket == candidate.pocket;
+        });
+        if (!like && chosen.size() < options.best) chosen.push_back(&candidate);
+    }
+    if (options.fresh > 0) {
+        for (Candidate* candidate : chosen) candidate->tally = {};
+        search.rate(chosen, options.fresh, Search::kFresh, true);
+        // The first one stays: it was the best of many shots.
+        std::stable_sort(chosen.begin() + 1, chosen.end(), [](const Candidate* a, const Candidate* b) {
+            return a->tally.mean() > b->tally.mean();
+        });
+    }
+    std::vector<Advice> advice;
+    for (const Candidate* candidate : chosen)
+        advice.push_back(advice_of(*candidate, scene, in_hand || state.opening));
+    return advice;
+}
+
+Scene scene_with(const Scene& scene, const Advice& advice) {
+    Scene shot = scene;
+    shot.cue = advice.cue;
+    return advice.place ? placed(std::move(shot), *advice.place) : shot;
+}
+
+std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill) {
+    std::size_t best = 0;
+    double most = -1.0;
+    Scene scene;
+    scene.table = record.table;
+    scene.balls = record.balls;
+    const detail::Potting potting(scene, skill.noise.aim_deg / kDegrees);
+    for (std::size_t i = 0; i < verdict.options.size(); ++i) {
+        const Option& option = verdict.options[i];
+        check_game(option.state.game);
+        double worth = 0.5;  // of a new rack
+        if (!option.rerack() && !option.state.over)
+            worth = potting.value(option.state, detail::lie_of(record, option));
+        if (option.state.turn != verdict.chooser) worth = 1.0 - worth;
+        if (worth > most) {
+            most = worth;
+            best = i;
+        }
+    }
+    return best;
+}
+
+std::string words_of(const Advice& advice, const Table& table) {
+    std::string words = advice.kind == ShotKind::kPot ? "" : std::string(name(advice.kind)) + ": ";
+    if (!advice.ball.empty()) {
+        const int pocket = index_of(table.pockets, advice.pocket);
+        const std::string& where = pocket >= 0 ? table.pockets[static_cast<std::size_t>(pocket)].name : "";
+        words += fmt::format("{} into {}{}, ", advice.ball, advice.pocket,
+                             where.empty() ? "" : " (" + where + ")");
+    }
+    if (advice.kind == ShotKind::kPot)
+        words += std::abs(advice.cut_deg) < 3.0
+                     ? "straight, "
+                     : fmt::format("cut {:.0f} degrees {}, ", std::abs(advice.cut_deg),
+                                   advice.cut_deg > 0.0 ? "left" : "right");
+    words += speed_word(advice.cue.speed);
+    constexpr double kCentre = 0.05;
+    if (std::abs(advice.cue.height) > kCentre) words += advice.cue.height > 0.0 ? ", high" : ", low";
+    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? ", left" : ", right";
+    return words;
+}
+
+}  // namespace carom::games

@@ -1,0 +1,297 @@
+#include "player/lie.h"
+
+#include <array>
+#include <vector>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "carom/engine/math.h"
+#include "facts.h"
+#include "lines.h"
+
+namespace carom::games::detail {
+namespace {
+
+// Of a pot's chance: how much wider than its straight paths a pocket is for a ball that rubs a jaw [-], and
+// the error of the object ball that does not come from the aim [rad]. Both were fitted to simulated pots.
+constexpr double kForgives = 1.4, kOtherError = 0.006;
+/// [rad] Narrower paths are none.
+constexpr double kNarrowest = 0.005;
+/// [-] Cosine of the thinnest cut that is tried: 83 degrees.
+constexpr double kThinnest = 0.12;
+// A good place of the cue ball: its distance from the ghost ball [m], and the sine and cosine of the 35
+// degrees by which it may be off the line. Its chance is that of a pot at 0.4 m with a cosine of 0.85.
+constexpr double kGoodDistance = 0.3, kGoodSin = 0.574, kGoodCos = 0.819;
+constexpr double kIdealDistance = 0.4, kIdealStraight = 0.85;
+
+/// Error function, within 3e-7 (Abramowitz, Stegun, Handbook of mathematical functions, 7.1.28), for x >= 0.
+double error_function(double x) {
+    const double sum =
+        1.0 + x * (0.0705230784 +
+                   x * (0.0422820123 +
+                        x * (0.0092705272 + x * (0.0001520143 + x * (0.0002765672 + x * 0.0000430638)))));
+    const double square = sum * sum, fourth = square * square, eighth = fourth * fourth;
+    return 1.0 - 1.0 / (eighth * eighth);
+}
+
+/// Weights of Potting::features().
+using Weights = std::array<double, Potting::kFeatures>;
+constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
+// The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
+constexpr Weights kRotation = {0.57, -0.17, 0.0, 0.0, 0.09, -1.05, -0.04, 1.72, 1.83, -0.04, 0.09, 0.36};
+/// [-] Estimate of how often a player gets from one ball to a good place for the next.
+constexpr double kGetsThere = 0.95;
+
+/// The ball that wins.
+int money_ball(Game game) {
+    return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
+}
+
+Numbers all_of(const Lie& lie) {
+    Numbers all = 0;
+    for (const Lie::Ball& ball : lie.balls) all |= only(ball.number);
+    return all;
+}
+
+State of_other(State state) {
+    state.turn = 1 - state.turn;
+    return state;
+}
+
+}  // namespace
+
+Lie lie_of(const Scene& scene) {
+    Lie lie;
+    for (const BallStart& ball : scene.ball) {
+        const Vec2 place = planar(ball.position);
+        if (const int number = number_of(ball.id); number > 0)
+            lie.balls.push_back({number, place});
+        else
+            lie.cue = place;
+    }
+    return lie;
+}
+
+Lie lie_of(const Record& record, const Option& option) {
+    Lie lie;
+    for (int b = 0; b < static_cast<int>(record.tracks.size()); ++b) {
+        const std::string& id = record.tracks[static_cast<std::size_t>(b)].id;
+        const auto back = std::find_if(option.respots.begin(), option.respots.end(),
+                                       [&](const Respot& respot) { return respot.ball == id; });
+        Vec2 place;
+        if (back != option.respots.end()) {
+            place = back->place;
+        } else {
+            const BallState end = record.state_at(b, record.duration);
+            if (is_gone(end.state)) continue;
+            place = planar(end.position);
+        }
+        if (const int number = number_of(id); number > 0)
+            lie.balls.push_back({number, place});
+        else
+            lie.cue = place;
+    }
+    return lie;
+}
+
+Numbers targets(const State& state, const Lie& lie) {
+    std::vector<std::string> ids;
+    for (const Lie::Ball& ball : lie.balls) ids.push_back(std::to_string(ball.number));
+    const Legal allowed = legal(state, ids);
+    Numbers first = 0, callable = 0;
+    for (const std::string& id : allowed.first) first |= only(number_of(id));
+    for (const std::string& id : allowed.callable) callable |= only(number_of(id));
+    return allowed.callable.empty() ? first : first & callable;
+}
+
+Potting::Potting(const Scene& scene, double sd_aim)
+    : R_(scene.balls.R), both_(scene.balls.R), sd_aim_(std::max(sd_aim, 1e-5)) {
+    for (const BallStart& ball : scene.ball)
+        if (number_of(ball.id) == 0) both_ = R_ + scene.size_of(ball).R;
+    const Table& table = scene.table;
+    const double R = both_ - R_;
+    const Vec2 size(table.width, table.length);
+    noses_ << table.corner.x() + R, table.corner.y() + R, table.corner.x() + size.x() - R,
+        table.corner.y() + size.y() - R;
+    const Vec2 middle = table.corner + 0.5 * size;
+    for (const Pocket& pocket : table.pockets) {
+        Mouth mouth;
+        // A pocket without jaws has no direct pots here; the search finds pots into it by playing.
+        if (const auto jaws = jaws_of(table, pocket)) {
+            const auto& [a, b] = *jaws;
+            const Vec2 way = pocket.center - middle;
+            const bool a_left = cross(way, a->center - middle) > cross(way, b->center - middle);
+            const Jaw &left = a_left ? *a : *b, &right = a_left ? *b : *a;
+            mouth = {true, left.center, right.center, R_ + left.radius, R_ + right.radius};
+        }
+        mouths_.push_back(mouth);
+    }
+}
+
+Potting::Path Potting::path(int pocket, const Vec2& from) const {
+    const Mouth& mouth = mouths_[static_cast<std::size_t>(pocket)];
+    if (!mouth.there) return {};
+    const Vec2 to_left = mouth.left - from, to_right = mouth.right - from;
+    const double left_far = length(to_left), right_far = length(to_right);
+    if (!(left_far > mouth.left_reach) || !(right_far > mouth.right_reach)) return {};
+    // The outermost paths touch the jaws: tangents of the circles that the ball's centre must not enter.
+    const auto turned = [](const Vec2& way, double far, double sin) {
+        const double cos = std::sqrt(1.0 - sin * sin);
+        return Vec2((cos * way.x() - sin * way.y()) / far, (sin * way.x() + cos * way.y()) / far);
+    };
+    const Vec2 leftmost = turned(to_left, left_far, -mouth.left_reach / left_far),
+               rightmost = turned(to_right, right_far, mouth.right_reach / right_far);
+    if (cross(rightmost, leftmost) <= 0.0 || dot(rightmost, leftmost) <= 0.0) return {};
+    Path path;
+    const Vec2 sum = leftmost + rightmost;
+    path.towards = sum / length(sum);
+    const Vec2 across = mouth.right - mouth.left;
+    const double turn = cross(path.towards, across);
+    if (std::abs(turn) < kSteepest * length(across)) return {};
+    const double way = cross(to_left, across) / turn;
+    if (!(way > 0.0)) return {};
+    path.end = from + way * path.towards;
+    path.width = length(leftmost - rightmost);
+    return path;
+}
+
+double Potting::chance(double distance, double straight, double width) const {
+    const double spread = length(Vec2(distance * sd_aim_ / (both_ * straight), kOtherError));
+    return error_function(0.5 * kForgives * width / (std::sqrt(2.0) * spread));
+}
+
+bool Potting::inside(const Vec2& place) const {
+    return is_inside(noses_, place);
+}
+
+bool Potting::clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const {
+    return std::all_of(lie.balls.begin(), lie.balls.end(), [&](const Lie::Ball& ball) {
+        return ball.number == number || dot(ball.place - from, to - from) <= 0.0 ||
+               distance_to_segment(ball.place, from, to) >= apart;
+    });
+}
+
+bool Potting::reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const {
+    for (const double side : {0.0, -kGoodSin, kGoodSin}) {
+        const double ahead = side == 0.0 ? 1.0 : kGoodCos;
+        const Vec2 way(ahead * towards.x() - side * towards.y(), side * towards.x() + ahead * towards.y());
+        const Vec2 from = ghost - kGoodDistance * way;
+        if (inside(from) && clear(lie, number, from, ghost, both_)) return true;
+    }
+    return false;
+}
+
+std::vector<Pot> Potting::pots(const Lie& lie, Numbers balls, double least) const {
+    std::vector<Pot> pots;
+    if (!lie.cue) return pots;
+    for (const Lie::Ball& ball : lie.balls) {
+        for (int p = 0; (balls & only(ball.number)) != 0 && p < static_cast<int>(mouths_.size()); ++p) {
+            const Path path = this->path(p, ball.place);
+            if (path.width <= kNarrowest) continue;
+            const Vec2 ghost = ball.place - both_ * path.towards, way = ghost - *lie.cue;
+            const double distance = length(way);
+            if (!inside(ghost) || !(distance > 0.0)) continue;
+            const double straight = dot(way, path.towards) / distance;
+            if (straight < kThinnest) continue;
+            const double chance = this->chance(distance, straight, path.width);
+            if (chance < least || !clear(lie, ball.number, ball.place, path.end, 2.0 * R_) ||
+                !clear(lie, ball.number, *lie.cue, ghost, both_))
+                continue;
+            pots.push_back({ball.number, p, ghost, path.towards, distance, straight, chance});
+        }
+    }
+    return pots;
+}
+
+std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers now) const {
+    std::array<Chance, kNumbers> chances{};
+    for (const Lie::Ball& ball : lie.balls) {
+        Chance& best = chances[static_cast<std::size_t>(ball.number)];
+        for (int p = 0; p < static_cast<int>(mouths_.size()); ++p) {
+            const Path path = this->path(p, ball.place);
+            if (path.width <= kNarrowest) continue;
+            const Vec2 ghost = ball.place - both_ * path.towards;
+            if (!inside(ghost)) continue;
+            const double ideal = chance(kIdealDistance, kIdealStraight, path.width);
+            double from_here = 0.0;
+            if (lie.cue && (now & only(ball.number)) != 0) {
+                const Vec2 way = ghost - *lie.cue;
+                const double distance = length(way),
+                             straight = distance > 0.0 ? dot(way, path.towards) / distance : 0.0;
+                if (straight >= kThinnest) from_here = chance(distance, straight, path.width);
+            }
+            if ((ideal <= best.ideal && from_here <= best.now) ||
+                !clear(lie, ball.number, ball.place, path.end, 2.0 * R_))
+                continue;
+            if (ideal > best.ideal && reachable(lie, ball.number, ghost, path.towards)) best.ideal = ideal;
+            if (from_here > best.now && clear(lie, ball.number, *lie.cue, ghost, both_)) best.now = from_here;
+        }
+    }
+    return chances;
+}
+
+int Potting::surest(const State& state, const Lie& lie) const {
+    const std::array<Chance, kNumbers> chances = this->chances(lie, targets(state, lie));
+    const auto best = std::max_element(chances.begin(), chances.end(),
+                                       [](const Chance& a, const Chance& b) { return a.now < b.now; });
+    return best->now > 0.0 ? static_cast<int>(best - chances.begin()) : 0;
+}
+
+std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
+    const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
+    const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
+    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
+    // What a player must pot before the money ball, and how likely that is from good places.
+    struct Task {
+        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
+    };
+    const auto task_of = [&](int player, Numbers may) {
+        Task task;
+        const Numbers needed = (eight ? may : all) | money;
+        for (int n = 1; n < kNumbers; ++n) {
+            if ((needed & only(n)) == 0) continue;
+            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
+            task.mean += ideal / std::popcount(needed);
+            task.least = std::min(task.least, ideal);
+            task.run *= kGetsThere * ideal;
+        }
+        const bool open = eight && state.group[static_cast<std::size_t>(player)] == Group::kOpen;
+        task.left = open ? 7 : std::popcount(needed) - 1;
+        return task;
+    };
+    std::array<double, 3> best{};
+    for (int n = 1; n < kNumbers; ++n) {
+        if ((mine & only(n)) == 0) continue;
+        const Chance& chance = chances[static_cast<std::size_t>(n)];
+        double now = in_hand ? chance.ideal : chance.now;
+        for (double& other : best)
+            if (now > other) std::swap(now, other);
+    }
+    const Task own = task_of(state.turn, mine);
+    const Task other = eight ? task_of(1 - state.turn, targets(of_other(state), lie)) : own;
+    return {1.0,
+            best[0],
+            best[1],
+            best[2],
+            own.mean,
+            own.least,
+            own.left,
+            own.left == 0.0 ? best[0] : 0.0,
+            best[0] * own.run,
+            other.left,
+            other.mean,
+            other.run};
+}
+
+double Potting::value(const State& state, const Lie& lie) const {
+    if (lie.balls.empty()) return 0.0;
+    const std::array<double, kFeatures> features = this->features(state, lie);
+    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kRotation;
+    double x = 0.0;
+    for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
+    return 1.0 / (1.0 + exponential(-x));
+}
+
+}  // namespace carom::games::detail

@@ -1,0 +1,94 @@
+// Where the balls lie, which pots that leaves, and what a position is worth to a player.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "carom/games/rules.h"
+
+namespace carom::games::detail {
+
+/// A set of numbered balls: bit n is ball n.
+using Numbers = std::uint32_t;
+constexpr Numbers only(int number) {
+    return Numbers{1} << number;
+}
+inline constexpr int kNumbers = 16;
+
+/// The balls on the table.
+struct Lie {
+    struct Ball {
+        int number;
+        Vec2 place;
+    };
+    std::vector<Ball> balls;  ///< except the cue ball
+    std::optional<Vec2> cue;
+};
+Lie lie_of(const Scene& scene);
+/// After a shot, with what an option of its verdict respots.
+Lie lie_of(const Record& record, const Option& option);
+
+/// What the player to shoot may hit first and pot.
+Numbers targets(const State& state, const Lie& lie);
+
+/// A direct pot: the cue ball goes straight to the ghost ball, and the object ball straight into a pocket.
+struct Pot {
+    int ball;  ///< number
+    int pocket;
+    Vec2 ghost, towards;
+    double distance;  ///< [m] from the cue ball to the ghost ball
+    double straight;  ///< cosine of the cut
+    double chance;    ///< [-] estimated
+};
+
+/// Geometry of one table for a player with given errors.
+class Potting {
+  public:
+    /// @param sd_aim standard deviation of the cue ball's direction [rad]
+    Potting(const Scene& scene, double sd_aim);
+
+    /// Direct pots of these balls with at least this chance; nothing without a cue ball.
+    std::vector<Pot> pots(const Lie& lie, Numbers balls, double least) const;
+    struct Chance {
+        double now = 0.0;    ///< of the best pot from where the cue ball lies
+        double ideal = 0.0;  ///< of the best pot from a good place of the cue ball
+    };
+    /// By number. @param now  the balls whose Chance::now is wanted
+    std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now) const;
+    /// What a value is made of, for the player whose turn it is.
+    static constexpr std::size_t kFeatures = 12;
+    std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
+    /// [-] The chance to win for the player whose turn it is: a logistic function of the features.
+    double value(const State& state, const Lie& lie) const;
+    /// The number of the ball with the surest pot for the player to shoot; 0: there is none.
+    int surest(const State& state, const Lie& lie) const;
+    /// [m] From centre to centre of the cue ball and an object ball that touch.
+    double both() const { return both_; }
+
+  private:
+    /// The paths of a ball between the jaws of a pocket.
+    struct Path {
+        Vec2 towards, end;
+        double width = 0.0;  ///< [rad]; 0: there is none
+    };
+    Path path(int pocket, const Vec2& from) const;
+    double chance(double distance, double straight, double width) const;
+    bool inside(const Vec2& place) const;
+    bool clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const;
+    /// Whether the cue ball has a clear way to the ghost ball from one of three good places.
+    bool reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const;
+
+    struct Mouth {
+        bool there = false;
+        Vec2 left, right;  ///< as seen from the table
+        double left_reach = 0.0, right_reach = 0.0;
+    };
+    std::vector<Mouth> mouths_;
+    Rectangle noses_;
+    double R_, both_, sd_aim_;
+};
+
+}  // namespace carom::games::detail

@@ -1,0 +1,441 @@
+#include "player/search.h"
+
+#include <span>
+#include <vector>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "carom/engine/batch.h"
+#include "carom/engine/math.h"
+#include "carom/engine/strike.h"
+#include "carom/games/aim.h"
+#include "carom/games/judge_many.h"
+#include "carom/games/shot.h"
+#include "facts.h"
+#include "lines.h"
+
+namespace carom::games::detail {
+namespace {
+
+/// What is tried, and how often. Speeds are those of the cue [m/s], heights and sides in ball radii.
+struct Grid {
+    std::array<double, 5> speeds;
+    int speed_count;
+    std::array<double, 3> heights;
+    std::array<double, 3> sides;
+    int side_count;
+    std::size_t pots;                    ///< the surest
+    int hits, around;                    ///< aims at each ball, and all round, that are played once
+    std::array<std::size_t, 3> samples;  ///< of each round
+    std::array<std::size_t, 2> keep;     ///< candidates after the first rounds
+};
+constexpr Grid kWhole = {
+    {0.8, 1.2, 1.8, 2.7, 4.0}, 5, {0.0, -0.4, 0.4}, {0.0, -0.3, 0.3}, 3, 14, 31, 90, {4, 8, 24}, {12, 4}};
+constexpr Grid kQuick = {{1.0, 1.8, 3.2}, 3, {0.0, -0.35, 0.35}, {0.0}, 1, 8, 15, 60, {6, 12, 36}, {12, 4}};
+/// For each place of a cue ball in hand.
+constexpr Grid kInHand = {{1.0, 1.6, 2.4, 3.6}, 4, {0.0, -0.35, 0.35}, {0.0}, 1, 1, 0, 0, {}, {}};
+constexpr std::array kSweepSpeeds{0.7, 1.2, 2.0, 3.5};
+/// [-] Of the ball's width: the thinnest hits that are tried.
+constexpr double kThinnestHit = 0.97;
+/// [-] Safeties, and push outs, that are rated.
+constexpr std::size_t kSafeties = 24, kPushOuts = 8;
+/// [-] Least estimated chance of a pot that is tried.
+constexpr double kLeastChance = 0.04;
+/// [-] Times that an aim is played and corrected.
+constexpr int kCorrections = 2;
+/// [-] Places of a cue ball in hand that are tried; distances from the ghost ball [m], and angles [degrees].
+constexpr std::size_t kPlaces = 40;
+constexpr std::array kDistances{0.15, 0.3, 0.55};
+constexpr std::array kAngles{0.0, -14.0, 14.0, -30.0, 30.0, -50.0, 50.0};
+/// [-] What a foul costs a player who does not look at what a shot leaves.
+constexpr double kFoulCost = 0.3;
+
+const Call kPush = [] {
+    Call call;
+    call.push_out = true;
+    return call;
+}();
+
+Vec2 direction(double deg) {
+    const auto [sin, cos] = sin_cos_deg(deg);
+    return {cos, sin};
+}
+
+/// How the ball fell: directly, off a rail, off another ball, or after a cushion of the cue ball.
+ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
+    for (const Touch& touch : shot.touches)
+        if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time)
+            return ShotKind::kKick;
+    if (shot.first_hits.empty() || shot.first_hits[0] != fallen.ball) return ShotKind::kCombination;
+    return is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
+}
+
+/// How far a direction turns to the left to become another one [degrees].
+double turn_deg(const Vec2& from, const Vec2& to) {
+    return direction_deg({dot(from, to), cross(from, to)});
+}
+
+double sd_of_aim(const Noise& noise) {
+    // A tip that is off to the side by a tenth of a radius turns the ball's path by some tenths of a degree.
+    constexpr double kTurnOfSide = 2.0;  // degrees a radius
+    return length(Vec2(noise.aim_deg, noise.side * kTurnOfSide)) / kDegrees;
+}
+
+}  // namespace
+
+struct Search::Line {
+    Candidate candidate;
+    Vec2 ghost, towards;
+    double aim_per_turn;  ///< how far the aim moves to turn the object ball by as much [-]
+    bool hits;            ///< the ball first, when it was last played
+};
+
+Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa isa,
+               const AdviceOptions& options)
+    : state_(state),
+      scene_(std::move(scene)),
+      skill_(skill),
+      isa_(isa),
+      options_(options),
+      potting_(scene_, sd_of_aim(skill.noise)),
+      lie_(lie_of(scene_)),
+      targets_(targets(state, lie_)),
+      first_(0),
+      cue_ball_(static_cast<std::size_t>(index_of(scene_.ball, scene_.cue->ball))),
+      in_hand_(state.in_hand != InHand::kNo || state.opening) {
+    for (const std::string& id : legal(state, ids_of(scene_.ball)).first) first_ |= only(number_of(id));
+}
+
+void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const {
+    const std::string place = "ball." + scene_.cue->ball + ".position.";
+    std::array<std::pair<std::string, std::vector<double>>, 7> numbers{{{"cue.speed", {}},
+                                                                        {"cue.aim_deg", {}},
+                                                                        {"cue.elevation_deg", {}},
+                                                                        {"cue.offset.side", {}},
+                                                                        {"cue.offset.height", {}},
+                                                                        {place + "x", {}},
+                                                                        {place + "y", {}}}};
+    for (std::size_t i = 0; i < cues.size(); ++i) {
+        const Cue& cue = cues[i];
+        const double values[] = {cue.speed,  cue.aim_deg,   cue.elevation_deg, cue.side,
+                                 cue.height, places[i].x(), places[i].y()};
+        for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k].second.push_back(values[k]);
+    }
+    std::vector<BatchColumn> columns;
+    // A cue ball that is not in hand stays, so that the places need no check.
+    for (std::size_t k = 0; k < (in_hand_ ? 7 : 5); ++k)
+        columns.push_back({numbers[k].first, numbers[k].second});
+    BatchOptions batch;
+    batch.threads = options_.threads;
+    batch.stop = options_.stop;
+    batch.judge = [&](std::size_t shot, const Outcome& outcome, const Record& record) {
+        if (outcome.stopped == StopReason::kAtRest) judge(shot, record);
+    };
+    simulate_many(scene_, cues.size(), columns, isa_, batch, {});
+}
+
+Search::Result Search::result(const Record& record, const Call& call, bool closer) const {
+    const Verdict verdict = judge(state_, record, call);
+    Result result;
+    result.foul = !verdict.fouls.empty();
+    const State& next = verdict.next();
+    result.made = next.over ? next.winner == state_.turn : next.turn == state_.turn && !call.push_out;
+    if (skill_.look == Look::kPot) {
+        result.worth = result.made ? 1.0 : result.foul ? -kFoulCost : 0.0;
+        return result;
+    }
+    // The player who may choose takes what is best for himself.
+    bool first = true;
+    for (const Option& option : verdict.options) {
+        double worth = 0.5;  // of a new rack
+        if (option.state.over) {
+            worth = option.state.winner == state_.turn ? 1.0 : 0.0;
+        } else if (!option.rerack()) {
+            const Lie lie = lie_of(record, option);
+            worth = potting_.value(option.state, lie);
+            if (option.state.turn != state_.turn)
+                worth = 1.0 - worth;
+            else if (closer)
+                result.leaves = potting_.surest(option.state, lie);
+        }
+        const bool better = verdict.chooser == state_.turn ? worth > result.worth : worth < result.worth;
+        if (first || better) result.worth = worth;
+        first = false;
+    }
+    return result;
+}
+
+void Search::lift(Candidate& candidate) const {
+    Scene scene = scene_;
+    scene.ball[cue_ball_].position.head<2>() = candidate.place;
+    const CueRoom room = room_for(scene, candidate.cue);
+    if (room.clears_deg) candidate.cue.elevation_deg = *room.clears_deg;
+}
+
+void Search::correct(std::vector<Line>& lines) const {
+    for (int k = 0; k < kCorrections; ++k) {
+        std::vector<Cue> cues;
+        std::vector<Vec2> places;
+        for (Line& line : lines) {
+            line.hits = false;
+            cues.push_back(line.candidate.cue);
+            places.push_back(line.candidate.place);
+        }
+        play(cues, places, [&](std::size_t i, const Record& record) {
+            Line& line = lines[i];
+            const Shot shot = shot_of(record);
+            const int ball = index_of(record, std::to_string(line.candidate.ball));
+            if (!missed(record, shot, ball).empty()) {
+                // Squirt carries the cue ball past the ball: the aim moves back by as much.
+                const Vec2 way = line.ghost - line.candidate.place,
+                           went = planar(record.state_at(shot.struck, 0.0).velocity);
+                line.candidate.cue.aim_deg -= turn_deg(way, went);
+                return;
+            }
+            const Event* stop = next_stop(record, ball, shot.first_time);
+            const auto off = off_line(record, ball, shot.first_time, stop, line.towards);
+            line.hits = off.has_value();
+            if (off) line.candidate.cue.aim_deg += line.aim_per_turn * *off * kDegrees;
+        });
+    }
+}
+
+std::vector<Candidate> Search::pots(std::span<const Vec2> places) const {
+    const Grid& grid = in_hand_ ? kInHand : skill_.look == Look::kWhole ? kWhole : kQuick;
+    std::vector<Line> lines;
+    for (const Vec2& place : places) {
+        Lie lie = lie_;
+        lie.cue = place;
+        std::vector<Pot> pots = potting_.pots(lie, targets_ & first_, kLeastChance);
+        std::stable_sort(pots.begin(), pots.end(),
+                         [](const Pot& a, const Pot& b) { return a.chance > b.chance; });
+        if (pots.size() > grid.pots) pots.resize(grid.pots);
+        for (const Pot& pot : pots) {
+            Candidate candidate;
+            candidate.place = place;
+            candidate.ball = pot.ball;
+            candidate.pocket = pot.pocket;
+            candidate.cut_deg = turn_deg(pot.ghost - place, pot.towards);
+            if (!legal(state_, ids_of(scene_.ball)).callable.empty())
+                candidate.call = {.ball = std::to_string(pot.ball),
+                                  .pocket = scene_.table.pockets[static_cast<std::size_t>(pot.pocket)].id};
+            candidate.cue = *scene_.cue;
+            candidate.cue.aim_deg = direction_deg(pot.ghost - place);
+            const double per = potting_.both() * pot.straight / pot.distance;
+            for (const double height : grid.heights) {
+                for (int s = 0; s < grid.side_count; ++s) {
+                    candidate.cue.height = height;
+                    candidate.cue.side = grid.sides[static_cast<std::size_t>(s)];
+                    candidate.cue.elevation_deg = 0.0;
+                    lift(candidate);
+                    for (int v = 0; v < grid.speed_count; ++v) {
+                        candidate.cue.speed = grid.speeds[static_cast<std::size_t>(v)];
+                        lines.push_back({candidate, pot.ghost, pot.towards, per, false});
+                    }
+                }
+            }
+        }
+    }
+    correct(lines);
+    std::vector<Candidate> candidates;
+    for (Line& line : lines)
+        if (line.hits) candidates.push_back(std::move(line.candidate));
+    return candidates;
+}
+
+std::vector<Candidate> Search::sweep(const Vec2& place) const {
+    const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
+    std::vector<Candidate> tried;
+    const auto add = [&](double aim_deg, double speed) {
+        Candidate candidate;
+        candidate.cue = *scene_.cue;
+        candidate.cue.aim_deg = aim_deg;
+        candidate.cue.speed = speed;
+        candidate.cue.side = candidate.cue.height = candidate.cue.elevation_deg = 0.0;
+        candidate.place = place;
+        tried.push_back(std::move(candidate));
+    };
+    for (const Lie::Ball& ball : lie_.balls) {
+        if ((first_ & only(ball.number)) == 0) continue;
+        const Vec2 way = ball.place - place;
+        for (int k = 0; k < grid.hits; ++k) {
+            const double offset =
+                kThinnestHit * (2.0 * k / (grid.hits - 1) - 1.0) * potting_.both() / length(way);
+            const double aim = direction_deg(way) + 90.0 - arc_cos(std::clamp(offset, -1.0, 1.0)) * kDegrees;
+            for (const double speed : kSweepSpeeds) add(aim, speed);
+        }
+    }
+    for (int k = 0; k < grid.around; ++k)
+        for (std::size_t v = 1; v < kSweepSpeeds.size(); ++v)
+            add(360.0 * k / grid.around + 0.37, kSweepSpeeds[v]);
+    std::vector<Cue> cues;
+    for (const Candidate& candidate : tried) cues.push_back(candidate.cue);
+    std::vector<Result> results(tried.size()), pushed(tried.size());
+    const bool calls = !legal(state_, ids_of(scene_.ball)).callable.empty();
+    play(cues, std::vector<Vec2>(tried.size(), place), [&](std::size_t i, const Record& record) {
+        Candidate& candidate = tried[i];
+        candidate.call = lucky_call(state_, record);
+        candidate.call.safety = calls && candidate.call.ball.empty();
+        results[i] = result(record, candidate.call);
+        candidate.kind = ShotKind::kSafety;
+        if (results[i].made) {
+            const Shot shot = shot_of(record);
+            for (const Shot::Fallen& fallen : shot.pocketed) {
+                const std::string& id = record.tracks[static_cast<std::size_t>(fallen.ball)].id;
+                if (fallen.ball == shot.struck || (calls && id != candidate.call.ball)) continue;
+                candidate.kind = kind_of(record, shot, fallen);
+                candidate.ball = number_of(id);
+                candidate.pocket = fallen.pocket;
+                const auto at = [&](int which) {
+                    return planar(record.state_at(which, shot.first_time).position);
+                };
+                candidate.cut_deg = turn_deg(at(shot.struck) - place, at(fallen.ball) - at(shot.struck));
+                break;
+            }
+        }
+        if (state_.may_push_out) pushed[i] = result(record, kPush);
+    });
+    // Whatever makes a ball is a candidate, and the best of the others by what they leave: fouls, too, so
+    // that there is always one.
+    std::vector<std::size_t> made, others, pushes;
+    for (std::size_t i = 0; i < tried.size(); ++i) (results[i].made ? made : others).push_back(i);
+    const auto top = [](std::vector<std::size_t>& list, const std::vector<Result>& by, std::size_t most) {
+        std::stable_sort(list.begin(), list.end(),
+                         [&](std::size_t a, std::size_t b) { return by[a].worth > by[b].worth; });
+        if (list.size() > most) list.resize(most);
+    };
+    if (state_.may_push_out)
+        for (std::size_t i = 0; i < tried.size(); ++i) pushes.push_back(i);
+    top(others, results, kSafeties);
+    top(pushes, pushed, kPushOuts);
+    std::vector<Candidate> candidates;
+    for (const auto* list : {&made, &others})
+        for (const std::size_t i : *list) candidates.push_back(tried[i]);
+    for (const std::size_t i : pushes) {
+        Candidate push = tried[i];
+        push.call = kPush;
+        push.kind = ShotKind::kPushOut;
+        push.ball = 0;
+        push.pocket = -1;
+        candidates.push_back(std::move(push));
+    }
+    for (Candidate& candidate : candidates) lift(candidate);
+    return candidates;
+}
+
+bool Search::may_lie(const Vec2& place) const {
+    if (!in_area(scene_.table, state_.in_hand, place)) return false;
+    const double R = scene_.size_of(scene_.ball[cue_ball_]).R;
+    const Vec2 from = place - scene_.table.corner;
+    if (from.x() < R || from.y() < R || from.x() > scene_.table.width - R ||
+        from.y() > scene_.table.length - R)
+        return false;
+    // A touching ball is no place to shoot from.
+    return std::all_of(lie_.balls.begin(), lie_.balls.end(), [&](const Lie::Ball& ball) {
+        return length(ball.place - place) > potting_.both() + kSpotGap;
+    });
+}
+
+std::vector<Vec2> Search::places() const {
+    struct Place {
+        Vec2 at;
+        double chance;
+    };
+    std::vector<Place> found;
+    for (const Lie::Ball& ball : lie_.balls) {
+        if ((targets_ & first_ & only(ball.number)) == 0) continue;
+        for (const PocketLine& line : pocket_lines(scene_, std::to_string(ball.number), scene_.cue->ball)) {
+            if (!line.open()) continue;
+            const Vec2 ghost = ghost_ball(ball.place, line.towards, potting_.both());
+            for (const double distance : kDistances) {
+                for (const double angle : kAngles) {
+                    const Vec2 at = ghost - distance * direction(direction_deg(line.towards) + angle);
+                    if (!may_lie(at)) continue;
+                    Lie lie = lie_;
+                    lie.cue = at;
+                    double best = 0.0;
+                    for (const Pot& pot : potting_.pots(lie, targets_ & first_, kLeastChance))
+                        best = std::max(best, pot.chance);
+                    if (best > 0.0) found.push_back({at, best});
+                }
+            }
+        }
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Place& a, const Place& b) { return a.chance > b.chance; });
+    // Of the surest, every third: neighbours are alike.
+    const std::size_t step = found.size() > 3 * kPlaces ? 3 : 1;
+    std::vector<Vec2> places;
+    for (std::size_t i = 0; i < found.size() && places.size() < kPlaces; i += step)
+        places.push_back(found[i].at);
+    return places;
+}
+
+void Search::rate(std::span<Candidate* const> candidates, std::size_t shots, std::size_t first,
+                  bool closer) const {
+    std::vector<Cue> cues;
+    std::vector<Vec2> places;
+    for (const Candidate* candidate : candidates) {
+        for (std::size_t k = 0; k < shots; ++k) {
+            cues.push_back(with_noise(candidate->cue, skill_.noise, options_.seed, first + k));
+            places.push_back(candidate->place);
+        }
+    }
+    std::vector<Result> results(cues.size());
+    play(cues, places, [&](std::size_t i, const Record& record) {
+        results[i] = result(record, candidates[i / shots]->call, closer);
+    });
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        Tally& tally = candidates[i / shots]->tally;
+        ++tally.shots;
+        tally.made += results[i].made;
+        tally.fouls += results[i].foul;
+        tally.worth += results[i].worth;
+        ++tally.leaves[static_cast<std::size_t>(results[i].leaves)];
+    }
+}
+
+std::vector<Candidate*> Search::kept(std::vector<Candidate*> alive, std::size_t keep) const {
+    std::stable_sort(alive.begin(), alive.end(), [](const Candidate* a, const Candidate* b) {
+        return a->tally.mean() > b->tally.mean();
+    });
+    std::vector<Candidate*> kept;
+    for (Candidate* candidate : alive) {
+        // Advice must differ: two of every kind, ball and pocket stay as well.
+        const auto like = std::count_if(kept.begin(), kept.end(), [&](const Candidate* other) {
+            return other->kind == candidate->kind && other->ball == candidate->ball &&
+                   other->pocket == candidate->pocket;
+        });
+        if (kept.size() < keep || (options_.best > 1 && like < 2)) kept.push_back(candidate);
+    }
+    return kept;
+}
+
+std::vector<Candidate> Search::best() {
+    std::vector<Vec2> from = {planar(scene_.ball[cue_ball_].position)};
+    if (in_hand_) {
+        if (const std::vector<Vec2> good = places(); !good.empty()) from = good;
+    }
+    std::vector<Candidate> candidates = pots(from);
+    if (!in_hand_ || candidates.empty()) {
+        for (Candidate& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
+    }
+    std::vector<Candidate*> alive;
+    for (Candidate& candidate : candidates) alive.push_back(&candidate);
+    const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
+    std::size_t first = 0;
+    for (std::size_t round = 0; round < grid.samples.size(); ++round) {
+        rate(alive, grid.samples[round], first);
+        first += grid.samples[round];
+        alive = kept(std::move(alive), round < grid.keep.size() ? grid.keep[round] : alive.size());
+    }
+    std::vector<Candidate> best;
+    for (const Candidate* candidate : alive) best.push_back(*candidate);
+    return best;
+}
+
+}  // namespace carom::games::detail

@@ -1,0 +1,84 @@
+// The search for a shot: candidates by geometry and by playing aims without thought, then successive halving
+// with common random numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "carom/games/player.h"
+#include "player/lie.h"
+
+namespace carom::games::detail {
+
+/// What a candidate's shots did, so far.
+struct Tally {
+    std::size_t shots = 0, made = 0, fouls = 0;
+    double worth = 0.0;                  ///< sum
+    std::array<int, kNumbers> leaves{};  ///< how often each ball was left as the surest pot
+    double mean() const { return shots > 0 ? worth / static_cast<double>(shots) : 0.0; }
+};
+
+struct Candidate {
+    Cue cue;
+    Vec2 place = Vec2::Zero();  ///< of the cue ball
+    Call call;
+    ShotKind kind = ShotKind::kPot;
+    int ball = 0, pocket = -1;  ///< what it pots: number of the ball, index of the pocket; 0, -1: nothing
+    double cut_deg = 0.0;
+    Tally tally;
+};
+
+class Search {
+  public:
+    /// @param scene  with the cue ball, and a cue
+    Search(const State& state, Scene scene, const Skill& skill, kernel::Isa isa,
+           const AdviceOptions& options);
+
+    /// The candidates that reached the last round, the best first; at least one.
+    std::vector<Candidate> best();
+    /// Plays more shots of some candidates. @param first  number of the first draw of errors
+    /// @param closer  whether to count Tally::leaves
+    void rate(std::span<Candidate* const> candidates, std::size_t shots, std::size_t first,
+              bool closer = false) const;
+    /// The number of draws after which errors are fresh: best() uses fewer.
+    static constexpr std::size_t kFresh = 1000;
+
+  private:
+    /// What one shot was worth to the player.
+    struct Result {
+        double worth = 0.0;
+        bool made = false, foul = true;
+        int leaves = 0;  ///< number of a ball, or 0
+    };
+    /// A direct pot with one tip and speed, whose aim is corrected by playing it.
+    struct Line;
+
+    using Judge = std::function<void(std::size_t, const Record&)>;
+    void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
+    /// @param closer  whether to find Result::leaves, too
+    Result result(const Record& record, const Call& call, bool closer = false) const;
+    void lift(Candidate& candidate) const;
+    std::vector<Candidate> pots(std::span<const Vec2> places) const;
+    void correct(std::vector<Line>& lines) const;
+    std::vector<Candidate> sweep(const Vec2& place) const;
+    std::vector<Vec2> places() const;
+    bool may_lie(const Vec2& place) const;
+    std::vector<Candidate*> kept(std::vector<Candidate*> alive, std::size_t keep) const;
+
+    State state_;
+    Scene scene_;
+    Skill skill_;
+    kernel::Isa isa_;
+    const AdviceOptions& options_;
+    Potting potting_;
+    Lie lie_;
+    Numbers targets_, first_;
+    std::size_t cue_ball_;
+    bool in_hand_;
+};
+
+}  // namespace carom::games::detail

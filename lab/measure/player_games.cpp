@@ -1,0 +1,138 @@
+// Lets the player of carom/games/player.h play racks of eight-ball or nine-ball, and prints what it reaches.
+//
+//     player_games alone LEVEL [RACKS [GAME]]           from the break until the turn is lost
+//     player_games match LEVEL LEVEL [RACKS [GAME]]     the break alternates
+//     player_games positions LEVEL LEVEL [RACKS [GAME]]  the same; prints the features of every position, and
+//                                                       whether the player to shoot wins, for player_fit.py
+//
+// LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz").
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/engine/math.h"
+#include "carom/games/player.h"
+#include "player/lie.h"
+#include "support/player_racks.h"
+
+using namespace carom;
+using namespace carom::games;
+
+namespace {
+
+constexpr double kR = 0.028575;
+
+struct Count {
+    int racks = 0, breaks = 0, cleared = 0, tried = 0, made = 0, safeties = 0, fouls = 0, decisions = 0,
+        shots = 0;
+    double foretold = 0.0, seconds = 0.0;
+    std::array<int, 2> wins{};
+};
+
+double cpu() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+Skill skill_of(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos) return skill_by_name(text, kR);
+    Skill skill{noise_by_name("fastfiz", kR), Look::kWhole};
+    const double factor = std::stod(text.substr(0, colon));
+    for (double* e : {&skill.noise.speed, &skill.noise.aim_deg, &skill.noise.elevation_deg, &skill.noise.side,
+                      &skill.noise.height})
+        *e *= factor;
+    const std::string look = text.substr(colon + 1);
+    skill.look = look == "pot" ? Look::kPot : look == "quick" ? Look::kQuick : Look::kWhole;
+    return skill;
+}
+
+/// One rack. @param alone  it ends when the breaker's turn does
+void play(const std::array<Skill, 2>& skills, Game game, std::uint64_t seed, int breaker, bool alone,
+          bool positions, Count& count) {
+    std::vector<std::pair<int, std::string>> told;
+    bool first = true;
+    const auto timed = [&](const Skill& skill) -> test::Adviser {
+        return [&, ask = test::adviser(skill)](const State& state, const Scene& scene, std::uint64_t number) {
+            const double start = cpu();
+            const Advice advice = ask(state, scene, number);
+            count.seconds += cpu() - start;
+            ++count.decisions;
+            return advice;
+        };
+    };
+    const auto each = [&](const test::RackShot& shot) {
+        const State& before = shot.before;
+        const bool opening = before.opening, made = shot.made();
+        if (positions && !opening) {
+            const Skill& skill = skills[static_cast<std::size_t>(before.turn)];
+            const auto features = games::detail::Potting(shot.table, skill.noise.aim_deg / kDegrees)
+                                      .features(before, games::detail::lie_of(shot.table));
+            told.emplace_back(before.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
+        }
+        if (!opening && shot.advice.ball.empty()) ++count.safeties;
+        if (!opening && !shot.advice.ball.empty()) {
+            ++count.tried;
+            count.made += made;
+            count.foretold += shot.advice.makes.value;
+        }
+        if (!opening) count.fouls += !shot.verdict.fouls.empty();
+        if (std::getenv("TELL") != nullptr)
+            fmt::print(
+                "player {}: {}, foretold {:.2f}, worth {:.2f}: {}{}\n", before.turn + 1,
+                words_of(shot.advice, shot.table.table), shot.advice.makes.value, shot.advice.worth,
+                made ? "made" : "missed",
+                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0]));
+        if (first) count.breaks += made && !shot.taken.state.over;
+        first = false;
+        return !alone || made;
+    };
+    const int winner =
+        test::play_rack(game, skills, {timed(skills[0]), timed(skills[1])}, seed, breaker, each);
+    ++count.racks;
+    if (winner < 0) return;
+    ++count.wins[static_cast<std::size_t>(winner)];
+    count.cleared += winner == breaker;
+    for (const auto& [player, text] : told) fmt::print("{} {:d}\n", text, player == winner);
+}
+
+std::string share(int part, int whole) {
+    const Share s = share_of(static_cast<std::size_t>(part), static_cast<std::size_t>(whole > 0 ? whole : 1));
+    return fmt::format("{:.1f} % ({:.0f} to {:.0f}) of {}", 100.0 * s.value, 100.0 * s.low, 100.0 * s.high,
+                       whole);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3) return 2;
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    const bool alone = words[0] == "alone";
+    const std::size_t levels = alone ? 1 : 2;
+    const std::array<Skill, 2> skills = {skill_of(words[1]), skill_of(words[levels])};
+    const int racks = words.size() > levels + 1 ? std::stoi(words[levels + 1]) : 20;
+    const bool nine = words.size() > levels + 2 && words[levels + 2] == "nine_ball";
+    const Game game = nine ? Game::kNineBall : Game::kEightBall;
+    Count count;
+    for (int k = 0; k < racks; ++k)
+        play(skills, game, static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
+             words[0] == "positions", count);
+    if (words[0] == "positions") return 0;
+    fmt::print("{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
+               count.seconds / count.decisions);
+    fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));
+    fmt::print("pots made                      {}; foretold {:.1f} %\n", share(count.made, count.tried),
+               100.0 * count.foretold / count.tried);
+    fmt::print("safeties {}, fouls {}\n", count.safeties, count.fouls);
+    if (alone)
+        fmt::print("cleared after a good break     {}\n", share(count.cleared, count.breaks));
+    else
+        fmt::print("won by the first               {}\n",
+                   share(count.wins[0], count.wins[0] + count.wins[1]));
+}

@@ -1,0 +1,99 @@
+"""A player of pool: advice, and somebody to play against."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from carom import _carom
+from carom._arguments import checked
+from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
+from carom.games._noise import Noise, noisy
+from carom.games._rules import Call, State, _fitting
+
+#: The levels of a player, the weakest first.
+SKILLS: tuple[str, ...] = tuple(_carom.skills())
+
+
+class Cue(NamedTuple):
+    """A strike, as `carom.Scene` takes it with `_asdict()`."""
+
+    speed: float  # [m/s]
+    aim_deg: float
+    elevation_deg: float
+    offset: tuple[float, float]  # side and height [ball radii]
+
+
+class Advice(NamedTuple):
+    """A shot to play, and how sure it is."""
+
+    words: str
+    kind: str  # "pot", "combination", "bank", "kick", "safety", "push out" or "break"
+    ball: str  # what it pots, and where; "" for other kinds
+    pocket: str
+    cut_deg: float  # of a pot: how far the object ball turns to the left
+    cue: Cue
+    call: Call
+    place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
+    # From shots that the search has not seen: how often the turn or the game is won, and how often the shot
+    # is a foul; each with its interval of 95 %.
+    makes: tuple[float, float, float]
+    fouls: tuple[float, float, float]
+    worth: float  # mean value of what the shot leaves: 1 is a game won, 0 one lost
+    leaves: list[str]  # the balls that it most often leaves as the surest pot
+
+
+@checked
+def advise(
+    state: State, scene: SceneLike, skill: str = "professional", *, seed: int = 1, best: int = 3,
+    shots: int = 400, threads: int = 1,
+) -> list[Advice]:
+    """The best shots that differ in kind, ball or pocket, the best first; at least one.
+
+    scene: the balls, which lie still; for a break, the rack. The cue ball may be missing while it is in hand
+    skill: how well the player strikes, and how much it looks at: one of `SKILLS`
+    best: the most pieces of advice
+    shots: that check each of them; 0: none, and `makes` and `fouls` are those of the search
+    threads: 0 uses every core; the result does not depend on it
+
+    Raises ValueError for a game without a player (`carom.games.rules` of eight-ball, nine-ball and ten-ball
+    have one), a game that is over, and a state that does not fit the scene.
+    """
+    if best < 1 or shots < 0 or threads < 0:
+        raise ValueError("best must be at least 1, shots and threads at least 0")
+    rows = _carom.advise(_fitting(state), as_scene(scene)._native, skill, seed, best, shots, threads)
+    return [
+        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), Call(*row[6]), *row[7:]) for row in rows]
+
+
+class PlayerShot(NamedTuple):
+    """What a player does, with its errors."""
+
+    words: str  # what it means to do
+    scene: Scene  # the shot
+    call: Call
+    cue: dict[str, Any]  # the strike, as for `carom.Scene`
+    place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
+
+
+@checked
+class Player:
+    """Somebody to play against: it means to play the best advice, and strikes with the errors of its level.
+
+    skill: one of `SKILLS`
+    """
+
+    def __init__(self, skill: str = "club", seed: int = 1) -> None:
+        if skill not in SKILLS:
+            raise ValueError(f"skill={skill!r}: expected {', '.join(SKILLS)}")
+        self.skill, self.seed, self._shots = skill, seed, 0
+
+    def shot(self, state: State, scene: SceneLike) -> PlayerShot:
+        """The next shot from a table at rest. Raises ValueError as `advise`."""
+        self._shots += 1
+        table = as_scene(scene)
+        seed = (self.seed * 1_000_003 + self._shots) % 2**63
+        best = advise(state, table, self.skill, seed=seed, best=1, shots=0)[0]
+        noise = Noise(*_carom.noise_of_skill(self.skill, 0.028575))
+        cue = noisy(best.cue._asdict(), noise, self.seed, self._shots)
+        shot = scene_with_cue(cue, lambda section: _carom.struck(table._native, best.place, section))
+        return PlayerShot(best.words, shot, best.call, cue, best.place)

@@ -1,0 +1,208 @@
+// The player: scenes with one right answer, the same bits everywhere, refusals, and racks that end.
+#include "carom/games/player.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "player/lie.h"
+#include "support/player_racks.h"
+
+namespace carom::test {
+namespace {
+
+using games::Advice;
+using games::AdviceOptions;
+using games::Game;
+using games::Group;
+using games::InHand;
+using games::ShotKind;
+using games::Skill;
+using games::State;
+
+using Places = std::vector<std::pair<std::string, Vec2>>;
+
+constexpr double kR = 0.028575;
+
+Scene table(const Places& places) {
+    std::string text = "[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n";
+    for (const auto& [id, at] : places) {
+        if (id == "cue") text += "[cue]\n";
+        text += "[[ball]]\nid = \"" + id + "\"\nposition = [" + std::to_string(at.x()) + ", " +
+                std::to_string(at.y()) + "]\n";
+    }
+    return parse_scene(text, "table");
+}
+
+State turn(Game game, Group group = Group::kOpen, InHand in_hand = InHand::kNo) {
+    State state = games::new_game(game);
+    state.opening = false;
+    state.in_hand = in_hand;
+    state.group = {group, group == Group::kOpen     ? Group::kOpen
+                          : group == Group::kSolids ? Group::kStripes
+                                                    : Group::kSolids};
+    return state;
+}
+
+std::vector<Advice> ask(const State& state, const Scene& scene, const AdviceOptions& options = {}) {
+    return games::advise(state, scene, games::skill_by_name("league", kR), kernel::best_isa(), options);
+}
+
+TEST(Player, StraightIn) {
+    // Into the corner at the origin, along the diagonal.
+    const Advice best =
+        ask(turn(Game::kEightBall, Group::kSolids),
+            table({{"cue", {0.6, 0.6}}, {"3", {0.3, 0.3}}, {"8", {1.0, 2.3}}, {"9", {0.2, 2.0}}}))
+            .front();
+    EXPECT_EQ(best.ball, "3");
+    EXPECT_EQ(best.kind, ShotKind::kPot);
+    EXPECT_EQ(best.call.ball, "3");
+    EXPECT_EQ(best.call.pocket, best.pocket);
+    EXPECT_GT(best.makes.low, 0.8);
+}
+
+TEST(Player, OnlyACombination) {
+    // The stripe hangs in the corner behind the only ball that can be hit: in nine-ball, the 1 drives the 9.
+    const Advice best =
+        ask(turn(Game::kNineBall), table({{"cue", {0.6, 0.6}}, {"1", {0.25, 0.25}}, {"9", {0.1, 0.1}}}))
+            .front();
+    EXPECT_EQ(best.ball, "9");
+    EXPECT_EQ(best.kind, ShotKind::kCombination);
+}
+
+TEST(Player, NeverTheEightTooEarly) {
+    const std::vector<Advice> advice =
+        ask(turn(Game::kEightBall, Group::kSolids),
+            table({{"cue", {0.6, 0.6}}, {"8", {0.07, 0.07}}, {"3", {1.0, 2.0}}, {"9", {0.2, 2.3}}}));
+    for (const Advice& a : advice) {
+        EXPECT_NE(a.ball, "8");
+        EXPECT_LT(a.fouls.value, 0.9);
+    }
+}
+
+TEST(Player, TheEightAtLast) {
+    const Advice best = ask(turn(Game::kEightBall, Group::kSolids),
+                            table({{"cue", {0.6, 0.6}}, {"8", {0.3, 0.3}}, {"9", {0.2, 2.3}}}))
+                            .front();
+    EXPECT_EQ(best.call.ball, "8");
+    EXPECT_GT(best.worth, 0.85);
+}
+
+TEST(Player, SnookeredItIsFairInHalfOfItsShots) {
+    // A wall of stripes stands before the last solid.
+    Places places = {{"cue", {0.635, 0.3}}, {"3", {0.635, 2.2}}, {"8", {0.3, 2.4}}};
+    for (int k = 0; k < 7; ++k) places.push_back({std::to_string(9 + k), {0.44 + 0.065 * k, 0.6}});
+    const Advice best = ask(turn(Game::kEightBall, Group::kSolids), table(places)).front();
+    EXPECT_LT(best.fouls.value, 0.5);
+}
+
+TEST(Player, PlacesTheBallInHand) {
+    const Scene scene = table({{"3", {0.08, 0.08}}, {"8", {1.0, 2.3}}, {"9", {0.2, 2.0}}});
+    const State state = turn(Game::kEightBall, Group::kSolids, InHand::kAnywhere);
+    const Advice best = ask(state, scene).front();
+    ASSERT_TRUE(best.place.has_value());
+    EXPECT_EQ(best.ball, "3");
+    EXPECT_GT(best.makes.value, 0.95);
+    EXPECT_NO_THROW(validate(games::scene_with(scene, best)));
+    // Behind the head string, it may not hit the ball that lies there.
+    const Advice behind = ask(turn(Game::kEightBall, Group::kSolids, InHand::kHeadString), scene).front();
+    EXPECT_LT(behind.place->y(), games::head_string(scene.table));
+}
+
+TEST(Player, AdviceDiffers) {
+    const std::vector<Advice> advice =
+        ask(turn(Game::kEightBall),
+            table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}}));
+    ASSERT_GE(advice.size(), 2u);
+    for (std::size_t i = 0; i < advice.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_FALSE(advice[i].kind == advice[j].kind && advice[i].ball == advice[j].ball &&
+                         advice[i].pocket == advice[j].pocket);
+    // A table of the same balls in another order.
+    Scene turned = table({{"8", {0.4, 2.2}}, {"3", {1.0, 0.5}}, {"9", {0.9, 1.4}}, {"cue", {0.6, 0.9}}});
+    EXPECT_EQ(ask(turn(Game::kEightBall), turned).front().cue.aim_deg, advice.front().cue.aim_deg);
+}
+
+TEST(Player, SameBitsFromEveryThreadAndInstructionSet) {
+    const Scene scene = table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
+    const State state = turn(Game::kEightBall);
+    const Skill skill = games::skill_by_name("league", kR);
+    AdviceOptions options;
+    const auto asked = [&](kernel::Isa isa, int threads) {
+        options.threads = threads;
+        std::vector<double> numbers;
+        for (const Advice& a : games::advise(state, scene, skill, isa, options))
+            numbers.insert(numbers.end(),
+                           {a.cue.speed, a.cue.aim_deg, a.makes.value, a.fouls.value, a.worth});
+        return numbers;
+    };
+    const std::vector<double> expected = asked(kernel::Isa::kScalar, 1);
+    EXPECT_EQ(asked(kernel::best_isa(), 1), expected);
+    EXPECT_EQ(asked(kernel::best_isa(), 4), expected);
+}
+
+std::string refusal(const State& state, const Scene& scene) {
+    try {
+        ask(state, scene);
+    } catch (const std::invalid_argument& refused) {
+        return refused.what();
+    }
+    return "";
+}
+
+TEST(Player, RefusesWhatItCannotPlay) {
+    const Scene scene = table({{"cue", {0.6, 0.9}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
+    EXPECT_NE(refusal(turn(Game::kSnooker), scene).find("no player of snooker"), std::string::npos);
+    State over = turn(Game::kEightBall);
+    over.over = true;
+    EXPECT_NE(refusal(over, scene).find("the game is over"), std::string::npos);
+    EXPECT_NE(
+        refusal(turn(Game::kEightBall), table({{"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}})).find("no cue ball"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}, {"red", {1.0, 0.5}}})).find("\"red\""),
+        std::string::npos);
+    EXPECT_NE(refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}})), "");
+    Scene moves = scene;
+    moves.ball[1].velocity = {1.0, 0.0, 0.0};
+    EXPECT_NE(refusal(turn(Game::kEightBall), moves).find("moves"), std::string::npos);
+    EXPECT_THROW(games::skill_by_name("wizard", kR), std::invalid_argument);
+}
+
+TEST(Player, AChanceFallsWithDistanceCutAndError) {
+    const Scene scene = table({{"cue", {0.6, 0.6}}, {"3", {0.3, 0.3}}});
+    const auto chance = [&](const Vec2& cue, double sd) {
+        games::detail::Lie lie = games::detail::lie_of(scene);
+        lie.cue = cue;
+        const auto pots = games::detail::Potting(scene, sd).pots(lie, games::detail::only(3), 0.0);
+        double best = 0.0;
+        for (const auto& pot : pots) best = std::max(best, pot.chance);
+        return best;
+    };
+    EXPECT_GT(chance({0.5, 0.5}, 0.005), chance({0.9, 0.9}, 0.005));
+    EXPECT_GT(chance({0.6, 0.6}, 0.005), chance({0.35, 0.75}, 0.005));
+    EXPECT_GT(chance({0.6, 0.6}, 0.002), chance({0.6, 0.6}, 0.02));
+}
+
+TEST(Player, RacksEnd) {
+    const Skill beginner = games::skill_by_name("beginner", kR);
+    for (const Game game : {Game::kEightBall, Game::kNineBall}) {
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            int shots = 0;
+            const int winner = play_rack(game, {beginner, beginner}, {adviser(beginner), adviser(beginner)},
+                                         seed, 0, [&](const RackShot&) { return ++shots > 0; });
+            EXPECT_GE(winner, 0) << name(game) << " " << seed;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace carom::test

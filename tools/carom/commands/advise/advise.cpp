@@ -1,0 +1,129 @@
+// carom advise: the best shots of a position, in words and as a scene.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/console.h"
+#include "base/game_state.h"
+#include "base/options.h"
+#include "base/setup.h"
+#include "base/verdict.h"
+#include "carom/engine/batch.h"
+#include "carom/engine/printable.h"
+#include "carom/games/player.h"
+#include "report/table.h"
+
+namespace carom::tools {
+namespace {
+
+using games::Advice;
+using games::State;
+
+struct AdviseArgs {
+    std::string scene, game, state, skill = "professional", output;
+    int best = 3, jobs = 0;
+    std::uint64_t seed = 1;
+    bool json = false;
+};
+
+/// [-] Object balls of a full rack.
+std::size_t rack_of(games::Game game) {
+    return game == games::Game::kNineBall ? 9 : game == games::Game::kTenBall ? 10 : 15;
+}
+
+/// That of the file; otherwise a break if the rack is full, and the middle of a turn if it is not.
+State state_of(const AdviseArgs& args, const Scene& scene) {
+    if (!args.state.empty()) {
+        State state = read_state(args.state);
+        if (!args.game.empty() && game_of(args.game) != state.game)
+            throw UsageError(fmt::format("--game {}: the state in {} is of {}", args.game,
+                                         harmless(args.state), carom::name(state.game)));
+        return state;
+    }
+    State state = games::new_game(game_of(args.game.empty() ? "eight_ball" : args.game));
+    if (scene.ball.size() < rack_of(state.game) + 1) {
+        state.opening = false;
+        state.in_hand = games::InHand::kNo;
+    }
+    return state;
+}
+
+std::string percent(double share) {
+    return fmt::format("{:.0f}", 100.0 * share);
+}
+
+std::string advice_text(const std::vector<Advice>& advice, const carom::Table& table) {
+    std::string text;
+    for (std::size_t i = 0; i < advice.size(); ++i) {
+        const Advice& a = advice[i];
+        text += fmt::format("{}  {}\n", i + 1, games::words_of(a, table));
+        const char* what = a.ball.empty() ? "keeps the turn" : "pots";
+        text += fmt::format("   {} {} % ({} to {}), fouls {} %", what, percent(a.makes.value),
+                            percent(a.makes.low), percent(a.makes.high), percent(a.fouls.value));
+        if (!a.leaves.empty()) text += fmt::format("; leaves {}", fmt::join(a.leaves, ", "));
+        if (a.place) text += fmt::format("; cue ball at {:.3f}, {:.3f} m", a.place->x(), a.place->y());
+        text += "\n";
+    }
+    return text;
+}
+
+int run_advise(const AdviseArgs& args) {
+    const Plan plan = plan_scene(args.scene);
+    const State state = state_of(args, plan.scene);
+    games::AdviceOptions options;
+    options.seed = args.seed;
+    options.threads = args.jobs;
+    options.best = static_cast<std::size_t>(args.best);
+    options.stop = [] { return interrupted(); };
+    const auto advice = [&] {
+        try {
+            const games::Skill skill = games::skill_by_name(args.skill, plan.scene.balls.R);
+            return games::advise(state, plan.scene, skill, chosen_isa(), options);
+        } catch (const BatchStopped&) {
+            throw Interrupted();
+        } catch (const std::invalid_argument& refused) {
+            throw UsageError(fmt::format("{}: {}", harmless(args.scene), refused.what()));
+        }
+    }();
+    if (!args.output.empty()) {
+        const std::string said =
+            fmt::format("# {}: {}.\n", next_text(state), games::words_of(advice.front(), plan.scene.table));
+        write_report(args.output, said + scene_text(games::scene_with(plan.scene, advice.front())));
+    }
+    if (args.json)
+        print(advice_json(advice, plan.scene.table).dump() + "\n");
+    else
+        print(next_text(state) + "\n" + advice_text(advice, plan.scene.table));
+    return kOk;
+}
+
+}  // namespace
+
+void add_advise(Options& program) {
+    auto [command, args] = program.command<AdviseArgs>(
+        "advise", "Say which shot to play: the best that differ in kind, and how sure each is", run_advise);
+    command.argument("SCENE", args.scene, "Scene file (TOML): the balls as they lie").required = true;
+    command.option("--game", &args.game, "GAME", "The game; a state names it, too (default: eight_ball)")
+        .one_of({"eight_ball", "nine_ball", "ten_ball"});
+    command.option(
+        "--state", &args.state, "FILE.json",
+        "The state of the game, from carom judge or next (default: a break if the rack is full, else "
+        "the middle of a turn on an open table)");
+    command.option("--skill", &args.skill, "LEVEL", "How well the player strikes, and how much it looks at")
+        .one_of({games::kSkills.begin(), games::kSkills.end()});
+    command.option("--best", &args.best, "N", "How many shots are shown").in(1, 20);
+    command.option("--seed", &args.seed, "S", "Seed of the player's errors");
+    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the result does not depend on it")
+        .in(0, 256);
+    command.option("-o,--output", &args.output, "FILE.toml",
+                   "Write the best shot as a scene (default: not written)");
+    command.flag("--json", args.json, "Print the advice as JSON (default: off)");
+}
+
+}  // namespace carom::tools
