@@ -250,7 +250,7 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
     const BallBallModelInfo& model = *laws.plan.ball_ball;
     meet_pair(laws, one, two, apart, s1, s2,
               [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
-                  const FreePair free{pair.size1, pair.size2, model.friction(in.balls),
+                  FreePair free{pair.size1, pair.size2, model.friction(in.balls),
                                       model.restitution(in.balls)};
                   const Vec3 n = pair.apart / length3(pair.apart);
                   if (slow)
