@@ -519,5 +519,23 @@ TEST(Airborne, NothingJumpsWithTheHeight) {
     }
 }
 
+// Two plastic balls that meet at metres a second have the friction of any restitution: (A5). They had none.
+TEST(Airborne, PlasticBallsHaveFriction) {
+    Scene scene = empty_scene();
+    scene.balls.e_b = 0.0;
+    scene.balls.mu_b = 0.3;
+    const double R = scene.balls.R;
+    add_high_ball(scene, "a", 0.0, 0.0, 0.5, Vec3(2.0, 0.0, 0.0), Vec3(0.0, 0.0, 100.0));
+    add_high_ball(scene, "b", 0.1, 0.0, 0.5);
+    scene.stop.events = 1;
+    const Record record = run_verified(scene);
+    ASSERT_EQ(count(record, EventType::kBallBall), 1);
+    // Both fall alike: v_n = 2 m/s, and the slip R w of 2.9 m/s would need more than mu_b J_n to end.
+    const Vec3 wa = record.tracks[0].segments.back().w, wb = record.tracks[1].segments.back().w;
+    const double turn = 2.5 / R * std::min(0.3 * 0.5 * 2.0, 2.0 / 7.0 * 0.5 * R * 100.0);
+    EXPECT_NEAR(wa.z(), 100.0 - turn, 0.02 * turn);
+    EXPECT_NEAR(wb.z(), -turn, 0.02 * turn);
+}
+
 }  // namespace
 }  // namespace carom

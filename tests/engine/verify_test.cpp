@@ -200,5 +200,27 @@ TEST(Verify, LooksBetweenEvents) {
     }
 }
 
+// Behind an arc with ends nothing touches, so only the passage itself can be seen: a ball that leaves a table
+// of two half circles, in one piece of its motion. From behind a ball may come in.
+TEST(Verify, SeesABallPassARoundWall) {
+    for (const bool out : {true, false}) {
+        Scene scene = empty_scene();
+        scene.balls.mu_s = scene.balls.mu_r = 0.0;
+        scene.stop.time = 2.0;
+        add_ball(scene, "ball", out ? 0.1 : 2.0, 0.05, out ? 1.0 : -1.0);
+        const Record record = simulate(plan_of(scene));
+        for (const double from : {90.0, 270.0})
+            scene.table.jaws.push_back(
+                {"w", {0.0, 0.0}, 0.5, scene.balls.R, "", "inside", from, from + 180.0});
+        scene.effects.push_back({"cushions", true, {}});
+        const std::optional<Violation> violation = verify(record, plan_of(scene));
+        ASSERT_EQ(violation.has_value(), out);
+        if (!out) continue;
+        EXPECT_EQ(violation->law, "U3");
+        EXPECT_NE(violation->message.find("ball ball passes through a round wall"), std::string::npos)
+            << violation->message;
+    }
+}
+
 }  // namespace
 }  // namespace carom::test

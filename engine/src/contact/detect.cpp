@@ -87,13 +87,16 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     const double along = -dot(m.r, e);  // arc length of the closest approach
     if (kSide > 0 && !(along > 0.0)) return kNever;
     const double miss = std::abs(cross(m.r, e));
-    if (!(miss < reach)) return kNever;
-    const double half_chord = std::sqrt((reach - miss) * (reach + miss));
+    if (kSide > 0 && !(miss < reach)) return kNever;
+    // From inside every path meets the wall, also one along it that misses the circle by rounding.
+    const double half_chord = std::sqrt(std::max(0.0, (reach - miss) * (reach + miss)));
     // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product, which avoids cancellation near contact.
     const double d = length(m.r);
-    // The other end of the chord, from inside.
-    const double s = kSide < 0 && along > 0.0 ? along + half_chord
-                                              : (d - reach) * (d + reach) / (along + kSide * half_chord);
+    // The other end of the chord, from inside; at once, if the ball is outside by rounding and leaves.
+    double s = kSide < 0 && (along > 0.0 || half_chord == 0.0)
+                   ? along + half_chord
+                   : (d - reach) * (d + reach) / (along + kSide * half_chord);
+    if (kSide < 0) s = std::max(0.0, s);
     if (!(s >= 0.0)) return kNever;
     const double end_speed_squared = speed * speed + 2.0 * alpha * s;
     if (!(end_speed_squared >= 0.0)) return kNever;  // stops before the contact

@@ -50,7 +50,7 @@ Link link_of(const Group& g, const RestingContact& c) {
         return BallAt<Vec3>{g.group.balls[body].r, Vec3::Zero(), g.bodies[body].R};
     };
     const bool discs = g.around.balls.discs();
-    Link link{.i = body_of(c.contact.ball), .j = -1, .n = c.n, .contact = c.contact};
+    Link link{.i = body_of(c.contact.ball), .j = -1, .first = c.n, .n = c.n, .contact = c.contact};
     const BallAt<Vec3> ball = at(link.i);
     if (c.contact.with == With::kBall) {
         link.j = body_of(c.contact.other);
@@ -64,25 +64,6 @@ Link link_of(const Group& g, const RestingContact& c) {
     }
     link.begins = c.began == g.now;
     return link;
-}
-
-// Removes energy that does not exist: slips that count as zero, and in a flat wedge the rounding of impulses
-// a million times larger than the speeds, would add some. Scales all motions alike, so that rates and slips
-// of zero stay zero.
-// @return whether there was any
-bool keep_energy(Group& g) {
-    double before = 0.0, after = 0.0;
-    for (const Body& b : g.bodies) {
-        before += kinetic_energy(b.v, b.s, 1.0) / b.ease;
-        after += kinetic_energy(b.v_end, b.s_end, 1.0) / b.ease;
-    }
-    if (!(after > before)) return false;
-    const double share = std::sqrt(before / after);
-    for (Body& b : g.bodies) {
-        b.v_end *= share;
-        b.s_end *= share;
-    }
-    return true;
 }
 
 // Accepts the velocities after impulses at an instant as the present ones.
@@ -107,7 +88,11 @@ void accept(Group& g) {
 void mark_open(Group& g) {
     for (Link& link : g.links) {
         const double rate = gap_rate(g, link), e = link.j >= 0 ? g.around.balls.e_b : g.around.balls.e_c;
-        const bool stays = link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide, e));
+        // A wall around a ball turns it, and so presses it.
+        const double across = link.distance < 0.0 ? cross(link.first, g.bodies[link.i].v) : 0.0,
+                     turns = across != 0.0 ? across * across / -link.distance : 0.0;
+        const bool stays =
+            link.begins || (link.gap < kGapLeft && holds(rate, 2.0 * g.motion.slide + turns, e));
         link.open = rate > g.noise && !stays;
     }
 }
@@ -120,13 +105,18 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// In flat wedges rounding leaves no solution; what comes nearer is taken.
+// In flat wedges rounding leaves no solution; a state that comes nearer is accepted. A contact with a gap may
+// close slowly: the interval ends that.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
-    const double before = closing_speed(g, gap_rate);
+    const double time = std::max(kShortestInterval, kSlackTime * g.group.last);
+    for (Link& link : g.links) link.slack = !link.begins ? std::max(0.0, link.gap) / time : 0.0;
+    const auto at_start = [](const Group& all, const Link& link) { return gap_rate(all, link) + link.slack; };
+    const auto at_end = [](const Group& all, const Link& link) { return end_rate(all, link) + link.slack; };
+    const double before = closing_speed(g, at_start);
     if (before > kClosingUlp * kEpsilon * fastest &&
-        (strike(g) || closing_speed(g, end_rate) < kNearer * before))
+        (strike(g) || closing_speed(g, at_end) < kNearer * before))
         accept(g);
     mark_open(g);
 }
@@ -148,25 +138,56 @@ void solve(Group& g) {
 
 }  // namespace
 
-Across across(const Group& g, const Link& link, double h) {
-    const Vec2 t(link.n.y(), -link.n.x());
-    const Body& bi = g.bodies[link.i];
-    Vec2 v = -bi.v, change = bi.v - bi.v_end;
-    if (link.j >= 0) {
-        v += g.bodies[link.j].v;
-        change += g.bodies[link.j].v_end - g.bodies[link.j].v;
+// Energy that does not exist comes from slips that count as zero, from gaps that open under an impulse within
+// their room, and in a flat wedge from the rounding of impulses a million times larger than the speeds.
+// Scales all motions alike, so that rates and slips of zero stay zero.
+bool keep_energy(Group& g) {
+    double before = 0.0, after = 0.0;
+    for (const Body& b : g.bodies) {
+        before += kinetic_energy(b.v, b.s, 1.0) / b.ease;
+        after += kinetic_energy(b.v_end, b.s_end, 1.0) / b.ease;
     }
-    return {dot(v, t), dot(change, t) / h, link.distance};
+    if (!(after > before)) return false;
+    const double share = std::sqrt(before / after);
+    for (Body& b : g.bodies) {
+        b.v_end *= share;
+        b.s_end *= share;
+    }
+    return true;
+}
+
+Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity) {
+    const Vec2 own = g.bodies[link.i].*velocity;
+    return link.j >= 0 ? Vec2(g.bodies[link.j].*velocity - own) : Vec2(-own);
 }
 
 double gap_rate(const Group& g, const Link& link) {
-    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v : Vec2(Vec2::Zero());
-    return dot(link.n, other - g.bodies[link.i].v);
+    return dot(link.first, relative(g, link, &Body::v));
 }
 
 double end_rate(const Group& g, const Link& link) {
-    const Vec2 other = link.j >= 0 ? g.bodies[link.j].v_end : Vec2(Vec2::Zero());
-    return dot(link.n, other - g.bodies[link.i].v_end);
+    return dot(link.n, relative(g, link, &Body::v_end));
+}
+
+GapCourse::GapCourse(const Group& g, const Link& link, double h)
+    : gap_(link.gap),
+      round_(link.distance == 0.0 ? 0.0 : std::copysign(1.0, link.distance)),
+      far_(std::abs(link.distance + link.gap)),
+      from_(round_ == 0.0 ? link.first : Vec2((link.distance + link.gap) * link.first)),
+      v_(relative(g, link, &Body::v)),
+      half_a_((0.5 / h) * (relative(g, link, &Body::v_end) - v_)) {}
+
+// The squared distance has its extrema at the same times.
+GapCourse::Range GapCourse::range(double h) const {
+    const double round = std::abs(round_);
+    const double c[5] = {0.0, 2.0 * dot(from_, v_), round * dot(v_, v_) + 2.0 * dot(from_, half_a_),
+                         round * 2.0 * dot(v_, half_a_), round * dot(half_a_, half_a_)};
+    double times[3];
+    const int count = extrema(c, h, times);
+    Range range = std::minmax(gap_, at(h));
+    for (int k = 0; k < count; ++k)
+        range = {std::min(range.first, at(times[k])), std::max(range.second, at(times[k]))};
+    return range;
 }
 
 Vec2 contact_slip(const Group& g, const Link& link, bool at_end) {

@@ -43,7 +43,14 @@ inline constexpr double kSlideNoise = 1e-16;
 inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: a fifth of the wavelength of light would still be no gap to
 // see.
-inline constexpr double kGapLeft = 1e-8;
+inline constexpr double kGapLeft = 1e-7;
+// [m] Largest gap that a contact keeps if its normal turns: it has room on both sides.
+inline constexpr double kGapKept = 0.5 * kGapLeft;
+// [last intervals] A contact with a gap may close it in this time, or slower, without an impulse.
+inline constexpr double kSlackTime = 4.0;
+// [of the speeds] Where nothing takes energy, a contact rests only if it closes more slowly: the energy of
+// its bounce is then less than --verify sees.
+inline constexpr double kLosslessShare = 5e-7;
 
 // How long an interval is (contact/resting_interval.cpp)
 
@@ -56,12 +63,11 @@ inline constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
 // A hundred times as much: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kPlaceError = 2e-8;
-// [s] A ball that friction stops rests after this time at the latest: with the tolerance of positions alone
-// it could creep for days.
+// [m] The same by the friction between balls, which is weaker: its mean over the interval leaves a tenth.
+inline constexpr double kFrictionError = 2e-7;
+// [s] A ball that friction stops while others of its group move rests after this time at the latest: with the
+// tolerance of positions alone it could creep for days.
 inline constexpr double kStopsWithin = 0.01;
-// [s] Longest interval with less friction between balls than they have.
-// No test fails without it: it bounds how long less friction acts.
-inline constexpr double kSmooth = 0.3;
 // [-] If an interval overruns a stop by less than this fraction, keep it as it is; if a stop comes as soon
 // after it, try a longer one.
 // Without it: Jams.GapsHaveRoomForARate.
@@ -69,8 +75,6 @@ inline constexpr double kSoon = 1e-2;
 // [rad] Up to this angle, use the direction of the middle of the interval for one that turns.
 // Without such directions: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kTurnOfMiddle = 0.5;
-// [rad] Largest rotation of a normal within an interval.
-inline constexpr double kNormalTurn = 0.03;
 // [-] Lengths of an interval and directions (sine of the angle) that differ by less are equal.
 inline constexpr double kSame = 1e-9;
 // [-] Most attempts at an interval, and at a longer one that ends when a slip or velocity has gone.
@@ -81,7 +85,10 @@ inline constexpr int kAttempts = 60, kLonger = 6;
 inline constexpr double kGrowth = 4.0;
 // [-] An interval with too large an error is reduced by this factor until the error fits.
 inline constexpr double kReduced = 0.9;
-// [ulp] A change of a speed that is its rounding.
+// [-] The same for a gap that would not stay within its room.
+inline constexpr double kShorter = 0.7;
+// [ulp] A smaller change of a speed is its rounding: such a group moves evenly.
+// Without it: Effects.SkippedAndZeroGiveTheSameRecordOver1000Scenes.
 inline constexpr double kChangeUlp = 8.0;
 
 // The solution over an interval (contact/resting_newton.cpp, resting_response.cpp, resting_step.cpp)
@@ -107,16 +114,11 @@ inline constexpr double kRestCompliance = 1e-4;
 // [m] Smaller changes of a gap are ignored, and so is an overlap that the turning of a normal may cause: some
 // ulp of a coordinate of 5 m.
 inline constexpr double kNoGap = 4e-15;
-// [m] and [s] A deeper overlap is removed within the interval, but over at least this time: otherwise the
-// rounding errors of a long push would add up to nearly 1e-12 m.
-inline constexpr double kOverlapDepth = 2e-14, kRecoveryTime = 1e-3;
+// [m] A deeper overlap is removed: otherwise the rounding errors of a long push would add up to nearly
+// 1e-12 m.
+inline constexpr double kOverlapDepth = 2e-14;
 // [m] Overlap that may arise within an interval: a tenth of what U3 of --verify allows.
 inline constexpr double kOverlapGrowth = 1e-13;
-// [m] and [of the gap] Tolerance of a gap after an interval if it opens, and share of a gap by which it may
-// close; the turning of its normal may use the rest. An existing overlap reduces the tolerance. A gap that
-// opens under an impulse gains energy; this share [of the group's] is rounding.
-// Without them: Jams.GapsHaveRoomForARate, RestingGroups.LongLineTakesFewIntervals.
-inline constexpr double kOpensUnnoticed = 1e-10, kGapUsed = 0.1, kEnergyUnnoticed = 2e-13;
 // [-] A gap whose normal turns further than this is not examined in detail: the interval is shortened anyway.
 inline constexpr double kLongestTurn = 0.1;
 // [ulp of the speeds and impulses] Smaller rates of a gap are zero.

@@ -20,6 +20,8 @@
 // drives them.
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "contact/complementarity.h"
@@ -48,6 +50,7 @@ struct Body {
     /// Direction of the friction, if an earlier solution gives that of the middle of the interval.
     bool guided = false;
     Vec2 guide = Vec2::Zero();
+    double slid = 0.0;  ///< share of the interval in which a ball that slips at its start still does
     double load = 1.0;  ///< share of the weight that the cloth supports
     double R = 0.0;     ///< [m]
     double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
@@ -66,18 +69,22 @@ struct Body {
 /// A contact in the equations; i and j index the bodies, j = -1 for the table.
 struct Link {
     int i, j;
-    Vec2 n;
+    Vec2 first;  ///< the normal at the start of the interval
+    Vec2 n;      ///< in its middle: the direction of the impulse
     Contact contact;
     /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
     double distance = 0.0;
     double gap = 0.0;      ///< [m]; negative: overlap
     bool begins = false;   ///< the contact begins now, and so does not end now
     bool open = false;     ///< the gap opens by more than rounding
-    double turning = 0.0;  ///< [m/s^2] what the turning normal adds to the gap's acceleration
+    double slack = 0.0;    ///< [m/s] rate at which it may close at an instant: it has a gap
+    double turning = 0.0;  ///< [m/s^2] of the gap at the end, beyond the rate along n
     double tilt = 0.0;     ///< of the normal, upwards from i to j: vertical share over level one
     // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
     double friction_z = 0.0;  ///< Z over the J that it was found with
+    /// The mean of the interval of this, if an earlier solution gives it.
+    std::optional<double> guide = std::nullopt;
 };
 
 struct Group {
@@ -97,14 +104,32 @@ struct Group {
     Complementarity problem{};
 };
 
-/// Relative motion perpendicular to the normal at the start (velocity, acceleration), and Link::distance.
-struct Across {
-    double v, a, distance;
-};
-Across across(const Group& g, const Link& link, double h);
+/// Removes energy at the end that is not there at the start. @return whether there was any
+bool keep_energy(Group& g);
+/// [m/s] Velocity of the other ball, or of the table, relative to ball i: v or v_end.
+Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity);
 
-/// [m/s] Rate at which the gap opens, at the start and at the end of the interval (without the turning of the
-/// normal).
+/// The gap within the interval h, for its solution.
+class GapCourse {
+  public:
+    GapCourse(const Group& g, const Link& link, double h);
+    /// [m]
+    double at(double t) const {
+        const Vec2 moved = t * (v_ + t * half_a_);
+        if (round_ == 0.0) return gap_ + dot(from_, moved);
+        const Vec2 to = from_ + moved;
+        return gap_ + round_ * dot(moved, from_ + to) / (far_ + length(to));
+    }
+    /// [m] The least and the greatest until h.
+    using Range = std::pair<double, double>;
+    Range range(double h) const;
+
+  private:
+    double gap_, round_, far_;  // round_: the sign of the distance
+    Vec2 from_, v_, half_a_;
+};
+
+/// [m/s] Rate at which the gap opens at the start of the interval, and at its end along Link::n.
 double gap_rate(const Group& g, const Link& link);
 double end_rate(const Group& g, const Link& link);
 /// [m/s] Upward slip of two balls at their contact, and the slip parallel to the cloth.
@@ -134,6 +159,8 @@ double rate_rounding(const Group& g);
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
+/// [s] Time after which friction has ended the slip of a ball that slips at the start of the interval h.
+double slip_gone(const Group& g, const Body& b, double h);
 /// [s] How long a solution over h is accurate.
 double accurate_interval(const Group& g, double h);
 /// Chooses the interval, solves it and writes the segments.

@@ -52,12 +52,19 @@ double turn_of(const Vec2& from, const Vec2& to) {
 
 // Time at which the slip or the velocity of a ball has gone, if that is within the interval h.
 double gone_within(const Group& g, const Body& b, double h) {
-    if (moves(b.u))
-        return b.mode == Mode::kSliding ? kNever
-                                        : time_gone(b.u, (b.push - 2.5 * b.couple) / h,
-                                                    (g.motion.rolls ? 3.5 : 1.0) * g.motion.slide * b.load);
+    if (moves(b.u)) return b.mode == Mode::kSliding ? kNever : slip_gone(g, b, h);
     if (b.mode != Mode::kResting || !moves(b.v)) return kNever;
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
+}
+
+// Time at which the last ball of a group stops that comes to rest within the interval h.
+double time_of_rest(const Group& g, double h) {
+    double last = 0.0;
+    for (const Body& b : g.bodies) {
+        if (b.mode != Mode::kResting || moves(b.u)) return kNever;
+        if (moves(b.v)) last = std::max(last, gone_within(g, b, h));
+    }
+    return last > 0.0 ? last : kNever;
 }
 
 // [s] How far an interval may extend past a stop: a ball that stops within it decelerates evenly until its
@@ -92,7 +99,13 @@ double friction_interval(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     if (gone < kNever) {
         const double slack = after_stop(length(m.start));
-        return h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
+        double limit = h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
+        if (moves(b.u) && b.mode == Mode::kResting) {
+            const double stop = time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll) +
+                                after_stop(length(b.v));
+            if (h > stop) limit = std::min(limit, stop);
+        }
+        return limit;
     }
     const double turn = turn_of(m.start, m.end);
     if (turn <= kSame) return kNever;
@@ -100,53 +113,50 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
-// [rad] How far a normal turns at most.
-double turn_of(const Across& t, double h) {
-    return h * (std::abs(t.v) + 0.5 * h * std::abs(t.a)) / std::abs(t.distance);
+// Whether a gap stays within its room until h.
+bool stays(const Group& g, const Link& link, double h) {
+    const auto [least, most] = GapCourse(g, link, h).range(h);
+    return least >= std::min(link.gap, -kOverlapGrowth) - kNoGap &&
+           !(link.J > 0.0 && most > std::max(link.gap, kGapLeft));
 }
 
-double link_interval(const Group& g, const Link& link, double h, double rounding) {
+// Whether the friction between two balls lasts as long as the interval.
+bool slips_on(const Group& g, const Link& link) {
+    return slip_ended(g, link) < length(contact_slip(g, link, false));
+}
+
+double link_interval(const Group& g, const Link& link, double h) {
     if (link.open) return kNever;
     const Body& b = g.bodies[link.i];
     double interval =
         time_past_end(g.around.geometry, link.contact,
                       {planar(g.group.balls[link.i].r), b.v, (b.v_end - b.v) / h, kNever, false, true});
-    const double rate = gap_rate(g, link);
+    if (!stays(g, link, h)) interval = std::min(interval, kShorter * h);
     if (!(link.J > 0.0)) {
+        const double rate = gap_rate(g, link);
         // A contact that opens is released once its rate can be distinguished from rounding, and before its
         // gap is visible.
-        const double opening = (end_rate(g, link) - rate) / h + link.turning;
+        const double opening = 2.0 * (GapCourse(g, link, h).at(h) - link.gap - rate * h) / (h * h);
         if (opening > 0.0)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
                                                    (4.0 * g.noise + std::max(0.0, -rate)) / opening));
         if (rate > g.noise) interval = std::min(interval, kGapLeft / rate);
-        // A wall around a ball turns it, even if this solution did not.
-        const Across t = across(g, link, h);
-        if (t.distance < 0.0)
-            interval = std::min(interval, allowed_interval(h, turn_of(t, h), kNormalTurn, 1));
         return interval;
     }
-    // Neither the rounding of the rates nor a closing speed that could not be removed may add up to an
-    // overlap.
-    const double closing = rounding + std::max(0.0, -rate);
-    interval = std::min(interval, allowed_interval(h, closing * h, kOverlapGrowth, 2));
     const double force = link.J / h;
-    if (rate > 0.0) interval = std::min(interval, 2.0 * kGapLeft / rate);
     if (link.j >= 0 && !g.smooth) {
         // The friction between two balls changes with their slip, until that is gone.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kPlaceError, 2));
+        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kFrictionError,
+                                                       slips_on(g, link) ? 3 : 2));
     }
-    const Across t = across(g, link, h);
-    const double v = std::abs(t.v), a = std::abs(t.a);
-    if (t.distance == 0.0) return interval;
-    const double turn = turn_of(t, h);
-    if (turn <= kSame * h) return interval;
-    return std::min(
-        {interval, allowed_interval(h, turn, kNormalTurn, 1),
-         allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3),
-         allowed_interval(h, 0.5 * h * h * h * a * (v + h * a) / std::abs(t.distance), kGapLeft, 3)});
+    if (link.distance == 0.0) return interval;
+    const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
+    // [rad] How far the normal turns at most.
+    const double turn = 0.5 * h / std::abs(link.distance) *
+                        (std::abs(cross(link.first, v)) + std::abs(cross(link.first, v_end)));
+    return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3));
 }
 
 // The first attempt: until friction alone would have stopped the first ball.
@@ -161,11 +171,24 @@ double first_attempt(const Group& g) {
     return h;
 }
 
-// Gives friction the direction of the middle of the interval, for second order.
+void unguide(Group& g) {
+    for (Body& b : g.bodies) b.guided = false;
+    for (Link& link : g.links) link.guide.reset();
+}
+
+// Gives friction its mean of the interval, for second order: the direction of the middle on the cloth, and
+// the mean of start and end between balls.
 bool guide(Group& g) {
     bool any = false;
+    unguide(g);
+    for (Link& link : g.links) {
+        if (link.j < 0 || !(link.J > 0.0) || !slips_on(g, link)) continue;
+        const double mean = 0.5 * (friction_at_start(g, link) + link.friction_z);
+        if (mean == link.friction_z) continue;
+        link.guide = mean;
+        any = true;
+    }
     for (Body& b : g.bodies) {
-        b.guided = false;
         const Moving m = moving(g, b);
         if (!moves(m.start) || !moves(m.end) || (!moves(b.u) && b.mode != Mode::kRolling)) continue;
         if (moves(b.u) && b.mode != Mode::kSliding) continue;
@@ -203,15 +226,16 @@ void run_along_walls(Group& g) {
     for (const Link& link : g.links) {
         if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
         Body& b = g.bodies[link.i];
-        if (std::count_if(g.links.begin(), g.links.end(),
-                          [&](const Link& other) { return other.i == link.i || other.j == link.i; }) > 1)
+        if (std::count_if(g.links.begin(), g.links.end(), [&](const Link& other) {
+                return !other.open && (other.i == link.i || other.j == link.i);
+            }) > 1)
             continue;
         const double rolls = b.mode == Mode::kRolling ? 1.0 + kInertia : 1.0;
         const double towards = dot(link.n, b.v_end);
         const Vec2 along = b.v_end - towards * link.n;
         const double work = -b.ease * link.J * dot(link.n, b.v + b.v_end) / rolls,
                      left = dot(along, along) - work;
-        if (!(left > 0.0)) continue;
+        if (!(left > 0.0) || !moves(along)) continue;
         b.v_end = towards * link.n + std::sqrt(left / dot(along, along)) * along;
         if (b.mode == Mode::kRolling) b.s_end = b.v_end;
     }
@@ -261,16 +285,20 @@ bool accelerates(const Group& g) {
 
 }  // namespace
 
+double slip_gone(const Group& g, const Body& b, double h) {
+    return time_gone(b.u, (b.push - 2.5 * b.couple) / h,
+                     (g.motion.rolls ? 3.5 : 1.0) * g.motion.slide * b.load);
+}
+
 double accurate_interval(const Group& g, double h) {
     double accurate = kNever;
     for (const Body& b : g.bodies) accurate = std::min(accurate, friction_interval(g, b, h));
-    const double rounding = rate_rounding(g);
-    for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h, rounding));
+    for (const Link& link : g.links) accurate = std::min(accurate, link_interval(g, link, h));
     return accurate;
 }
 
 void solve_interval(Group& g) {
-    for (Body& b : g.bodies) b.guided = false;
+    unguide(g);
     const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     int longer = 0;
@@ -279,7 +307,6 @@ void solve_interval(Group& g) {
         const bool solved = step(g, h);
         double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
         if (!solved) accurate = std::min(accurate, 0.25 * h);
-        if (g.smooth) accurate = std::min(accurate, kSmooth);
         for (const Body& b : g.bodies) {
             gone = std::min(gone, gone_fast(g, b, h));
             later = std::min(later, gone_later(g, b, h));
@@ -291,14 +318,25 @@ void solve_interval(Group& g) {
         } else if (later < std::max(gone_before, (1.0 + kSoon) * h) && longer < kLonger) {
             h = later * (1.0 + 0.5 * kSame);
             ++longer;
+        } else if (const double rest = std::max(shortest, time_of_rest(g, h));
+                   rest < h * (1.0 - kSame) && longer < kLonger) {
+            h = rest * (1.0 + 0.5 * kSame);
+            ++longer;
         } else {
             // If all moves straight and evenly, continue until something ends it.
             if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
-            break;
+            guide_friction(g, h);
+            const bool all_stay = std::all_of(g.links.begin(), g.links.end(), [&](const Link& link) {
+                return link.open || stays(g, link, h);
+            });
+            if (h <= shortest || all_stay) break;
+            unguide(g);
+            h = std::max(shortest, kShorter * h);
+            longer = kLonger;
         }
     }
-    guide_friction(g, h);
     run_along_walls(g);
+    keep_energy(g);
     write_segments(g, h);
 }
 

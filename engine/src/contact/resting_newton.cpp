@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "contact/complementarity.h"
 #include "contact/resting_group.h"
 #include "physics/motion.h"
@@ -20,9 +21,10 @@ double ease_of(const Group& g, const Link& link) {
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
 
-// The rate that must not be negative: that of a gap at the end, with the turning of its normal.
+// The rate that must not be negative: at an instant that of a gap, beyond the rate at which it may close;
+// over an interval the one that leaves the gap which the contact keeps.
 double wanted_rate(const Group& g, const Link& link, double h, bool stabilise) {
-    return end_rate(g, link) + (stabilise ? h * link.turning : 0.0);
+    return end_rate(g, link) + (h == 0.0 ? link.slack : stabilise ? h * link.turning : 0.0);
 }
 
 // The friction impulse between two balls opposes their slip at the end. With the upward slip X without it,
@@ -52,34 +54,47 @@ double vertical_impulse(const Group& g, const Link& link) {
     return std::clamp(Z, -now, now);
 }
 
-// [m/s^2] Correction to the acceleration of a gap along its first normal. With the tangential velocity v and
-// acceleration a and the distance D, the gap opens by 1/2 (v^2 t^2 + v a t^3 + 1/4 a^2 t^4) / D as the normal
-// turns, and its rate ends at 0 for (v^2 + 3/2 v a h + 1/2 a^2 h^2) / D. If the gap would become negative
-// meanwhile, let it open instead. Overlaps end within the interval, and the gaps of the group may close by as
-// much: without room the whole row would be pressed, and would push out balls at its side.
-double turning_of(const Group& g, const Link& link, const Across& t, double h) {
-    const double time = std::max(h, kRecoveryTime);
-    const double room = link.gap < -kOverlapDepth ? link.gap : std::clamp(link.gap, 0.0, g.overlap);
-    const double recovery = 2.0 * room / (time * time);
-    if (t.distance == 0.0) return recovery;
-    const double c = t.v * t.v / t.distance, k = t.v * t.a / t.distance, kk = t.a * t.a / t.distance;
-    // A change that rounds to no gap would only stop balls at rest from leaning on each other.
-    if (h * h * (std::abs(c) + h * (std::abs(k) + std::abs(kk) * h)) <= kNoGap) return recovery;
-    const double taylor = c + h * (1.5 * k + 0.5 * kk * h);
-    // The distance along the first normal is somewhat shorter by then.
-    const double level = taylor / std::max(0.5, 1.0 - 0.5 * taylor * h * h / t.distance);
-    double least = c;
-    bool free = std::abs(level) * h * h < kLongestTurn * std::abs(t.distance);
-    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-        const double x = share * h, n = -0.5 * level * x * x, across = x * (t.v + 0.5 * x * t.a),
-                     D = t.distance;
-        const double apart = length(Vec2(D + n, across));
-        const double change = (n * (2.0 * D + n) + across * across) / (D + (D < 0.0 ? -apart : apart));
-        free = free && (1.0 - kGapUsed) * std::max(0.0, link.gap) + change >= -kNoGap;
-        least = std::min(least, c + x * (k + 0.25 * kk * x));
+// The normal in the middle of the interval, and Link::turning.
+struct Turn {
+    Vec2 n;
+    double turning;
+};
+
+// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error is gone
+// after two intervals. It keeps the gap at which its present rate would end evenly, within its room: a normal
+// that turns needs room on both sides, because the gap's acceleration changes. Overlaps end, and the other
+// gaps of the group may close by as much: without room the whole row would be pressed, and would push out
+// balls at its side.
+Turn turn_of(const Group& g, const Link& link, double h) {
+    const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
+    const double rate = dot(link.first, v), D = link.distance;
+    // room [m] for the turning; the gap and its rate at the end; the share of the rate that is not along n
+    const auto correction = [&](double room, double gap_end, double rate_end, double turned) {
+        double least = link.gap < -kOverlapDepth ? 0.0 : std::min(link.gap, 0.0);
+        if (room > kNoGap) least = std::max(least, std::min(kGapKept, room));
+        const double even = std::clamp(link.gap + 0.5 * h * rate, least, std::max(least, kGapKept));
+        const double kept = even - std::clamp(link.gap, 0.0, g.overlap);
+        return (0.5 * (turned - rate_end) + (gap_end - kept) / h) / h;
+    };
+    const double level_end = dot(link.first, v_end);
+    Turn level{link.first, correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
+    if (D == 0.0) return level;
+    const Vec2 moved = (0.5 * h) * (v + v_end);
+    // Far from a solution.
+    if (length(moved) > kLongestTurn * std::abs(D)) {
+        const double across = cross(link.first, v);
+        return {link.first, level.turning + across * across / D};
     }
-    if (k < 0.0 && -2.0 * k < kk * h) least = c - k * k / kk;
-    return (free ? level : std::min(level, least)) + recovery;
+    const Vec2 from = (D + link.gap) * link.first, middle = from + 0.5 * moved, to = from + moved;
+    const double sign = std::copysign(1.0, D), far = length(middle), far_end = length(to);
+    const Vec2 n = (sign / far) * middle, n_end = (sign / far_end) * to;
+    const double turn = cross(moved, n) / D, turn_squared = turn * turn;
+    const double room =
+        2.0 * h * std::abs(turn * cross(v_end - v, n)) + std::abs(D) * turn_squared * turn_squared / 32.0;
+    const double gap_end = link.gap + 2.0 * dot(moved, n) * far / (length(from) + far_end);
+    const double turning = correction(room, gap_end, dot(n, v_end), dot(n_end - n, v_end));
+    // A change that rounds to no gap would only stop balls at rest from leaning on each other.
+    return {n, std::abs(turning - level.turning) * h * h <= kNoGap ? level.turning : turning};
 }
 
 // Takes from a solution the vertical impulses and the turning of normals of the next one. They lag by one
@@ -90,14 +105,27 @@ bool update(Group& g, double h, bool stabilise, int times) {
     const double left = kFrictionPlace / std::max(h, kShortestInterval);
     bool changed = false;
     g.smooth = times >= kFallsFrom;
+    for (Body& b : g.bodies) {
+        const double slid = std::min(1.0, slip_gone(g, b, h) / h);
+        if (!moves(b.u) || std::abs(slid - b.slid) * g.motion.roll * h <= left) continue;
+        changed = true;
+        b.slid = slid;
+    }
     for (Link& link : g.links) {
         if (stabilise && !link.open) {
-            const double wanted = turning_of(g, link, across(g, link, h), h);
-            changed = changed || std::abs(wanted - link.turning) * h * h > kNoGap;
-            link.turning = wanted;
+            const Turn wanted = turn_of(g, link, h);
+            if ((times == 0 && length(wanted.n - link.n) > kRateUlp * kEpsilon) ||
+                std::abs(wanted.turning - link.turning) * h * h > kNoGap ||
+                link.J * h * length(wanted.n - link.n) > kFrictionPlace) {
+                changed = true;
+                link.turning = wanted.turning;
+                link.n = wanted.n;
+            }
         }
         if (link.j < 0) continue;
-        double Z = link.J > 0.0 && times < kNoneFrom ? vertical_impulse(g, link) : 0.0;
+        double Z = !(link.J > 0.0) || times >= kNoneFrom ? 0.0
+                   : link.guide                          ? *link.guide * link.J
+                                                         : vertical_impulse(g, link);
         if (times >= kFallsFrom)
             Z = Z * link.Z > 0.0 ? std::copysign(std::min(std::abs(Z), std::abs(link.Z)), Z) : 0.0;
         const double lift = Z - link.tilt * link.J;
@@ -172,27 +200,17 @@ class Newton {
 
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, stabilise_); }
 
-    // [m] Tolerance of a gap after the interval, beyond that of a touch without a gap.
-    double room_of(const Link& link, double rate, double energy) const {
-        if (h_ == 0.0) return 0.0;
-        if (rate > 0.0) return link.J * rate <= kEnergyUnnoticed * energy ? kOpensUnnoticed : 0.0;
-        return link.gap > 0.0 ? kGapUsed * link.gap : std::max(-kOverlapGrowth, link.gap);
-    }
-
     // Stores the rates. If balls alternate between rest and rolling, a share of kRestCompliance remains,
     // which is harmless unless a gap notices it.
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
-        double energy = 0.0;
-        for (const Body& b : g_.bodies) energy += kinetic_energy(b.v, b.s, 1.0) / b.ease;
         bool solved = true;
         for (std::size_t k = 0; k < active_.size(); ++k) {
             const double now = rates_[k] = rate(k);
             const Link& link = g_.links[active_[k]];
             const double wrong = link.J > 0.0 ? std::abs(now) : -now;
             solved = solved && wrong <= rounding;
-            harmless =
-                harmless && wrong <= std::max(rounding, (kOverlapGrowth + room_of(link, now, energy)) / time);
+            harmless = harmless && wrong <= std::max(rounding, kOverlapGrowth / time);
         }
         return solved;
     }

@@ -53,8 +53,10 @@ void respond_puck(const Group& g, Body& b, double h) {
 
 // The motion of a ball under the impulses on it, and its derivatives.
 void respond(const Group& g, Body& b, double h) {
-    const double grip = g.motion.slide * b.load * h, drag = std::min(g.motion.roll * h, grip);
+    const double grip = g.motion.slide * b.load * h;
     const bool slips = moves(b.u);
+    // A ball that slips at the start rolls from the end of its slip on.
+    const double drag = (slips ? 1.0 - b.slid : 1.0) * std::min(g.motion.roll * h, grip);
     // At an instant there is no friction.
     if (h == 0.0) {
         slide(b, Vec2::Zero());
@@ -77,8 +79,7 @@ void respond(const Group& g, Body& b, double h) {
     }
     const Vec2 rolls = b.v + b.push - slip * (2.0 / 7.0);
     const double speed = length(rolls);
-    // A ball that slips at the start only rolls at the end: rolling friction does not slow it yet.
-    if (slips || drag == 0.0) {
+    if (drag == 0.0) {
         b.mode = Mode::kRolling;
         b.v_end = rolls;
         b.by_push = identity(5.0 / 7.0);

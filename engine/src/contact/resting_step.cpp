@@ -25,7 +25,10 @@ bool step(Group& g, double h) {
         link.J *= share;
         link.Z *= share;
         link.lift *= share;
-        if (share == 0.0) link.turning = 0.0;
+        if (share == 0.0) {
+            link.turning = 0.0;
+            link.n = link.first;
+        }
     }
     for (Body& b : g.bodies) {
         b.v_end = b.v + share * (b.v_end - b.v);
@@ -34,7 +37,10 @@ bool step(Group& g, double h) {
     bool solved = solve_newton(g, h, h > 0.0);
     // Two opposing normals that turn can ask for more than there is: then they keep what they have.
     if (!solved && h > 0.0) {
-        for (Link& link : g.links) link.J = link.Z = link.lift = link.turning = 0.0;
+        for (Link& link : g.links) {
+            link.J = link.Z = link.lift = link.turning = 0.0;
+            link.n = link.first;
+        }
         solved = solve_newton(g, h, false);
     }
     g.solved = solved ? h : 0.0;

@@ -61,6 +61,35 @@ int unit_roots(double c0, double c1, double c2, double (&roots)[2]) {
     return inside;
 }
 
+void to_unit(const double (&c)[5], double T, double (&b)[5]) {
+    double power = 1.0;
+    for (int k = 0; k < 5; ++k) {
+        b[k] = c[k] * power;
+        power *= T;
+    }
+}
+
+// Calls visit(s, is_maximum) for every extremum in (0, 1), in order, until it returns true.
+template <class Visit>
+bool each_extremum(const double (&b)[5], const Visit& visit) {
+    double bends[2];
+    const int bend_count = unit_roots(2.0 * b[2], 6.0 * b[3], 12.0 * b[4], bends);
+    double left = 0.0, slope_left = b[1];
+    for (int i = 0; i <= bend_count; ++i) {
+        const double right = i < bend_count ? bends[i] : 1.0;
+        const double slope_right = slope(b, right);
+        if ((slope_left > 0.0 && slope_right < 0.0) || (slope_left < 0.0 && slope_right > 0.0)) {
+            const double extremum =
+                bracketed_root([&b](double s) { return slope(b, s); },
+                               [&b](double s) { return curvature(b, s); }, left, right, slope_left > 0.0);
+            if (visit(extremum, slope_left > 0.0)) return true;
+        }
+        left = right;
+        if (slope_right != 0.0) slope_left = slope_right;
+    }
+    return false;
+}
+
 // Follows f over its monotone pieces, which end at its critical points, up to the first descent.
 class Descent {
   public:
@@ -96,37 +125,31 @@ class Descent {
 double first_descent(const double (&c)[5], double T) {
     if (!(T > 0.0)) return kNever;
     double b[5];
-    double power = 1.0;
-    for (int k = 0; k < 5; ++k) {
-        b[k] = c[k] * power;
-        power *= T;
-    }
+    to_unit(c, T, b);
     if (b[0] > 0.0) {
         // If f never decreases, or all Bernstein coefficients are positive, there is no root on [0, 1].
-        if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0) return kNever;
+        if (b[1] >= 0.0 && b[2] >= 0.0 && b[3] >= 0.0 && b[4] >= 0.0) return kNever;
         const double b1 = b[0] + b[1] / 4.0, b2 = b[0] + b[1] / 2.0 + b[2] / 6.0;
         const double b3 = b[0] + 0.75 * b[1] + 0.5 * b[2] + 0.25 * b[3],
                      b4 = b[0] + b[1] + b[2] + b[3] + b[4];
         if (b1 > 0.0 && b2 > 0.0 && b3 > 0.0 && b4 > 0.0) return kNever;
     }
-    double bends[2];
-    const int bend_count = unit_roots(2.0 * b[2], 6.0 * b[3], 12.0 * b[4], bends);
     Descent descent(b);
-    double left = 0.0, slope_left = b[1];
-    for (int i = 0; i <= bend_count; ++i) {
-        const double right = i < bend_count ? bends[i] : 1.0;
-        const double slope_right = slope(b, right);
-        if ((slope_left > 0.0 && slope_right < 0.0) || (slope_left < 0.0 && slope_right > 0.0)) {
-            const double critical =
-                bracketed_root([&b](double s) { return slope(b, s); },
-                               [&b](double s) { return curvature(b, s); }, left, right, slope_left > 0.0);
-            if (descent.piece(critical, slope_left > 0.0)) return descent.found() * T;
-        }
-        left = right;
-        if (slope_right != 0.0) slope_left = slope_right;
-    }
+    if (each_extremum(b, [&](double s, bool is_maximum) { return descent.piece(s, is_maximum); }))
+        return descent.found() * T;
     if (descent.piece(1.0, false)) return descent.found() * T;
     return kNever;
+}
+
+int extrema(const double (&c)[5], double T, double (&times)[3]) {
+    double b[5];
+    to_unit(c, T, b);
+    int count = 0;
+    each_extremum(b, [&](double s, bool) {
+        times[count++] = s * T;
+        return false;
+    });
+    return count;
 }
 
 double first_descent_quadratic(double h0, double h1, double h2, double T) {

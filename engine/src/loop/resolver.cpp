@@ -142,7 +142,8 @@ bool Resolver::hold_in_cluster(Pressed when) {
 // @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the
 // pair kernel
 bool Resolver::cluster(int a, int b, double v_n) {
-    const bool parts_slowly = plan_.e_b() * v_n < parting_speed(balls_.radius(a), plan_.gravity);
+    const bool parts_slowly =
+        !restitution_in_air(plan_.e_b(), v_n, parting_speed(balls_.radius(a), plan_.gravity));
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
     const bool in_space = clusters_.in_space();

@@ -77,9 +77,18 @@ bool RestingContacts::find(const Contact& contact) const {
                        [&](const RestingContact& c) { return c.contact.same(contact); });
 }
 
+// Whether the speed at which a contact closes may be lost: a bounce that loses nothing continues.
+bool RestingContacts::may_lose(const ContactKinematics& a) const {
+    if (!lossless_) return true;
+    const int partner = a.contact.partner();
+    double speeds = length(planar(balls_.velocity(a.contact.ball)));
+    if (partner >= 0) speeds += length(planar(balls_.velocity(partner)));
+    return a.v_n <= resting::kLosslessShare * speeds;
+}
+
 // A contact becomes a resting contact if
 //   - the rebound would be shorter than the Hertz contact time (holds()). The acceleration is that of the
-//     contact or, if a ball is already in a resting contact, that which friction alone could cause. Bounces
+//     contact or, if a ball is already in a resting contact, the one that friction alone could cause. Bounces
 //     within a group lose a share of their speed each, so that it takes ten times as many for every power of
 //     ten down to rounding; their limit is the resting contact, which the group's solution keeps or opens.
 //   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or if an impact goes back and
@@ -92,7 +101,7 @@ bool RestingContacts::try_begin(const ContactKinematics& a, double restitution) 
     note({balls_.now(), c, a.v_n});
     const bool rests = balls_.segment(c.ball).held || (partner >= 0 && balls_.segment(partner).held);
     const double pressing = rests ? std::max(a.a_c, 2.0 * balls_.motion(c.ball).slide) : a.a_c;
-    if (!holds(a.v_n, pressing, restitution) && !chatters(c, a.v_n)) return false;
+    if (!(holds(a.v_n, pressing, restitution) && may_lose(a)) && !chatters(c, a.v_n)) return false;
     // A ball that is pushed while it falls does not come back.
     bool falls = false;
     for (const int ball : {c.ball, partner}) {

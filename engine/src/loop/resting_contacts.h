@@ -70,6 +70,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     const Struck* find_struck(int ball) const;
     bool goes_on(RestingContact& contact) const;
     bool chatters(const Contact& contact, double v_n) const;
+    bool may_lose(const ContactKinematics& approach) const;
     void note(const Bounce& bounce);
     bool has_fallen(const Event& from, const Contact& contact, double v_n) const;
     void end(const RestingContact& contact);

@@ -14,6 +14,9 @@ constexpr double kBounceApex = 0.0045;
 // [bounce_end] Speed at which a slow contact separates. Such contacts occur about 1000 times a second, and
 // raise the energy by at most 1.3e-5 J/kg.
 constexpr double kPartingShare = 0.1;
+// [-] A contact with less restitution is slow only if it would be with this one: a plastic contact at metres
+// a second has its friction.
+constexpr double kSlowRestitution = 0.5;
 
 }  // namespace
 
@@ -23,6 +26,11 @@ double bounce_end(double R, double gravity) {
 
 double parting_speed(double R, double gravity) {
     return kPartingShare * bounce_end(R, gravity);
+}
+
+std::optional<double> restitution_in_air(double e, double v_n, double parting) {
+    if (std::max(e, kSlowRestitution) * v_n < parting) return std::nullopt;
+    return std::max(e, parting / v_n);
 }
 
 double cloth_restitution(const BallParams& balls, double V) {
@@ -97,17 +105,17 @@ bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, 
               Velocities& ball) {
     const double v_n = -dot3(ball.v, n);
     if (!(v_n > 0.0)) return false;
-    const double e_c = cushion_restitution(balls, v_n);
-    if (e_c * v_n < parting) {
+    const std::optional<double> e_c = restitution_in_air(cushion_restitution(balls, v_n), v_n, parting);
+    if (!e_c) {
         ball.v += (v_n + parting) * n;
         return true;
     }
     const Vec3 surface = ball.v - R * cross3(ball.w, n);
     const Vec3 u = surface - dot3(surface, n) * n;
     const double slip = length3(u);
-    ball.v += (1.0 + e_c) * v_n * n;
+    ball.v += (1.0 + *e_c) * v_n * n;
     if (model.grip == nullptr || !(slip > 0.0)) return false;
-    const double J_t = model.grip(e_c, balls.cushion_friction()(slip), v_n, slip);
+    const double J_t = model.grip(*e_c, balls.cushion_friction()(slip), v_n, slip);
     const Vec3 j = (J_t / slip) * u;
     ball.v -= j;
     ball.w += 2.5 / R * cross3(n, j);

@@ -132,6 +132,17 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
             cue.elevation_deg));
 }
 
+// [-] The least restitution of a contact inside a cluster: the exponent of the unloading law is bounded.
+constexpr double kLeastInCluster = 0.05;
+
+void warn_of_clusters(Plan& plan) {
+    const double e_b = plan.e_b();
+    if (plan.clusters == ClusterModel::kCompliant && plan.sizes.size() > 2 && e_b < kLeastInCluster)
+        plan.warnings.push_back(
+            fmt::format("balls.e_b is {:.4g}, but where three or more balls touch it counts as {}", e_b,
+                        kLeastInCluster));
+}
+
 // Limits beyond which a value is probably in the wrong unit. [m], [m/s]
 constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
@@ -175,6 +186,7 @@ void warn_of_units(Plan& plan) {
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     warn_of_units(plan);
+    warn_of_clusters(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;
         if (plan.in_force(Effect::kAirborne)) {

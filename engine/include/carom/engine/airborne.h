@@ -3,6 +3,8 @@
 // next, at the same instant. Equations: docs/reference/physics.md, "Balls in the air".
 #pragma once
 
+#include <optional>
+
 #include "carom/engine/cushion.h"
 #include "carom/engine/motion.h"
 #include "carom/engine/scene.h"
@@ -15,9 +17,12 @@ namespace carom {
 /// implies.
 double bounce_end(double R, double gravity);
 
-/// [m/s] The speed at which a slow contact in the air separates. A contact is slow if its restitution would
-/// give less.
+/// [m/s] The speed at which a slow contact in the air separates, and the least speed at which any does.
 double parting_speed(double R, double gravity);
+
+/// The restitution of a contact in the air that closes at v_n [m/s], or none if the contact is slow: with its
+/// restitution, or with half of the speed if that is more, it would separate more slowly than at `parting`.
+std::optional<double> restitution_in_air(double e, double v_n, double parting);
 
 /// Restitution between ball and cloth at the speed V [m/s] towards the cloth.
 double cloth_restitution(const BallParams& balls, double V);
@@ -51,8 +56,8 @@ void part_slowly(const FreePair& pair, const Vec3& n, const Lies& lies, double g
 
 /// A ball in the air at a nose, equation (A6).
 /// @param n  unit, from the nose to the ball's centre
-/// @param parting  [m/s] speed at which the ball leaves if its restitution would give less
-/// @return whether it would
+/// @param parting  [m/s] the least speed at which the ball leaves
+/// @return whether the contact is slow
 bool hit_nose(const BallParams& balls, double R, const CushionModelInfo& model, const Vec3& n, double parting,
               Velocities& ball);
 
