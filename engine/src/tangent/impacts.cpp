@@ -260,14 +260,17 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
               });
 }
 
-// The loop resolves the cluster again, in a scene that contains nothing else.
-void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met,
+// The loop resolves the cluster again, in a scene that contains nothing else. Where it ends depends on the
+// steps of the integration, but not where the balls are at one fixed time afterwards.
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states) {
     const auto member = [&](int ball) {
         return static_cast<std::size_t>(std::find(balls.begin(), balls.end(), ball) - balls.begin());
     };
     const std::size_t one = member(hit), two = member(met);
     const double speed = std::abs(closing_speed(states[two].r - states[one].r, states[one], states[two]));
+    // [s] By which lengths are as large as speeds.
+    const double unit = laws.numbers.balls[hit].R.x / speed;
     Arguments in(laws.numbers);
     for (std::size_t k = 0; k < balls.size(); ++k) {
         const Numbers::Ball& ball = laws.numbers.balls[balls[k]];
@@ -309,13 +312,22 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
             throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
         List after;
         for (const BallTrack& track : record.tracks) {
-            const List ball = list_of({{track.segments.back().v, track.segments.back().w}});
+            const Segment& end = track.segments.back();
+            const double tau = duration - end.start;
+            if ((end.start > 0.0) != (duration > 0.0))
+                throw TangentError("its balls meet something else during it");
+            const List ball = list_of({{velocity_at(end, tau), spin_at(end, tau, track.own->R)}});
             after.insert(after.end(), ball.begin(), ball.end());
+            const Vec2 from = planar(position_at(end, tau)) - planar(track.segments.front().r);
+            for (const double x : from) after.push_back(x / unit);
         }
         return after;
     };
     const std::vector<Dual> out = differentiate(laws, in, resolve, kClusterDisagree);
-    for (std::size_t k = 0; k < balls.size(); ++k) put(states[k], out.data() + 6 * k);
+    for (std::size_t k = 0; k < balls.size(); ++k) {
+        put(states[k], out.data() + 8 * k);
+        for (std::size_t i = 0; i < 2; ++i) states[k].r[i] = states[k].r[i] + unit * out[8 * k + 6 + i];
+    }
 }
 
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,

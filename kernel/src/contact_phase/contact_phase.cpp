@@ -49,7 +49,7 @@ void reorder(Work& w, const double* d) {
     };
     double* const arrays[] = {w.d,       w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
                               w.inverse, w.nx,      w.ny,      w.turn,    w.bend,    w.share};
-    for (double* array : arrays) move(array, w.moved);
+    for (double* array : arrays) move(array, w.reordered);
     int* const places[] = {w.i, w.j, w.id};
     for (int* array : places) move(array, w.spare);
 }
@@ -300,6 +300,9 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, doubl
     double* const before = w.y;
     w.y = w.y_stage;
     w.y_stage = before;
+    // The trapezoidal rule: forces begin and end at 0, so that the errors of the steps cancel.
+    for (int n = 0; n < kRow * w.rows; n += kRow)
+        add_displacement(w, n, 0.5 * h * (load<4>(before + n) + load<4>(w.y + n)));
     if (law.cloth) drag(w, law, w.y);
     advance(w, *plan.method, h);
     return h;
@@ -323,7 +326,12 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
     update_rates(w);
     std::int64_t steps = 0;
     double next = longest_step;
-    double time = 0.0;
+    double time = 0.0, braked = 0.0;
+    const auto brake_all = [&w, &law, &time, &braked] {
+        for (int n = 0; n < kRow * w.balls && law.slide > 0.0; n += kRow)
+            brake(law.slide * (time - braked), w.y[n], w.y[n + 2], w.y[n + 1], w.y[n + 3]);
+        braked = time;
+    };
     for (;;) {
         if (!(time < time_limit)) return -1;
         const double most =
@@ -332,6 +340,7 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
+        if (time - braked > kBrakes) brake_all();
         if (any_pressed(w, law, time_limit - time)) continue;
         const double flight = next_touch(w);
         if (!(flight < look_ahead)) break;
@@ -339,10 +348,16 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
         if (any_overlap(w)) continue;
         fly(phase, w, flight, look_ahead);
         time += flight;
+        brake_all();
+        update_rates(w);
     }
+    brake_all();
     for (int b = 0; b < w.balls; ++b) {
         for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
+        if (phase.moved == nullptr) continue;
+        for (int k = 0; k < 2; ++k) phase.moved[2 * b + k] = w.moved[kRow / 2 * b + kPlace[k]];
     }
+    if (phase.time != nullptr) *phase.time = time;
     return steps;
 }
 

@@ -130,6 +130,20 @@ CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
     return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
 
+// The friction of the cloth that the weight of a ball causes in a time in which it could stop a slip of 7/2
+// `speed`. Slip and change of the velocity: u = (v_x - R w_y, v_y + R w_x), dv = -min(speed, 2/7 |u|) u/|u|.
+// It is so small that it need not act at every step, but only this often [L/V].
+constexpr double kBrakes = 0.5;
+CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, double& Rw_y) {
+    const double u_x = v_x - Rw_y, u_y = v_y + Rw_x, slip = square_root(u_x * u_x + u_y * u_y);
+    if (!(slip > 0.0)) return;
+    const double k = smallest(speed / slip, 2.0 / 7.0), x = k * u_x, y = k * u_y;
+    v_x -= x;
+    v_y -= y;
+    Rw_x -= 2.5 * y;
+    Rw_y += 2.5 * x;
+}
+
 // [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
 // that move together would close at such speeds forever.
 constexpr double kNothing = 1e-12;

@@ -30,6 +30,7 @@ struct Work {
     // (kStiffness) is minus the sum of friction divided by slip. After a step, `lift` is the vertical impulse
     // of the step, and `next` that of half a step with the force at its end; `ahead` belongs to drag().
     double *y, *y_stage, *dy[kStages];
+    double* moved;  // per ball the displacement so far, x in [0] and y in [2]
     // Per contact: overlap, its stages and their slopes, and 1 over the largest overlap since the contact
     // opened.
     double *d, *d_stage, *rate[kStages], *inverse;
@@ -50,7 +51,7 @@ struct Work {
     // reordering
     int count;
     // Workspace for reordering contacts.
-    double* moved;
+    double* reordered;
     int *order, *spare;
 };
 
@@ -73,6 +74,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     w.y = take(next, kRow * padded(w.rows));
     w.y_stage = take(next, kRow * padded(w.rows));
     for (double*& dy : w.dy) dy = take(next, kRow * padded(w.rows));
+    w.moved = take(next, kRow / 2 * padded(w.rows));
     w.d = take(next, w.lanes);
     w.d_stage = take(next, w.lanes);
     for (double*& rate : w.rate) rate = take(next, w.lanes);
@@ -82,7 +84,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     w.turn = take(next, w.lanes);
     w.bend = take(next, w.lanes);
     w.share = take(next, w.lanes);
-    w.moved = take(next, w.lanes);
+    w.reordered = take(next, w.lanes);
     w.force = take(next, kForce * w.lanes);
     w.curvature = phase.curvature;
     w.shares = false;
@@ -110,6 +112,11 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
     return w;
+}
+
+// Moves the ball of row n, an index into Work::y, by its v_x and v_y times a duration.
+CAROM_INLINE void add_displacement(const Work& w, int n, const Four& distance) {
+    store(w.moved + n / 2, load<4>(w.moved + n / 2) + distance);
 }
 
 // The difference of the velocities of the balls of four contacts, x in [0] and y in [2].
