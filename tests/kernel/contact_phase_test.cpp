@@ -28,7 +28,7 @@ long run(Isa isa, Cluster& c, const HertzLaw& law, double longest_step, double l
     const int contacts = static_cast<int>(c.contacts.size());
     // Guards behind the scratch memory.
     std::vector<double> numbers(contact_phase_numbers(c.balls(), contacts) + 1, 7.0);
-    std::vector<int> places(contact_phase_places(contacts) + 1, 7);
+    std::vector<int> places(contact_phase_places(c.balls(), contacts) + 1, 7);
     if (moved != nullptr) moved->resize(2 * static_cast<std::size_t>(c.balls()));
     const ContactPhase phase{c.balls(),
                              contacts,

@@ -315,9 +315,8 @@ class Plain {
 
     bool has_friction() const { return law_.mu_b > 0.0 || law_.mu_b_more > 0.0; }
 
-    // How much longer steps may be without friction, if everything is slow.
+    // How much longer steps may be if everything is slow.
     double slowness() const {
-        if (has_friction()) return 1.0;
         double fastest = 0.0;
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact contact = contacts_[c];
@@ -348,6 +347,7 @@ class Plain {
         const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};
         double h = longest;
+        std::vector<bool> watched;  // contacts that may close within the step
         for (;; h *= 0.5) {
             // Four, six or eight stages.
             std::vector<double> inner = {stiff ? 0.25 : 0.5};
@@ -360,10 +360,13 @@ class Plain {
                 if (reach < h * -least) h = reach / -least;
                 stages.insert(inner.size() + 3);
             }
+            for (std::size_t c = watched.size(); c < now.size(); ++c)
+                watched.push_back(-now[c] < h * (std::max(k[0].d[c], 0.0) + h));
             const auto slope_after = [&](const Slope& before, double node) {
                 std::vector<double> at = y, d = now;
                 for (std::size_t n = 0; n < at.size(); ++n) at[n] += h * node * before.y[n];
-                for (std::size_t c = 0; c < d.size(); ++c) d[c] += h * node * before.d[c];
+                for (std::size_t c = 0; c < d.size(); ++c)
+                    if (watched[c]) d[c] += h * node * before.d[c];
                 return slope_at(at, d, h * node);
             };
             k[1] = k[0];
@@ -389,8 +392,9 @@ class Plain {
             drag(b, mean(k[0].lift[b], k[1].lift[b], k[2].lift[b], k[3].lift[b]), 0.5 * h * k[3].lift[b]);
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact& contact = contacts_[c];
-            contact.d += mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c]);
             const Direction n = predicted(c, h);
+            contact.d += watched[c] ? mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c])
+                                    : 0.5 * h * (k[0].d[c] + rate(y, c, n));
             remember(contact, now[c], h * k[0].d[c], h * rate(y, c, n));
             const double turn = turning(c, n), angle = 0.5 * h * (contact.turn + turn),
                          half = 0.5 * (angle * angle), shrink = 1.0 - half * (1.0 - 1.5 * half);

@@ -183,7 +183,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(
         std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
-    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
     const double before = energy(2);
     const kernel::ContactPhase phase{m,
                                      n,

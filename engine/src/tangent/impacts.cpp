@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -30,6 +31,9 @@ constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
 // [-] The same of a cluster: its contacts open and close between two steps of its integration.
 constexpr double kClusterDisagree = 1e-3;
+// [usual step] The derivative of a cluster needs shorter steps: a choice of the integration, as which method
+// to use, changes its result by up to 1e-5 of a speed, and the difference of two results by much more.
+const double kClusterFineStep = getenv("FINE") ? atof(getenv("FINE")) : 1.0 / 8.0;
 // [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
 constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] A derivative below this is known no better than this.
@@ -115,6 +119,8 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
             std::swap(below, near_below);
             std::swap(above, near_above);
         }
+        if (getenv("DBG")) { fprintf(stderr, "lane %d size %g best %g\n", lane, size, best);
+            for (double hh = kFirstStep; hh > kLastStep; hh *= 0.5) { List b = at(lane, -hh / size), a2 = at(lane, hh / size); double w = 0; size_t wi = 0; double w1 = 0; for (std::size_t i = 0; i < y.size(); ++i) { double d2 = std::abs(a2[i] - 2 * y[i] + b[i]); w1 = std::max(w1, std::abs(a2[i] - b[i]) / 2); if (d2 > w) w = d2, wi = i; } fprintf(stderr, " h %.3g first %.3g second %.3g at %zu\n", hh, w1, w, wi); } }
         if (!(best < disagree))
             throw TangentError(fmt::format(
                 "it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));
@@ -289,7 +295,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     scene.stop.events = 1;
     // The one that moves is put to touch, so that what touches at rest still does, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
-    const Map resolve = [&](const double* list) {
+    const auto resolve = [&](const double* list, double step) {
         Reader read(laws, list);
         scene.balls = read.balls;
         scene.physics.gravity = read.gravity;
@@ -306,7 +312,9 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         moving.position.head<2>() =
             planar(other.position) +
             apart * contact_distance(moving.own->R, other.own->R, scene.balls.discs()) / length(apart);
-        const Record record = simulate(make_plan(scene, laws.plan.isa));
+        Plan plan = make_plan(scene, laws.plan.isa);
+        plan.cluster_step = step;
+        const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
             throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
@@ -323,7 +331,12 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         }
         return after;
     };
-    const std::vector<Dual> out = differentiate(laws, in, resolve, kClusterDisagree);
+    std::vector<Dual> out = differentiate(
+        laws, in, [&](const double* list) { return resolve(list, kClusterFineStep); }, kClusterDisagree);
+    List values;
+    for (const Dual& value : in.values()) values.push_back(value.x);
+    const List usual = resolve(values.data(), 1.0);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k].x = usual[k];
     for (std::size_t k = 0; k < balls.size(); ++k) {
         put(states[k], out.data() + 8 * k);
         for (std::size_t i = 0; i < 2; ++i) states[k].r[i] = states[k].r[i] + unit * out[8 * k + 6 + i];

@@ -234,8 +234,8 @@ class InSpace {
                 most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
         const bool friction = has_friction(law_) || (held_ && law_.mu_s > 0.0);
-        Plan plan = friction ? plan_step(most, smallest(longest, next_))
-                             : Plan{&kClassical, longest * slowness(fastest_squared())};
+        const double wanted = longest * slowness(fastest_squared());
+        Plan plan = friction ? plan_step(most, smallest(wanted, next_)) : Plan{&kClassical, wanted};
         for (;;) {
             stages(*plan.method, plan.h);
             if (!friction) break;

@@ -51,18 +51,19 @@ struct ContactPhase {
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
     return 52 * (static_cast<std::size_t>(balls) + 4) + 20 * (static_cast<std::size_t>(contacts) + 8);
 }
-constexpr std::size_t contact_phase_places(int contacts) noexcept {
-    return 6 * (static_cast<std::size_t>(contacts) + 8);
+constexpr std::size_t contact_phase_places(int balls, int contacts) noexcept {
+    return 2 * (static_cast<std::size_t>(balls) + 8) + 6 * (static_cast<std::size_t>(contacts) + 8);
 }
 
 /// Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V]. A step
-/// is at most `longest_step` [L/V]. Without friction the method is the classical one. With friction it has
-/// order 3, is stable although friction is stiff, and has four, six or eight stages, with the step length
-/// controlled by the error. Between two steps the cloth reacts to the load on the balls. During a step
-/// normals turn at the speed of its start; after it they are set by the mean of both ends. While all contacts
-/// are open the balls fly without steps. A contact that closes late in look_ahead turns less while it is
-/// closed, and at the end of look_ahead not at all. A ball's contacts are summed in the order in which they
-/// are given.
+/// is at most `longest_step` [L/V], or longer where all contacts are slow. Without friction the method is the
+/// classical one. With friction it has order 3, is stable although friction is stiff, and has four, six or
+/// eight stages, with the step length controlled by the error. Between two steps the cloth reacts to the load
+/// on the balls. During a step normals turn at the speed of its start; after it they are set by the mean of
+/// both ends. A contact that cannot close within a step has no part in its stages. While all contacts are
+/// open the balls fly without steps. A contact that closes late in look_ahead turns less while it is closed,
+/// and at the end of look_ahead not at all. A ball's contacts are summed in the order in which they are
+/// given.
 /// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
 using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law,
                                               double longest_step, double look_ahead,
