@@ -19,6 +19,8 @@ constexpr double kListed = 8.0;
 // [contact time] A cluster that would last longer takes no time: its balls would go too far on straight
 // paths.
 constexpr double kLongest = 20.0;
+// Balls that may join a cluster because one of it would meet them.
+constexpr std::size_t kMostJoin = 4;
 // [m/s] A slower cluster takes no time: it would last for milliseconds, in which other balls come along.
 constexpr double kSlowest = 0.2;
 // [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
@@ -74,6 +76,7 @@ ClusterBall Clusters::member(int ball) const {
 double Clusters::collect(int a, int b, double v_n) {
     first_ = a;
     second_ = b;
+    joined_.clear();
     for (;;) {
         collect_at(a, b, v_n);
         double fastest = v_n;
@@ -122,16 +125,15 @@ void Clusters::collect_at(int a, int b, double v_n) {
     contacts_.clear();
     members_.push_back(member(a));
     members_.push_back(member(b));
+    for (const int ball : joined_) members_.push_back(member(ball));
     for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall here = members_[k];
         const double speed = here.v.z() == 0.0 ? length(planar(here.v)) : length3(here.v);
         const double most = time * (speed + detector_.fastest() + v_n);
         // The order is arbitrary: the set of members does not depend on it, and they are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
-            const bool known = std::any_of(members_.begin(), members_.end(),
-                                           [q](const ClusterBall& m) { return m.ball == q; });
             // A ball of another cluster is compressed; what it meets waits until that is over.
-            if (known || balls_.collides(q) || passes(here.ball, q)) return;
+            if (is_member(q) || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Touch<Vec3> near = gap_of(here, candidate);
@@ -174,14 +176,19 @@ void Clusters::collect_at(int a, int b, double v_n) {
 // start, as in the pair kernel. So that the result does not jump when the last other ball moves out of reach,
 // a normal turns in proportion to how firmly its two balls belong to the cluster, and to the nearness of the
 // nearest other contact of its balls. A ball belongs by the nearness of the weakest contact on the best chain
-// from the pair that met. Unlike balls turn fully, and so do balls in space.
+// from the pair that met; one that has joined belongs fully. Unlike balls turn fully, and so do balls in
+// space.
 void Clusters::share_turning() {
     if (unlike_ || in_space_) {
         for (ClusterContact& c : contacts_) c.turn = 1.0;
         return;
     }
     firm_.clear();
-    for (const ClusterBall& m : members_) firm_.push_back(m.ball == first_ || m.ball == second_ ? 1.0 : 0.0);
+    const auto is_firm = [this](int ball) {
+        return ball == first_ || ball == second_ ||
+               std::find(joined_.begin(), joined_.end(), ball) != joined_.end();
+    };
+    for (const ClusterBall& m : members_) firm_.push_back(is_firm(m.ball) ? 1.0 : 0.0);
     for (bool changed = true; changed;) {
         changed = false;
         for (const ClusterContact& c : contacts_) {
@@ -226,9 +233,11 @@ bool Clusters::find_paths() {
         if (!(duration <= kLongest * contact_time_)) break;
         for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * planar(members_[k].v);
     }
+    obstacle_ = kTable;
     if (!(duration <= kLongest * contact_time_)) return false;
     duration_ = duration;
-    if (!has_room()) duration_ = 0.0;
+    obstacle_ = find_obstacle();
+    if (obstacle_ != kNone) duration_ = 0.0;
     return duration_ > 0.0;
 }
 
@@ -249,23 +258,28 @@ double Clusters::overlap_ends() const {
     return longest;
 }
 
-// Whether no ball meets anything else on its path.
-bool Clusters::has_room() const {
-    for (std::size_t k = 0; k < members_.size(); ++k) {
+// What a ball meets on its path: another ball, kTable or kNone. A ball that no cluster may include counts as
+// the table.
+int Clusters::find_obstacle() const {
+    int found = kNone;
+    for (std::size_t k = 0; k < members_.size() && found != kTable; ++k) {
         const ClusterBall& ball = members_[k];
         const Vec2& path = paths_[k];
-        bool room = true;
-        detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { room = false; });
-        if (!room) return false;
+        detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { found = kTable; });
         const double most = length(path) + duration_ * detector_.fastest();
         detector_.balls_near(near_box(ball, most), [&](int q) {
-            const bool member = std::any_of(members_.begin(), members_.end(),
-                                            [q](const ClusterBall& m) { return m.ball == q; });
-            room = room && (member || has_room(ball, path, q));
+            if (found == kTable || is_member(q) || has_room(ball, path, q)) return;
+            const bool joins = !balls_.collides(q) && !balls_.segment(q).held && !balls_.sinks(q) &&
+                               !flies(balls_.segment(q).state);
+            found = !joins ? kTable : found == kNone ? q : std::min(found, q);
         });
-        if (!room) return false;
     }
-    return true;
+    return found;
+}
+
+bool Clusters::is_member(int ball) const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [ball](const ClusterBall& m) { return m.ball == ball; });
 }
 
 // Whether a ball on its path does not meet another one, which goes on as it does now.
@@ -326,7 +340,25 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
                     return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
                 });
     std::int64_t steps = run();
-    if (steps >= 0 && may_last && find_paths()) return steps;
+    if (steps >= 0 && may_last) {
+        if (find_paths()) return steps;
+        // A ball that is met meanwhile joins. If that leads to no end, it meets a cluster that took no time.
+        while (obstacle_ != kTable && joined_.size() < kMostJoin) {
+            joined_.push_back(obstacle_);
+            collect_at(first_, second_, v_n);
+            share_turning();
+            const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
+            if (more < 0) break;
+            steps += more;
+            if (find_paths()) return steps;
+        }
+        if (!joined_.empty()) {
+            joined_.clear();
+            collect_at(first_, second_, v_n);
+            share_turning();
+            steps += run();
+        }
+    }
     if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
         const std::int64_t more = run();

@@ -20,6 +20,7 @@ struct ClustersMemory {
     std::vector<std::array<double, 2>> nearest_;  // per ball
     std::vector<double> firm_;                    // per ball
     std::vector<Vec2> paths_;                     // per ball
+    std::vector<int> joined_;                     // balls that one of the others would meet meanwhile
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -57,7 +58,8 @@ class Clusters : private Borrowed<ClustersMemory> {
     void share_turning();
     bool find_paths();
     double overlap_ends() const;
-    bool has_room() const;
+    int find_obstacle() const;
+    bool is_member(int ball) const;
     bool has_room(const ClusterBall& ball, const Vec2& path, int other) const;
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
@@ -72,6 +74,9 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
+    // What keeps the last cluster from lasting: a ball, or
+    static constexpr int kNone = -1, kTable = -2;
+    int obstacle_ = kTable;
     bool in_space_ = false;
     bool unlike_ = false;  // the last collect() found balls of different size
 };

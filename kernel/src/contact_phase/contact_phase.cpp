@@ -397,6 +397,7 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
         if (!(flight < look_ahead)) break;
         // Contacts that overlap without force continue to open.
         if (any_overlap(w)) continue;
+        if (time > kLongPhase) break;
         fly(phase, w, flight, look_ahead);
         time += flight;
         brake_all();

@@ -91,7 +91,9 @@ class InSpace {
             }
             if (presses(time_limit - time)) continue;
             const double flight = next_touch();
-            if (!(flight < look_ahead)) {
+            const bool closes = flight < look_ahead;
+            if (closes && overlaps()) continue;
+            if (!closes || time > kLongPhase) {
                 brake_all(time - braked);
                 for (int b = 0; b < phase_.balls; ++b) {
                     for (int k = 0; k < kPerMotion; ++k)
@@ -102,7 +104,6 @@ class InSpace {
                 if (phase_.time != nullptr) *phase_.time = time;
                 return steps;
             }
-            if (overlaps()) continue;
             for (int b = 0; b < phase_.balls; ++b) add(y_ + kPerState * b, flight * at(velocity(y_, b)));
             time += flight;
             brake_all(time - braked);

@@ -143,6 +143,10 @@ CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, do
     Rw_y += 2.5 * x;
 }
 
+// [L/V] A phase that lasts longer ends as soon as no contact is closed, even if one is about to close: the
+// balls have gone far.
+constexpr double kLongPhase = 26.0;
+
 // [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
 // that move together would close at such speeds forever.
 constexpr double kNothing = 1e-12;
