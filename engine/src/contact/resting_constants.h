@@ -87,6 +87,9 @@ inline constexpr double kGrowth = 4.0;
 inline constexpr double kReduced = 0.9;
 // [-] The same for a gap that would not stay within its room.
 inline constexpr double kShorter = 0.7;
+// [ulp] A smaller change of a speed is its rounding: such a group moves evenly.
+// Without it: Effects.SkippedAndZeroGiveTheSameRecordOver1000Scenes.
+inline constexpr double kChangeUlp = 8.0;
 
 // The solution over an interval (contact/resting_newton.cpp, resting_response.cpp, resting_step.cpp)
 

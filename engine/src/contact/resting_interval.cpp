@@ -275,6 +275,14 @@ void write_segments(Group& g, double h) {
     }
 }
 
+bool accelerates(const Group& g) {
+    constexpr double kRounding = kChangeUlp * kEpsilon;
+    return std::any_of(g.bodies.begin(), g.bodies.end(), [](const Body& b) {
+        return length(b.v_end - b.v) > kRounding * length(b.v) ||
+               length(b.s_end - b.s) > kRounding * length(b.s);
+    });
+}
+
 }  // namespace
 
 double slip_gone(const Group& g, const Body& b, double h) {
@@ -315,6 +323,8 @@ void solve_interval(Group& g) {
             h = rest * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
+            // If all moves straight and evenly, continue until something ends it.
+            if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             guide_friction(g, h);
             const bool all_stay = std::all_of(g.links.begin(), g.links.end(), [&](const Link& link) {
                 return link.open || stays(g, link, h);

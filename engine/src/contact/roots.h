@@ -16,8 +16,8 @@ double first_descent(const double (&c)[5], double T);
 /// The extrema of such a polynomial within (0, T), in order. @return how many
 int extrema(const double (&c)[5], double T, double (&times)[3]);
 
-/// As first_descent() for h0 + h1 t + h2 t^2 / 2 (T may be infinite): the root at which it decreases through 0, by the
-/// formula without cancellation; kNever if there is none.
+/// As first_descent() for h0 + h1 t + h2 t^2 / 2 (T may be infinite): the root at which it decreases through
+/// 0, by the formula without cancellation; kNever if there is none.
 double first_descent_quadratic(double h0, double h1, double h2, double T);
 
 }  // namespace carom

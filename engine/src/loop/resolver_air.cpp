@@ -68,16 +68,15 @@ void Resolver::free_balls(int a, int b) {
         const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
-    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls),
-                        plan_.e_b()};
+    FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls), plan_.e_b()};
     const Touch<Vec3> touch =
         touch_ball<Vec3>({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
     const Vec3& n = touch.n;
     const double v_n = touch.closing;
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
     if (plan_.clusters != ClusterModel::kSequential && !sinks && cluster(a, b, v_n)) return;
-    const std::optional<double> e_b = restitution_in_air(
-        pair.e_b, v_n, parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity));
+    const std::optional<double> e_b =
+        restitution_in_air(pair.e_b, v_n, parting_speed(std::max(pair.size1.R, pair.size2.R), plan_.gravity));
     const bool slow = !e_b;
     pair.e_b = e_b.value_or(0.0);
     {

@@ -254,16 +254,16 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2) {
     const BallBallModelInfo& model = *laws.plan.ball_ball;
-    meet_pair(laws, one, two, apart, s1, s2,
-              [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
-                  FreePair free{pair.size1, pair.size2, model.friction(in.balls),
-                                      model.restitution(in.balls)};
-                  const Vec3 n = pair.apart / length3(pair.apart);
-                  if (slow)
-                      part_slowly(free, n, lies, in.gravity, ball1, ball2);
-                  else
-                      hit_ball(free, n, ball1, ball2);
-              });
+    meet_pair(
+        laws, one, two, apart, s1, s2,
+        [&](const Reader& in, const Pair& pair, Velocities& ball1, Velocities& ball2) {
+            FreePair free{pair.size1, pair.size2, model.friction(in.balls), model.restitution(in.balls)};
+            const Vec3 n = pair.apart / length3(pair.apart);
+            if (slow) return part_slowly(free, n, lies, in.gravity, ball1, ball2);
+            const double parting = parting_speed(std::max(pair.size1.R, pair.size2.R), in.gravity);
+            free.e_b = restitution_in_air(free.e_b, dot3(ball1.v - ball2.v, n), parting).value_or(free.e_b);
+            hit_ball(free, n, ball1, ball2);
+        });
 }
 
 // The loop resolves the cluster again, in a scene that contains nothing else. Where it ends depends on the
