@@ -131,8 +131,9 @@ Errors errors_of(const std::string& game) {
 TEST(MovingBreaks, EightBall) {
     const Errors errors = errors_of("eight_ball");
     EXPECT_LT(share_of(errors.velocity, 0.5), 3e-4);
-    EXPECT_LT(share_of(errors.velocity, 0.9), 0.01);
-    EXPECT_LT(share_of(errors.direction, 0.9), 3.0);
+    EXPECT_LT(share_of(errors.velocity, 0.9), 1e-3);
+    EXPECT_LT(share_of(errors.velocity, 1.0), 0.02);
+    EXPECT_LT(share_of(errors.direction, 0.9), 1.0);
     EXPECT_LT(share_of(errors.place, 0.5), 1e-4);
 }
 
@@ -140,7 +141,8 @@ TEST(MovingBreaks, NineBall) {
     const Errors errors = errors_of("nine_ball");
     EXPECT_LT(share_of(errors.velocity, 0.5), 3e-4);
     EXPECT_LT(share_of(errors.velocity, 0.9), 1e-3);
-    EXPECT_LT(share_of(errors.direction, 0.9), 3.0);
+    EXPECT_LT(share_of(errors.velocity, 1.0), 0.02);
+    EXPECT_LT(share_of(errors.direction, 0.9), 1.0);
     EXPECT_LT(share_of(errors.place, 0.5), 1e-4);
 }
 

@@ -175,6 +175,23 @@ TEST(Verify, ARunStopsInsideACluster) {
     EXPECT_EQ(next.ball[1].velocity, part.tracks[1].segments.back().v);
 }
 
+// Frames, pages, glTF and samples read the places of a record.
+TEST(Verify, PlacesDoNotJumpInABreak) {
+    constexpr double kStep = 1e-5, kFastest = 15.0;  // [s], [m/s]
+    for (const char* name : {"eight_ball_break", "nine_ball_break"}) {
+        const Record record =
+            simulate(plan_of(read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml")));
+        ASSERT_FALSE(record.clusters.empty());
+        double longest = 0.0;
+        for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
+            for (double t = 0.0; t < 0.3; t += kStep)
+                longest = std::max(longest, (record.state_at(ball, t + kStep).position -
+                                             record.state_at(ball, t).position)
+                                                .norm());
+        EXPECT_LT(longest, kFastest * kStep) << name;
+    }
+}
+
 TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     for (const double tolerance : {1e-3, 1e-6}) {
         reference::Generator random(5);

@@ -321,8 +321,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step = plan_.cluster_step *
-                        (friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep),
+        .longest_step =
+            plan_.cluster_step * (friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep),
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,

@@ -119,8 +119,21 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
             std::swap(below, near_below);
             std::swap(above, near_above);
         }
-        if (getenv("DBG")) { fprintf(stderr, "lane %d size %g best %g\n", lane, size, best);
-            for (double hh = kFirstStep; hh > kLastStep; hh *= 0.5) { List b = at(lane, -hh / size), a2 = at(lane, hh / size); double w = 0; size_t wi = 0; double w1 = 0; for (std::size_t i = 0; i < y.size(); ++i) { double d2 = std::abs(a2[i] - 2 * y[i] + b[i]); w1 = std::max(w1, std::abs(a2[i] - b[i]) / 2); if (d2 > w) w = d2, wi = i; } fprintf(stderr, " h %.3g first %.3g second %.3g at %zu\n", hh, w1, w, wi); } }
+        if (getenv("DBG")) {
+            fprintf(stderr, "lane %d size %g best %g\n", lane, size, best);
+            for (double hh = kFirstStep; hh > kLastStep; hh *= 0.5) {
+                List b = at(lane, -hh / size), a2 = at(lane, hh / size);
+                double w = 0;
+                size_t wi = 0;
+                double w1 = 0;
+                for (std::size_t i = 0; i < y.size(); ++i) {
+                    double d2 = std::abs(a2[i] - 2 * y[i] + b[i]);
+                    w1 = std::max(w1, std::abs(a2[i] - b[i]) / 2);
+                    if (d2 > w) w = d2, wi = i;
+                }
+                fprintf(stderr, " h %.3g first %.3g second %.3g at %zu\n", hh, w1, w, wi);
+            }
+        }
         if (!(best < disagree))
             throw TangentError(fmt::format(
                 "it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));

@@ -59,8 +59,8 @@ void reorder(Work& w, const double* d) {
         for (int n = begin; n < end; ++n) moved[n] = numbers[w.order[n]];
         for (int n = begin; n < end; ++n) numbers[n] = moved[n];
     };
-    double* const arrays[] = {w.d,       w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
-                              w.inverse, w.nx,      w.ny,      w.turn,    w.bend,    w.share,   w.watched};
+    double* const arrays[] = {w.d,  w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3], w.inverse,
+                              w.nx, w.ny,      w.turn,    w.bend,    w.share,   w.watched};
     for (double* array : arrays) move(array, w.reordered);
     int* const places[] = {w.i, w.j, w.id};
     for (int* array : places) move(array, w.spare);

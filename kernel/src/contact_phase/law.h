@@ -89,9 +89,9 @@ CAROM_INLINE double step_after(double before, double h, double error) {
     return ratio > 1.0 ? largest(before, ratio * h) : largest(0.5, ratio) * h;
 }
 
-// Slow contacts. One at the speed v lasts v^(-1/5) times longer, and its errors are proportional to v, so that
-// steps may be v^(-1/2) times longer if nothing is faster. The square of v is that of the rate plus the energy
-// of the overlap, F d; a closing contact may be loaded as for the first time.
+// Slow contacts. One at the speed v lasts v^(-1/5) times longer, and its errors are proportional to v, so
+// that steps may be v^(-1/2) times longer if nothing is faster. The square of v is that of the rate plus the
+// energy of the overlap, F d; a closing contact may be loaded as for the first time.
 constexpr double kMostSlow = 16.0;
 CAROM_INLINE double slowness(double v2) {
     return v2 < 1.0 ? smallest(kMostSlow, 1.0 / square_root(square_root(v2))) : 1.0;

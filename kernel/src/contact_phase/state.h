@@ -14,9 +14,10 @@ constexpr int kPerBall = 5;  // numbers per ball in ContactPhase::motion
 // Numbers per ball here. A row has velocities at even positions and spins at odd ones: a contact needs the
 // difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
 constexpr int kRow = 8;
-constexpr int kForce = 6;                                        // numbers per contact in Work::force
-constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};                // of v_x, v_y, R w_x, R w_y, R w_z in a row
-constexpr int kLift = 4, kTurn = 5, kNext = 6, kAhead = 7, kStiffness = 7;  // of other numbers in a row (Work)
+constexpr int kForce = 6;                          // numbers per contact in Work::force
+constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};  // of v_x, v_y, R w_x, R w_y, R w_z in a row
+constexpr int kLift = 4, kTurn = 5, kNext = 6, kAhead = 7,
+              kStiffness = 7;  // of other numbers in a row (Work)
 
 CAROM_INLINE int padded(int n) {
     return (n + 3) / 4 * 4;
@@ -214,8 +215,7 @@ CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
         const Four straight = h * turn_before, x = nx - straight * ny, y = ny + straight * nx;
         // The rate at the end for the normal that the stages used.
         const Four now = dv[0] * x + dv[2] * y;
-        const Four change =
-            select(zero < load<4>(w.watched + c), first + last, (0.5 * h) * (rate + now));
+        const Four change = select(zero < load<4>(w.watched + c), first + last, (0.5 * h) * (rate + now));
         const Four d = before + change;
         const Four turn = turning(w, c, dv, x, y, d);
         const Four angle = (0.5 * h) * (turn_before + turn);
