@@ -116,8 +116,6 @@ void spoil_impact(Record& record, double share) {
     record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
 }
 
-// The limit of U5 has the slack of the tolerance, and no more: 4000 correct shots pass, and a speed that is
-// off by some tolerances fails.
 /// A ball that runs into two that touch, without friction of the cloth.
 Plan small_cluster() {
     Scene scene = empty_scene();
@@ -185,13 +183,15 @@ TEST(Verify, PlacesDoNotJumpInABreak) {
         double longest = 0.0;
         for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
             for (double t = 0.0; t < 0.3; t += kStep)
-                longest = std::max(longest, (record.state_at(ball, t + kStep).position -
-                                             record.state_at(ball, t).position)
-                                                .norm());
+                longest = std::max(
+                    longest,
+                    (record.state_at(ball, t + kStep).position - record.state_at(ball, t).position).norm());
         EXPECT_LT(longest, kFastest * kStep) << name;
     }
 }
 
+// The limit of U5 has the slack of the tolerance, and no more: 4000 correct shots pass, and a speed that is
+// off by some tolerances fails.
 TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     for (const double tolerance : {1e-3, 1e-6}) {
         reference::Generator random(5);

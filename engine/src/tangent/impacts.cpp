@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -29,11 +28,9 @@ namespace {
 constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
 // [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
-// [-] The same of a cluster: its contacts open and close between two steps of its integration.
-constexpr double kClusterDisagree = 1e-3;
-// [usual step] The derivative of a cluster needs shorter steps: a choice of the integration, as which method
-// to use, changes its result by up to 1e-5 of a speed, and the difference of two results by much more.
-const double kClusterFineStep = getenv("FINE") ? atof(getenv("FINE")) : 1.0 / 8.0;
+// [usual step] Derivatives of a cluster need shorter steps: a choice of the integration, as of a method,
+// changes its result by 1e-5 of a speed, and the difference of two results by as much.
+constexpr double kClusterFineStep = 1.0 / 8.0;
 // [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
 constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] A derivative below this is known no better than this.
@@ -81,8 +78,7 @@ double largest(const List& list) {
     return most;
 }
 
-std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
-                                double disagree = kDisagree) {
+std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map) {
     const std::vector<Dual>& values = in.values();
     List x(values.size());
     const auto at = [&](int lane, double by) {
@@ -119,22 +115,7 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
             std::swap(below, near_below);
             std::swap(above, near_above);
         }
-        if (getenv("DBG")) {
-            fprintf(stderr, "lane %d size %g best %g\n", lane, size, best);
-            for (double hh = kFirstStep; hh > kLastStep; hh *= 0.5) {
-                List b = at(lane, -hh / size), a2 = at(lane, hh / size);
-                double w = 0;
-                size_t wi = 0;
-                double w1 = 0;
-                for (std::size_t i = 0; i < y.size(); ++i) {
-                    double d2 = std::abs(a2[i] - 2 * y[i] + b[i]);
-                    w1 = std::max(w1, std::abs(a2[i] - b[i]) / 2);
-                    if (d2 > w) w = d2, wi = i;
-                }
-                fprintf(stderr, " h %.3g first %.3g second %.3g at %zu\n", hh, w1, w, wi);
-            }
-        }
-        if (!(best < disagree))
+        if (!(best < kDisagree))
             throw TangentError(fmt::format(
                 "it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));
         laws.error = std::max(laws.error, best);
@@ -344,8 +325,8 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         }
         return after;
     };
-    std::vector<Dual> out = differentiate(
-        laws, in, [&](const double* list) { return resolve(list, kClusterFineStep); }, kClusterDisagree);
+    std::vector<Dual> out =
+        differentiate(laws, in, [&](const double* list) { return resolve(list, kClusterFineStep); });
     List values;
     for (const Dual& value : in.values()) values.push_back(value.x);
     const List usual = resolve(values.data(), 1.0);
