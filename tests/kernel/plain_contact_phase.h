@@ -66,7 +66,7 @@ class Plain {
             const double flight = next_touch();
             if (!(flight < kLookAhead)) return steps;
             if (overlapping()) continue;
-            if (time > 26.0) return steps;
+            if (time > 40.0) return steps;
             fly(flight);
             time += flight;
         }

@@ -28,7 +28,7 @@ namespace {
 constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
 // [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
-// [usual step] Derivatives of a cluster need shorter steps: a choice of the integration, as of a method,
+// [usual step] Derivatives of most breaks need shorter steps: a choice of the integration, as of a method,
 // changes its result by 1e-5 of a speed, and the difference of two results by as much.
 constexpr double kClusterFineStep = 1.0 / 8.0;
 // [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
@@ -325,8 +325,15 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         }
         return after;
     };
-    std::vector<Dual> out =
-        differentiate(laws, in, [&](const double* list) { return resolve(list, kClusterFineStep); });
+    const auto by_steps = [&](double step) {
+        return differentiate(laws, in, [&](const double* list) { return resolve(list, step); });
+    };
+    std::vector<Dual> out;
+    try {
+        out = by_steps(1.0);
+    } catch (const TangentError&) {
+        out = by_steps(kClusterFineStep);
+    }
     List values;
     for (const Dual& value : in.values()) values.push_back(value.x);
     const List usual = resolve(values.data(), 1.0);

@@ -145,7 +145,7 @@ CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, do
 
 // [L/V] A phase that lasts longer ends as soon as no contact is closed, even if one is about to close: the
 // balls have gone far.
-constexpr double kLongPhase = 26.0;
+constexpr double kLongPhase = 40.0;
 
 // [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
 // that move together would close at such speeds forever.
