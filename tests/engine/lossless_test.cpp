@@ -122,6 +122,25 @@ TEST(Lossless, AGrainBetweenNearWalls) {
     EXPECT_NEAR(speed(record, 0), std::hypot(1.0, 1e-3), 1e-12);
 }
 
+// Between two heavy balls a light one leaves them their energy. From a mass ratio of 3e4 on they lost half.
+TEST(Lossless, AHeavyLineHandsItsMotionOn) {
+    for (const double ratio : {1e4, 1e5, 1e6}) {
+        for (const int light : {1, 2}) {
+            Scene scene = lossless_scene(0.03);
+            scene.physics.gravity = 0.0;
+            for (int k = 0; k < light + 2; ++k) {
+                add_ball(scene, std::to_string(k), 0.06 * k + (k > 0 ? 1e-9 : 0.0), 0.0, k == 0 ? 1.0 : 0.0);
+                const bool heavy = k == 0 || k == light + 1;
+                scene.ball.back().own = BallSize{0.03, (heavy ? ratio : 1.0) * scene.balls.m};
+            }
+            scene.stop.time = 0.1;
+            const Record record = run_verified(scene);
+            EXPECT_NEAR(speed(record, 0), 0.0, 1e-3) << ratio << " " << light;
+            EXPECT_NEAR(speed(record, light + 1), 1.0, 1e-3) << ratio << " " << light;
+        }
+    }
+}
+
 TEST(Lossless, TheCheckerAsksForTheEnergy) {
     Scene scene = lossless_scene(0.03);
     scene.table.cushions.push_back({"wall", {0.0, -1.0}, {0.0, 1.0}, 0.03});
@@ -138,6 +157,25 @@ TEST(Lossless, TheCheckerAsksForTheEnergy) {
     // With a little less restitution the same record keeps the laws.
     scene.balls.e_c = 0.99;
     EXPECT_FALSE(verify(record, plan_of(scene)));
+}
+
+// Only the steps of a cluster may lose some. Half of the energy of a cluster was lost in silence.
+TEST(Lossless, TheCheckerAsksForTheEnergyOfAClusterToo) {
+    for (const double share : {1.0, 1.0 - 1e-4}) {
+        Scene scene = lossless_scene(0.03);
+        for (int k = 0; k < 3; ++k)
+            add_ball(scene, std::to_string(k), k == 0 ? -0.001 : 0.06 * k, 0.0, k == 0 ? 1.0 : 0.0);
+        scene.stop.time = 0.1;
+        const Plan plan = plan_of(scene);
+        Record record = simulate(plan);
+        ASSERT_EQ(count(record, EventType::kBallCluster), 1);
+        for (BallTrack& track : record.tracks) track.segments.back().v *= share;
+        const auto violation = verify(record, plan);
+        EXPECT_EQ(violation.has_value(), share < 1.0);
+        if (violation) {
+            EXPECT_EQ(violation->law, "U4") << violation->message;
+        }
+    }
 }
 
 }  // namespace

@@ -54,6 +54,17 @@ TEST(Tangents, ScenesAgainstDifferences) {
     compare(three, carom, "three_cushion");
 }
 
+// In the air no contact parts more slowly than at a least speed, which then sets the restitution.
+TEST(Tangents, PlasticBallsInTheAir) {
+    Scene scene = empty_scene();
+    scene.balls.e_b = 0.0;
+    add_ball(scene, "a", Vec3(0.0, 0.0, 0.5), Vec3(2.0, 0.0, 0.0), Vec3(0.0, 0.0, 100.0));
+    add_ball(scene, "b", Vec3(0.1, 0.01, 0.5));
+    for (BallStart& ball : scene.ball) ball.height = 0.5 - scene.balls.R;
+    scene.stop.time = 0.2;
+    compare(scene, {"ball.a.position.y", "ball.b.position.x", "balls.radius"}, "plastic");
+}
+
 /// A stroke at one of two balls, of which something may fall.
 Scene random_shot(std::uint64_t seed, const char* ball_ball, const char* cushion) {
     reference::Generator rng(seed);

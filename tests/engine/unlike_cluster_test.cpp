@@ -188,6 +188,35 @@ TEST(UnlikeCluster, MomentumAndEnergy) {
     }
 }
 
+// Lines of any masses up to the allowed ratio. Two heavy balls with a light one in between lost half of their
+// energy from a ratio of 3e4 on, because the contacts of heavy balls outlast those of light ones.
+TEST(UnlikeCluster, LinesOfAnyMassesLoseNothing) {
+    std::vector<std::vector<double>> lines{
+        {1e5, 1.0, 1e5}, {1e6, 1.0, 1e6}, {1.0, 1e-6, 1.0}, {6e4, 1.0, 1.0, 6e4}, {1e6, 1.0, 1e3, 1.0, 1e6}};
+    reference::Generator rng(4);
+    while (lines.size() < 25) {
+        std::vector<double> masses(static_cast<std::size_t>(rng.uniform(3.0, 6.0)));
+        const double least = std::pow(10.0, rng.uniform(-6.0, 0.0));
+        for (double& mass : masses) mass = least * std::pow(10.0, rng.uniform(0.0, 6.0));
+        lines.push_back(masses);
+    }
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+        std::vector<ClusterBall> balls{ball(0.0, 0.0, kR, lines[k][0], {1.0, 0.0, 0.0})};
+        for (std::size_t b = 1; b < lines[k].size(); ++b)
+            balls.push_back(beside(balls.back(), 0.0, kR, lines[k][b]));
+        const std::vector<ClusterContact> contacts = contacts_of(balls);
+        std::vector<ClusterBall> after = balls, finer = balls;
+        ClusterMap map;
+        ClusterSettings with = settings(0.0, 0.0, 1.0);
+        ASSERT_GT(map.compliant_in_space(after, contacts, with, 1.0, true), 0) << k;
+        EXPECT_NEAR(energy(after) / energy(balls), 1.0, 1e-6) << k;
+        EXPECT_LT((momentum(after) - momentum(balls)).norm(), 1e-12 * momentum(balls).norm()) << k;
+        with.longest_step *= 0.5;
+        ASSERT_GT(map.compliant_in_space(finer, contacts, with, 1.0, true), 0) << k;
+        EXPECT_LT(difference(after, finer), 1e-3) << k;
+    }
+}
+
 // A row of balls whose masses fall hands on the impulse pair by pair, nearly, where they have gaps.
 TEST(UnlikeCluster, ARowWithGapsIsAChainOfPairs) {
     std::vector<ClusterBall> balls{ball(0.0, 0.0, kR, 1.5, {1.0, 0.0, 0.0})};

@@ -231,6 +231,15 @@ double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
     return shortest;
 }
 
+namespace {
+
+// [L] Overlap of two balls of this mass, at least that of balls with the mass 1.
+double overlap_of(double mass) {
+    return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
+}
+
+}  // namespace
+
 std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
                                             const std::vector<ClusterContact>& contacts,
                                             const ClusterSettings& settings, double V, bool held) {
@@ -251,16 +260,21 @@ std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
                                       nullptr,
                                       moved_.data(),
                                       &duration_};
-    double longest_step = settings.longest_step;
+    double longest_step = settings.longest_step, longest = kClusterTimeLimit;
     kernel::UnlikeBalls unlike{};
     if (settings.unlike) {
-        longest_step *= describe_unlike(balls, contacts, L, settings, held);
+        // Heavy balls compress each other for longer and more deeply, and what is between them then
+        // oscillates faster: overlaps go with the 0.4th power of the mass, and frequencies with the fourth
+        // root of them.
+        const double deepest = overlap_of(*std::max_element(mass_.begin(), mass_.end()));
+        longest *= deepest;
+        longest_step *= describe_unlike(balls, contacts, L, settings, held) / std::sqrt(std::sqrt(deepest));
         unlike = {inverse_mass_.data(), stiffness_.data(), curvature_.data(), held};
         phase.unlike = &unlike;
     }
     const double before = energy(3);
-    const std::int64_t steps = kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step,
-                                                              kClusterLookAhead, kClusterTimeLimit);
+    const std::int64_t steps =
+        kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step, kClusterLookAhead, longest);
     if (steps < 0) return steps;
     keep_energy(before, 3);
     unload(settings, V, 3, balls);

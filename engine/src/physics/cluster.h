@@ -25,8 +25,8 @@ inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 60.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
-/// [L/V] A cluster that has not separated after this many contact times is solved as rigid; the slowest of 16
-/// balls takes a few dozen.
+/// [L/V] A cluster that has not separated after this many contact times, of its heaviest balls, is solved as
+/// rigid; the slowest of 16 balls takes a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
 
 struct ClusterBall {

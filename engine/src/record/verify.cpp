@@ -18,6 +18,9 @@ namespace carom {
 
 namespace {
 
+// [of the energy] The integration of a cluster in steps loses less: up to 1e-6 was seen.
+constexpr double kStepsLose = 1e-5;
+
 // Returns the ball's mass divided by that in [balls]: 1 in most scenes.
 double mass(const Record& record, int ball) {
     return record.size(ball).m / record.balls.m;
@@ -79,7 +82,9 @@ class Checker {
             const double allowed = 1e-12 * first_energy + rounding + slow_contacts(e.time);
             if (keeps_energy(plan_) && energy > last_energy + allowed)
                 report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
-            if (lossless && !errs_by_steps(e.time) && !lasted && energy < last_energy - allowed)
+            const bool cluster = lasted || happens(EventType::kBallCluster, e.time);
+            const double lost = allowed + (cluster ? kStepsLose * last_energy : 0.0);
+            if (lossless && !happens(EventType::kCueStrike, e.time) && energy < last_energy - lost)
                 report("U4", "energy falls from {:.17g} to {:.17g} J/kg, and nothing takes any", last_energy,
                        energy);
             last_energy = energy;
@@ -127,12 +132,10 @@ class Checker {
         return cue ? energy_at(record_, record_.events[0].time) : 0.0;
     }
 
-    // Whether the present instant has a cluster, whose contacts are integrated in steps, or the cue.
-    bool errs_by_steps(double time) const {
-        for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
-            const EventType type = record_.events[k].type;
-            if (type == EventType::kBallCluster || type == EventType::kCueStrike) return true;
-        }
+    // Whether the present instant has an event of this type.
+    bool happens(EventType type, double time) const {
+        for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;)
+            if (record_.events[k].type == type) return true;
         return false;
     }
 
