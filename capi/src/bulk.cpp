@@ -34,6 +34,7 @@ static_assert(CAROM_POCKETED == static_cast<int>(carom::MotionState::kPocketed))
 static_assert(CAROM_FALLING == static_cast<int>(carom::MotionState::kFalling));
 static_assert(CAROM_AIRBORNE == static_cast<int>(carom::MotionState::kAirborne));
 static_assert(CAROM_OUT == static_cast<int>(carom::MotionState::kOut));
+static_assert(CAROM_COLLIDING == static_cast<int>(carom::MotionState::kColliding));
 
 /// The array of a batch, or NULL.
 template <class T>

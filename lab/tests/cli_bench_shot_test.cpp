@@ -48,7 +48,8 @@ TEST(CliBenchShot, RowsAreWhole) {
     }
     EXPECT_EQ(names, (std::set<std::string>{"eight_ball_break", "nine_ball_break",
                                             "eight_ball_break compliant", "two_ball_shot", "many two_ball",
-                                            "many three_cushion", "many eight_ball_break"}));
+                                            "many three_cushion", "many eight_ball_break",
+                                            "many drawn_eight_ball", "many drawn_nine_ball"}));
     std::set<int> sizes, chosen, compliant;
     std::map<std::string, double> first_ns;  // growth is relative to the smallest gas of the same model
     for (const Json& row : json.at("growth")) {

@@ -41,6 +41,7 @@ Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
 /// A ball as it enters an event.
 struct Comer {
     Vec2 r, v;
+    bool collides;  ///< in an earlier cluster, which still lasts
 };
 
 /// The rule of the cluster model as in docs/reference/physics.md, applied by examining every ball.
@@ -55,8 +56,10 @@ class FullScan {
             const std::vector<Segment>& list = tracks_[i].segments;
             while (now_[i] + 1 < list.size() && list[now_[i] + 1].start < time) ++now_[i];
             const Segment& s = list[now_[i]];
+            const bool collides = s.state == MotionState::kColliding;
+            const Vec3 v = collides ? list[now_[i] + 1].v : velocity_at(s, time - s.start);
             balls_.push_back(
-                {planar(position_at(s, time - s.start)), planar(velocity_at(s, time - s.start))});
+                {planar(position_at(s, time - s.start)), planar(v), collides && time < s.start + s.duration});
         }
     }
 
@@ -67,7 +70,7 @@ class FullScan {
             std::vector<int> list{a, b};
             for (std::size_t k = 0; k < list.size(); ++k)
                 for (int q = 0; q < static_cast<int>(balls_.size()); ++q)
-                    if (std::find(list.begin(), list.end(), q) == list.end() &&
+                    if (std::find(list.begin(), list.end(), q) == list.end() && !at(q).collides &&
                         gap(list[k], q) <= time * (std::max(0.0, closing(list[k], q)) + v_n))
                         list.push_back(q);
             double fastest = v_n;

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
@@ -112,6 +114,80 @@ void spoil_impact(Record& record, double share) {
     for (BallTrack& track : record.tracks)
         std::erase_if(track.segments, [&](const Segment& s) { return s.start > impact.time; });
     record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
+}
+
+/// A ball that runs into two that touch, without friction of the cloth.
+Plan small_cluster() {
+    Scene scene = empty_scene();
+    scene.balls.mu_s = 0.0;
+    const double R = scene.balls.R;
+    add_ball(scene, "a", 0.01, -4.0 * R, 0.0, 3.0);
+    add_ball(scene, "b", 0.0, 0.0);
+    add_ball(scene, "c", 0.02, 0.0 + std::sqrt(4.0 * R * R - 4e-4));
+    scene.stop.time = 0.1;
+    return plan_of(scene);
+}
+
+TEST(Verify, KnowsTheLawsOfAClusterThatLasts) {
+    const Plan plan = small_cluster();
+    const Record good = simulate(plan);
+    ASSERT_EQ(verify(good, plan), std::nullopt);
+    const auto is_colliding = [](const Segment& s) { return s.state == MotionState::kColliding; };
+    const auto after = [&](Record& r, std::size_t ball) -> Segment& {
+        std::vector<Segment>& segments = r.tracks[ball].segments;
+        return *(std::find_if(segments.begin(), segments.end(), is_colliding) + 1);
+    };
+    const struct {
+        const char *law, *says;
+        std::function<void(Record&)> spoil;
+    } cases[] = {
+        {"U5", "changes the momentum of its balls", [&](Record& r) { after(r, 1).v *= 0.9; }},
+        {"U4", "energy rises", [&](Record& r) { after(r, 2).w.z() += 1000.0; }},
+    };
+    for (const auto& c : cases) {
+        Record bad = good;
+        c.spoil(bad);
+        const std::optional<Violation> violation = verify(bad, plan);
+        ASSERT_TRUE(violation) << c.law << " " << c.says;
+        EXPECT_EQ(violation->law, c.law) << violation->message;
+        EXPECT_NE(violation->message.find(c.says), std::string::npos) << violation->message;
+    }
+}
+
+// A record that ends while a cluster lasts has the motion afterwards, too.
+TEST(Verify, ARunStopsInsideACluster) {
+    const Plan plan = small_cluster();
+    const Record whole = simulate(plan);
+    const Segment* colliding = nullptr;
+    for (const Segment& s : whole.tracks[1].segments)
+        if (s.state == MotionState::kColliding) colliding = &s;
+    ASSERT_NE(colliding, nullptr);
+    const double middle = colliding->start + 0.5 * colliding->duration;
+    const Record part = simulate(plan, {.until = middle});
+    EXPECT_EQ(part.duration, middle);
+    EXPECT_EQ(part.state_at(1, middle).state, MotionState::kColliding);
+    EXPECT_GT(part.tracks[1].segments.back().start, middle);
+    EXPECT_EQ(verify(part, plan), std::nullopt);
+    // The next shot begins after the cluster.
+    const Scene next = scene_after(plan.scene, part);
+    EXPECT_EQ(next.ball[1].velocity, part.tracks[1].segments.back().v);
+}
+
+// Frames, pages, glTF and samples read the places of a record.
+TEST(Verify, PlacesDoNotJumpInABreak) {
+    constexpr double kStep = 1e-5, kFastest = 15.0;  // [s], [m/s]
+    for (const char* name : {"eight_ball_break", "nine_ball_break"}) {
+        const Record record =
+            simulate(plan_of(read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml")));
+        ASSERT_FALSE(record.clusters.empty());
+        double longest = 0.0;
+        for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
+            for (double t = 0.0; t < 0.3; t += kStep)
+                longest = std::max(
+                    longest,
+                    (record.state_at(ball, t + kStep).position - record.state_at(ball, t).position).norm());
+        EXPECT_LT(longest, kFastest * kStep) << name;
+    }
 }
 
 // The limit of U5 has the slack of the tolerance, and no more: 4000 correct shots pass, and a speed that is

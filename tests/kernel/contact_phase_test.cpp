@@ -24,13 +24,21 @@ HertzLaw pool_law(double epsilon = 2e-3) {
 }
 
 long run(Isa isa, Cluster& c, const HertzLaw& law, double longest_step, double look_ahead = kLookAhead,
-         double time_limit = kTimeLimit) {
+         double time_limit = kTimeLimit, std::vector<double>* moved = nullptr, double* time = nullptr) {
     const int contacts = static_cast<int>(c.contacts.size());
     // Guards behind the scratch memory.
     std::vector<double> numbers(contact_phase_numbers(c.balls(), contacts) + 1, 7.0);
-    std::vector<int> places(contact_phase_places(contacts) + 1, 7);
-    const ContactPhase phase{c.balls(),      contacts,      c.motion.data(), c.contacts.data(),
-                             numbers.data(), places.data(), c.curvature};
+    std::vector<int> places(contact_phase_places(c.balls(), contacts) + 1, 7);
+    if (moved != nullptr) moved->resize(2 * static_cast<std::size_t>(c.balls()));
+    const ContactPhase phase{c.balls(),
+                             contacts,
+                             c.motion.data(),
+                             c.contacts.data(),
+                             numbers.data(),
+                             places.data(),
+                             c.curvature,
+                             moved != nullptr ? moved->data() : nullptr,
+                             time};
     const long steps = contact_phase_function(isa)(phase, law, longest_step, look_ahead, time_limit);
     EXPECT_EQ(numbers.back(), 7.0);
     EXPECT_EQ(places.back(), 7);
@@ -96,8 +104,13 @@ TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
         for (const Isa isa : {Isa::kScalar, Isa::kV3, Isa::kV4}) {
             if (!available(isa)) continue;
             Cluster c = start;
-            EXPECT_EQ(run(isa, c, law, 1.0 / 16.0), steps) << "cluster " << k << " " << name(isa);
+            std::vector<double> moved;
+            double time = 0.0;
+            EXPECT_EQ(run(isa, c, law, 1.0 / 16.0, kLookAhead, kTimeLimit, &moved, &time), steps)
+                << "cluster " << k << " " << name(isa);
             EXPECT_EQ(c.motion, plain.y) << "cluster " << k << " " << name(isa);
+            EXPECT_EQ(moved, plain.moved) << "cluster " << k << " " << name(isa);
+            EXPECT_EQ(time, plain.time) << "cluster " << k << " " << name(isa);
         }
     }
     EXPECT_LE(*sizes.begin(), 2u);

@@ -51,7 +51,8 @@ class Plain {
           law_(law),
           curvature_(c.curvature),
           ahead_(static_cast<std::size_t>(c.balls()), 0.0),
-          y(c.motion) {
+          y(c.motion),
+          moved(2 * ahead_.size(), 0.0) {
         for (const HertzContact& one : start_)
             contacts_.push_back({one.overlap, 0.0, {one.nx, one.ny}, 0.0, one.turn, false});
         look();
@@ -59,13 +60,13 @@ class Plain {
 
     long run(double longest_step) {
         next_ = longest_step;
-        double time = 0.0;
         for (long steps = 1; time < kTimeLimit; ++steps) {
             time += step(settle(longest_step * slowness()), longest_step / 64.0);
             if (pressed(kTimeLimit - time)) continue;
             const double flight = next_touch();
             if (!(flight < kLookAhead)) return steps;
             if (overlapping()) continue;
+            if (time > 40.0) return steps;
             fly(flight);
             time += flight;
         }
@@ -89,6 +90,8 @@ class Plain {
 
   public:
     std::vector<double> y;
+    std::vector<double> moved;  // displacements, as of ContactPhase
+    double time = 0.0;
     std::set<std::size_t> stages;  // of the steps with friction
 
   private:
@@ -151,9 +154,8 @@ class Plain {
         return root2 < 0.0 ? 1e300 : q / (c + std::sqrt(root2));
     }
 
-    Direction after(const Direction& n, const Way& w, double time) const {
-        return turned(n, 1.0 + curvature_ * w.gap - curvature_ * w.closing * time,
-                      -curvature_ * w.across * time);
+    Direction after(const Direction& n, const Way& w, double in) const {
+        return turned(n, 1.0 + curvature_ * w.gap - curvature_ * w.closing * in, -curvature_ * w.across * in);
     }
 
     double next_touch() const {
@@ -163,17 +165,18 @@ class Plain {
         return first;
     }
 
-    void fly(double time) {
-        const double less = 1.0 - falling(time, 0.5 * kLookAhead, kLookAhead);
+    void fly(double duration) {
+        const double less = 1.0 - falling(duration, 0.5 * kLookAhead, kLookAhead);
+        for (std::size_t n = 0; n < moved.size(); ++n) moved[n] += duration * y[n / 2 * 5 + n % 2];
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact& contact = contacts_[c];
             const Way w = way(c, contact.n, -contact.d);
-            const double late = touch(w) - time, apart = 1.0 + curvature_ * w.gap,
-                         change = time * (curvature_ * w.speed2 * time - 2.0 * apart * w.closing);
+            const double late = touch(w) - duration, apart = 1.0 + curvature_ * w.gap,
+                         change = duration * (curvature_ * w.speed2 * duration - 2.0 * apart * w.closing);
             contact.d =
                 std::min(0.0, -(w.gap + change / (std::sqrt(apart * apart + curvature_ * change) + apart)));
             if (late <= 0.0) contact.d = 0.0;
-            contact.n = after(contact.n, w, time);
+            contact.n = after(contact.n, w, duration);
             contact.share = start_[c].turn * (1.0 - less * falling(late, 0.0, 0.5));
             contact.closed = false;
         }
@@ -188,22 +191,22 @@ class Plain {
             if (!(contact.share < 1.0) || curvature_ == 0.0) continue;
             if (contact.closed && (contact.d > 0.0 || rate(c) > 0.0)) continue;
             const bool open = !(contact.d > 0.0);
-            const double time = open && !contact.closed ? touch(way(c, contact.n, -contact.d)) : 0.0;
-            if (time > 1e-3 * longest) {
-                h = std::min(h, time);
+            const double in = open && !contact.closed ? touch(way(c, contact.n, -contact.d)) : 0.0;
+            if (in > 1e-3 * longest) {
+                h = std::min(h, in);
                 continue;
             }
             changed = true;
             contact.closed = !contact.closed;
-            if (contact.closed) close(c, time);
+            if (contact.closed) close(c, in);
         }
         if (changed) look();
         return h;
     }
 
-    void close(std::size_t c, double time) {
+    void close(std::size_t c, double in) {
         Contact& contact = contacts_[c];
-        const Direction own = after(contact.n, way(c, contact.n, std::max(0.0, -contact.d)), time),
+        const Direction own = after(contact.n, way(c, contact.n, std::max(0.0, -contact.d)), in),
                         first{start_[c].nx, start_[c].ny};
         const Way since = way(c, first, -start_[c].overlap);
         double met = touch(since);
@@ -212,7 +215,7 @@ class Plain {
                       ? (1.0 + curvature_ * since.gap) * since.closing / (curvature_ * since.speed2)
                       : 0.0;
         const Direction other = after(first, since, met);
-        const double share = contact.share, x = share * own.x + (1.0 - share) * other.x,
+        const double share = start_[c].turn, x = share * own.x + (1.0 - share) * other.x,
                      y_ = share * own.y + (1.0 - share) * other.y, length = std::sqrt(x * x + y_ * y_);
         contact.n = {x / length, y_ / length};
     }
@@ -265,24 +268,24 @@ class Plain {
         return power;
     }
 
-    // The slope of a state whose normals have turned for `time`.
-    Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double time) const {
+    // The slope of a state whose normals have turned for a time.
+    Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double in) const {
         const std::size_t balls = y.size() / 5;
         Slope s{std::vector<double>(y.size(), 0.0),
                 {},
                 std::vector<double>(balls, 0.0),
                 std::vector<double>(balls, 0.0)};
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
-            const Direction n = predicted(c, time);
+            const Direction n = predicted(c, in);
             s.d.push_back(rate(at, c, n));
             if (d[c] > 0.0) push(at, d[c], c, n.x, n.y, s);
         }
         return s;
     }
 
-    Direction predicted(std::size_t c, double time) const {
+    Direction predicted(std::size_t c, double in) const {
         const Direction n = contacts_[c].n;
-        const double angle = time * contacts_[c].turn;
+        const double angle = in * contacts_[c].turn;
         return {n.x - angle * n.y, n.y + angle * n.x};
     }
 
@@ -313,9 +316,8 @@ class Plain {
 
     bool has_friction() const { return law_.mu_b > 0.0 || law_.mu_b_more > 0.0; }
 
-    // How much longer steps may be without friction, if everything is slow.
+    // How much longer steps may be if everything is slow.
     double slowness() const {
-        if (has_friction()) return 1.0;
         double fastest = 0.0;
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact contact = contacts_[c];
@@ -346,6 +348,7 @@ class Plain {
         const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};
         double h = longest;
+        std::vector<bool> watched;  // contacts that may close within the step
         for (;; h *= 0.5) {
             // Four, six or eight stages.
             std::vector<double> inner = {stiff ? 0.25 : 0.5};
@@ -358,10 +361,13 @@ class Plain {
                 if (reach < h * -least) h = reach / -least;
                 stages.insert(inner.size() + 3);
             }
+            for (std::size_t c = watched.size(); c < now.size(); ++c)
+                watched.push_back(-now[c] < h * (std::max(k[0].d[c], 0.0) + h));
             const auto slope_after = [&](const Slope& before, double node) {
                 std::vector<double> at = y, d = now;
                 for (std::size_t n = 0; n < at.size(); ++n) at[n] += h * node * before.y[n];
-                for (std::size_t c = 0; c < d.size(); ++c) d[c] += h * node * before.d[c];
+                for (std::size_t c = 0; c < d.size(); ++c)
+                    if (watched[c]) d[c] += h * node * before.d[c];
                 return slope_at(at, d, h * node);
             };
             k[1] = k[0];
@@ -379,13 +385,17 @@ class Plain {
         const auto mean = [&](double k0, double k1, double k2, double k3) {
             return (h * weight[0] * k0 + h * weight[1] * k1) + (h * weight[2] * k2 + h * weight[3] * k3);
         };
+        const std::vector<double> before = y;
         for (std::size_t n = 0; n < y.size(); ++n) y[n] += mean(k[0].y[n], k[1].y[n], k[2].y[n], k[3].y[n]);
+        for (std::size_t n = 0; n < moved.size(); ++n)
+            moved[n] += 0.5 * h * (before[n / 2 * 5 + n % 2] + y[n / 2 * 5 + n % 2]);
         for (std::size_t b = 0; b < ahead_.size(); ++b)
             drag(b, mean(k[0].lift[b], k[1].lift[b], k[2].lift[b], k[3].lift[b]), 0.5 * h * k[3].lift[b]);
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             Contact& contact = contacts_[c];
-            contact.d += mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c]);
             const Direction n = predicted(c, h);
+            contact.d += watched[c] ? mean(k[0].d[c], k[1].d[c], k[2].d[c], k[3].d[c])
+                                    : 0.5 * h * (k[0].d[c] + rate(y, c, n));
             remember(contact, now[c], h * k[0].d[c], h * rate(y, c, n));
             const double turn = turning(c, n), angle = 0.5 * h * (contact.turn + turn),
                          half = 0.5 * (angle * angle), shrink = 1.0 - half * (1.0 - 1.5 * half);

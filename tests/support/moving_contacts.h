@@ -22,7 +22,9 @@ struct MovingLaw {
     double mu_b_more = 0.0, mu_b_fall = 0.0;  ///< friction mu_b + more exp(-fall |slip|), slip in m/s
     double slip = 1e-4;                       ///< [V] regularisation of the friction
     double step = 5e-4;                       ///< [L/V]
-    double look_ahead = 2.0;  ///< [L/V] it ends when all are open and none touches within this time
+    double look_ahead = 2.0;  ///< [L/V] run() ends when all are open and none touches within this time
+    double weight = 0.0;      ///< [m/s^2] gravity, which presses all balls on the cloth
+    double reach = 40.0;      ///< [L] pairs with a larger gap at the start never touch
     bool cloth = true;  ///< holds every ball, with friction under those pressed down; else they move in space
 };
 
@@ -41,7 +43,7 @@ class MovingContacts {
             for (std::size_t j = i + 1; j < balls_.size(); ++j) {
                 // The rounding of positions that should touch is not a gap.
                 const double gap = distance(balls_[i], balls_[j]) - 2.0 * law.R;
-                if (gap < 40.0 * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
+                if (gap < law.reach * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
             }
         }
     }
@@ -58,6 +60,15 @@ class MovingContacts {
             if (apart && finished()) return time;
         }
         return -1.0;
+    }
+
+    /// Runs for a duration [s], and on until no contact is closed. @return how long
+    double run_for(double duration) {
+        const auto steps = static_cast<int>(std::ceil(duration / (law_.step * unit_)));
+        const double h = duration / steps;
+        int done = 0;
+        for (; done < steps || !all_open(); ++done) step(h);
+        return done * h;
     }
 
     const std::vector<MovingBall>& balls() const { return balls_; }
@@ -128,10 +139,12 @@ class MovingContacts {
             s[b].v[2] = 0.0;
         }
         for (std::size_t b = 0; b < at.size(); ++b) {
-            if (up[b] >= 0.0) continue;
             const double u[2] = {at[b].v[0] - R * at[b].w[1], at[b].v[1] + R * at[b].w[0]};
-            const double size = std::sqrt(u[0] * u[0] + u[1] * u[1] + slip_ * slip_);
-            const double f[2] = {law_.mu_s * up[b] * u[0] / size, law_.mu_s * up[b] * u[1] / size};
+            const double u2 = u[0] * u[0] + u[1] * u[1], sharp = 0.02 * slip_;
+            // The weight is so small beside the contacts that its friction can stick more sharply.
+            const double k = std::min(up[b], 0.0) / std::sqrt(u2 + slip_ * slip_) -
+                             law_.weight / std::sqrt(u2 + sharp * sharp);
+            const double f[2] = {law_.mu_s * k * u[0], law_.mu_s * k * u[1]};
             s[b].v[0] += f[0];
             s[b].v[1] += f[1];
             s[b].w[0] += 2.5 / R * f[1];

@@ -115,7 +115,7 @@ class Release(unittest.TestCase):
         self.one_fault('the bits of "draw" changed')
 
     def test_a_record_version_that_changes_is_a_fault(self):
-        self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)2', r"\g<1>3")
+        self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)3', r"\g<1>4")
         self.one_fault("records have version 3 instead of 2")
 
     def test_what_is_cut_has_no_fault(self):

@@ -12,7 +12,7 @@ export class CaromError extends Error {
 
 /** How balls move, in the order of the numbers in `states`. */
 export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed", "falling", "airborne",
-  "out"];
+  "out", "colliding"];
 
 /** How shots of simulateMany end, in the order of the numbers in `status`. */
 export const STATUSES = ["at_rest", "time", "events", "endless", "invalid", "failed"];

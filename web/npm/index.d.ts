@@ -21,7 +21,8 @@ export class CaromError extends Error {
 }
 
 export type BallState =
-  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out";
+  "stationary" | "spinning" | "sliding" | "rolling" | "pocketed" | "falling" | "airborne" | "out" |
+  "colliding";
 export const STATES: readonly BallState[];
 export const STATUSES: readonly ("at_rest" | "time" | "events" | "endless" | "invalid" | "failed")[];
 

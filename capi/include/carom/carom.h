@@ -163,7 +163,7 @@ CAROM_API carom_status carom_record_event(const carom_record* record, size_t ind
 
 /* State of a ball at time t [s]. Before the start it is the initial state, after the end the final one.
  * `state` receives "stationary", "spinning", "sliding", "rolling", "pocketed", "falling" (over a pocket),
- * "airborne" or "out", or is NULL. */
+ * "airborne", "out" or "colliding" (in a cluster), or is NULL. */
 CAROM_API carom_status carom_record_state(const carom_record* record, size_t ball, double t, double rvw[9],
                                           const char** state);
 
@@ -194,7 +194,8 @@ typedef enum carom_motion_state {
     CAROM_POCKETED = 4,
     CAROM_FALLING = 5,
     CAROM_AIRBORNE = 6,
-    CAROM_OUT = 7 /* it has left the table */
+    CAROM_OUT = 7,      /* it has left the table */
+    CAROM_COLLIDING = 8 /* in a cluster: it moves straight to where it is when the contacts are over */
 } carom_motion_state;
 
 /* The segments of a ball in the order of their starts; if two have the same start, the later one applies.

@@ -248,6 +248,7 @@ void end_transition(RestingBall& member, MotionState state, double R) {
         case MotionState::kFalling:
         case MotionState::kAirborne:
         case MotionState::kOut:
+        case MotionState::kColliding:
             break;
     }
 }

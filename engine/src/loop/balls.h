@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -20,6 +21,12 @@ struct BallsMemory {
         double fell, flew;
     };
     std::vector<Turns> turns_;
+    /// Of a ball that collides: its motion after the cluster, and another ball of it. These form a ring.
+    struct Afterwards {
+        Segment segment;
+        int next;
+    };
+    std::vector<Afterwards> afterwards_;
 };
 
 class Balls : private Borrowed<BallsMemory> {
@@ -27,6 +34,8 @@ class Balls : private Borrowed<BallsMemory> {
     Balls(const Plan& plan, BallsMemory& memory) : Borrowed(memory), plan_(plan) {
         segments_.assign(plan.sizes.size(), Segment());
         turns_.assign(plan.sizes.size(), {0.0, -kNever});
+        afterwards_.resize(plan.sizes.size());
+        for (int i = 0; i < count(); ++i) afterwards_[i].next = i;
     }
 
     int count() const { return static_cast<int>(segments_.size()); }
@@ -37,8 +46,20 @@ class Balls : private Borrowed<BallsMemory> {
         if (flies(before)) turns_[ball].flew = segment.start;
         if (segment.state == MotionState::kFalling && before != MotionState::kFalling)
             turns_[ball].fell = segment.start;
+        if (before == MotionState::kColliding) leave_cluster(ball);
         segments_[ball] = segment;
     }
+    /// Sets the motion of a colliding ball after its cluster, in which `other` is, too.
+    void set_afterwards(int ball, const Segment& segment, int other) {
+        afterwards_[ball].segment = segment;
+        if (other == ball) return;
+        afterwards_[ball].next = afterwards_[other].next;
+        afterwards_[other].next = ball;
+    }
+    bool collides(int ball) const { return segments_[ball].state == MotionState::kColliding; }
+    /// Of a ball that collides: its motion afterwards, and another ball of its cluster, if there is one.
+    const Segment& afterwards(int ball) const { return afterwards_[ball].segment; }
+    int next_in_cluster(int ball) const { return afterwards_[ball].next; }
     bool sinks(int ball) const { return segments_[ball].state == MotionState::kFalling; }
     /// Whether these two meet in space rather than in the plane: one of them flies, or has flown since the
     /// other began to fall into a pocket. That lasts until one of them is gone or the falling ball is back on
@@ -69,6 +90,12 @@ class Balls : private Borrowed<BallsMemory> {
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }
 
   private:
+    void leave_cluster(int ball) {
+        int last = ball;
+        while (afterwards_[last].next != ball) last = afterwards_[last].next;
+        afterwards_[last].next = std::exchange(afterwards_[ball].next, ball);
+    }
+
     const Plan& plan_;
     double now_ = 0.0;
 };

@@ -14,6 +14,15 @@ namespace {
 
 // [reach] Contacts between balls nearer than this follow the motion of the balls: their normals turn.
 constexpr double kNearShare = 0.5;
+// [reach] Contacts up to this gap are listed, because balls may get there while the cluster lasts.
+constexpr double kListed = 8.0;
+// [contact time] A cluster that would last longer takes no time: its balls would go too far on straight
+// paths.
+constexpr double kLongest = 20.0;
+// Balls that may join a cluster because one of it would meet them.
+constexpr std::size_t kMostJoin = 4;
+// [m/s] A slower cluster takes no time: it would last for milliseconds, in which other balls come along.
+constexpr double kSlowest = 0.2;
 // [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
 constexpr double kClosesStill = 1e-12;
 
@@ -65,6 +74,9 @@ ClusterBall Clusters::member(int ball) const {
 // pair may touch very slowly while its neighbours are about to collide at full speed. Each approach is
 // weighted by nearness, so that the result does not jump when a fast ball comes within reach.
 double Clusters::collect(int a, int b, double v_n) {
+    first_ = a;
+    second_ = b;
+    joined_.clear();
     for (;;) {
         collect_at(a, b, v_n);
         double fastest = v_n;
@@ -100,6 +112,7 @@ double Clusters::pair_time(int a, int b, double v_n) const {
 
 void Clusters::collect_at(int a, int b, double v_n) {
     const double time = plan_.clusters == ClusterModel::kCompliant ? pair_time(a, b, v_n) : 0.0;
+    contact_time_ = time;
     const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
         Touch<Vec3> near = touch_of(p, q, flights_, plan_.balls.discs());
@@ -112,15 +125,15 @@ void Clusters::collect_at(int a, int b, double v_n) {
     contacts_.clear();
     members_.push_back(member(a));
     members_.push_back(member(b));
+    for (const int ball : joined_) members_.push_back(member(ball));
     for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall here = members_[k];
         const double speed = here.v.z() == 0.0 ? length(planar(here.v)) : length3(here.v);
         const double most = time * (speed + detector_.fastest() + v_n);
         // The order is arbitrary: the set of members does not depend on it, and they are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
-            const bool known = std::any_of(members_.begin(), members_.end(),
-                                           [q](const ClusterBall& m) { return m.ball == q; });
-            if (known || passes(here.ball, q)) return;
+            // A ball of another cluster is compressed; what it meets waits until that is over.
+            if (is_member(q) || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
             const Touch<Vec3> near = gap_of(here, candidate);
@@ -141,7 +154,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
             const Touch<Vec3> near = gap_of(members_[i], members_[j]);
-            if (!passes(members_[i].ball, members_[j].ball) && near.gap <= 2.0 * reach(near))
+            if (!passes(members_[i].ball, members_[j].ball) && near.gap <= kListed * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});
         }
@@ -161,8 +174,32 @@ void Clusters::collect_at(int a, int b, double v_n) {
 
 // A contact whose balls have no other contact is an impact of two balls: its normal stays as it was at the
 // start, as in the pair kernel. So that the result does not jump when the last other ball moves out of reach,
-// a normal turns in proportion to the nearness of the nearest other contact of its balls, and to its own.
+// a normal turns in proportion to how firmly its two balls belong to the cluster, and to the nearness of the
+// nearest other contact of its balls. A ball belongs by the nearness of the weakest contact on the best chain
+// from the pair that met; one that has joined belongs fully. Unlike balls turn fully, and so do balls in
+// space.
 void Clusters::share_turning() {
+    if (unlike_ || in_space_) {
+        for (ClusterContact& c : contacts_) c.turn = 1.0;
+        return;
+    }
+    firm_.clear();
+    const auto is_firm = [this](int ball) {
+        return ball == first_ || ball == second_ ||
+               std::find(joined_.begin(), joined_.end(), ball) != joined_.end();
+    };
+    for (const ClusterBall& m : members_) firm_.push_back(is_firm(m.ball) ? 1.0 : 0.0);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const ClusterContact& c : contacts_) {
+            const double chain = std::min(c.turn, std::max(firm_[c.i], firm_[c.j]));
+            for (const int ball : {c.i, c.j}) {
+                changed |= chain > firm_[ball];
+                firm_[ball] = std::max(firm_[ball], chain);
+            }
+        }
+    }
+    for (ClusterContact& c : contacts_) c.turn = std::min(firm_[c.i], firm_[c.j]);
     nearest_.assign(members_.size(), {});
     for (const ClusterContact& c : contacts_) {
         for (const int ball : {c.i, c.j}) {
@@ -179,18 +216,103 @@ void Clusters::share_turning() {
     }
 }
 
-// The solution moves the balls, but the loop leaves them in place. In the solution, a glancing contact with a
-// fast slip opens almost without force, because its normal turns while the balls pass each other. In the
-// loop's positions they still approach, and the same cluster would recur ten thousand times. So every
-// touching contact must open in the loop's positions: solve again with fixed normals, as in an impact of two
-// balls.
+// Where the balls are when the cluster ends, which is when no two of them overlap. A ball whose contacts turn
+// less has moved in part as if the impact took no time.
+// @return false: the balls must stay in place
+bool Clusters::find_paths() {
+    double duration = map_.duration();
+    paths_.clear();
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+        double share = 0.0;
+        for (const ClusterContact& c : contacts_)
+            if (c.i == static_cast<int>(k) || c.j == static_cast<int>(k)) share = std::max(share, c.turn);
+        paths_.push_back(share * map_.moved(k) + (1.0 - share) * duration * planar(members_[k].v));
+    }
+    while (const double more = overlap_ends()) {
+        duration += more;
+        if (!(duration <= kLongest * contact_time_)) break;
+        for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * planar(members_[k].v);
+    }
+    obstacle_ = kTable;
+    if (!(duration <= kLongest * contact_time_)) return false;
+    duration_ = duration;
+    obstacle_ = find_obstacle();
+    if (obstacle_ != kNone) duration_ = 0.0;
+    return duration_ > 0.0;
+}
+
+// [s] How long it takes until balls that overlap at the ends of their paths do not; 0: none overlap.
+double Clusters::overlap_ends() const {
+    double longest = 0.0;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        for (std::size_t j = i + 1; j < members_.size(); ++j) {
+            const ClusterBall &p = members_[i], &q = members_[j];
+            const Vec2 apart = planar(q.r) + paths_[j] - planar(p.r) - paths_[i];
+            const double distance = length(apart), most = contact_distance(p.R, q.R, plan_.balls.discs());
+            if (!(distance < most - kTouchUlp * std::max(p.R, q.R))) continue;
+            const double opens = dot(apart, planar(q.v) - planar(p.v)) / distance;
+            if (!(opens > 0.0)) return kNever;
+            longest = std::max(longest, (most - distance) / opens * (1.0 + kBoxShare));
+        }
+    }
+    return longest;
+}
+
+// What a ball meets on its path: another ball, kTable or kNone. A ball that no cluster may include counts as
+// the table.
+int Clusters::find_obstacle() const {
+    int found = kNone;
+    for (std::size_t k = 0; k < members_.size() && found != kTable; ++k) {
+        const ClusterBall& ball = members_[k];
+        const Vec2& path = paths_[k];
+        detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { found = kTable; });
+        const double most = length(path) + duration_ * detector_.fastest();
+        detector_.balls_near(near_box(ball, most), [&](int q) {
+            if (found == kTable || is_member(q) || has_room(ball, path, q)) return;
+            const bool joins = !balls_.collides(q) && !balls_.segment(q).held && !balls_.sinks(q) &&
+                               !flies(balls_.segment(q).state);
+            found = !joins ? kTable : found == kNone ? q : std::min(found, q);
+        });
+    }
+    return found;
+}
+
+bool Clusters::is_member(int ball) const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [ball](const ClusterBall& m) { return m.ball == ball; });
+}
+
+// Whether a ball on its path does not meet another one, which goes on as it does now.
+bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) const {
+    const Segment& s = balls_.segment(other);
+    if (is_gone(s.state)) return true;
+    const Vec2 apart = planar(balls_.position(other)) - planar(ball.r);
+    double touching = (ball.R + balls_.radius(other)) * (1.0 + kBoxShare);
+    touching += 0.5 * duration_ * duration_ * length(s.a);
+    if (balls_.collides(other) || s.held) {
+        // It may leave its cluster, or be pushed otherwise.
+        double speed = length(planar(balls_.velocity(other)));
+        if (!s.held) speed = std::max(speed, length(planar(balls_.afterwards(other).v)));
+        return length(apart) > touching + length(path) + duration_ * speed;
+    }
+    const Vec2 relative = duration_ * planar(balls_.velocity(other)) - path;
+    const double whole = dot(relative, relative),
+                 share = whole > 0.0 ? std::clamp(-dot(apart, relative) / whole, 0.0, 1.0) : 0.0;
+    return length(apart + share * relative) > touching;
+}
+
+// Where a cluster takes no time, its solution moves the balls, but they stay in place. In the solution, a
+// glancing contact with a fast slip opens almost without force, because its normal turns while the balls pass
+// each other. In place they still approach, and the same cluster would recur ten thousand times. So every
+// touching contact must open in place: solve again with fixed normals, as in an impact of two balls.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
         return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
     });
 }
 
-std::int64_t Clusters::resolve(double v_n, bool friction) {
+std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
+    duration_ = 0.0;
     const BallParams& p = plan_.balls;
     ClusterSettings settings{
         .R = unlike_ ? p.R : balls_.radius(members_.front().ball),
@@ -199,17 +321,44 @@ std::int64_t Clusters::resolve(double v_n, bool friction) {
         .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step = friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep,
+        .longest_step =
+            plan_.cluster_step * (friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep),
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,
+        .slide = p.rolls() ? plan_.motion.front().slide : 0.0,
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
         return in_space_ || unlike_ ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
                                     : map_.compliant(members_, contacts_, settings, v_n);
     };
+    // A ball that falls, or one in space, would move up or down during the cluster, and resting contacts
+    // would push others meanwhile.
+    may_last &= v_n > kSlowest && !in_space_ &&
+                std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+                    return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
+                });
     std::int64_t steps = run();
+    if (steps >= 0 && may_last) {
+        if (find_paths()) return steps;
+        // A ball that is met meanwhile joins. If that leads to no end, it meets a cluster that took no time.
+        while (obstacle_ != kTable && joined_.size() < kMostJoin) {
+            joined_.push_back(obstacle_);
+            collect_at(first_, second_, v_n);
+            share_turning();
+            const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
+            if (more < 0) break;
+            steps += more;
+            if (find_paths()) return steps;
+        }
+        if (!joined_.empty()) {
+            joined_.clear();
+            collect_at(first_, second_, v_n);
+            share_turning();
+            steps += run();
+        }
+    }
     if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
         const std::int64_t more = run();

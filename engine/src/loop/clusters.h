@@ -18,6 +18,9 @@ struct ClustersMemory {
     std::vector<ClusterBall> members_;
     std::vector<ClusterContact> contacts_;
     std::vector<std::array<double, 2>> nearest_;  // per ball
+    std::vector<double> firm_;                    // per ball
+    std::vector<Vec2> paths_;                     // per ball
+    std::vector<int> joined_;                     // balls that one of the others would meet meanwhile
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -36,8 +39,14 @@ class Clusters : private Borrowed<ClustersMemory> {
     /// Replaces the velocities and spins of balls() by those after the impact.
     /// @param v_n   [m/s] the fastest approach
     /// @param friction  whether there is friction between the balls
+    /// @param may_last  whether the balls may move during the cluster
     /// @return number of integration steps
-    std::int64_t resolve(double v_n, bool friction);
+    std::int64_t resolve(double v_n, bool friction, bool may_last);
+
+    /// [s] Duration of the cluster that was resolved last; 0: it takes no time, and the balls stay in place.
+    double duration() const { return duration_; }
+    /// [m] The displacement of the k-th ball in it.
+    const Vec2& path(std::size_t k) const { return paths_[k]; }
 
     /// Number of balls that collect() has examined besides the first two; used by tests.
     std::int64_t looks() const { return looks_; }
@@ -47,6 +56,11 @@ class Clusters : private Borrowed<ClustersMemory> {
     double pair_time(int a, int b, double v_n) const;
     std::int64_t rigid(const ClusterSettings& settings);
     void share_turning();
+    bool find_paths();
+    double overlap_ends() const;
+    int find_obstacle() const;
+    bool is_member(int ball) const;
+    bool has_room(const ClusterBall& ball, const Vec2& path, int other) const;
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
@@ -57,6 +71,12 @@ class Clusters : private Borrowed<ClustersMemory> {
     const Balls& balls_;
     const Detector& detector_;
     std::int64_t looks_ = 0;
+    int first_ = -1, second_ = -1;  // the pair that met
+    double contact_time_ = 0.0;     // [s] of their contact
+    double duration_ = 0.0;
+    // What keeps the last cluster from lasting: a ball, or
+    static constexpr int kNone = -1, kTable = -2;
+    int obstacle_ = kTable;
     bool in_space_ = false;
     bool unlike_ = false;  // the last collect() found balls of different size
 };

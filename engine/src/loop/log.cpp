@@ -178,8 +178,11 @@ void Log::record(StopReason why, Record& record) {
     begin_record(record);
     std::vector<std::size_t> count(record.tracks.size());
     for (const BallSegment& s : segments_) ++count[s.ball];
+    for (int i = 0; i < balls_.count(); ++i) count[i] += balls_.collides(i);
     for (std::size_t i = 0; i < count.size(); ++i) record.tracks[i].segments.reserve(count[i]);
     for (const BallSegment& s : segments_) record.tracks[s.ball].segments.push_back(s.segment);
+    for (int i = 0; i < balls_.count(); ++i)
+        if (balls_.collides(i)) record.tracks[i].segments.push_back(balls_.afterwards(i));
     auto member = cluster_ball_.begin();
     for (const std::size_t end : cluster_end_) {
         std::vector<int>& cluster = record.clusters.emplace_back();

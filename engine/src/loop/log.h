@@ -53,6 +53,11 @@ class Log : private Borrowed<LogMemory> {
         if (keep_ != Keep::kOutcome || ball == struck_) segments_.push_back({segment, ball});
         touched_.push_back(ball);
     }
+    /// Starts the motion of a ball in a cluster that lasts, together with `other`.
+    void begin_colliding(int ball, const Segment& segment, const Segment& afterwards, int other) {
+        begin(ball, segment);
+        balls_.set_afterwards(ball, afterwards, other);
+    }
     void event(EventType type, int ball, int partner = -1, int detail = -1) {
         events_.push_back({balls_.now(), type, ball, partner, detail});
         quiet_rounds_ = 0;

@@ -64,10 +64,12 @@ int Log::met_by(int struck, const Event& e) const {
 std::uint64_t Log::hash() const {
     RecordHash hash;
     for (int ball = 0; ball < balls_.count(); ++ball) {
-        hash.ball(static_cast<std::size_t>(std::count_if(
-            segments_.begin(), segments_.end(), [ball](const BallSegment& s) { return s.ball == ball; })));
+        const auto segments = std::count_if(segments_.begin(), segments_.end(),
+                                            [ball](const BallSegment& s) { return s.ball == ball; });
+        hash.ball(static_cast<std::size_t>(segments) + balls_.collides(ball));
         for (const BallSegment& s : segments_)
             if (s.ball == ball) hash.segment(s.segment);
+        if (balls_.collides(ball)) hash.segment(balls_.afterwards(ball));
     }
     for (const Event& e : events_) hash.event(e);
     hash.duration(balls_.now());

@@ -89,6 +89,7 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 // segment.
 PredictedEvent Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
+    if (collide(s, q)) return {};
     const bool in_air = flights_ && balls_.in_space(a, b);
     const double from = std::max(s.start, q.start);
     const double until = std::min(std::min(mover_[a].until, mover_[b].until), latest);

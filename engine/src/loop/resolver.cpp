@@ -38,6 +38,7 @@ Resolver::Resolver(const Plan& plan, const Balls& balls, Log& log, RestingContac
 
 void Resolver::resolve(const Contact& contact) {
     const Stopwatch watch(resolve_ns_);
+    if (leave_cluster(contact)) return;
     switch (contact.with) {
         case With::kBall:
             ball_ball(contact.ball, contact.other);
@@ -59,15 +60,15 @@ void Resolver::resolve(const Contact& contact) {
 }
 
 // The motion of a ball after an impact. A falling ball continues to fall.
-Segment Resolver::after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
+Segment Resolver::after_impact(double time, int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
     const Segment& before = balls_.segment(ball);
     const MotionParams& motion = balls_.motion(ball);
     if (before.state != MotionState::kFalling) {
-        if (flights_) return free_segment(balls_.now(), r, v, w, motion);
-        return start_segment(balls_.now(), r, v, w, motion);
+        if (flights_) return free_segment(time, r, v, w, motion);
+        return start_segment(time, r, v, w, motion);
     }
-    const double falls = fall_speed(before, balls_.now() - before.start, motion.gravity);
-    return falling_segment(balls_.now(), r, v, w, falls, motion);
+    const double falls = fall_speed(before, time - before.start, motion.gravity);
+    return falling_segment(time, r, v, w, falls, motion);
 }
 
 void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
@@ -160,13 +161,17 @@ bool Resolver::cluster(int a, int b, double v_n) {
     std::int64_t steps;
     {
         const Stopwatch watch(kernel_ns_);
-        steps = clusters_.resolve(v_n, friction);
+        steps = clusters_.resolve(v_n, friction, !slow);
     }
     if (cost_ != nullptr) {
         cost_->steps = steps;
         cost_->method = name(plan_.clusters);
     }
     if (slow && hold_in_cluster(Pressed::kAfter)) return true;
+    if (clusters_.duration() > 0.0) {
+        begin_cluster(a, b);
+        return true;
+    }
     const std::vector<ClusterBall>& members = clusters_.balls();
     if (in_space)
         for (const ClusterBall& ball : members) resting_.release(ball.ball);
@@ -179,6 +184,44 @@ bool Resolver::cluster(int a, int b, double v_n) {
     }
     if (!in_space) resting_.go_on();
     return true;
+}
+
+// Every ball moves straight to its place at the end of the cluster, and freely from there.
+void Resolver::begin_cluster(int a, int b) {
+    const std::vector<ClusterBall>& members = clusters_.balls();
+    log_.cluster(a, b, members);
+    const double now = balls_.now(), duration = clusters_.duration();
+    int other = members.front().ball;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        const ClusterBall& m = members[k];
+        const Vec2& path = clusters_.path(k);
+        const Vec3 end = m.r + Vec3(path.x(), path.y(), 0.0);
+        log_.begin_colliding(m.ball, colliding_segment(now, m.r, path, m.w, duration),
+                             after_impact(now + duration, m.ball, end, m.v, m.w), other);
+        other = m.ball;
+    }
+}
+
+void Resolver::end_cluster(int ball) {
+    while (balls_.collides(ball)) {
+        const int next = balls_.next_in_cluster(ball);
+        log_.begin(ball, balls_.afterwards(ball));
+        ball = next;
+    }
+}
+
+// A ball of a cluster that meets something else leaves it, with the velocity that it would have afterwards.
+// Whether the two then still meet is searched again.
+bool Resolver::leave_cluster(const Contact& contact) {
+    if (contact.with == With::kNothing) return false;
+    bool left = false;
+    for (const int ball : {contact.ball, contact.partner()}) {
+        if (ball < 0 || !balls_.collides(ball)) continue;
+        const Segment& after = balls_.afterwards(ball);
+        begin(ball, balls_.position(ball), after.v, after.w);
+        left = true;
+    }
+    return left;
 }
 
 void Resolver::cushion(const Contact& contact) {
@@ -301,6 +344,10 @@ void Resolver::transition(int ball) {
     }
     if (segment.held) {
         resting_.advance(ball);
+        return;
+    }
+    if (segment.state == MotionState::kColliding) {
+        end_cluster(ball);
         return;
     }
     if (flies(segment.state)) {

@@ -27,6 +27,9 @@ class Resolver {
   private:
     void ball_ball(int a, int b);
     bool cluster(int a, int b, double v_n);
+    void begin_cluster(int a, int b);
+    void end_cluster(int ball);
+    bool leave_cluster(const Contact& contact);
     /// Whether the accelerations before or after the impact decide that balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
@@ -35,7 +38,10 @@ class Resolver {
     void leave_pocket(const Contact& contact);
     bool is_barred(int ball, const Vec3& place) const;
     void transition(int ball);
-    Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
+    Segment after_impact(int ball, const Vec3& r, const Vec3& v, const Vec3& w) const {
+        return after_impact(balls_.now(), ball, r, v, w);
+    }
+    Segment after_impact(double time, int ball, const Vec3& r, const Vec3& v, const Vec3& w) const;
     // resolver_air.cpp
     bool is_free(int a, int b) const;
     void free_balls(int one, int two);

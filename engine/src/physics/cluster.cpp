@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kCacheLine = 64;  // [bytes]
 
 // [L/V] The integration continues while a listed pair would touch within this time.
-constexpr double kClusterLookAhead = 2.0;
+constexpr double kClusterLookAhead = 4.0;
 // [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
@@ -69,7 +69,9 @@ int law_exponent(double e_b) {
 kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     const int p = law_exponent(s.e_b);
     const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
-    return {1.0 - b, b, p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more, s.mu_b_fall * V};
+    const double slide = s.slide * contact_length(V) / (V * V);
+    return {1.0 - b,         b,    p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more,
+            s.mu_b_fall * V, slide};
 }
 
 // The integration reads and writes four numbers at once. Aligned to a cache line, none of these groups
@@ -90,6 +92,7 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettin
                       int axes) {
     motion_.clear();
     mass_.clear();
+    moved_.assign(2 * balls.size(), 0.0);
     for (const ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
         for (int k = 0; k < axes; ++k) motion_.push_back(ball.v[k] / V);
@@ -99,7 +102,10 @@ void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettin
 }
 
 void ClusterMap::unload(const ClusterSettings& settings, double V, int axes,
-                        std::vector<ClusterBall>& balls) const {
+                        std::vector<ClusterBall>& balls) {
+    const double L = contact_length(V);
+    for (double& x : moved_) x *= L;
+    duration_ *= L / V;
     const double* y = motion_.data();
     for (ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
@@ -177,7 +183,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(
         std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
-    places_.resize(std::max(places_.size(), kernel::contact_phase_places(n)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
     const double before = energy(2);
     const kernel::ContactPhase phase{m,
                                      n,
@@ -185,7 +191,9 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                      contacts_.data(),
                                      on_cache_line(numbers_),
                                      places_.data(),
-                                     curvature(L, settings.R, settings.turns)};
+                                     curvature(L, settings.R, settings.turns),
+                                     moved_.data(),
+                                     &duration_};
     const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
                                                   kClusterLookAhead, kClusterTimeLimit);
     if (steps < 0) return steps;
@@ -248,7 +256,10 @@ std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
                                       motion_.data(),
                                       contacts_in_space_.data(),
                                       numbers_.data(),
-                                      curvature(L, settings.R, settings.turns)};
+                                      curvature(L, settings.R, settings.turns),
+                                      nullptr,
+                                      moved_.data(),
+                                      &duration_};
     double longest_step = settings.longest_step, longest = kClusterTimeLimit;
     kernel::UnlikeBalls unlike{};
     if (settings.unlike) {

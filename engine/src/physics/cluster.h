@@ -1,7 +1,6 @@
-// Many contacts at once: the compliant model (Hertz contacts of the whole cluster, whose normals turn as the
-// balls move; instantaneous for the engine, which receives velocities and spins) and the rigid symmetric
-// projection. Equations: docs/reference/physics.md; docs/design/hard_cases.md says what such a model can and
-// cannot claim.
+// Many contacts at once: the compliant model (Hertz contacts of the whole cluster, which last while the balls
+// move) and the rigid symmetric projection, which takes no time. Equations: docs/reference/physics.md;
+// docs/design/hard_cases.md says what such a model can and cannot claim.
 #pragma once
 
 #include <cstdint>
@@ -54,6 +53,7 @@ struct ClusterSettings {
     kernel::ContactPhaseFunction integrate = nullptr;  ///< not read where the balls are unlike or in space
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
+    double slide = 0.0;   ///< [m/s^2] deceleration of a ball that slips on the cloth
     bool turns = true;    ///< false: all normals stay as the contacts give them
     bool unlike = false;  ///< the balls differ in size; R is that of balls with the mass 1
 };
@@ -73,7 +73,8 @@ class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
-    /// -1 if the contacts did not separate within kClusterTimeLimit.
+    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls stay:
+    /// duration() and moved() tell how long the contacts last and how far the balls move in that time.
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V);
 
@@ -90,9 +91,14 @@ class ClusterMap {
     std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                        const ClusterSettings& settings);
 
+    /// Of the last compliant map, also in space or of unlike balls: its duration [s], and the horizontal
+    /// displacement of ball k in it [m].
+    double duration() const { return duration_; }
+    Vec2 moved(std::size_t k) const { return {moved_[2 * k], moved_[2 * k + 1]}; }
+
   private:
     void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V, int axes);
-    void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls) const;
+    void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls);
     double describe_unlike(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            double L, const ClusterSettings& settings, bool held);
     void keep_energy(double before, int axes);
@@ -100,6 +106,9 @@ class ClusterMap {
 
     // Per ball, v along two or three axes and R w along three, in units of V.
     std::vector<double> motion_;
+    // Per ball x and y [L], and the duration [L/V]; after the map in SI units.
+    std::vector<double> moved_;
+    double duration_ = 0.0;
     std::vector<double> mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
     std::vector<kernel::HertzContactInSpace> contacts_in_space_;

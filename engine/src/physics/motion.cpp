@@ -151,6 +151,18 @@ Vec3 landing_velocity(const Segment& s, const MotionParams& p) {
     return {s.v.x(), s.v.y(), -std::sqrt(s.v.z() * s.v.z() + 2.0 * p.gravity * c)};
 }
 
+Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration) {
+    Segment s;
+    s.start = t;
+    s.r = r;
+    s.v = Vec3(path.x() / duration, path.y() / duration, 0.0);
+    s.w = w;
+    s.a = s.dw = Vec2::Zero();
+    s.duration = duration;
+    s.state = MotionState::kColliding;
+    return s;
+}
+
 Segment pocketed_segment(double t, const Pocket& pocket) {
     Segment s =
         free_of_forces(t, {pocket.center.x(), pocket.center.y(), -pocket.depth}, Vec3::Zero(), Vec3::Zero());

@@ -66,6 +66,15 @@ Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, cons
 /// The velocity with which a flying ball lands: exact, also for a ball that rose from the cloth.
 Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
+/// The segment of a ball in a cluster that lasts for `duration` and moves it by `path`. Its spin afterwards
+/// is w.
+Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration);
+
+/// Whether two balls with these segments are in one cluster, which lasts. They may overlap.
+inline bool collide(const Segment& a, const Segment& b) {
+    return a.state == MotionState::kColliding && b.state == MotionState::kColliding && a.start == b.start;
+}
+
 /// The segment of a ball that lies in a pocket.
 Segment pocketed_segment(double t, const Pocket& pocket);
 
@@ -78,7 +87,8 @@ EventType transition_type(const Segment& segment, const Segment& next);
 /// Whether the centre moves in this state.
 inline bool translates(MotionState state) {
     return state == MotionState::kSliding || state == MotionState::kRolling ||
-           state == MotionState::kFalling || state == MotionState::kAirborne;
+           state == MotionState::kFalling || state == MotionState::kAirborne ||
+           state == MotionState::kColliding;
 }
 
 }  // namespace carom

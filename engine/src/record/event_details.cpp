@@ -49,8 +49,12 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
         rank += i < index;
         ++all;
     }
+    // During a cluster a ball has the velocities that it has afterwards.
     const auto state = [&](auto segment) {
-        return state_of(record, ball, *segment, std::max(0.0, time - segment->start));
+        BallState s = state_of(record, ball, *segment, std::max(0.0, time - segment->start));
+        if (s.state != MotionState::kColliding) return s;
+        const Segment& after = *(segment + 1);
+        return BallState{after.state, s.position, after.v, after.w};
     };
     if (end - first == all) return {ball, state(first + rank - 1), state(first + rank)};
     return {ball, state(first - 1), state(std::max(first, end) - 1), rank == 0, rank == all - 1};

@@ -140,6 +140,9 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
             item.fail("starts before the previous segment");
         }
     });
+    for (const Segment& s : {track.segments.front(), track.segments.back()})
+        if (s.state == MotionState::kColliding)
+            segments.fail("the motion of a colliding ball before or after its cluster is missing");
     return track;
 }
 
@@ -234,8 +237,10 @@ std::string text_of_file(const std::string& path) {
 }
 
 void check_version(const JsonValue& version) {
-    if (version.integer(1, 1000000) == kRecordVersion) return;
-    version.fail("this program reads version " + std::to_string(kRecordVersion) +
+    const std::int64_t found = version.integer(1, 1000000);
+    if (found >= kOldestVersion && found <= kRecordVersion) return;
+    version.fail("this program reads versions " + std::to_string(kOldestVersion) + " to " +
+                 std::to_string(kRecordVersion) +
                  "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
 }
 

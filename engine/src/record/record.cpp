@@ -194,7 +194,12 @@ Scene scene_after(const Scene& scene, const Record& record) {
     after.cue.reset();
     after.ball.clear();
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-        const BallState end = record.state_at(static_cast<int>(i), record.duration);
+        BallState end = record.state_at(static_cast<int>(i), record.duration);
+        // If the record ends during a cluster, the next shot begins after it.
+        if (end.state == MotionState::kColliding) {
+            const Segment& freed = record.tracks[i].segments.back();
+            end = {freed.state, freed.r, freed.v, freed.w};
+        }
         if (is_gone(end.state)) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);
         // A ball that falls into a pocket starts its fall again.

@@ -52,7 +52,10 @@ class Checker {
 
     std::optional<Violation> run() {
         check_finite();
-        double last_time = 0.0, last_energy = energy_at(record_, 0.0);
+        std::vector<BallState> start = states_at(record_, 0.0);
+        enter_clusters(start, 0.0);
+        double last_time = 0.0, last_energy = energy_of(record_, start);
+        bool lasted = false;  // whether a cluster has lasted since last_energy
         const double first_energy = std::max(last_energy, first_energy_after_cue());
         const double rounding = height_rounding(record_);
         const bool lossless = loses_nothing(plan_) && !plan_.scene.physics.substeps;
@@ -66,20 +69,26 @@ class Checker {
             const bool last_of_instant =
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
-            const std::vector<BallState> now = states_at(record_, e.time);
+            std::vector<BallState> now = states_at(record_, e.time);
             check_penetration(now, e.time);
             check_rolling(e.time);
+            // During a cluster energy is in the contacts, too: the next instant outside of clusters decides.
+            const bool lasts = std::any_of(now.begin(), now.end(), [](const BallState& ball) {
+                return ball.state == MotionState::kColliding;
+            });
+            if (lasts && !enter_clusters(now, e.time)) continue;
             const double energy = energy_of(record_, now) + chord_energy(record_, e.time);
             if (e.type == EventType::kCueStrike) last_energy = energy;
             const double allowed = 1e-12 * first_energy + rounding + slow_contacts(e.time);
             if (keeps_energy(plan_) && energy > last_energy + allowed)
                 report("U4", "energy rises from {:.17g} to {:.17g} J/kg", last_energy, energy);
-            const double lost =
-                allowed + (happens(EventType::kBallCluster, e.time) ? kStepsLose * last_energy : 0.0);
+            const bool cluster = lasted || happens(EventType::kBallCluster, e.time);
+            const double lost = allowed + (cluster ? kStepsLose * last_energy : 0.0);
             if (lossless && !happens(EventType::kCueStrike, e.time) && energy < last_energy - lost)
                 report("U4", "energy falls from {:.17g} to {:.17g} J/kg, and nothing takes any", last_energy,
                        energy);
             last_energy = energy;
+            lasted = lasts;
         }
         check_impacts();
         check_rest();
@@ -88,6 +97,23 @@ class Checker {
 
   private:
     double R(std::size_t ball) const { return record_.size(static_cast<int>(ball)).R; }
+
+    const Segment& segment_at(std::size_t ball, double t) const {
+        const BallTrack& track = record_.tracks[ball];
+        return track.segments[track.segment_at(t)];
+    }
+
+    // Replaces the states of balls that collide by those in which they enter their clusters.
+    // @return false if a cluster began before t
+    bool enter_clusters(std::vector<BallState>& states, double t) const {
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            const Segment& s = segment_at(i, t);
+            if (s.state != MotionState::kColliding) continue;
+            if (s.start < t) return false;
+            states[i] = entering(record_, i, s);
+        }
+        return true;
+    }
 
     template <class... Values>
     void report(const char* law, fmt::format_string<Values...> message, Values&&... values) {
@@ -159,7 +185,7 @@ class Checker {
             const SeenBall ball = seen(i);
             const std::string& id = record_.tracks[i].id;
             for (std::size_t j = i + 1; j < now.size(); ++j) {
-                if (is_gone(now[j].state)) continue;
+                if (is_gone(now[j].state) || collide(segment_at(i, t), segment_at(j, t))) continue;
                 const SeenBall other = seen(j);
                 const double gap = gap_between(ball, other);
                 if (gap < -allowed_depth(ball) - other.rounding)
@@ -181,11 +207,27 @@ class Checker {
     void check_rolling(double time) {
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
             const BallTrack& track = record_.tracks[i];
-            const Segment& s = track.segments[track.segment_at(time)];
+            const Segment& s = segment_at(i, time);
             if (s.state == MotionState::kRolling &&
                 length(cloth_slip(s.v, s.w, R(i))) > 1e-13 * length(planar(s.v)))
                 report("U7", "ball {} rolls and slips", track.id);
         }
+    }
+
+    // Contacts conserve the momentum of a cluster, and the cloth may take some.
+    void check_cluster(const Event& e) {
+        if (plan_.balls.mu_s > 0.0) return;
+        Vec2 change = Vec2::Zero();
+        double scale = 0.0;
+        for (const int ball : record_.clusters[static_cast<std::size_t>(e.detail)]) {
+            const Segment& s = segment_at(static_cast<std::size_t>(ball), e.time);
+            if (s.state != MotionState::kColliding || s.start != e.time) return;
+            const Vec3 before = entering(record_, static_cast<std::size_t>(ball), s).velocity;
+            change += mass(record_, ball) * planar((&s + 1)->v - before);
+            scale += mass(record_, ball) * (s.v.norm() + before.norm());
+        }
+        if (length(change) > 1e-12 * scale)
+            report("U5", "the cluster changes the momentum of its balls by {:.3g} m/s", length(change));
     }
 
     // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet
@@ -193,6 +235,7 @@ class Checker {
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
+            if (e.type == EventType::kBallCluster) check_cluster(e);
             if (e.type != EventType::kBallBall) continue;
             // Only if each ball has exactly one segment that starts here, because two impacts at one instant
             // cannot be told apart.

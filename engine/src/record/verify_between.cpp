@@ -89,6 +89,8 @@ class Between {
 
     double energy(std::size_t ball, double t) const {
         const Segment& s = segment(ball);
+        if (s.state == MotionState::kColliding && s.start == t)
+            return ball_energy(record_, static_cast<int>(ball), entering(record_, ball, s));
         const double tau = std::min(t - s.start, s.duration);
         const Placed placed = placed_at(s, tau, record_.gravity);
         BallState state;
@@ -141,6 +143,13 @@ class Between {
 
     void check_energy(double from, double to) {
         if (!keeps_energy_) return;
+        // During a cluster energy is in the contacts, too.
+        bool begins = false;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            if (segment(i).state != MotionState::kColliding) continue;
+            if (segment(i).start < from) return;
+            begins = true;
+        }
         double start = 0.0, middle = 0.0;
         const double half = from + 0.5 * (to - from);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -159,11 +168,13 @@ class Between {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
                 report("U4", t, "energy rises from {:.17g} to {:.17g} J/kg", last_energy_, now);
             last_energy_ = now;
+            if (begins) break;
         }
     }
 
     void check_pair(std::size_t i, std::size_t j, double from, double to) {
         if (pieces_[i].pocketed || !(pieces_[i].moves || pieces_[j].moves)) return;
+        if (collide(segment(i), segment(j))) return;
         const double touching = R(i) + R(j);
         const Vec2 apart = pieces_[j].r - pieces_[i].r;
         const double near = touching + pieces_[i].reach + pieces_[j].reach;
@@ -257,6 +268,14 @@ class Between {
 };
 
 }  // namespace
+
+BallState entering(const Record& record, std::size_t ball, const Segment& colliding) {
+    const Segment& before = *(&colliding - 1);
+    const double tau = std::min(colliding.start - before.start, before.duration);
+    const Placed placed = placed_at(before, tau, record.gravity);
+    const double R = record.size(static_cast<int>(ball)).R;
+    return {before.state, placed.position, placed.velocity, spin_at(before, tau, R)};
+}
 
 double ball_energy(const Record& record, int ball, const BallState& state) {
     if (is_gone(state.state)) return 0.0;

@@ -7,6 +7,9 @@
 
 namespace carom {
 
+/// The state of a ball at the end of the segment before `colliding`, one of its own: it enters a cluster.
+BallState entering(const Record& record, std::size_t ball, const Segment& colliding);
+
 /// [J/kg] Energy of a ball, divided by the mass in [balls]; a ball in a pocket has none.
 double ball_energy(const Record& record, int ball, const BallState& state);
 

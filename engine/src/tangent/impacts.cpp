@@ -28,8 +28,9 @@ namespace {
 constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
 // [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
-// [-] The same of a cluster: its contacts open and close between two steps of its integration.
-constexpr double kClusterDisagree = 1e-3;
+// [usual step] Derivatives of most breaks need shorter steps: a choice of the integration, as of a method,
+// changes its result by 1e-5 of a speed, and the difference of two results by as much.
+constexpr double kClusterFineStep = 1.0 / 8.0;
 // [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
 constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] A derivative below this is known no better than this.
@@ -77,8 +78,7 @@ double largest(const List& list) {
     return most;
 }
 
-std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
-                                double disagree = kDisagree) {
+std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map) {
     const std::vector<Dual>& values = in.values();
     List x(values.size());
     const auto at = [&](int lane, double by) {
@@ -115,7 +115,7 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map,
             std::swap(below, near_below);
             std::swap(above, near_above);
         }
-        if (!(best < disagree))
+        if (!(best < kDisagree))
             throw TangentError(fmt::format(
                 "it lies at a corner of its model, between two laws (uncertain by {:.1g})", best));
         laws.error = std::max(laws.error, best);
@@ -260,14 +260,17 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
         });
 }
 
-// The loop resolves the cluster again, in a scene that contains nothing else.
-void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met,
+// The loop resolves the cluster again, in a scene that contains nothing else. Where it ends depends on the
+// steps of the integration, but not where the balls are at one fixed time afterwards.
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states) {
     const auto member = [&](int ball) {
         return static_cast<std::size_t>(std::find(balls.begin(), balls.end(), ball) - balls.begin());
     };
     const std::size_t one = member(hit), two = member(met);
     const double speed = std::abs(closing_speed(states[two].r - states[one].r, states[one], states[two]));
+    // [s] By which lengths are as large as speeds.
+    const double unit = laws.numbers.balls[hit].R.x / speed;
     Arguments in(laws.numbers);
     for (std::size_t k = 0; k < balls.size(); ++k) {
         const Numbers::Ball& ball = laws.numbers.balls[balls[k]];
@@ -286,7 +289,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     scene.stop.events = 1;
     // The one that moves is put to touch, so that what touches at rest still does, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
-    const Map resolve = [&](const double* list) {
+    const auto resolve = [&](const double* list, double step) {
         Reader read(laws, list);
         scene.balls = read.balls;
         scene.physics.gravity = read.gravity;
@@ -303,19 +306,42 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         moving.position.head<2>() =
             planar(other.position) +
             apart * contact_distance(moving.own->R, other.own->R, scene.balls.discs()) / length(apart);
-        const Record record = simulate(make_plan(scene, laws.plan.isa));
+        Plan plan = make_plan(scene, laws.plan.isa);
+        plan.cluster_step = step;
+        const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
             throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
         List after;
         for (const BallTrack& track : record.tracks) {
-            const List ball = list_of({{track.segments.back().v, track.segments.back().w}});
+            const Segment& end = track.segments.back();
+            const double tau = duration - end.start;
+            if ((end.start > 0.0) != (duration > 0.0))
+                throw TangentError("its balls meet something else during it");
+            const List ball = list_of({{velocity_at(end, tau), spin_at(end, tau, track.own->R)}});
             after.insert(after.end(), ball.begin(), ball.end());
+            const Vec2 from = planar(position_at(end, tau)) - planar(track.segments.front().r);
+            for (const double x : from) after.push_back(x / unit);
         }
         return after;
     };
-    const std::vector<Dual> out = differentiate(laws, in, resolve, kClusterDisagree);
-    for (std::size_t k = 0; k < balls.size(); ++k) put(states[k], out.data() + 6 * k);
+    const auto by_steps = [&](double step) {
+        return differentiate(laws, in, [&](const double* list) { return resolve(list, step); });
+    };
+    std::vector<Dual> out;
+    try {
+        out = by_steps(1.0);
+    } catch (const TangentError&) {
+        out = by_steps(kClusterFineStep);
+    }
+    List values;
+    for (const Dual& value : in.values()) values.push_back(value.x);
+    const List usual = resolve(values.data(), 1.0);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k].x = usual[k];
+    for (std::size_t k = 0; k < balls.size(); ++k) {
+        put(states[k], out.data() + 8 * k);
+        for (std::size_t i = 0; i < 2; ++i) states[k].r[i] = states[k].r[i] + unit * out[8 * k + 6 + i];
+    }
 }
 
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,

@@ -28,7 +28,9 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
                   State& s2);
 
 /// Balls on the cloth that touch at once, because two of them, `hit` and `met`, meet.
-void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, std::vector<State>& states);
+/// @param duration  of the cluster [s], at the end of which the `states` are computed; 0: it takes no time
+void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
+                     std::vector<State>& states);
 
 /// A ball on the cloth at a nose; it may hop.
 /// @param normal  into the table

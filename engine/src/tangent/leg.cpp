@@ -111,6 +111,9 @@ Leg leg_of(const Segment& segment, const Dual& start, State s, const Surface& su
                     (s.v[2] + sqrt(s.v[2] * s.v[2] + 2.0 * surface.gravity * above)) / surface.gravity;
             break;
         }
+        case MotionState::kColliding:
+            leg.spin = 0.0;
+            break;
         case MotionState::kPocketed:
         case MotionState::kOut:
             for (Dual3* part : {&s.v, &s.w})

@@ -108,10 +108,10 @@ void Replay::add_miss(const Dual2& apart, const Dual2& velocity, const Event& ev
                                   record_.partner_id(event), now_)});
 }
 
-const Segment& Replay::next(int ball) {
+const Segment& Replay::next(int ball, double start) {
     const std::vector<Segment>& segments = record_.tracks[ball].segments;
     const std::size_t k = ++balls_[ball].segment;
-    if (k >= segments.size() || std::abs(segments[k].start - now_) > kAgrees * (1.0 + now_))
+    if (k >= segments.size() || std::abs(segments[k].start - start) > kAgrees * (1.0 + start))
         throw TangentError(fmt::format("the motion of {} does not begin anew with it", who(ball)));
     if (segments[k].held) throw TangentError("a resting contact begins");
     return segments[k];
@@ -119,7 +119,7 @@ const Segment& Replay::next(int ball) {
 
 void Replay::begin(int ball, const Dual& time, const State& state) {
     Ball& b = balls_[ball];
-    const Segment& segment = next(ball);
+    const Segment& segment = next(ball, time.x);
     const Leg& last = b.legs.back();
     const double R = plan_.sizes[ball].R;
     double off = 0.0, most = speed_of(segment.v, segment.w, R);
@@ -204,7 +204,7 @@ void Replay::replay(const Event& event) {
             throw TangentError("it is a resting contact");
     }
     times_.push_back(time);
-    places_.push_back(planar(balls_[event.a].legs.back().from.r));
+    places_.push_back(planar(leg_at(event.a, event.time).from.r));
 }
 
 Dual Replay::transition(const Event& event) {
@@ -302,8 +302,21 @@ Dual Replay::cluster(const Event& event) {
     std::vector<State> states;
     states.reserve(members.size());
     for (const int ball : members) states.push_back(balls_[ball].legs.back().at(time));
-    collide_cluster(laws_, members, event.a, event.b, states);
-    for (std::size_t k = 0; k < members.size(); ++k) begin(members[k], time, states[k]);
+    const Ball& first = balls_[members.front()];
+    const Segment& colliding =
+        part_of(record_.tracks[members.front()].segments, static_cast<int>(first.segment) + 1);
+    const bool lasts = colliding.state == MotionState::kColliding;
+    const Dual duration = lasts ? colliding.duration : 0.0;
+    std::vector<State> after = states;
+    collide_cluster(laws_, members, event.a, event.b, duration.x, after);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        if (lasts) {
+            for (int i = 0; i < 2; ++i) states[k].v[i] = (after[k].r[i] - states[k].r[i]) / duration;
+            states[k].w = after[k].w;
+            begin(members[k], time, states[k]);
+        }
+        begin(members[k], time + duration, after[k]);
+    }
     return time;
 }
 

@@ -56,7 +56,7 @@ class Replay {
     Dual pocket(const Event& event);
     Dual transition(const Event& event);
     bool in_space(int a, int b) const;
-    const Segment& next(int ball);
+    const Segment& next(int ball, double start);
     void begin(int ball, const Dual& time, const State& state);
     void go_on(int ball, const Dual& time, State state);
     /// When an event at which a gap closes happens: `touch` at the record's time, between bodies of this

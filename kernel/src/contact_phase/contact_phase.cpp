@@ -27,19 +27,31 @@ struct Law {
     bool cloth, friction;
 };
 
-// Moves the contacts that overlap to the front.
+// Whether a contact may close within a time.
+CAROM_INLINE bool is_near(const Work& w, int c, double time) {
+    return -w.d[c] < time * (largest(w.rate[0][c], 0.0) + time);
+}
+
+// Moves the contacts that overlap to the front, and behind them those that are near. At a stage those that
+// are not near stay so.
+template <bool kStage>
 void reorder(Work& w, const double* d) {
-    int open = w.count, closed = 0, overlapping = 0, others = 0;
-    while (closed < w.count || open < w.contacts) {
-        const bool first = open == w.contacts || (closed < w.count && w.id[closed] < w.id[open]);
-        const int c = first ? closed++ : open++;
-        if (d[c] > 0.0)
+    int* place = w.places;
+    for (int c = 0; c < w.contacts; ++c) place[w.id[c]] = c;
+    int overlapping = 0, near = 0, far = w.contacts;
+    for (int n = 0; n < w.contacts; ++n) {
+        const int c = place[n];
+        if (d[c] > 0.0 && (!kStage || c < w.near))
             w.order[overlapping++] = c;
+        else if (kStage ? c < w.near : is_near(w, c, w.horizon))
+            w.spare[near++] = c;
         else
-            w.spare[others++] = c;
+            w.spare[--far] = c;
     }
     w.count = overlapping;
-    for (int n = 0; n < others; ++n) w.order[overlapping + n] = w.spare[n];
+    w.near = overlapping + near;
+    for (int n = 0; n < near; ++n) w.order[overlapping + n] = w.spare[n];
+    for (int n = w.near; n < w.contacts; ++n) w.order[n] = w.spare[w.contacts - 1 - (n - w.near)];
     int begin = 0, end = w.contacts;  // range of those that move
     while (begin < end && w.order[begin] == begin) ++begin;
     while (begin < end && w.order[end - 1] == end - 1) --end;
@@ -47,18 +59,18 @@ void reorder(Work& w, const double* d) {
         for (int n = begin; n < end; ++n) moved[n] = numbers[w.order[n]];
         for (int n = begin; n < end; ++n) numbers[n] = moved[n];
     };
-    double* const arrays[] = {w.d,       w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3],
-                              w.inverse, w.nx,      w.ny,      w.turn,    w.bend,    w.share};
-    for (double* array : arrays) move(array, w.moved);
+    double* const arrays[] = {w.d,  w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3], w.inverse,
+                              w.nx, w.ny,      w.turn,    w.bend,    w.share,   w.watched};
+    for (double* array : arrays) move(array, w.reordered);
     int* const places[] = {w.i, w.j, w.id};
     for (int* array : places) move(array, w.spare);
 }
 
-// Whether an overlapping contact is not at the front.
-CAROM_INLINE bool out_of_order(const Work& w, const double* d) {
+// Whether an overlapping one of the first `lanes` contacts is not at the front.
+CAROM_INLINE bool out_of_order(const Work& w, const double* d, int lanes) {
     int first = w.count / 4 * 4, change = -1 << (w.count - first);
     change &= bits_less(broadcast<4>(0.0), load<4>(d + first));
-    for (int c = first + 4; c < w.lanes; c += 4) change |= bits_less(broadcast<4>(0.0), load<4>(d + c));
+    for (int c = first + 4; c < lanes; c += 4) change |= bits_less(broadcast<4>(0.0), load<4>(d + c));
     return change != 0;
 }
 
@@ -140,15 +152,18 @@ template <bool kFalls>
 CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     const Four zero = broadcast<4>(0.0);
     const auto below_zero = [&zero](const Four& v) { return select(v < zero, v, zero); };
-    for (int b = 0; b < kRow * w.rows; b += 4 * kRow) {
+    // The last four may include the additional ball.
+    for (int n = 0; n < 3; ++n) w.active[w.actives + n] = kRow * w.balls;
+    for (int n = 0; n < w.actives; n += 4) {
+        const int* const rows_of = w.active + n;
         Four lift[4];
-        for (int lane = 0; lane < 4; ++lane) lift[lane] = load<4>(y + b + kRow * lane + kLift);
+        for (int lane = 0; lane < 4; ++lane) lift[lane] = load<4>(y + rows_of[lane] + kLift);
         transpose(lift[0], lift[1], lift[2], lift[3]);
         const Four past = below_zero(lift[0]), next = below_zero(lift[2]), ahead = lift[3];
         const Four wanted = (past - ahead) + next;
         if (bits_less((past + next) + ahead, zero) == 0) continue;
         Four motion[4];
-        for (int lane = 0; lane < 4; ++lane) motion[lane] = load<4>(y + b + kRow * lane);
+        for (int lane = 0; lane < 4; ++lane) motion[lane] = load<4>(y + rows_of[lane]);
         transpose(motion[0], motion[1], motion[2], motion[3]);
         const Four ux = motion[0] + law.cloth_sign * motion[3], uy = motion[2] - law.cloth_sign * motion[1];
         const Four pressed = law.mu_s * below_zero(wanted);
@@ -160,7 +175,7 @@ CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
         Four rows[4] = {k * ux, 2.5 * k * uy, k * uy, -2.5 * k * ux};
         transpose(rows[0], rows[1], rows[2], rows[3]);
         for (int lane = 0; lane < 4; ++lane) {
-            double* row = y + b + kRow * lane;
+            double* row = y + rows_of[lane];
             store(row, load<4>(row) + rows[lane]);
             row[kAhead] = left[lane];
         }
@@ -172,23 +187,40 @@ CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
 template <bool kStage, bool kFalls>
 CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
                          double* dy, double* rate) {
-    if (out_of_order(w, d) || (!kStage && gaps_add_up(w))) reorder(w, d);
+    if (out_of_order(w, d, kStage ? w.near : w.lanes) || (!kStage && gaps_add_up(w))) {
+        reorder<kStage>(w, d);
+        if (kStage) activate(w);
+    }
+    if (!kStage) find_active(w);
     int c = 0;
     for (; c < w.count; c += 4) find_forces<kFalls, kStage>(w, law, y, d, time, c, rate);
     for (int n = 0; n < w.count; n += 4) add_forces(w, n, dy);
     if (kStage) rates(w, y, time, c, rate);
 }
 
-// to = from + share * slope; `count` is a multiple of kRow.
-CAROM_INLINE void shift(double* to, const double* from, const double* slope, double share, int count) {
-    for (int n = 0; n < count; n += kRow) {
+// y_stage = y + share * slope
+CAROM_INLINE void shift(const Work& w, const double* slope, double share) {
+    for (int k = 0; k < w.actives; ++k) {
+        const int n = w.active[k];
         for (int half = n; half < n + kRow; half += 4)
-            store(to + half, load<4>(from + half) + share * load<4>(slope + half));
+            store(w.y_stage + half, load<4>(w.y + half) + share * load<4>(slope + half));
     }
 }
 
-CAROM_INLINE void clear(double* slope, int count) {
-    for (int n = 0; n < count; n += 4) store(slope + n, broadcast<4>(0.0));
+// The same of the overlaps. A contact that is not watched stays open.
+CAROM_INLINE void shift_overlaps(const Work& w, const double* rate, double share) {
+    const Four none = broadcast<4>(0.0);
+    for (int c = 0; c < w.near; c += 4) {
+        const Four d = load<4>(w.d + c), watched = load<4>(w.watched + c);
+        store(w.d_stage + c, select(none < watched, d + share * load<4>(rate + c), d));
+    }
+}
+
+CAROM_INLINE void clear(const Work& w, double* slope) {
+    for (int k = 0; k < w.actives; ++k) {
+        store(slope + w.active[k], broadcast<4>(0.0));
+        store(slope + w.active[k] + 4, broadcast<4>(0.0));
+    }
 }
 
 CAROM_INLINE double largest_lane(const Four& v) {
@@ -212,7 +244,8 @@ CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     const Four v0 = w0 * two, v1 = w1 * two, v2 = w2 * two, v3 = w3 * two + h * pack(0.0, 0.0, 0.5, 0.0);
     Four most = zero;
     const auto take = [&most](const Four& difference) { most = larger(absolute(difference), most); };
-    for (int n = 0; n < kRow * w.rows; n += kRow) {
+    for (int k = 0; k < w.actives; ++k) {
+        const int n = w.active[k];
         const Four a0 = load<4>(k0 + n), a2 = load<4>(k2 + n), a3 = load<4>(k3 + n);
         const Four b0 = load<4>(k0 + n + 4), b2 = load<4>(k2 + n + 4), b3 = load<4>(k3 + n + 4);
         Four first = w0 * a0, second = v0 * b0;
@@ -263,16 +296,32 @@ CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
     return largest_lane(most);
 }
 
+// Contacts that may close within a step of length h. The others need no rates at its stages.
+CAROM_INLINE void watch(Work& w, double h) {
+    const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0);
+    int beyond = 0;
+    for (int c = 0; c < w.lanes; c += 4) {
+        const Four most = h * (larger(load<4>(w.rate[0] + c), zero) + broadcast<4>(h));
+        const Four watched = select(zero - load<4>(w.d + c) < most, one, zero);
+        store(w.watched + c, watched);
+        const int bits = bits_less(zero, watched);
+        if (c + 4 > w.near && (bits >> (w.near > c ? w.near - c : 0)) != 0) beyond = 1;
+    }
+    if (beyond == 0) return;
+    // So that they need not move again soon.
+    w.horizon = 2.0 * h;
+    reorder<false>(w, w.d);
+}
+
 // The slopes of the stages of a step of length h, after that of the state.
 template <bool kFalls>
 CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& method, double h) {
-    const int count = kRow * w.rows;
     for (int n = 0; n < method.stages(); ++n) {
         const int from = method.slope(n), to = method.slope(n + 1);
         const double time = h * method.node[n];
-        shift(w.y_stage, w.y, w.dy[from], time, count);
-        shift(w.d_stage, w.d, w.rate[from], time, w.lanes);
-        if (from == to) clear(w.dy[to], count);
+        shift(w, w.dy[from], time);
+        shift_overlaps(w, w.rate[from], time);
+        if (from == to) clear(w, w.dy[to]);
         forces<true>(w, law, w.y_stage, w.d_stage, time, w.dy[to], w.rate[to]);
     }
 }
@@ -284,6 +333,7 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, doubl
     forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
     const double most = law.friction ? stiffest(w, w.dy[0]) : 0.0;
     Plan plan = law.friction ? plan_step(most, smallest(longest, next)) : Plan{&kClassical, longest};
+    watch(w, plan.h);
     for (;;) {
         stages(w, law, *plan.method, plan.h);
         if (!law.friction) {
@@ -296,10 +346,13 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, doubl
         plan = plan_step(most, 0.5 * plan.h);
     }
     const double h = plan.h;
-    clear(w.dy[0], kRow * w.rows);
+    clear(w, w.dy[0]);
     double* const before = w.y;
     w.y = w.y_stage;
     w.y_stage = before;
+    // The trapezoidal rule: forces begin and end at 0, so that the errors of the steps cancel.
+    for (int n = 0; n < kRow * w.rows; n += kRow)
+        add_displacement(w, n, 0.5 * h * (load<4>(before + n) + load<4>(w.y + n)));
     if (law.cloth) drag(w, law, w.y);
     advance(w, *plan.method, h);
     return h;
@@ -323,26 +376,40 @@ std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double lo
     update_rates(w);
     std::int64_t steps = 0;
     double next = longest_step;
-    double time = 0.0;
+    double time = 0.0, braked = 0.0;
+    const auto brake_all = [&w, &law, &time, &braked] {
+        for (int n = 0; n < kRow * w.balls && law.slide > 0.0; n += kRow) {
+            brake(law.slide * (time - braked), w.y[n], w.y[n + 2], w.y[n + 1], w.y[n + 3]);
+            copy_row(w.y_stage + n, w.y + n);
+        }
+        braked = time;
+    };
     for (;;) {
         if (!(time < time_limit)) return -1;
-        const double most =
-            lanes.friction ? longest_step : longest_step * slowness(fastest_squared(w, lanes));
+        const double most = longest_step * slowness(fastest_squared(w, lanes));
         const double longest = w.shares ? update_turning(phase, w, most) : most;
         const double h = step(w, lanes, kShortest * longest_step, longest, next);
         ++steps;
         time += h;
+        if (time - braked > kBrakes) brake_all();
         if (any_pressed(w, law, time_limit - time)) continue;
         const double flight = next_touch(w);
         if (!(flight < look_ahead)) break;
         // Contacts that overlap without force continue to open.
         if (any_overlap(w)) continue;
+        if (time > kLongPhase) break;
         fly(phase, w, flight, look_ahead);
         time += flight;
+        brake_all();
+        update_rates(w);
     }
+    brake_all();
     for (int b = 0; b < w.balls; ++b) {
         for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
+        if (phase.moved == nullptr) continue;
+        for (int k = 0; k < 2; ++k) phase.moved[2 * b + k] = w.moved[kRow / 2 * b + kPlace[k]];
     }
+    if (phase.time != nullptr) *phase.time = time;
     return steps;
 }
 

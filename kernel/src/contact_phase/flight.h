@@ -94,10 +94,11 @@ CAROM_INLINE double falling(double x, double from, double to) {
 }
 
 // Moves all balls straight ahead for `time`, when the first contact closes. If that takes almost the whole
-// look-ahead, the caller is about to take over, and for it the balls have not moved during the contacts. So
-// such contacts, and those that close soon after, turn less.
+// look-ahead, the caller is about to take over, and its impacts of two balls take no time. So such contacts,
+// and those that close soon after, turn less while they are closed. The caller updates the rates.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
+    for (int n = 0; n < kRow * w.rows; n += kRow) add_displacement(w, n, time * load<4>(w.y + n));
     w.shares = false;
     for (int c = 0; c < w.contacts; ++c) {
         const RelativePath path = relative_path(w, c, w.nx[c], w.ny[c], -w.d[c]);
@@ -109,12 +110,11 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
         w.bend[c] = w.curvature;
         w.shares |= w.share[c] < 1.0 && w.curvature > 0.0;
     }
-    update_rates(w);
 }
 
-// Closes a contact that turns less than the balls. Its normal moves from that of the balls towards the one
-// with which they would meet if they had moved with their present velocities since the first touch, without
-// earlier contacts.
+// Closes a contact that turns less than the balls. By HertzContact::turn its normal moves from that of the
+// balls towards the one with which they would meet if they had moved with their present velocities since the
+// first touch, without earlier contacts. A contact that only closes late has the normal of the balls.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
     turn_by_flight(relative_path(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
@@ -122,13 +122,13 @@ CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, doubl
     double x = first.nx, y = first.ny;
     const RelativePath since = relative_path(w, c, x, y, -first.overlap);
     turn_by_flight(since, since.nearest(), x, y);
-    const double share = w.share[c];
+    const double share = first.turn;
     nx = share * nx + (1.0 - share) * x;
     ny = share * ny + (1.0 - share) * y;
     const double length = square_root(nx * nx + ny * ny);
     nx /= length;
     ny /= length;
-    w.bend[c] = share * w.curvature;
+    w.bend[c] = w.share[c] * w.curvature;
 }
 
 // Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them

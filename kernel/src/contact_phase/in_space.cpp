@@ -82,26 +82,44 @@ class InSpace {
 
     std::int64_t run(double longest_step, double look_ahead, double time_limit) {
         next_ = longest_step;
-        double time = 0.0;
+        double time = 0.0, braked = 0.0;
         for (std::int64_t steps = 1; time < time_limit; ++steps) {
             time += step(longest_step);
+            if (time - braked > kBrakes) {
+                brake_all(time - braked);
+                braked = time;
+            }
             if (presses(time_limit - time)) continue;
             const double flight = next_touch();
-            if (!(flight < look_ahead)) {
+            const bool closes = flight < look_ahead;
+            if (closes && overlaps()) continue;
+            if (!closes || time > kLongPhase) {
+                brake_all(time - braked);
                 for (int b = 0; b < phase_.balls; ++b) {
                     for (int k = 0; k < kPerMotion; ++k)
                         phase_.motion[kPerMotion * b + k] = y_[kPerState * b + 3 + k];
+                    if (phase_.moved == nullptr) continue;
+                    for (int k = 0; k < 2; ++k) phase_.moved[2 * b + k] = y_[kPerState * b + k];
                 }
+                if (phase_.time != nullptr) *phase_.time = time;
                 return steps;
             }
-            if (overlaps()) continue;
             for (int b = 0; b < phase_.balls; ++b) add(y_ + kPerState * b, flight * at(velocity(y_, b)));
             time += flight;
+            brake_all(time - braked);
+            braked = time;
         }
         return -1;
     }
 
   private:
+    void brake_all(double time) {
+        for (int b = 0; b < phase_.balls && held_; ++b) {
+            double* y = y_ + kPerState * b;
+            brake(law_.slide * time, y[3], y[4], y[6], y[7]);
+        }
+    }
+
     // [1/L] by which the normal of a contact turns, and its inverse, the distance of centres that touch.
     double curvature(int c) const { return unlike_ == nullptr ? phase_.curvature : unlike_->curvature[c]; }
     bool turns(int c) const { return curvature(c) > 0.0; }
@@ -217,8 +235,8 @@ class InSpace {
                 most = largest(most, stiffness_[phase_.contact[c].i] + stiffness_[phase_.contact[c].j]);
         }
         const bool friction = has_friction(law_) || (held_ && law_.mu_s > 0.0);
-        Plan plan = friction ? plan_step(most, smallest(longest, next_))
-                             : Plan{&kClassical, longest * slowness(fastest_squared())};
+        const double wanted = longest * slowness(fastest_squared());
+        Plan plan = friction ? plan_step(most, smallest(wanted, next_)) : Plan{&kClassical, wanted};
         for (;;) {
             stages(*plan.method, plan.h);
             if (!friction) break;

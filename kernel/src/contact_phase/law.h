@@ -89,10 +89,9 @@ CAROM_INLINE double step_after(double before, double h, double error) {
     return ratio > 1.0 ? largest(before, ratio * h) : largest(0.5, ratio) * h;
 }
 
-// Accuracy of the step, without friction. A contact at the speed v lasts v^(-1/5) times longer, and its
-// errors are proportional to v, so that steps may be v^(-1/2) times longer if nothing is faster. The square
-// of v is that of the rate plus the energy of the overlap, F d; a closing contact may be loaded as for the
-// first time.
+// Slow contacts. One at the speed v lasts v^(-1/5) times longer, and its errors are proportional to v, so
+// that steps may be v^(-1/2) times longer if nothing is faster. The square of v is that of the rate plus the
+// energy of the overlap, F d; a closing contact may be loaded as for the first time.
 constexpr double kMostSlow = 16.0;
 CAROM_INLINE double slowness(double v2) {
     return v2 < 1.0 ? smallest(kMostSlow, 1.0 / square_root(square_root(v2))) : 1.0;
@@ -129,6 +128,24 @@ CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
     for (; p > 1; p /= 2) power = power * power;
     return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
+
+// The friction of the cloth that the weight of a ball causes in a time in which it could stop a slip of 7/2
+// `speed`. Slip and change of the velocity: u = (v_x - R w_y, v_y + R w_x), dv = -min(speed, 2/7 |u|) u/|u|.
+// It is so small that it need not act at every step, but only this often [L/V].
+constexpr double kBrakes = 0.5;
+CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, double& Rw_y) {
+    const double u_x = v_x - Rw_y, u_y = v_y + Rw_x, slip = square_root(u_x * u_x + u_y * u_y);
+    if (!(slip > 0.0)) return;
+    const double k = smallest(speed / slip, 2.0 / 7.0), x = k * u_x, y = k * u_y;
+    v_x -= x;
+    v_y -= y;
+    Rw_x -= 2.5 * y;
+    Rw_y += 2.5 * x;
+}
+
+// [L/V] A phase that lasts longer ends as soon as no contact is closed, even if one is about to close: the
+// balls have gone far.
+constexpr double kLongPhase = 40.0;
 
 // [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
 // that move together would close at such speeds forever.

@@ -32,6 +32,8 @@ class ManyShots {
     long pocketed() const { return pocketed_; }
 
   private:
+    void aim_at_rack();
+
     struct Number {
         SceneNumber number;
         double low, high;
@@ -41,6 +43,7 @@ class ManyShots {
     reference::Generator random_;
     std::vector<Number> numbers_;
     std::size_t shots_a_round_;
+    double off_;
     std::size_t shots_ = 0;
     std::int64_t events_ = 0, clusters_ = 0;
     long pocketed_ = 0;

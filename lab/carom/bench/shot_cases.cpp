@@ -155,6 +155,17 @@ Scene many_scene(const std::string& name) {
                                                fmt::arg("clusters", "compliant")),
                            name);
     };
+    // Presets as they ship.
+    const auto drawn = [&](const char* game) {
+        return parse_scene(fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n"
+                                       "[rack]\ngame = \"{}\"\n[[ball]]\nid = \"cue\"\n"
+                                       "position = [0.635, 0.5]\n[cue]\nball = \"cue\"\nspeed = 8.0\n"
+                                       "aim_deg = 90.0\n",
+                                       game),
+                           name);
+    };
+    if (name == "many drawn_eight_ball") return drawn("eight_ball");
+    if (name == "many drawn_nine_ball") return drawn("nine_ball");
     if (name == "many two_ball") return scene(kTwoBalls, 3.0);
     if (name == "many eight_ball_break")
         return scene(fmt::format(kBreak, fmt::arg("game", "eight_ball"), fmt::arg("gap", 1e-4),

@@ -61,7 +61,7 @@ class _Writer:
         scene = record._scene()
         self.scene: dict[str, Any] = {} if scene is None else tomllib.loads(scene.text())
         self.states_of = {name: number for number, name in enumerate(STATES)}
-        self.states_of |= {"falling": 2, "airborne": 2, "out": 4}
+        self.states_of |= {"falling": 2, "airborne": 2, "out": 4, "colliding": 2}
         self.table = self._table()
         self.balls = [self._ball(i) for i in range(len(record.ids))]
         self.cue = self._cue()
@@ -242,7 +242,7 @@ class _Writer:
                 continue
             motion = self.record.MOTIONS[segment["state"]]
             held = segment["held"] and motion in ("sliding", "rolling")
-            foreign = motion in ("falling", "airborne") or held
+            foreign = motion in ("falling", "airborne", "colliding") or held
             count = int(np.ceil((stop - start) / _STEP)) if foreign else 1
             times += [start + k * (float(stop) - start) / count for k in range(count)]
         return [time for time in times if time > 0.0]

@@ -19,6 +19,7 @@ constexpr double kRingTime = 0.33;
 Rgba state_color(MotionState state) {
     switch (state) {
         case MotionState::kSliding:
+        case MotionState::kColliding:
             return {1.0F, 0.62F, 0.18F, 1.0F};
         case MotionState::kRolling:
             return {0.94F, 0.94F, 0.90F, 1.0F};

@@ -21,7 +21,8 @@
 
 namespace carom {
 
-/// kFalling: over a pocket, not yet in it. kOut: it flew over the cushions and is out of play.
+/// kFalling: over a pocket, not yet in it. kOut: it flew over the cushions and is out of play. kColliding: in
+/// a cluster, whose contacts last; it moves straight to where it is when they are over.
 enum class MotionState : std::uint8_t {
     kStationary,
     kSpinning,
@@ -30,11 +31,12 @@ enum class MotionState : std::uint8_t {
     kPocketed,
     kFalling,
     kAirborne,
-    kOut
+    kOut,
+    kColliding
 };
 constexpr auto names_of(MotionState) {
-    return std::array{"stationary", "spinning", "sliding",  "rolling",
-                      "pocketed",   "falling",  "airborne", "out"};
+    return std::array{"stationary", "spinning", "sliding", "rolling",  "pocketed",
+                      "falling",    "airborne", "out",     "colliding"};
 }
 /// Whether a ball in this state is out of play.
 constexpr bool is_gone(MotionState state) {
@@ -49,12 +51,13 @@ constexpr bool is_off_cloth(MotionState state) {
     return flies(state) || state == MotionState::kFalling;
 }
 
-/// The motion of one ball between two of its events. Times inside are relative to `start`.
+/// The motion of one ball between two of its events, or in a cluster. Times inside are relative to `start`.
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
     /// Centre, velocity and angular velocity at the start. While a ball falls into a pocket, r_z stays at the
     /// height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z - g
-    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2.
+    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2. While it collides, v
+    /// is its mean velocity, and w that after the cluster.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
@@ -205,7 +208,8 @@ struct BallState {
 
 struct BallTrack {
     std::string id;
-    /// Ordered by start; of two with the same start, the later one counts
+    /// Ordered by start; of two with the same start, the later one counts. A record that ends during a
+    /// cluster has the motion after the cluster too: it starts after the end.
     std::vector<Segment> segments;
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own

@@ -14,9 +14,8 @@ struct HertzContact {
     int i, j;        ///< balls
     double nx, ny;   ///< unit normal from i to j
     double overlap;  ///< [L] at the start; negative: a gap
-    /// Share of the balls' turning that the normal follows while the contact is closed. With 0 the normal
-    /// stays as at the touch, and the touch is where the balls would meet if the earlier contacts took no
-    /// time.
+    /// Share of the balls' turning that the normal follows. With 0 the normal stays as at the touch, and the
+    /// touch is where the balls would meet if the earlier contacts took no time.
     double turn = 1.0;
 };
 
@@ -31,6 +30,9 @@ struct HertzLaw {
     bool published_slip_sign;  ///< of the cloth slip
     double mu_b_more = 0.0;    ///< 0: mu_b at every slip
     double mu_b_fall = 0.0;    ///< [1/V]
+    /// [V^2/L] Deceleration of a ball that slips on the cloth by its weight. It acts after each flight and at
+    /// the end, because it is small.
+    double slide = 0.0;
 };
 
 /// Input and output of one call. `numbers` and `places` are scratch memory of contact_phase_numbers() and
@@ -41,23 +43,27 @@ struct ContactPhase {
     const HertzContact* contact;
     double* numbers;
     int* places;
-    double curvature = 0.0;  ///< L/(2 R); 0: balls so large that the normals do not turn
+    double curvature = 0.0;   ///< L/(2 R); 0: balls so large that the normals do not turn
+    double* moved = nullptr;  ///< receives the displacement of each ball, x and y [L]; null: not wanted
+    double* time = nullptr;   ///< receives the duration [L/V]; null: not wanted
 };
 
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
-    return 48 * (static_cast<std::size_t>(balls) + 4) + 20 * (static_cast<std::size_t>(contacts) + 8);
+    return 52 * (static_cast<std::size_t>(balls) + 4) + 20 * (static_cast<std::size_t>(contacts) + 8);
 }
-constexpr std::size_t contact_phase_places(int contacts) noexcept {
-    return 6 * (static_cast<std::size_t>(contacts) + 8);
+constexpr std::size_t contact_phase_places(int balls, int contacts) noexcept {
+    return 2 * (static_cast<std::size_t>(balls) + 8) + 6 * (static_cast<std::size_t>(contacts) + 8);
 }
 
 /// Runge-Kutta steps until every contact is open and none would close again within look_ahead [L/V]. A step
-/// is at most `longest_step` [L/V]. Without friction the method is the classical one. With friction it has
-/// order 3, is stable although friction is stiff, and has four, six or eight stages, with the step length
-/// controlled by the error. Between two steps the cloth reacts to the load on the balls. During a step
-/// normals turn at the speed of its start; after it they are set by the mean of both ends. While all contacts
-/// are open the balls fly without steps. A contact that closes late in look_ahead turns less, and at its end
-/// not at all. A ball's contacts are summed in the order in which they are given.
+/// is at most `longest_step` [L/V], or longer where all contacts are slow. Without friction the method is the
+/// classical one. With friction it has order 3, is stable although friction is stiff, and has four, six or
+/// eight stages, with the step length controlled by the error. Between two steps the cloth reacts to the load
+/// on the balls. During a step normals turn at the speed of its start; after it they are set by the mean of
+/// both ends. A contact that cannot close within a step has no part in its stages. While all contacts are
+/// open the balls fly without steps. A contact that closes late in look_ahead turns less while it is closed,
+/// and at the end of look_ahead not at all. A ball's contacts are summed in the order in which they are
+/// given.
 /// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
 using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law,
                                               double longest_step, double look_ahead,
@@ -91,15 +97,18 @@ struct ContactPhaseInSpace {
     double* numbers;                      ///< scratch memory of contact_phase_in_space_numbers() elements
     double curvature;                     ///< L/(2 R); 0: the normals stay as they are
     const UnlikeBalls* unlike = nullptr;  ///< null: all are alike, and not held
+    double* moved = nullptr;              ///< as in ContactPhase
+    double* time = nullptr;               ///< as in ContactPhase
 };
 
 constexpr std::size_t contact_phase_in_space_numbers(int balls, int contacts) noexcept {
     return 56 * static_cast<std::size_t>(balls) + 6 * static_cast<std::size_t>(contacts);
 }
 
-/// The same forces in space, without a cloth: `law.mu_s` and the sign of its slip are ignored. The contacts
-/// last a tenth as long as the impact with the cloth, which comes next. The positions of the balls are
-/// integrated too, and give every normal. Steps, flights and the end are those of ContactPhaseFunction.
+/// The same forces in space, without a cloth unless the balls are held: `law.mu_s`, `law.slide` and the sign
+/// of the slip are ignored. The contacts last a tenth as long as the impact with the cloth, which comes next.
+/// The positions of the balls are integrated too, and give every normal. Steps, flights and the end are those
+/// of ContactPhaseFunction.
 /// @return the number of steps, or -1 if the contacts did not separate within time_limit [L/V]
 std::int64_t contact_phase_in_space(const ContactPhaseInSpace& phase, const HertzLaw& law,
                                     double longest_step, double look_ahead, double time_limit) noexcept;

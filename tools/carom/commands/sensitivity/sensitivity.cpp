@@ -33,8 +33,6 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
-// [-] An error of the derivatives that is told.
-constexpr double kTold = 1e-5;
 
 struct SensitivityArgs {
     std::string scene, hand = kHand, plot;
@@ -232,8 +230,6 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
     text += "\nx and y, to first order. ";
-    if (s.impact_error > kTold)
-        text += fmt::format("Balls that touch make this right to {:.1g} only. ", s.impact_error);
     text += "The events change first if\n";
     for (std::size_t k = 0; k < 2; ++k) {
         const auto [by, why] = nearest(k);

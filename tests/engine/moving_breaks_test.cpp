@@ -1,0 +1,150 @@
+// Breaks off the middle against an integration in which the balls move (support/moving_contacts.h): 5 ms
+// after the hit, when most contacts are over.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "carom/engine/tolerances.h"
+#include "physics/cluster.h"
+#include "reference/random_impacts.h"
+#include "support/engine_cases.h"
+#include "support/hard_scenes.h"
+#include "support/moving_contacts.h"
+
+namespace carom {
+namespace {
+
+using namespace test;
+
+constexpr double kAfter = 5e-3;  // [s]
+constexpr double kSlow = 0.05;   // [V] the direction of a slower ball is not compared
+constexpr int kBreaks = 40;
+
+MovingBall moving(const BallState& s) {
+    return {{s.position.x(), s.position.y(), s.position.z()},
+            {s.velocity.x(), s.velocity.y(), s.velocity.z()},
+            {s.spin.x(), s.spin.y(), s.spin.z()}};
+}
+
+/// The hit of a break: its time, and the balls just before it.
+struct Hit {
+    double time = 0.0, speed = 0.0;
+    std::vector<MovingBall> balls;
+};
+
+Hit hit_of(const Record& record) {
+    Hit hit;
+    for (const Event& e : record.events)
+        if (balls_collide(e.type) && hit.time == 0.0) hit.time = e.time;
+    for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
+        hit.balls.push_back(moving(record.state_at(ball, std::nextafter(hit.time, 0.0))));
+    for (const MovingBall& ball : hit.balls)
+        hit.speed = std::max(hit.speed, std::hypot(ball.v[0], ball.v[1]));
+    return hit;
+}
+
+// Friction is regularised as in the model; what this costs is measured in cluster_moving_test.cpp.
+MovingContacts contacts_of(const Hit& hit, const Scene& scene) {
+    MovingLaw law;
+    law.R = scene.balls.R;
+    law.stiffness = kContactStiffness;
+    law.mu_b = scene.balls.mu_b;
+    law.mu_b_more = scene.balls.mu_b_more;
+    law.mu_b_fall = scene.balls.mu_b_fall;
+    law.mu_s = scene.balls.mu_s;
+    law.e_b = scene.balls.e_b;
+    law.slip = kClusterEpsilon;
+    law.step = 5e-3;
+    law.weight = scene.physics.gravity;
+    law.reach = 1e9;
+    return {hit.balls, law, hit.speed};
+}
+
+bool collides(const Record& record, double time) {
+    for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
+        if (record.state_at(ball, time).state == MotionState::kColliding) return true;
+    return false;
+}
+
+Scene break_of(const std::string& game, reference::Generator& rng) {
+    const double x = rng.uniform(0.2, 1.07), y = rng.uniform(0.1, 0.63), aim = rng.uniform(-0.9, 0.9),
+                 speed = rng.uniform(6.0, 10.0);
+    return parse_scene(fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n"
+                                   "[rack]\ngame = \"{}\"\n[cue]\nball = \"cue\"\nball_speed = {}\n"
+                                   "aim_hit = [\"1\", {}]\n[[ball]]\nid = \"cue\"\nposition = [{}, {}]\n",
+                                   game, speed, aim, x, y),
+                       "s.toml");
+}
+
+/// Of many breaks: the largest error of a ball's velocity [V] and direction [degrees], the median error of a
+/// place [m].
+struct Errors {
+    std::vector<double> velocity, direction, place;
+};
+
+double share_of(std::vector<double> list, double share) {
+    std::sort(list.begin(), list.end());
+    return list[static_cast<std::size_t>(share * static_cast<double>(list.size() - 1))];
+}
+
+Errors errors_of(const std::string& game) {
+    reference::Generator rng(63);
+    Errors errors;
+    while (errors.velocity.size() < kBreaks) {
+        Scene scene = break_of(game, rng);
+        const Record record = run_verified(scene);
+        const Hit hit = hit_of(record);
+        MovingContacts contacts = contacts_of(hit, scene);
+        double time = hit.time + contacts.run_for(kAfter);
+        while (collides(record, time)) time += contacts.run_for(0.1 * kAfter);
+        const std::vector<MovingBall>& truth = contacts.balls();
+        double velocity = 0.0, direction = 0.0, place = 0.0;
+        for (std::size_t b = 0; b < truth.size(); ++b) {
+            const MovingBall ball = moving(record.state_at(static_cast<int>(b), time)), &want = truth[b];
+            velocity =
+                std::max(velocity, std::hypot(ball.v[0] - want.v[0], ball.v[1] - want.v[1]) / hit.speed);
+            place = std::max(place, std::hypot(ball.x[0] - want.x[0], ball.x[1] - want.x[1]));
+            if (std::hypot(want.v[0], want.v[1]) < kSlow * hit.speed) continue;
+            const double turn = std::atan2(ball.v[1], ball.v[0]) - std::atan2(want.v[1], want.v[0]);
+            direction = std::max(direction, std::abs(std::remainder(turn, 2.0 * M_PI)) * 180.0 / M_PI);
+        }
+        errors.velocity.push_back(velocity);
+        errors.direction.push_back(direction);
+        errors.place.push_back(place);
+    }
+    for (const double share : {0.5, 0.9, 1.0}) {
+        report(fmt::format("{}, velocity [V], share {}", game, share).c_str(),
+               share_of(errors.velocity, share));
+        report(fmt::format("{}, direction [deg], share {}", game, share).c_str(),
+               share_of(errors.direction, share));
+        report(fmt::format("{}, place [m], share {}", game, share).c_str(), share_of(errors.place, share));
+    }
+    return errors;
+}
+
+TEST(MovingBreaks, EightBall) {
+    const Errors errors = errors_of("eight_ball");
+    EXPECT_LT(share_of(errors.velocity, 0.5), 3e-4);
+    EXPECT_LT(share_of(errors.velocity, 0.9), 1e-3);
+    EXPECT_LT(share_of(errors.velocity, 1.0), 0.02);
+    EXPECT_LT(share_of(errors.direction, 0.9), 1.0);
+    EXPECT_LT(share_of(errors.place, 0.5), 1e-4);
+}
+
+TEST(MovingBreaks, NineBall) {
+    const Errors errors = errors_of("nine_ball");
+    EXPECT_LT(share_of(errors.velocity, 0.5), 3e-4);
+    EXPECT_LT(share_of(errors.velocity, 0.9), 1e-3);
+    EXPECT_LT(share_of(errors.velocity, 1.0), 0.02);
+    EXPECT_LT(share_of(errors.direction, 0.9), 1.0);
+    EXPECT_LT(share_of(errors.place, 0.5), 1e-4);
+}
+
+}  // namespace
+}  // namespace carom
