@@ -52,7 +52,8 @@ std::string rail(const Cushion& cushion) {
 Texts route(const PlayedShot& played) {
     Texts rails;
     const Record& record = played.record;
-    for (const std::size_t i : cushions_before(played, meeting(played, 1))) {
+    const std::optional<Touch> second = meeting(played, 1);
+    for (const std::size_t i : cushions_before(played, second ? second : meeting(played, 0))) {
         const Event& event = record.events[i];
         rails.push_back(kind(event.type).partner == Partner::kCushion
                             ? rail(record.table.cushions[static_cast<std::size_t>(event.b)])
@@ -85,7 +86,7 @@ const MeasureRow kRouteRows[] = {
      [](P p, A) -> V { return count_before(p, meeting(p, 0)); }},
     {{"cushions_between", "", "", "cushions between its first and its second ball"},
      [](P p, A) -> V { return count_before(p, meeting(p, 1)) - count_before(p, meeting(p, 0)); }},
-    {{"route", "", "list", "rails before its second ball, in order; all if it hits fewer than two"},
+    {{"route", "", "list", "rails before its second ball, or its only one, in order; all if it hits none"},
      [](P p, A) -> V { return route(p); }},
     {{"kick", "", "truth", "whether the struck ball is driven to a cushion before it hits a ball"},
      [](P p, A) -> V { return double(count_before(p, meeting(p, 0)) > 0.0); }},

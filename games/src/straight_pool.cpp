@@ -24,7 +24,8 @@ bool in_rack(const std::vector<Vec2>& slots, double R, const Vec2& place, double
     bool inside = true;
     double least = R + own;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec2 from = corners[i], to = corners[(i + 1) % 3], side = to - from, way = place - from;
+        const Vec2 &from = corners[i], &to = corners[(i + 1) % 3];
+        const Vec2 side = to - from, way = place - from;
         inside = inside && side.x() * way.y() - side.y() * way.x() <= 0.0;
         least = std::min(least, distance_to_segment(place, from, to));
     }
