@@ -54,7 +54,7 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
             {"options", options}};
 }
 
-Json advice_json(const std::vector<games::Advice>& advice, const Table& table) {
+Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table) {
     Json list = Json::array();
     for (const games::Advice& a : advice) {
         const auto share = [](const games::Share& s) { return Json{s.value, s.low, s.high}; };

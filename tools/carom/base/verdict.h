@@ -21,7 +21,7 @@ std::string next_text(const games::State& state);
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
 
 /// The advice as `carom advise --json` prints it.
-nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const Table& table);
+nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table);
 
 /// The value of a measure: a number or null, a truth, or texts. @throws std::invalid_argument as Measure::of
 nlohmann::ordered_json measure_json(const games::Measure& measure, const Record& record);
