@@ -45,7 +45,7 @@ TEST(Solve, FindsAPotFromAnyDirection) {
 }
 
 TEST(Solve, FindsAPointOfThreeCushionAndAKickByItsRoute) {
-    const Scene scene = scene_named("three_cushion");
+    const Scene scene = shipped("three_cushion");
     SolveOptions options = small();
     options.choices = games::default_choices();
     const Measure point("point", scene, games::Game::kThreeCushion);
