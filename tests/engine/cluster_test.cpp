@@ -379,6 +379,23 @@ TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
     EXPECT_NE(simulate(plan).hash(), with_both.hash());
 }
 
+// Only where a third ball can take part, and only the model with a least restitution.
+TEST(Cluster, APlanSaysWhichRestitutionCounts) {
+    const auto warnings = [](int balls, double e_b, ClusterModel model) {
+        Scene scene = empty_scene();
+        scene.balls.e_b = e_b;
+        scene.physics.clusters = model;
+        for (int k = 0; k < balls; ++k) add_ball(scene, std::to_string(k), 0.1 * k, 0.0, k == 0 ? 1.0 : 0.0);
+        return plan_of(scene).warnings;
+    };
+    const auto found = warnings(3, 0.01, ClusterModel::kCompliant);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0], "balls.e_b is 0.01, but where three or more balls touch it counts as 0.05");
+    EXPECT_TRUE(warnings(2, 0.01, ClusterModel::kCompliant).empty());
+    EXPECT_TRUE(warnings(3, 0.05, ClusterModel::kCompliant).empty());
+    EXPECT_TRUE(warnings(3, 0.01, ClusterModel::kRigid).empty());
+}
+
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {
     // Scene files refuse speeds below 1e-60 m/s, but balls may reach them. Below 1e-100 m/s they are at rest.
     for (const double speed : {1e-60, 5e-77, 1e-80, 1e-100, 1e-150}) {

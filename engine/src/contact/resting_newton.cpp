@@ -77,7 +77,7 @@ Turn turn_of(const Group& g, const Link& link, double h) {
         return (0.5 * (turned - rate_end) + (gap_end - kept) / h) / h;
     };
     const double level_end = dot(link.first, v_end);
-    const Turn level{link.first, correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
+    Turn level{link.first, correction(0.0, link.gap + 0.5 * h * (rate + level_end), level_end, 0.0)};
     if (D == 0.0) return level;
     const Vec2 moved = (0.5 * h) * (v + v_end);
     // Far from a solution.
