@@ -110,7 +110,7 @@ BreakSearch break_search(const BreakOptions& options) {
     validate(search.scene);
     for (int i = 0; options.layouts > 1 && i < options.layouts; ++i) {
         SplitMix64 random = draws_of(options.seed, static_cast<std::uint64_t>(i), "rack.seed");
-        rack.seed = static_cast<std::uint64_t>(1 + random.below(kSeeds));
+        rack.seed = 1 + static_cast<std::uint64_t>(random.below(kSeeds));
         add_rack(search.layouts.emplace_back(bare), rack);
     }
     const Table& table = bare.table;

@@ -14,12 +14,12 @@ namespace {
 
 using namespace kernel;
 
-constexpr KernelKind kKinds[] = {KernelKind::kMarch, KernelKind::kSummedMarch, KernelKind::kTolerance,
-                                 KernelKind::kToleranceBatch, KernelKind::kContactPhase};
+constexpr KernelKind kTestedKinds[] = {KernelKind::kMarch, KernelKind::kSummedMarch, KernelKind::kTolerance,
+                                       KernelKind::kToleranceBatch, KernelKind::kContactPhase};
 
 TEST(Isa, FastestIsOneThatThisProcessorHas) {
-    static_assert(sizeof kKinds / sizeof *kKinds == kKernelKinds);
-    for (const KernelKind kind : kKinds) {
+    static_assert(sizeof kTestedKinds / sizeof *kTestedKinds == kKernelKinds);
+    for (const KernelKind kind : kTestedKinds) {
         const Isa isa = fastest_isa(kind);
         EXPECT_NE(isa, Isa::kFastest);
         EXPECT_TRUE(available(isa));

@@ -11,6 +11,7 @@
 
 #include "carom/kernel/tolerance.h"
 #include "reference/random_impacts.h"
+#include "support/impact_numbers.h"
 
 namespace carom::test {
 using reference::Generator;
@@ -37,32 +38,12 @@ inline bool same_velocities(const kernel::ImpactResult& a, const kernel::ImpactR
            std::memcmp(a.v2, b.v2, sizeof a.v2) == 0 && std::memcmp(a.w2, b.w2, sizeof a.w2) == 0;
 }
 
-/// [m/s] Largest difference of a velocity, or of a spin times R.
-inline double difference(const kernel::ImpactResult& a, const kernel::ImpactResult& b, double R) {
-    double worst = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        worst = std::max({worst, std::fabs(a.v1[k] - b.v1[k]), std::fabs(a.v2[k] - b.v2[k]),
-                          R * std::fabs(a.w1[k] - b.w1[k]), R * std::fabs(a.w2[k] - b.w2[k])});
-    }
-    return worst;
-}
-
-/// Kinetic energy of both balls per mass.
-inline double kinetic(const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
-                      const double (&w2)[3], double R) {
-    double sum = 0.0;
-    for (int k = 0; k < 3; ++k) {
-        sum += v1[k] * v1[k] + v2[k] * v2[k] + 0.4 * R * R * (w1[k] * w1[k] + w2[k] * w2[k]);
-    }
-    return 0.5 * sum;
-}
-
 inline double energy_before(const Impact& i) {
-    return kinetic(i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w, i.params.R);
+    return energy(i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w, i.params.R);
 }
 
 inline double energy_after(const Impact& i, const kernel::ImpactResult& r) {
-    return kinetic(r.v1, r.w1, r.v2, r.w2, i.params.R);
+    return energy(r.v1, r.w1, r.v2, r.w2, i.params.R);
 }
 
 /// Largest input speed, to which rounding is relative.

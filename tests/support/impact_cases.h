@@ -1,4 +1,4 @@
-// Reference impacts from tests/data/kernel, and how far apart two results are.
+// Reference impacts from tests/data/kernel.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "carom/kernel/impact.h"
+#include "support/impact_numbers.h"
 
 namespace carom::test {
 
@@ -62,34 +63,6 @@ inline std::vector<ReferenceImpact> reference_impacts(const std::string& file) {
         impacts.push_back(impact);
     }
     return impacts;
-}
-
-/// Largest difference of any component [m/s]; spins count as R w.
-inline double difference(const kernel::ImpactResult& a, const kernel::ImpactResult& b, double R) {
-    double most = 0.0;
-    const auto take = [&most](double x) { most = std::isnan(x) ? INFINITY : std::max(most, std::fabs(x)); };
-    for (int k = 0; k < 3; ++k) {
-        take(a.v1[k] - b.v1[k]);
-        take(a.v2[k] - b.v2[k]);
-        take(R * (a.w1[k] - b.w1[k]));
-        take(R * (a.w2[k] - b.w2[k]));
-    }
-    return most;
-}
-
-/// Speed of approach along the line of centres [m/s].
-inline double approach_speed(const kernel::Ball& b1, const kernel::Ball& b2) {
-    const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1];
-    return ((b1.v[0] - b2.v[0]) * dx + (b1.v[1] - b2.v[1]) * dy) / std::sqrt(dx * dx + dy * dy);
-}
-
-/// Kinetic energy of both balls per unit mass, J = 2/5 m R^2.
-inline double energy(const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
-                     const double (&w2)[3], double R) {
-    double sum = 0.0;
-    for (int k = 0; k < 3; ++k)
-        sum += v1[k] * v1[k] + v2[k] * v2[k] + 0.4 * R * R * (w1[k] * w1[k] + w2[k] * w2[k]);
-    return 0.5 * sum;
 }
 
 inline bool same_bits(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {

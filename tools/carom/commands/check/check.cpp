@@ -31,9 +31,9 @@ std::string kernel_line(const Plan& plan) {
     if (physics.substeps)
         return fmt::format("published march, {} substeps, {}; cloth slip {}", *physics.substeps,
                            physics.march == March::kPublished ? "step by step" : "summed",
-                           name(physics.cloth_slip));
+                           carom::name(physics.cloth_slip));
     return fmt::format("by tolerance {}: closed forms, else collocation; cloth slip {}", physics.tolerance,
-                       name(physics.cloth_slip));
+                       carom::name(physics.cloth_slip));
 }
 
 /// The instruction set of each kernel in the plan.
