@@ -52,7 +52,7 @@ TEST(Solve, FindsAPointOfThreeCushionAndAKickByItsRoute) {
     const Solution found = games::solve(scene, point, kernel::best_isa(), options).at(0);
     EXPECT_GT(static_cast<double>(found.successes), 0.5 * static_cast<double>(found.shots));
     EXPECT_TRUE(Measure("point(three_cushion) and carom", scene).holds(simulate(plan_of(found.scene))));
-    const Scene draw = scene_named("draw");
+    const Scene draw = shipped("draw");
     const Measure kick("cushions_before(1) == 2 and route == \"right, foot\"", draw);
     const Solution kicked = games::solve(draw, kick, kernel::best_isa(), options).at(0);
     EXPECT_GT(static_cast<double>(kicked.successes), 0.5 * static_cast<double>(kicked.shots));
