@@ -231,8 +231,8 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
 /// The file that a quoted include names, below `root`: beside the file, then by room. Empty if there is none.
 std::string included_file(const fs::path& root, const fs::path& file, std::string_view name) {
     std::vector<fs::path> folders = {file.parent_path(), root / house_of(path_below(root, file))};
-    for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "tools/carom",
-                                        "tools", "tests", "lab/carom", "lab"})
+    for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "games/src",
+                                        "tools/carom", "tools", "tests", "lab/carom", "lab"})
         folders.push_back(root / base);
     for (const fs::path& folder : folders)
         if (fs::exists(folder / name)) return path_below(root, folder / name);

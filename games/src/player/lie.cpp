@@ -1,11 +1,11 @@
 #include "player/lie.h"
 
-#include <array>
-#include <vector>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "carom/engine/math.h"
 #include "facts.h"

@@ -1,13 +1,13 @@
 #include "player/search.h"
 
-#include <span>
-#include <vector>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/batch.h"
 #include "carom/engine/math.h"
@@ -88,7 +88,7 @@ double sd_of_aim(const Noise& noise) {
 }  // namespace
 
 struct Search::Line {
-    Candidate candidate;
+    Stroke candidate;
     Vec2 ghost, towards;
     double aim_per_turn;  ///< how far the aim moves to turn the object ball by as much [-]
     bool hits;            ///< the ball first, when it was last played
@@ -169,7 +169,7 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
     return result;
 }
 
-void Search::lift(Candidate& candidate) const {
+void Search::lift(Stroke& candidate) const {
     Scene scene = scene_;
     scene.ball[cue_ball_].position.head<2>() = candidate.place;
     const CueRoom room = room_for(scene, candidate.cue);
@@ -204,7 +204,7 @@ void Search::correct(std::vector<Line>& lines) const {
     }
 }
 
-std::vector<Candidate> Search::pots(std::span<const Vec2> places) const {
+std::vector<Stroke> Search::pots(std::span<const Vec2> places) const {
     const Grid& grid = in_hand_ ? kInHand : skill_.look == Look::kWhole ? kWhole : kQuick;
     std::vector<Line> lines;
     for (const Vec2& place : places) {
@@ -215,7 +215,7 @@ std::vector<Candidate> Search::pots(std::span<const Vec2> places) const {
                          [](const Pot& a, const Pot& b) { return a.chance > b.chance; });
         if (pots.size() > grid.pots) pots.resize(grid.pots);
         for (const Pot& pot : pots) {
-            Candidate candidate;
+            Stroke candidate;
             candidate.place = place;
             candidate.ball = pot.ball;
             candidate.pocket = pot.pocket;
@@ -241,17 +241,17 @@ std::vector<Candidate> Search::pots(std::span<const Vec2> places) const {
         }
     }
     correct(lines);
-    std::vector<Candidate> candidates;
+    std::vector<Stroke> candidates;
     for (Line& line : lines)
         if (line.hits) candidates.push_back(std::move(line.candidate));
     return candidates;
 }
 
-std::vector<Candidate> Search::sweep(const Vec2& place) const {
+std::vector<Stroke> Search::sweep(const Vec2& place) const {
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
-    std::vector<Candidate> tried;
+    std::vector<Stroke> tried;
     const auto add = [&](double aim_deg, double speed) {
-        Candidate candidate;
+        Stroke candidate;
         candidate.cue = *scene_.cue;
         candidate.cue.aim_deg = aim_deg;
         candidate.cue.speed = speed;
@@ -273,11 +273,11 @@ std::vector<Candidate> Search::sweep(const Vec2& place) const {
         for (std::size_t v = 1; v < kSweepSpeeds.size(); ++v)
             add(360.0 * k / grid.around + 0.37, kSweepSpeeds[v]);
     std::vector<Cue> cues;
-    for (const Candidate& candidate : tried) cues.push_back(candidate.cue);
+    for (const Stroke& candidate : tried) cues.push_back(candidate.cue);
     std::vector<Result> results(tried.size()), pushed(tried.size());
     const bool calls = !legal(state_, ids_of(scene_.ball)).callable.empty();
     play(cues, std::vector<Vec2>(tried.size(), place), [&](std::size_t i, const Record& record) {
-        Candidate& candidate = tried[i];
+        Stroke& candidate = tried[i];
         candidate.call = lucky_call(state_, record);
         candidate.call.safety = calls && candidate.call.ball.empty();
         results[i] = result(record, candidate.call);
@@ -312,18 +312,18 @@ std::vector<Candidate> Search::sweep(const Vec2& place) const {
         for (std::size_t i = 0; i < tried.size(); ++i) pushes.push_back(i);
     top(others, results, kSafeties);
     top(pushes, pushed, kPushOuts);
-    std::vector<Candidate> candidates;
+    std::vector<Stroke> candidates;
     for (const auto* list : {&made, &others})
         for (const std::size_t i : *list) candidates.push_back(tried[i]);
     for (const std::size_t i : pushes) {
-        Candidate push = tried[i];
+        Stroke push = tried[i];
         push.call = kPush;
         push.kind = ShotKind::kPushOut;
         push.ball = 0;
         push.pocket = -1;
         candidates.push_back(std::move(push));
     }
-    for (Candidate& candidate : candidates) lift(candidate);
+    for (Stroke& candidate : candidates) lift(candidate);
     return candidates;
 }
 
@@ -375,11 +375,11 @@ std::vector<Vec2> Search::places() const {
     return places;
 }
 
-void Search::rate(std::span<Candidate* const> candidates, std::size_t shots, std::size_t first,
+void Search::rate(std::span<Stroke* const> candidates, std::size_t shots, std::size_t first,
                   bool closer) const {
     std::vector<Cue> cues;
     std::vector<Vec2> places;
-    for (const Candidate* candidate : candidates) {
+    for (const Stroke* candidate : candidates) {
         for (std::size_t k = 0; k < shots; ++k) {
             cues.push_back(with_noise(candidate->cue, skill_.noise, options_.seed, first + k));
             places.push_back(candidate->place);
@@ -399,14 +399,13 @@ void Search::rate(std::span<Candidate* const> candidates, std::size_t shots, std
     }
 }
 
-std::vector<Candidate*> Search::kept(std::vector<Candidate*> alive, std::size_t keep) const {
-    std::stable_sort(alive.begin(), alive.end(), [](const Candidate* a, const Candidate* b) {
-        return a->tally.mean() > b->tally.mean();
-    });
-    std::vector<Candidate*> kept;
-    for (Candidate* candidate : alive) {
+std::vector<Stroke*> Search::kept(std::vector<Stroke*> alive, std::size_t keep) const {
+    std::stable_sort(alive.begin(), alive.end(),
+                     [](const Stroke* a, const Stroke* b) { return a->tally.mean() > b->tally.mean(); });
+    std::vector<Stroke*> kept;
+    for (Stroke* candidate : alive) {
         // Advice must differ: two of every kind, ball and pocket stay as well.
-        const auto like = std::count_if(kept.begin(), kept.end(), [&](const Candidate* other) {
+        const auto like = std::count_if(kept.begin(), kept.end(), [&](const Stroke* other) {
             return other->kind == candidate->kind && other->ball == candidate->ball &&
                    other->pocket == candidate->pocket;
         });
@@ -415,17 +414,17 @@ std::vector<Candidate*> Search::kept(std::vector<Candidate*> alive, std::size_t 
     return kept;
 }
 
-std::vector<Candidate> Search::best() {
+std::vector<Stroke> Search::best() {
     std::vector<Vec2> from = {planar(scene_.ball[cue_ball_].position)};
     if (in_hand_) {
         if (const std::vector<Vec2> good = places(); !good.empty()) from = good;
     }
-    std::vector<Candidate> candidates = pots(from);
+    std::vector<Stroke> candidates = pots(from);
     if (!in_hand_ || candidates.empty()) {
-        for (Candidate& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
+        for (Stroke& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
     }
-    std::vector<Candidate*> alive;
-    for (Candidate& candidate : candidates) alive.push_back(&candidate);
+    std::vector<Stroke*> alive;
+    for (Stroke& candidate : candidates) alive.push_back(&candidate);
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
     std::size_t first = 0;
     for (std::size_t round = 0; round < grid.samples.size(); ++round) {
@@ -433,8 +432,8 @@ std::vector<Candidate> Search::best() {
         first += grid.samples[round];
         alive = kept(std::move(alive), round < grid.keep.size() ? grid.keep[round] : alive.size());
     }
-    std::vector<Candidate> best;
-    for (const Candidate* candidate : alive) best.push_back(*candidate);
+    std::vector<Stroke> best;
+    for (const Stroke* candidate : alive) best.push_back(*candidate);
     return best;
 }
 
