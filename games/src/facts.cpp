@@ -59,6 +59,7 @@ State broken_by(const State& state, int breaker) {
     State next = new_game(state.game, breaker, state.target);
     next.rules = state.rules;
     next.points = state.points;
+    next.fouls = state.fouls;
     return next;
 }
 

@@ -84,6 +84,7 @@ Verdict foul(const Facts& facts, std::vector<Foul> fouls, bool breaking, const s
     if (third) {
         fouls.push_back(Foul::kThirdFoul);
         next.points[me] -= kThird;
+        next.fouls[me] = 0;
     }
     const Option again{Decision::kRerackForOther, broken_by(next, facts.state.turn), {}};
     Verdict verdict = one_way(std::move(fouls), again);
