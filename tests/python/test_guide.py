@@ -33,7 +33,7 @@ def blocks(page):
 def test_there_are_pages():
     assert [page.name for page in PAGES] == [
         "README.md", "classroom.md", "clusters.md", "fit.md", "games.md", "learning.md", "mathematics.md",
-        "python.md", "search.md"]
+        "player.md", "python.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)

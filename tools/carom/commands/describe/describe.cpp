@@ -146,7 +146,12 @@ void page_command(std::string& out, const Options& command, const std::string& p
             if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
             out += fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
                                row.value, page_meaning(row));
-            if (!row.choices.empty()) out += fmt::format("; one of {}", code_list(row.choices));
+            // A long list stands once on the page.
+            const std::string choices = code_list(row.choices);
+            if (row.choices.size() > 5 && out.find(choices) != out.npos)
+                out += "; one of those above";
+            else if (!row.choices.empty())
+                out += "; one of " + choices;
             if (row.range) out += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
             if (!row.needs.empty()) out += fmt::format("; needs `{}`", row.needs);
             if (!row.excludes.empty()) out += fmt::format("; not with `{}`", row.excludes);
