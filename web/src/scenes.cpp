@@ -146,7 +146,7 @@ CAROM_WEB void carom_free_scene(WebScene* scene) {
 /// @param changes JSON: an object of keys with dots, and their values
 CAROM_WEB int carom_scene_change(const WebScene* scene, const char* changes, std::size_t size) {
     return guarded([&] {
-        const auto json = Json::parse(text_at(changes, size));
+        const auto json = Json::parse(changes, changes + size);
         give(new WebScene(changed(*scene, json)), "");
     });
 }

@@ -170,7 +170,7 @@ CAROM_WEB int carom_simulate_many(const WebScene* scene, const char* keys, std::
                                   std::size_t shots, const double* values, int hash) {
     return guarded([&] {
         std::vector<BatchColumn> columns;
-        for (const auto& key : Json::parse(text_at(keys, size)))
+        for (const auto& key : Json::parse(keys, keys + size))
             columns.push_back({key.get<std::string>(), std::span(values + columns.size() * shots, shots)});
         BatchOptions options;
         options.threads = 1;
