@@ -187,7 +187,7 @@ TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
             if (balls_collide(e.type)) last = e.time;
         for (const Segment& s : record.tracks[0].segments)
             if (s.state == MotionState::kColliding) last = std::max(last, s.start + s.duration);
-        truth.run_for(last - first->time);
+        last = first->time + truth.run_for(last - first->time);
         for (std::size_t ball = 0; ball < 3; ++ball)
             worst = std::max(
                 worst, difference(state(record, static_cast<int>(ball), last, true), truth.balls()[ball]));

@@ -253,7 +253,7 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
             "[physics]\ncushion_touch = \"nose\"\n[[ball]]\nid = \"b1\"\n"
             "position = [0.2454020237721765, 0.7245632487257941]\n[[ball]]\n"
             "position = [0.2454020237721765, 0.786055119107232]\nheight = 0.001\nvelocity = [11.4, 3.8]\n"
-            "[[ball]]\nid = \"b3\"\nposition = [0.27530022344626703, 0.8378403199975961]\n"
+            "[[ball]]\nid = \"b3\"\nposition = [0.27530022344626703, 0.83785]\n"
             "height = 0.015375\n",
         // one that creeps at less than the rounding of its surface, and meets nothing, while another goes on
         cushion("[0.2, 0.1]", "[0.2, 0.9]", low) + cushion("[0.0, 0.0]", "[1e6, 0.0]", low) +

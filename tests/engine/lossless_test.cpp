@@ -173,7 +173,8 @@ TEST(Lossless, TheCheckerAsksForTheEnergyOfAClusterToo) {
         const auto violation = verify(record, plan);
         EXPECT_EQ(violation.has_value(), share < 1.0);
         if (violation) {
-            EXPECT_EQ(violation->law, "U4") << violation->message;
+            // The momentum is less, too.
+            EXPECT_TRUE(violation->law == "U4" || violation->law == "U5") << violation->message;
         }
     }
 }

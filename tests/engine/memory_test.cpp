@@ -108,6 +108,8 @@ struct LoopCount {
 Scene eight_ball_break(ClusterModel clusters) {
     Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
     scene.physics.clusters = clusters;
+    // No two balls stay in contact.
+    scene.cue->aim_deg = 90.08;
     return scene;
 }
 
