@@ -63,9 +63,11 @@ std::string advice_text(const std::vector<Advice>& advice, const carom::Table& t
     for (std::size_t i = 0; i < advice.size(); ++i) {
         const Advice& a = advice[i];
         text += fmt::format("{}  {}\n", i + 1, games::words_of(a, table));
-        const char* what = a.ball.empty() ? "keeps the turn" : "pots";
-        text += fmt::format("   {} {} % ({} to {}), fouls {} %", what, percent(a.makes.value),
-                            percent(a.makes.low), percent(a.makes.high), percent(a.fouls.value));
+        const bool ends = a.kind == games::ShotKind::kSafety || a.kind == games::ShotKind::kPushOut;
+        if (!ends)
+            text += fmt::format("   {} {} % ({} to {}), ", a.ball.empty() ? "keeps the turn" : "pots",
+                                percent(a.makes.value), percent(a.makes.low), percent(a.makes.high));
+        text += fmt::format("{}fouls {} %", ends ? "   " : "", percent(a.fouls.value));
         if (!a.leaves.empty()) text += fmt::format("; leaves {}", fmt::join(a.leaves, ", "));
         if (a.place) text += fmt::format("; cue ball at {:.3f}, {:.3f} m", a.place->x(), a.place->y());
         text += "\n";
