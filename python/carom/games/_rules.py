@@ -192,8 +192,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
 
 
 def _state(row: tuple[Any, ...]) -> State:
-    *fields, rules = row
-    return State(*fields, tuple(rules))
+    return State(*row)._replace(rules=tuple(row[-1]))
 
 
 def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tuple[float, float]]]) -> Option:
