@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <string>
@@ -111,9 +112,13 @@ TEST(RoundWalls, NothingLeaves) {
     nothing_leaves(300, 1);
 }
 
-TEST(RoundWalls, NothingLeavesTenThousandTables) {
-    nothing_leaves(10000, 2);
+class RoundTables : public testing::TestWithParam<int> {};
+
+TEST_P(RoundTables, NothingLeavesTwoThousand) {
+    nothing_leaves(2000, 2 + static_cast<std::uint64_t>(GetParam()));
 }
+
+INSTANTIATE_TEST_SUITE_P(Part, RoundTables, testing::Range(0, 5));
 
 // The cloth bends the path outwards: only the coefficient of t^4 says that the ball meets the wall.
 TEST(RoundWalls, AreMetByABallThatStartsWithSpinAlone) {
