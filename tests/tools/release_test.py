@@ -85,11 +85,11 @@ class Release(unittest.TestCase):
         self.one_fault("an entry is above the first heading")
 
     def test_a_group_begins_a_paragraph(self):
-        self.change("CHANGELOG.md", r"\n\n(Program)\n", r"\n\1\n")
-        self.one_fault("Program: an empty line is missing above")
+        self.change("CHANGELOG.md", r"\n\n(For programmers)\n", r"\n\1\n")
+        self.one_fault("For programmers: an empty line is missing above")
 
     def test_the_mark_of_bits_has_one_form(self):
-        self.change("CHANGELOG.md", r"\*\*\(changes bits\)\*\*(: all)", r"(changes bits\1)")
+        self.change("CHANGELOG.md", r"\*\*\(changes bits\)\*\*( The contact of two)", r"(changes bits\1)")
         self.one_fault("expected **(changes bits)**")
 
     def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
@@ -116,7 +116,7 @@ class Release(unittest.TestCase):
 
     def test_a_record_version_that_changes_is_a_fault(self):
         self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)3', r"\g<1>4")
-        self.one_fault("records have version 3 instead of 2")
+        self.one_fault("records have version 4 instead of 3")
 
     def test_what_is_cut_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)

@@ -64,8 +64,8 @@ struct AdviceOptions {
     std::uint64_t seed = 1;  ///< of the errors
     int threads = 1;         ///< the result does not depend on it
     std::size_t best = 3;    ///< the most pieces of advice
-    std::size_t fresh =
-        100;  ///< shots that check each of them; 0: none, and Advice::makes is that of the search
+    /// shots that check each of them; 0: none, and Advice::makes is that of the search
+    std::size_t fresh = 400;
     std::function<bool()> stop{};  ///< true ends the search with BatchStopped
 };
 
