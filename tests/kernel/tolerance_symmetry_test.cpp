@@ -15,7 +15,7 @@ namespace {
 using namespace kernel;
 
 Impact any_impact(Generator& rng) {
-    return rng.next() % 2 == 0 ? random_impact(rng)
+    return rng.next() % 2 == 0 ? reference::random_impact(rng)
                                : hard_random_impact(rng, 0.3, 0.6, ClothSlip::kConsistent);
 }
 
