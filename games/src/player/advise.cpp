@@ -29,13 +29,15 @@ using detail::Stroke;
 struct BreakStroke {
     Game game;
     double x, y;
-    double hit;  ///< [-] of the apex ball: 0 is full, 1 a graze on its right
+    double hit;  ///< [-] of the apex ball: 0 is full, 1 and -1 pass its left and right edge
     double speed, height;
 };
+// By carom solve on the nine-foot table, for a rack with the default gaps and errors of
+// --hand aim=0.125,speed=1%,tip=0.0175: 78, 92 and 62 % of fresh shots are legal and pot a ball.
 constexpr BreakStroke kBreaks[] = {
-    {Game::kEightBall, 0.30, 0.23, 0.0, 9.0, 0.0},
-    {Game::kNineBall, 0.30, 0.23, 0.0, 9.0, 0.0},
-    {Game::kTenBall, 0.30, 0.23, 0.0, 9.0, 0.0},
+    {Game::kEightBall, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
+    {Game::kNineBall, 0.0455, 0.1881, 0.3860, 4.812, 0.109},
+    {Game::kTenBall, 0.0725, 0.2321, -0.0138, 5.926, 0.034},
 };
 
 std::vector<std::string> player_games() {
