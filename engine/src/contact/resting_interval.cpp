@@ -201,10 +201,13 @@ bool guide(Group& g) {
     return any;
 }
 
-// Whether guided balls still move in the direction that their friction opposes.
+// Whether guided balls still move in the direction that their friction opposes, and slip on each other so.
 bool keeps_direction(const Group& g) {
     return std::all_of(g.bodies.begin(), g.bodies.end(),
-                       [&g](const Body& b) { return !b.guided || dot(moving(g, b).end, b.guide) >= 0.0; });
+                       [&g](const Body& b) { return !b.guided || dot(moving(g, b).end, b.guide) >= 0.0; }) &&
+           std::all_of(g.links.begin(), g.links.end(), [&g](const Link& link) {
+               return !link.guide || *link.guide * contact_slip(g, link, true).x() <= 0.0;
+           });
 }
 
 // Solves the same interval again, guided; without a solution it stays as it was.
