@@ -476,7 +476,7 @@ TEST(Airborne, WhatBalancesIsAnError) {
     };
     const Case cases[] = {
         {"balls 0 and 1 balance on each other", {{0.0, 0.0, 0.0}, {0.0, 0.0, D + 0.01}}},
-        {"balls 0 and 1 balance on each other", {{0.0, 0.0, 0.0}, {0.0, 0.0, D}, {0.0, 0.0, 2.0 * D}}},
+        {"balance on each other", {{0.0, 0.0, 0.0}, {0.0, 0.0, D}, {0.0, 0.0, 2.0 * D}}},
         {"balance on each other", {{0.0, 0.0, 0.0}, {0.0, 0.0, D + 0.02}, {0.0, 0.0, 2.0 * D + 0.03}}},
         {"balance on each other", {{0.0, 0.0, 0.0}, {0.0, 0.0, D}, {1.0, 0.0, 0.0}, {1.0, 0.0, D}}},
         {"ball 0 balances on a cushion or a jaw", {{0.0, 0.5, 0.2}}, 0.5},

@@ -116,7 +116,7 @@ class Release(unittest.TestCase):
 
     def test_a_record_version_that_changes_is_a_fault(self):
         self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)3', r"\g<1>4")
-        self.one_fault("records have version 3 instead of 2")
+        self.one_fault("records have version 4 instead of 3")
 
     def test_what_is_cut_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
