@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -28,9 +29,14 @@ Json axis_json(const Axis& axis) {
     return json;
 }
 
-Json series_json(const Series& series) {
+/// Points are [x, y], or y alone if the first series has the same x: half of a page's chart.
+Json series_json(const Series& series, const Series& first) {
+    const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+    const bool shared = &series != &first && std::equal(series.points.begin(), series.points.end(),
+                                                        first.points.begin(), first.points.end(), same);
     Json points = Json::array();
-    for (const auto& [x, y] : series.points) points.push_back({rounded(x), rounded(y)});
+    for (const auto& [x, y] : series.points)
+        points.push_back(shared ? rounded(y) : Json{rounded(x), rounded(y)});
     return {{"name", series.name}, {"points", points},        {"line", series.line},
             {"dots", series.dots}, {"dashed", series.dashed}, {"colour", series.colour}};
 }
@@ -41,7 +47,8 @@ Json chart_json(const Plot& plot, bool by_point) {
     Json json = {{"title", plot.title},    {"notes", plot.notes},    {"x", axis_json(plot.x)},
                  {"y", axis_json(plot.y)}, {"byPoint", by_point},    {"series", Json::array()},
                  {"ticks", Json::array()}, {"levels", Json::array()}};
-    for (const Series& series : plot.series) json["series"].push_back(series_json(series));
+    for (const Series& series : plot.series)
+        json["series"].push_back(series_json(series, plot.series.front()));
     for (const Ticks& ticks : plot.ticks) {
         Json at = Json::array();
         for (const double x : ticks.at) at.push_back(rounded(x));

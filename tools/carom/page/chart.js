@@ -55,9 +55,17 @@ class Scale {
   }
 }
 
+/** The chart with every point as [x, y]: of a series that has the x of the first one, the page has y only. */
+function withBoth(spec) {
+  const first = spec.series[0]?.points;
+  const both = (p, k) => Array.isArray(p) ? p : [first[k][0], p];
+  return {...spec, series: spec.series.map((s) => ({...s, points: s.points.map(both)}))};
+}
+
 /** A chart in its own element. A click calls pick(x). */
 export class Chart {
-  constructor(spec, pick = null) {
+  constructor(given, pick = null) {
+    const spec = withBoth(given);
     Object.assign(this, {spec, pick, width: 0, height: spec.height || 230, line: null, held: null});
     const notes = spec.notes || [];
     this.host = make("div", {class: "plot", tabindex: "0", role: "img",
