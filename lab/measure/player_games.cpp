@@ -61,7 +61,7 @@ void play(const std::array<Skill, 2>& skills, Game game, std::uint64_t seed, int
     const auto timed = [&](const Skill& skill) -> test::Adviser {
         return [&, ask = test::adviser(skill)](const State& state, const Scene& scene, std::uint64_t number) {
             const double start = cpu();
-            const Advice advice = ask(state, scene, number);
+            Advice advice = ask(state, scene, number);
             count.seconds += cpu() - start;
             ++count.decisions;
             return advice;

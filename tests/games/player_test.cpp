@@ -30,7 +30,7 @@ using games::State;
 
 using Places = std::vector<std::pair<std::string, Vec2>>;
 
-constexpr double kR = 0.028575;
+constexpr double kPoolRadius = 0.028575;
 
 Scene table(const Places& places) {
     std::string text = "[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n";
@@ -53,7 +53,8 @@ State turn(Game game, Group group = Group::kOpen, InHand in_hand = InHand::kNo) 
 }
 
 std::vector<Advice> ask(const State& state, const Scene& scene, const AdviceOptions& options = {}) {
-    return games::advise(state, scene, games::skill_by_name("league", kR), kernel::best_isa(), options);
+    return games::advise(state, scene, games::skill_by_name("league", kPoolRadius), kernel::best_isa(),
+                         options);
 }
 
 TEST(Player, StraightIn) {
@@ -134,7 +135,7 @@ TEST(Player, AdviceDiffers) {
 TEST(Player, SameBitsFromEveryThreadAndInstructionSet) {
     const Scene scene = table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
     const State state = turn(Game::kEightBall);
-    const Skill skill = games::skill_by_name("league", kR);
+    const Skill skill = games::skill_by_name("league", kPoolRadius);
     AdviceOptions options;
     const auto asked = [&](kernel::Isa isa, int threads) {
         options.threads = threads;
@@ -174,7 +175,7 @@ TEST(Player, RefusesWhatItCannotPlay) {
     Scene moves = scene;
     moves.ball[1].velocity = {1.0, 0.0, 0.0};
     EXPECT_NE(refusal(turn(Game::kEightBall), moves).find("moves"), std::string::npos);
-    EXPECT_THROW(games::skill_by_name("wizard", kR), std::invalid_argument);
+    EXPECT_THROW(games::skill_by_name("wizard", kPoolRadius), std::invalid_argument);
 }
 
 TEST(Player, AChanceFallsWithDistanceCutAndError) {
@@ -193,7 +194,7 @@ TEST(Player, AChanceFallsWithDistanceCutAndError) {
 }
 
 TEST(Player, RacksEnd) {
-    const Skill beginner = games::skill_by_name("beginner", kR);
+    const Skill beginner = games::skill_by_name("beginner", kPoolRadius);
     for (const Game game : {Game::kEightBall, Game::kNineBall}) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             int shots = 0;

@@ -20,9 +20,9 @@
 namespace carom::games {
 namespace {
 
+using detail::Attempt;
 using detail::Lie;
 using detail::Search;
-using detail::Stroke;
 
 /// A break that was searched on many racks: where the cue ball lies, in parts of the table's width and
 /// length, and how it is struck.
@@ -98,13 +98,13 @@ Scene completed(const State& state, Scene scene) {
     return placed(std::move(scene), *place);
 }
 
-Stroke break_of(const State& state, const Scene& scene) {
+Attempt break_of(const State& state, const Scene& scene) {
     const auto& b = *std::find_if(std::begin(kBreaks), std::end(kBreaks),
                                   [&](const auto& row) { return row.game == state.game; });
     const int apex = index_of(scene.ball, "1"), cue = index_of(scene.ball, cue_ball(state));
     if (apex < 0) throw std::invalid_argument("there is no rack; give the scene of a break");
     const Table& table = scene.table;
-    Stroke candidate;
+    Attempt candidate;
     candidate.place = table.corner + Vec2(b.x * table.width, b.y * table.length);
     candidate.cue = *scene.cue;
     candidate.cue.speed = b.speed;
@@ -118,7 +118,7 @@ Stroke break_of(const State& state, const Scene& scene) {
     return candidate;
 }
 
-Advice advice_of(const Stroke& candidate, const Scene& scene, bool in_hand) {
+Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
     Advice advice;
     advice.cue = candidate.cue;
     advice.call = candidate.call;
@@ -185,28 +185,30 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     const Scene scene = completed(state, given);
     Search search(state, scene, skill, isa, options);
     const bool in_hand = state.in_hand != InHand::kNo;
-    std::vector<Stroke> best;
+    std::vector<Attempt> best;
     if (state.opening)
         best.push_back(break_of(state, scene));
     else
         best = search.best();
-    std::vector<Stroke*> chosen;
-    for (Stroke& candidate : best) {
-        const bool like = std::any_of(chosen.begin(), chosen.end(), [&](const Stroke* other) {
+    std::vector<Attempt*> chosen;
+    for (Attempt& candidate : best) {
+        const bool like = std::any_of(chosen.begin(), chosen.end(), [&](const Attempt* other) {
             return other->kind == candidate.kind && other->ball == candidate.ball &&
                    other->pocket == candidate.pocket;
         });
         if (!like && chosen.size() < options.best) chosen.push_back(&candidate);
     }
     if (options.fresh > 0) {
-        for (Stroke* candidate : chosen) candidate->tally = {};
+        for (Attempt* candidate : chosen) candidate->tally = {};
         search.rate(chosen, options.fresh, Search::kFresh, true);
         // The first one stays: it was the best of many shots.
-        std::stable_sort(chosen.begin() + 1, chosen.end(),
-                         [](const Stroke* a, const Stroke* b) { return a->tally.mean() > b->tally.mean(); });
+        std::stable_sort(chosen.begin() + 1, chosen.end(), [](const Attempt* a, const Attempt* b) {
+            return a->tally.mean() > b->tally.mean();
+        });
     }
     std::vector<Advice> advice;
-    for (const Stroke* candidate : chosen)
+    advice.reserve(chosen.size());
+    for (const Attempt* candidate : chosen)
         advice.push_back(advice_of(*candidate, scene, in_hand || state.opening));
     return advice;
 }

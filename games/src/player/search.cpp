@@ -88,7 +88,7 @@ double sd_of_aim(const Noise& noise) {
 }  // namespace
 
 struct Search::Line {
-    Stroke candidate;
+    Attempt candidate;
     Vec2 ghost, towards;
     double aim_per_turn;  ///< how far the aim moves to turn the object ball by as much [-]
     bool hits;            ///< the ball first, when it was last played
@@ -169,7 +169,7 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
     return result;
 }
 
-void Search::lift(Stroke& candidate) const {
+void Search::lift(Attempt& candidate) const {
     Scene scene = scene_;
     scene.ball[cue_ball_].position.head<2>() = candidate.place;
     const CueRoom room = room_for(scene, candidate.cue);
@@ -204,7 +204,7 @@ void Search::correct(std::vector<Line>& lines) const {
     }
 }
 
-std::vector<Stroke> Search::pots(std::span<const Vec2> places) const {
+std::vector<Attempt> Search::pots(std::span<const Vec2> places) const {
     const Grid& grid = in_hand_ ? kInHand : skill_.look == Look::kWhole ? kWhole : kQuick;
     std::vector<Line> lines;
     for (const Vec2& place : places) {
@@ -215,7 +215,7 @@ std::vector<Stroke> Search::pots(std::span<const Vec2> places) const {
                          [](const Pot& a, const Pot& b) { return a.chance > b.chance; });
         if (pots.size() > grid.pots) pots.resize(grid.pots);
         for (const Pot& pot : pots) {
-            Stroke candidate;
+            Attempt candidate;
             candidate.place = place;
             candidate.ball = pot.ball;
             candidate.pocket = pot.pocket;
@@ -241,17 +241,17 @@ std::vector<Stroke> Search::pots(std::span<const Vec2> places) const {
         }
     }
     correct(lines);
-    std::vector<Stroke> candidates;
+    std::vector<Attempt> candidates;
     for (Line& line : lines)
         if (line.hits) candidates.push_back(std::move(line.candidate));
     return candidates;
 }
 
-std::vector<Stroke> Search::sweep(const Vec2& place) const {
+std::vector<Attempt> Search::sweep(const Vec2& place) const {
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
-    std::vector<Stroke> tried;
+    std::vector<Attempt> tried;
     const auto add = [&](double aim_deg, double speed) {
-        Stroke candidate;
+        Attempt candidate;
         candidate.cue = *scene_.cue;
         candidate.cue.aim_deg = aim_deg;
         candidate.cue.speed = speed;
@@ -273,11 +273,12 @@ std::vector<Stroke> Search::sweep(const Vec2& place) const {
         for (std::size_t v = 1; v < kSweepSpeeds.size(); ++v)
             add(360.0 * k / grid.around + 0.37, kSweepSpeeds[v]);
     std::vector<Cue> cues;
-    for (const Stroke& candidate : tried) cues.push_back(candidate.cue);
+    cues.reserve(tried.size());
+    for (const Attempt& candidate : tried) cues.push_back(candidate.cue);
     std::vector<Result> results(tried.size()), pushed(tried.size());
     const bool calls = !legal(state_, ids_of(scene_.ball)).callable.empty();
     play(cues, std::vector<Vec2>(tried.size(), place), [&](std::size_t i, const Record& record) {
-        Stroke& candidate = tried[i];
+        Attempt& candidate = tried[i];
         candidate.call = lucky_call(state_, record);
         candidate.call.safety = calls && candidate.call.ball.empty();
         results[i] = result(record, candidate.call);
@@ -312,18 +313,18 @@ std::vector<Stroke> Search::sweep(const Vec2& place) const {
         for (std::size_t i = 0; i < tried.size(); ++i) pushes.push_back(i);
     top(others, results, kSafeties);
     top(pushes, pushed, kPushOuts);
-    std::vector<Stroke> candidates;
+    std::vector<Attempt> candidates;
     for (const auto* list : {&made, &others})
         for (const std::size_t i : *list) candidates.push_back(tried[i]);
     for (const std::size_t i : pushes) {
-        Stroke push = tried[i];
+        Attempt push = tried[i];
         push.call = kPush;
         push.kind = ShotKind::kPushOut;
         push.ball = 0;
         push.pocket = -1;
         candidates.push_back(std::move(push));
     }
-    for (Stroke& candidate : candidates) lift(candidate);
+    for (Attempt& candidate : candidates) lift(candidate);
     return candidates;
 }
 
@@ -375,11 +376,11 @@ std::vector<Vec2> Search::places() const {
     return places;
 }
 
-void Search::rate(std::span<Stroke* const> candidates, std::size_t shots, std::size_t first,
+void Search::rate(std::span<Attempt* const> candidates, std::size_t shots, std::size_t first,
                   bool closer) const {
     std::vector<Cue> cues;
     std::vector<Vec2> places;
-    for (const Stroke* candidate : candidates) {
+    for (const Attempt* candidate : candidates) {
         for (std::size_t k = 0; k < shots; ++k) {
             cues.push_back(with_noise(candidate->cue, skill_.noise, options_.seed, first + k));
             places.push_back(candidate->place);
@@ -399,13 +400,13 @@ void Search::rate(std::span<Stroke* const> candidates, std::size_t shots, std::s
     }
 }
 
-std::vector<Stroke*> Search::kept(std::vector<Stroke*> alive, std::size_t keep) const {
+std::vector<Attempt*> Search::kept(std::vector<Attempt*> alive, std::size_t keep) const {
     std::stable_sort(alive.begin(), alive.end(),
-                     [](const Stroke* a, const Stroke* b) { return a->tally.mean() > b->tally.mean(); });
-    std::vector<Stroke*> kept;
-    for (Stroke* candidate : alive) {
+                     [](const Attempt* a, const Attempt* b) { return a->tally.mean() > b->tally.mean(); });
+    std::vector<Attempt*> kept;
+    for (Attempt* candidate : alive) {
         // Advice must differ: two of every kind, ball and pocket stay as well.
-        const auto like = std::count_if(kept.begin(), kept.end(), [&](const Stroke* other) {
+        const auto like = std::count_if(kept.begin(), kept.end(), [&](const Attempt* other) {
             return other->kind == candidate->kind && other->ball == candidate->ball &&
                    other->pocket == candidate->pocket;
         });
@@ -414,26 +415,29 @@ std::vector<Stroke*> Search::kept(std::vector<Stroke*> alive, std::size_t keep) 
     return kept;
 }
 
-std::vector<Stroke> Search::best() {
+std::vector<Attempt> Search::best() {
     std::vector<Vec2> from = {planar(scene_.ball[cue_ball_].position)};
     if (in_hand_) {
         if (const std::vector<Vec2> good = places(); !good.empty()) from = good;
     }
-    std::vector<Stroke> candidates = pots(from);
+    std::vector<Attempt> candidates = pots(from);
     if (!in_hand_ || candidates.empty()) {
-        for (Stroke& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
+        for (Attempt& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
     }
-    std::vector<Stroke*> alive;
-    for (Stroke& candidate : candidates) alive.push_back(&candidate);
+    std::vector<Attempt*> alive;
+    alive.reserve(candidates.size());
+    for (Attempt& candidate : candidates) alive.push_back(&candidate);
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
     std::size_t first = 0;
     for (std::size_t round = 0; round < grid.samples.size(); ++round) {
         rate(alive, grid.samples[round], first);
         first += grid.samples[round];
-        alive = kept(std::move(alive), round < grid.keep.size() ? grid.keep[round] : alive.size());
+        const std::size_t keep = round < grid.keep.size() ? grid.keep[round] : alive.size();
+        alive = kept(std::move(alive), keep);
     }
-    std::vector<Stroke> best;
-    for (const Stroke* candidate : alive) best.push_back(*candidate);
+    std::vector<Attempt> best;
+    best.reserve(alive.size());
+    for (const Attempt* candidate : alive) best.push_back(*candidate);
     return best;
 }
 

@@ -22,7 +22,7 @@ struct Tally {
     double mean() const { return shots > 0 ? worth / static_cast<double>(shots) : 0.0; }
 };
 
-struct Stroke {
+struct Attempt {
     Cue cue;
     Vec2 place = Vec2::Zero();  ///< of the cue ball
     Call call;
@@ -39,10 +39,10 @@ class Search {
            const AdviceOptions& options);
 
     /// The candidates that reached the last round, the best first; at least one.
-    std::vector<Stroke> best();
+    std::vector<Attempt> best();
     /// Plays more shots of some candidates. @param first  number of the first draw of errors
     /// @param closer  whether to count Tally::leaves
-    void rate(std::span<Stroke* const> candidates, std::size_t shots, std::size_t first,
+    void rate(std::span<Attempt* const> candidates, std::size_t shots, std::size_t first,
               bool closer = false) const;
     /// The number of draws after which errors are fresh: best() uses fewer.
     static constexpr std::size_t kFresh = 1000;
@@ -61,13 +61,13 @@ class Search {
     void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
     /// @param closer  whether to find Result::leaves, too
     Result result(const Record& record, const Call& call, bool closer = false) const;
-    void lift(Stroke& candidate) const;
-    std::vector<Stroke> pots(std::span<const Vec2> places) const;
+    void lift(Attempt& candidate) const;
+    std::vector<Attempt> pots(std::span<const Vec2> places) const;
     void correct(std::vector<Line>& lines) const;
-    std::vector<Stroke> sweep(const Vec2& place) const;
+    std::vector<Attempt> sweep(const Vec2& place) const;
     std::vector<Vec2> places() const;
     bool may_lie(const Vec2& place) const;
-    std::vector<Stroke*> kept(std::vector<Stroke*> alive, std::size_t keep) const;
+    std::vector<Attempt*> kept(std::vector<Attempt*> alive, std::size_t keep) const;
 
     State state_;
     Scene scene_;
