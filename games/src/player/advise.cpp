@@ -101,8 +101,13 @@ Scene completed(const State& state, Scene scene) {
 Attempt break_of(const State& state, const Scene& scene) {
     const auto& b = *std::find_if(std::begin(kBreaks), std::end(kBreaks),
                                   [&](const auto& row) { return row.game == state.game; });
-    const int apex = index_of(scene.ball, "1"), cue = index_of(scene.ball, cue_ball(state));
-    if (apex < 0) throw std::invalid_argument("there is no rack; give the scene of a break");
+    // The apex is the object ball nearest to the head rail; its number depends on the rack.
+    const BallStart* apex = nullptr;
+    for (const BallStart& ball : scene.ball)
+        if (ball.id != scene.cue->ball && (apex == nullptr || ball.position.y() < apex->position.y()))
+            apex = &ball;
+    if (apex == nullptr) throw std::invalid_argument("there is no rack; give the scene of a break");
+    const BallStart& cue = scene.ball[static_cast<std::size_t>(index_of(scene.ball, scene.cue->ball))];
     const Table& table = scene.table;
     Attempt candidate;
     candidate.place = table.corner + Vec2(b.x * table.width, b.y * table.length);
@@ -111,9 +116,8 @@ Attempt break_of(const State& state, const Scene& scene) {
     candidate.cue.side = 0.0;
     candidate.cue.height = b.height;
     candidate.kind = ShotKind::kBreak;
-    const auto ball = [&](int i) -> const BallStart& { return scene.ball[static_cast<std::size_t>(i)]; };
-    const Vec2 way = planar(ball(apex).position) - candidate.place;
-    const double both = scene.size_of(ball(apex)).R + scene.size_of(ball(cue)).R;
+    const Vec2 way = planar(apex->position) - candidate.place;
+    const double both = scene.size_of(*apex).R + scene.size_of(cue).R;
     candidate.cue.aim_deg = direction_deg(way) + 90.0 - arc_cos(b.hit * both / length(way)) * kDegrees;
     return candidate;
 }
