@@ -155,7 +155,7 @@ TEST(View, ABrowserShowsEveryScene) {
         pages.push_back(manifest_page(stem(scene), page));
         if (!timed) continue;
         const auto bytes = std::filesystem::file_size(page.file);
-        EXPECT_LT(bytes, 210000u) << "the page of a break";
+        EXPECT_LT(bytes, 200000u) << "the page of a break";
         RecordProperty("bytes_of_the_page_of_a_break", std::to_string(bytes));
     }
     // Two shots in one page, and how far apart their cue balls are at some instant.
