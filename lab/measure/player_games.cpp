@@ -5,7 +5,8 @@
 //     player_games positions LEVEL LEVEL [RACKS [GAME]]  the same; prints the features of every position, and
 //                                                       whether the player to shoot wins, for player_fit.py
 //
-// LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz").
+// LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz"), or pro: BasicAgentPro with
+// the errors of "fastfiz", eight-ball only.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "basic_pro.h"
 #include "carom/engine/math.h"
 #include "carom/games/player.h"
 #include "player/lie.h"
@@ -42,6 +44,7 @@ double cpu() {
 
 Skill skill_of(const std::string& text) {
     const std::size_t colon = text.find(':');
+    if (text == "pro") return {noise_by_name("fastfiz", kR), Look::kPot};
     if (colon == std::string::npos) return skill_by_name(text, kR);
     Skill skill{noise_by_name("fastfiz", kR), Look::kWhole};
     const double factor = std::stod(text.substr(0, colon));
@@ -54,12 +57,14 @@ Skill skill_of(const std::string& text) {
 }
 
 /// One rack. @param alone  it ends when the breaker's turn does
-void play(const std::array<Skill, 2>& skills, Game game, std::uint64_t seed, int breaker, bool alone,
-          bool positions, Count& count) {
+void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro, Game game,
+          std::uint64_t seed, int breaker, bool alone, bool positions, Count& count) {
     std::vector<std::pair<int, std::string>> told;
     bool first = true;
-    const auto timed = [&](const Skill& skill) -> test::Adviser {
-        return [&, ask = test::adviser(skill)](const State& state, const Scene& scene, std::uint64_t number) {
+    const auto timed = [&](std::size_t player) -> test::Adviser {
+        const bool pro = is_pro[player];
+        return [&, ask = pro ? test::Adviser(lab::basic_pro) : test::adviser(skills[player])](
+                   const State& state, const Scene& scene, std::uint64_t number) {
             const double start = cpu();
             Advice advice = ask(state, scene, number);
             count.seconds += cpu() - start;
@@ -93,8 +98,7 @@ void play(const std::array<Skill, 2>& skills, Game game, std::uint64_t seed, int
         first = false;
         return !alone || made;
     };
-    const int winner =
-        test::play_rack(game, skills, {timed(skills[0]), timed(skills[1])}, seed, breaker, each);
+    const int winner = test::play_rack(game, skills, {timed(0), timed(1)}, seed, breaker, each);
     ++count.racks;
     if (winner < 0) return;
     ++count.wins[static_cast<std::size_t>(winner)];
@@ -117,11 +121,14 @@ int main(int argc, char** argv) {
     const std::size_t levels = alone ? 1 : 2;
     const std::array<Skill, 2> skills = {skill_of(words[1]), skill_of(words[levels])};
     const int racks = words.size() > levels + 1 ? std::stoi(words[levels + 1]) : 20;
-    const bool nine = words.size() > levels + 2 && words[levels + 2] == "nine_ball";
-    const Game game = nine ? Game::kNineBall : Game::kEightBall;
+    const std::string named = words.size() > levels + 2 ? words[levels + 2] : "eight_ball";
+    const Game game = named == "nine_ball"  ? Game::kNineBall
+                      : named == "ten_ball" ? Game::kTenBall
+                                            : Game::kEightBall;
     Count count;
     for (int k = 0; k < racks; ++k)
-        play(skills, game, static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
+        play(skills, {words[1] == "pro", words[levels] == "pro"}, game,
+             static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
              words[0] == "positions", count);
     if (words[0] == "positions") return 0;
     fmt::print("{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
