@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/math.h"
 #include "carom/games/shot.h"
 #include "facts.h"
 #include "player/lie.h"
@@ -65,7 +66,7 @@ inline games::Advice basic_pro(const games::State& state, const Scene& table, st
             for (const auto& [fast, turned] : variants) {
                 games::Advice action = advice;
                 action.cue.speed = fast;
-                action.cue.aim_deg = direction_deg(aim.x(), aim.y()) + turned;
+                action.cue.aim_deg = carom::direction_deg(aim.x(), aim.y()) + turned;
                 action.cue.elevation_deg = action.cue.side = action.cue.height = 0.0;
                 action.ball = action.call.ball = std::to_string(ball.number);
                 action.pocket = action.call.pocket = pocket.id;
