@@ -157,6 +157,11 @@ std::optional<std::pair<const Jaw*, const Jaw*>> jaws_of(const Table& table, con
     return std::pair(jaws[0], jaws[1]);
 }
 
+double hit_aim_deg(const Vec2& way, double both, double hit) {
+    const double reach = both / std::max(length(way), 1e-9);
+    return direction_deg(way) + 90.0 - arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
+}
+
 PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R) {
     PocketLine line;
     line.pocket = static_cast<int>(&pocket - table.pockets.data());

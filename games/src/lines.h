@@ -25,6 +25,10 @@ const Pocket& pocket_of(const Scene& scene, std::string_view id);
 /// The paths of a ball of radius R from a place into a pocket of the table; other balls are ignored.
 PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R);
 
+/// The aim at a ball that lies `way` from the cue ball [degrees]. @param both  the sum of the two radii [m]
+/// @param hit  0 is full, 1 and -1 pass its left and right edge; nothing is allowed for squirt
+double hit_aim_deg(const Vec2& way, double both, double hit);
+
 /// The first thing after `time` that ends a ball's straight run: a cushion, a ball, a pocket, or rest (null).
 const Event* next_stop(const Record& record, int ball, double time);
 /// How far a ball deviates from the direction `towards` between a time and a stop: the sine of the angle,

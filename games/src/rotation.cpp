@@ -1,4 +1,4 @@
-// What nine-ball and ten-ball share (WPA 2 and 9).
+// The rules that nine-ball and ten-ball share (WPA 2 and 9).
 #include <algorithm>
 #include <cstddef>
 #include <string>

@@ -16,6 +16,7 @@
 #include "carom/engine/scene_number.h"
 #include "carom/engine/strike.h"
 #include "carom/kernel/splitmix64.h"
+#include "lines.h"
 
 namespace carom::games::detail {
 
@@ -105,9 +106,7 @@ std::vector<double> Trials::meant(const std::vector<double>& values) const {
     };
     const auto target = static_cast<std::size_t>(hit_);
     const Vec2 way = planar(scene_.ball[target].position) - place;
-    const double reach = (radius(struck_) + radius(target)) / std::max(way.norm(), 1e-9);
-    row[0] = carom::direction_deg(way.x(), way.y()) + 90.0 -
-             arc_cos(std::clamp(hit * reach, -1.0, 1.0)) * kDegrees;
+    row[0] = hit_aim_deg(way, radius(struck_) + radius(target), hit);
     return row;
 }
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/strike.h"
+#include "carom/games/shot.h"
 #include "player/lie.h"
 #include "support/player_racks.h"
 
@@ -191,6 +193,34 @@ TEST(Player, AChanceFallsWithDistanceCutAndError) {
     EXPECT_GT(chance({0.5, 0.5}, 0.005), chance({0.9, 0.9}, 0.005));
     EXPECT_GT(chance({0.6, 0.6}, 0.005), chance({0.35, 0.75}, 0.005));
     EXPECT_GT(chance({0.6, 0.6}, 0.002), chance({0.6, 0.6}, 0.02));
+}
+
+// The number of the front ball depends on the rack.
+TEST(Player, TheBreakMeetsTheFrontBallFirst) {
+    for (const Game game : {Game::kEightBall, Game::kNineBall, Game::kTenBall}) {
+        for (const std::uint64_t seed : {1, 2, 3, 777}) {
+            const Scene rack = nine_foot_rack(game, seed);
+            const Scene shot = games::scene_with(rack, ask(games::new_game(game), rack).front());
+            const auto front = std::min_element(
+                rack.ball.begin(), rack.ball.end(), [](const BallStart& a, const BallStart& b) {
+                    const bool cue = a.id == "cue" || b.id == "cue";
+                    return cue ? b.id == "cue" : a.position.y() < b.position.y();
+                });
+            const Record record = simulate(make_plan(shot, kernel::best_isa()));
+            const games::Shot read = games::shot_of(record);
+            ASSERT_EQ(read.first_hits.size(), 1u);
+            EXPECT_EQ(record.tracks[static_cast<std::size_t>(read.first_hits[0])].id, front->id)
+                << name(game) << " " << seed;
+        }
+    }
+}
+
+TEST(Player, TheCueHasRoom) {
+    // The cue ball lies at the head rail, and a ball lies right behind it for a shot across the table.
+    const Scene scene =
+        table({{"cue", {0.6, 0.03}}, {"9", {0.54, 0.03}}, {"3", {0.9, 0.4}}, {"8", {0.4, 2.2}}});
+    for (const Advice& a : ask(turn(Game::kEightBall, Group::kSolids), scene))
+        EXPECT_EQ(room_for(scene, a.cue).in, "") << games::words_of(a, scene.table);
 }
 
 TEST(Player, RacksEnd) {

@@ -258,8 +258,8 @@ double Clusters::overlap_ends() const {
     return longest;
 }
 
-// What a ball meets on its path: another ball, kTable or kNone. A ball that no cluster may include counts as
-// the table.
+// Returns the first ball that a member meets on its path, kTable or kNone. A ball that no cluster may include
+// counts as the table.
 int Clusters::find_obstacle() const {
     int found = kNone;
     for (std::size_t k = 0; k < members_.size() && found != kTable; ++k) {

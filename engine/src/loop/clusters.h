@@ -74,7 +74,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
-    // What keeps the last cluster from lasting: a ball, or
+    // The index of the ball for which the last cluster takes no time, or one of these two.
     static constexpr int kNone = -1, kTable = -2;
     int obstacle_ = kTable;
     bool in_space_ = false;

@@ -1,4 +1,4 @@
-// What a player plays, chooses and says.
+// The player's advice: levels, breaks, the choice among options, and words.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "carom/games/aim.h"
 #include "carom/games/player.h"
 #include "facts.h"
+#include "lines.h"
 #include "player/lie.h"
 #include "player/search.h"
 
@@ -117,8 +118,7 @@ Attempt break_of(const State& state, const Scene& scene) {
     candidate.cue.height = b.height;
     candidate.kind = ShotKind::kBreak;
     const Vec2 way = planar(apex->position) - candidate.place;
-    const double both = scene.size_of(*apex).R + scene.size_of(cue).R;
-    candidate.cue.aim_deg = direction_deg(way) + 90.0 - arc_cos(b.hit * both / length(way)) * kDegrees;
+    candidate.cue.aim_deg = detail::hit_aim_deg(way, scene.size_of(*apex).R + scene.size_of(cue).R, b.hit);
     return candidate;
 }
 

@@ -243,7 +243,7 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
     const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
-    // What a player must pot before the money ball, and how likely that is from good places.
+    // The balls that a player must pot, the money ball among them, and how likely that is from good places.
     struct Task {
         double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
     };

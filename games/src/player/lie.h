@@ -65,6 +65,8 @@ class Potting {
     double value(const State& state, const Lie& lie) const;
     /// The number of the ball with the surest pot for the player to shoot; 0: there is none.
     int surest(const State& state, const Lie& lie) const;
+    /// Whether the cue ball may lie there between the noses.
+    bool inside(const Vec2& place) const;
     /// [m] From centre to centre of the cue ball and an object ball that touch.
     double both() const { return both_; }
 
@@ -76,7 +78,6 @@ class Potting {
     };
     Path path(int pocket, const Vec2& from) const;
     double chance(double distance, double straight, double width) const;
-    bool inside(const Vec2& place) const;
     bool clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const;
     /// Whether the cue ball has a clear way to the ghost ball from one of three good places.
     bool reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const;

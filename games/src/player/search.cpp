@@ -107,7 +107,9 @@ Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa 
       first_(0),
       cue_ball_(static_cast<std::size_t>(index_of(scene_.ball, scene_.cue->ball))),
       in_hand_(state.in_hand != InHand::kNo || state.opening) {
-    for (const std::string& id : legal(state, ids_of(scene_.ball)).first) first_ |= only(number_of(id));
+    const Legal allowed = legal(state, ids_of(scene_.ball));
+    for (const std::string& id : allowed.first) first_ |= only(number_of(id));
+    calls_ = !allowed.callable.empty();
 }
 
 void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const {
@@ -220,7 +222,7 @@ std::vector<Attempt> Search::pots(std::span<const Vec2> places) const {
             candidate.ball = pot.ball;
             candidate.pocket = pot.pocket;
             candidate.cut_deg = turn_deg(pot.ghost - place, pot.towards);
-            if (!legal(state_, ids_of(scene_.ball)).callable.empty())
+            if (calls_)
                 candidate.call = {.ball = std::to_string(pot.ball),
                                   .pocket = scene_.table.pockets[static_cast<std::size_t>(pot.pocket)].id};
             candidate.cue = *scene_.cue;
@@ -263,9 +265,8 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
         if ((first_ & only(ball.number)) == 0) continue;
         const Vec2 way = ball.place - place;
         for (int k = 0; k < grid.hits; ++k) {
-            const double offset =
-                kThinnestHit * (2.0 * k / (grid.hits - 1) - 1.0) * potting_.both() / length(way);
-            const double aim = direction_deg(way) + 90.0 - arc_cos(std::clamp(offset, -1.0, 1.0)) * kDegrees;
+            const double hit = kThinnestHit * (2.0 * k / (grid.hits - 1) - 1.0);
+            const double aim = hit_aim_deg(way, potting_.both(), hit);
             for (const double speed : kSweepSpeeds) add(aim, speed);
         }
     }
@@ -276,18 +277,17 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
     cues.reserve(tried.size());
     for (const Attempt& candidate : tried) cues.push_back(candidate.cue);
     std::vector<Result> results(tried.size()), pushed(tried.size());
-    const bool calls = !legal(state_, ids_of(scene_.ball)).callable.empty();
     play(cues, std::vector<Vec2>(tried.size(), place), [&](std::size_t i, const Record& record) {
         Attempt& candidate = tried[i];
         candidate.call = lucky_call(state_, record);
-        candidate.call.safety = calls && candidate.call.ball.empty();
+        candidate.call.safety = calls_ && candidate.call.ball.empty();
         results[i] = result(record, candidate.call);
         candidate.kind = ShotKind::kSafety;
         if (results[i].made) {
             const Shot shot = shot_of(record);
             for (const Shot::Fallen& fallen : shot.pocketed) {
                 const std::string& id = record.tracks[static_cast<std::size_t>(fallen.ball)].id;
-                if (fallen.ball == shot.struck || (calls && id != candidate.call.ball)) continue;
+                if (fallen.ball == shot.struck || (calls_ && id != candidate.call.ball)) continue;
                 candidate.kind = kind_of(record, shot, fallen);
                 candidate.ball = number_of(id);
                 candidate.pocket = fallen.pocket;
@@ -300,8 +300,8 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
         }
         if (state_.may_push_out) pushed[i] = result(record, kPush);
     });
-    // Whatever makes a ball is a candidate, and the best of the others by what they leave: fouls, too, so
-    // that there is always one.
+    // Every shot that makes a ball is a candidate, and so are the best of the others by what they leave.
+    // Fouls are among these, so that there is always one.
     std::vector<std::size_t> made, others, pushes;
     for (std::size_t i = 0; i < tried.size(); ++i) (results[i].made ? made : others).push_back(i);
     const auto top = [](std::vector<std::size_t>& list, const std::vector<Result>& by, std::size_t most) {
@@ -329,12 +329,7 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
 }
 
 bool Search::may_lie(const Vec2& place) const {
-    if (!in_area(scene_.table, state_.in_hand, place)) return false;
-    const double R = scene_.size_of(scene_.ball[cue_ball_]).R;
-    const Vec2 from = place - scene_.table.corner;
-    if (from.x() < R || from.y() < R || from.x() > scene_.table.width - R ||
-        from.y() > scene_.table.length - R)
-        return false;
+    if (!in_area(scene_.table, state_.in_hand, place) || !potting_.inside(place)) return false;
     // A touching ball is no place to shoot from.
     return std::all_of(lie_.balls.begin(), lie_.balls.end(), [&](const Lie::Ball& ball) {
         return length(ball.place - place) > potting_.both() + kSpotGap;

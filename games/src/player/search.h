@@ -79,6 +79,7 @@ class Search {
     Numbers targets_, first_;
     std::size_t cue_ball_;
     bool in_hand_;
+    bool calls_ = false;  ///< whether the game has calls
 };
 
 }  // namespace carom::games::detail
