@@ -127,6 +127,11 @@ TEST(FoundScenes, FrictionBetweenBallsDrivesNone) {
         EXPECT_EQ(what_breaks(*family_scene(family, seed)), "") << family;
 }
 
+// A ball of a cluster was met by another, and overlapped its partner by 1.6e-6 m until the cluster's end.
+TEST(FoundScenes, WhoLeavesAClusterEarlyMayOverlap) {
+    EXPECT_EQ(what_breaks(*family_scene("tray", 920956)), "");
+}
+
 /// The same scene with its balls listed in another order.
 Scene reordered(Scene scene, std::uint64_t seed) {
     reference::Generator random(seed);

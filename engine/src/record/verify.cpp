@@ -185,10 +185,10 @@ class Checker {
             const SeenBall ball = seen(i);
             const std::string& id = record_.tracks[i].id;
             for (std::size_t j = i + 1; j < now.size(); ++j) {
-                if (is_gone(now[j].state) || collide(segment_at(i, t), segment_at(j, t))) continue;
+                if (is_gone(now[j].state)) continue;
                 const SeenBall other = seen(j);
                 const double gap = gap_between(ball, other);
-                if (gap < -allowed_depth(ball) - other.rounding)
+                if (gap < -allowed_depth(ball) - other.rounding && !share_cluster(record_, i, j, t))
                     report("U3", "balls {} and {} overlap by {:.3g} m", id, record_.tracks[j].id, -gap);
             }
             // A ball may cross a cushion's line only beyond the cushion's ends.

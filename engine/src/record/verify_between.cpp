@@ -174,7 +174,6 @@ class Between {
 
     void check_pair(std::size_t i, std::size_t j, double from, double to) {
         if (pieces_[i].pocketed || !(pieces_[i].moves || pieces_[j].moves)) return;
-        if (collide(segment(i), segment(j))) return;
         const double touching = R(i) + R(j);
         const Vec2 apart = pieces_[j].r - pieces_[i].r;
         const double near = touching + pieces_[i].reach + pieces_[j].reach;
@@ -183,7 +182,7 @@ class Between {
             const double t = from + share * (to - from);
             const SeenBall one = seen(i, t), other = seen(j, t);
             const double gap = gap_between(one, other);
-            if (gap < -allowed_depth(one) - other.rounding)
+            if (gap < -allowed_depth(one) - other.rounding && !share_cluster(record_, i, j, t))
                 report("U3", t, "balls {} and {} overlap by {:.3g} m", id(i), id(j), -gap);
         }
     }
@@ -275,6 +274,21 @@ BallState entering(const Record& record, std::size_t ball, const Segment& collid
     const Placed placed = placed_at(before, tau, record.gravity);
     const double R = record.size(static_cast<int>(ball)).R;
     return {before.state, placed.position, placed.velocity, spin_at(before, tau, R)};
+}
+
+bool share_cluster(const Record& record, std::size_t one, std::size_t other, double t) {
+    const auto any = [&](std::size_t ball, const auto& matches) {
+        const BallTrack& track = record.tracks[ball];
+        // Backwards, because the cluster is nearly always the last of the ball's segments.
+        for (std::size_t k = track.segment_at(t) + 1; k-- > 0;) {
+            const Segment& s = track.segments[k];
+            if (s.state == MotionState::kColliding && t < s.start + s.duration && matches(s)) return true;
+        }
+        return false;
+    };
+    return any(one, [&](const Segment& a) {
+        return any(other, [&](const Segment& b) { return a.start == b.start; });
+    });
 }
 
 double ball_energy(const Record& record, int ball, const BallState& state) {

@@ -10,6 +10,10 @@ namespace carom {
 /// The state of a ball at the end of the segment before `colliding`, one of its own: it enters a cluster.
 BallState entering(const Record& record, std::size_t ball, const Segment& colliding);
 
+/// Whether a cluster moves both balls at time t, or would have if one of them had not met something else
+/// before its end: until then they may still overlap.
+bool share_cluster(const Record& record, std::size_t one, std::size_t other, double t);
+
 /// [J/kg] Energy of a ball, divided by the mass in [balls]; a ball in a pocket has none.
 double ball_energy(const Record& record, int ball, const BallState& state);
 
