@@ -12,6 +12,7 @@
 #include "carom/engine/geometry.h"
 #include "carom/engine/tolerances.h"
 #include "contact/touch.h"
+#include "physics/nose_reach.h"
 #include "physics/touch_tolerance.h"
 #include "scene/sections.h"
 
@@ -75,11 +76,19 @@ void check_reach(const Section& top, const Scene& scene) {
         const auto depth_at = [&](const Vec2& point, double height) {
             return depth_in({point, 0.0, height, EventType::kBallCushion, 0});
         };
+        // Most parts are far from most balls, and a batch checks every shot.
+        const auto is_far = [&](const Vec2& a, const Vec2& b, double radius) {
+            const double near = radius + kNoseReach * R;
+            return p.x() < std::min(a.x(), b.x()) - near || p.x() > std::max(a.x(), b.x()) + near ||
+                   p.y() < std::min(a.y(), b.y()) - near || p.y() > std::max(a.y(), b.y()) + near;
+        };
         for (const Cushion& c : scene.table.cushions) {
+            if (is_far(c.from, c.to, 0.0)) continue;
             const double depth = depth_at(nearest_point(line_of(c, 0.0), p), c.height);
             if (depth > touch) refuse(ball, "cushion", c.id, depth);
         }
         for (const Jaw& j : scene.table.jaws) {
+            if (!j.is_arc() && is_far(j.center, j.center, j.radius)) continue;
             const Nose nose = nose_of(j, 0, 0.0);
             if (!j.is_arc()) {
                 if (!at.flies && length(p - j.center) < j.radius - R)
