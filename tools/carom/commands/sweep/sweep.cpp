@@ -3,7 +3,6 @@
 // A row depends only on the scene, the rules, the seed and its number. The engine plays a block of shots on
 // all threads, and their rows are written in order.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -106,6 +105,7 @@ void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa,
     auto size = 2 * static_cast<std::uint64_t>(threads);
     std::uint64_t begun = table.next();
     std::future<SweepBlock> next;
+    std::string rows;
     const auto begin_next = [&] {
         const std::uint64_t first = begun, shots = std::min(size, range.last - begun);
         begun += shots;
@@ -119,7 +119,9 @@ void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa,
         const SweepBlock block = next.get();
         if (Clock::now() - start < kBlockTime && size < kLargestBlock) size *= 2;
         if (begun < range.last) begin_next();
-        table.add(fmt::format("{}", fmt::join(block.rows, "")), block.shots.count, totals.add(block.shots));
+        rows.clear();
+        for (const std::string& row : block.rows) rows += row;
+        table.add(rows, block.shots.count, totals.add(block.shots));
         status.show(table.next(), totals.outcomes);
         line.show_bar(static_cast<long>(table.next() - range.first),
                       static_cast<long>(range.last - range.first));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "base/console.h"
 #include "base/fnv.h"
@@ -24,7 +25,7 @@ constexpr std::chrono::milliseconds kFirstWait(50), kLongestWait(1000);
 
 std::string hash_line(std::string_view text) {
     Fnv hash;
-    hash.add(text);
+    hash.add_long(text);
     return fmt::format("{:016x}\n", hash.value());
 }
 
@@ -75,6 +76,7 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
 }
 
 TableInParts::~TableInParts() {
+    if (writing_.valid()) writing_.wait();
     lock_.reset();
     std::error_code ignored;
     if (!folder_.empty()) fs::remove(folder_, ignored);  // unless it holds parts
@@ -118,28 +120,37 @@ void TableInParts::add(std::string_view rows, std::uint64_t shots, std::uint64_t
     if (folder_.empty()) return;
     rows_ += rows;
     if (Clock::now() - kept_at_ < wait_) return;
-    keep();
+    begin_part();
     wait_ = std::min<Clock::duration>(2 * wait_, kLongestWait);
 }
 
 void TableInParts::keep() {
+    begin_part();
+    if (writing_.valid()) writing_.get();
+}
+
+// Another thread writes the part, because one that writes all rows twice limits how many others can play.
+void TableInParts::begin_part() {
     if (rows_.empty()) return;
     const nlohmann::ordered_json about = {{"version", program_version()},
                                           {"first", kept_},
                                           {"last", next_},
                                           {"failed", failed_ - failed_kept_}};
     rows_ += about.dump() + '\n';
-    OutputFile file(part(kept_));
-    file.write(rows_);
-    file.write(hash_line(rows_));
-    file.commit(true);
-    rows_.clear();
+    if (writing_.valid()) writing_.get();
+    writing_ = std::async(std::launch::async, [path = part(kept_), text = std::exchange(rows_, {})] {
+        OutputFile file(path);
+        file.write(text);
+        file.write(hash_line(text));
+        file.commit(true);
+    });
     kept_ = next_;
     failed_kept_ = failed_;
     kept_at_ = Clock::now();
 }
 
 void TableInParts::commit() {
+    if (writing_.valid()) writing_.get();
     whole_.commit(true);
     std::error_code ignored;
     if (!folder_.empty()) fs::remove_all(folder_, ignored);

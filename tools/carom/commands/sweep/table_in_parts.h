@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ class TableInParts {
     using Clock = std::chrono::steady_clock;
     bool take_up();
     std::string part(std::uint64_t first) const;
+    void begin_part();
 
     OutputFile whole_;
     std::string folder_, found_, rows_;
@@ -50,6 +52,7 @@ class TableInParts {
     std::uint64_t next_, kept_, failed_ = 0, failed_kept_ = 0;
     Clock::time_point kept_at_ = Clock::now();
     Clock::duration wait_;
+    std::future<void> writing_;  // the last part
 };
 
 }  // namespace carom::tools
