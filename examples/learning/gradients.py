@@ -5,7 +5,7 @@ balls at the end out.
     python examples/learning/gradients.py    # compares the derivatives with differences, by what is installed
 
 Derivatives hold while the order of events does, and a shot without them raises ValueError
-(docs/guide/precise.md).
+(docs/guide/find.md).
 """
 
 from __future__ import annotations

@@ -32,8 +32,8 @@ def blocks(page):
 
 def test_there_are_pages():
     assert [page.name for page in PAGES] == [
-        "README.md", "classroom.md", "clusters.md", "fit.md", "games.md", "learning.md", "mathematics.md",
-        "player.md", "python.md"]
+        "README.md", "clusters.md", "find.md", "games.md", "learning.md", "player.md", "python.md",
+        "teaching.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
