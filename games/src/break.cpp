@@ -20,19 +20,16 @@
 namespace carom::games {
 namespace {
 
-/// The rack of a game, and what its good break does.
+/// The rack of a game, and its rules.
 struct BreakGame {
     RackGame rack;
     std::optional<int> spot_ball;
-    const char* want;
-    std::optional<Game> game;
+    Game game;
 };
 // In the order of kBreakGames.
-constexpr BreakGame kGames[] = {
-    {RackGame::kNineBall, 9, "any_pocketed and legal_break", Game::kNineBall},
-    {RackGame::kTenBall, {}, "any_pocketed and not scratch", {}},
-    {RackGame::kEightBall, {}, "any_pocketed and legal_break", Game::kEightBall},
-};
+constexpr BreakGame kGames[] = {{RackGame::kNineBall, 9, Game::kNineBall},
+                                {RackGame::kTenBall, {}, Game::kTenBall},
+                                {RackGame::kEightBall, {}, Game::kEightBall}};
 static_assert(std::size(kGames) == kBreakGames.size());
 
 const BreakGame& game_of(const std::string& name) {
@@ -104,7 +101,7 @@ BreakSearch break_search(const BreakOptions& options) {
     const Scene bare = without_rack(options);
     BreakSearch search;
     search.scene = bare;
-    search.want = game.want;
+    search.want = "any_pocketed and legal_break";
     search.game = game.game;
     add_rack(search.scene, rack);
     validate(search.scene);

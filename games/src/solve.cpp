@@ -21,8 +21,9 @@ namespace {
 using detail::Candidate;
 using detail::Trials;
 
-// Shares of the budget: the first look at the whole space, the generations; the rest is for the figures.
-constexpr double kLook = 0.30, kBreed = 0.52, kReport = 0.10;
+// Shares of the budget: the first look at the whole space, the generations, and the choice among the last
+// one; the rest is for the figures.
+constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.10, kReport = 0.10;
 // [shots] Of a candidate in the first look, and how many more the quarter that stays gets each time.
 constexpr std::size_t kFirst = 8, kMore = 3, kRounds = 3;
 // Generations, how near to their parents they begin in parts of a range, and by how much that shrinks.
@@ -52,6 +53,10 @@ class Solver {
         for (int generation = 0; generation < kGenerations && static_cast<double>(trials_.played()) < bred;
              ++generation, nearby *= kShrink)
             best = breed(std::move(best), nearby);
+        // After 120 shots the best is often only the luckiest.
+        trials_.play(best, static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) /
+                               best.size());
+        sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not seen.
         const auto each = std::max<std::size_t>(

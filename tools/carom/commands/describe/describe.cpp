@@ -135,29 +135,39 @@ std::string page_meaning(const Option& row) {
     return markdown(text);
 }
 
+/// The list item of an option. @param before  the page up to here: a long list of choices stands once on it
+std::string page_item(const Option& row, const std::string& before) {
+    std::string item = fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
+                                   row.value, page_meaning(row));
+    const std::string choices = code_list(row.choices);
+    if (row.choices.size() > 5 && before.find(choices) != before.npos)
+        item += "; one of those above";
+    else if (!row.choices.empty())
+        item += "; one of " + choices;
+    if (row.range) item += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
+    if (!row.needs.empty()) item += fmt::format("; needs `{}`", row.needs);
+    if (!row.excludes.empty()) item += fmt::format("; not with `{}`", row.excludes);
+    return item + "\n";
+}
+
 void page_command(std::string& out, const Options& command, const std::string& path) {
     const std::string name = path + " " + command.name;
     for (const Options& inner : command.commands) page_command(out, inner, name);
     if (!command.run) return;
     out +=
         fmt::format("\n## {}\n\n`{}`\n\n{}.\n\n", name, synopsis_of(command, name), markdown(command.text));
+    std::vector<std::string> again;
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
             if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
-            out += fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
-                               row.value, page_meaning(row));
-            // A long list stands once on the page.
-            const std::string choices = code_list(row.choices);
-            if (row.choices.size() > 5 && out.find(choices) != out.npos)
-                out += "; one of those above";
-            else if (!row.choices.empty())
-                out += "; one of " + choices;
-            if (row.range) out += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
-            if (!row.needs.empty()) out += fmt::format("; needs `{}`", row.needs);
-            if (!row.excludes.empty()) out += fmt::format("; not with `{}`", row.excludes);
-            out += "\n";
+            const std::string item = page_item(row, out);
+            if (out.find(item) == out.npos)
+                out += item;
+            else
+                again.push_back(joined(row.names, ", "));
         }
     }
+    if (!again.empty()) out += fmt::format("* As above: {}\n", code_list(again));
     if (command.footer.empty()) return;
     std::string footer = replaced(markdown(command.footer), "\n  ", "\n* ");
     if (const std::size_t list = footer.find("\n* "); list != footer.npos) footer.insert(list, "\n");

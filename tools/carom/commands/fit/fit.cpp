@@ -119,7 +119,7 @@ void add_fit(Options& program) {
         true;
     command
         .option("--vary", &args.vary, "KEY,...",
-                "What is fitted, as in balls.mu_s,balls.mu_r,cue.speed; clock is the time of the "
+                "Keys to fit, as in balls.mu_s,balls.mu_r,cue.speed; clock is the time of the "
                 "stroke on the clock of the tracks")
         .required = true;
     command.option("--most-shots", &args.shots, "N", "Shots after which it gives up").in(1, 1e6);

@@ -209,15 +209,16 @@ void add_game(Options& command, GameArgs& args) {
                    "The state before the shot (default: that before the break)");
     command.option("--state-out", &args.state_out, "FILE.json",
                    "Write the state after the shot (default: not written)");
-    command.option("--ball", &args.ball, "ID", "The ball that was called (default: none)");
-    command.option("--pocket", &args.pocket, "ID", "The pocket that was called (default: none)");
+    command.option("--ball", &args.ball, "ID", "The called ball (default: none)");
+    command.option("--pocket", &args.pocket, "ID", "The called pocket (default: none)");
     command.option(
         "--rules", &args.rules, "KEY=VALUE",
         "An option of the game, which carom describe games lists; may be repeated (default: none)");
     command.flag("--safety", args.safety,
                  "Eight-ball, ten-ball, straight pool: a safety was called (default: off)");
     command.flag("--push-out", args.push_out, "Nine-ball, ten-ball: a push out was called (default: off)");
-    command.option("--option", &args.option, "N", "The choice that is taken, if there are several").in(1, 9);
+    command.option("--option", &args.option, "N", "Number of the choice to take, if there are several")
+        .in(1, 9);
 }
 
 }  // namespace

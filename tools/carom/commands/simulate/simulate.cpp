@@ -317,8 +317,7 @@ void add_simulate(Options& program) {
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
-    command.flag("--list", args.list,
-                 "Tell every event, not only the landmarks of a long shot (default: off)");
+    command.flag("--list", args.list, "Print every event, also of a long shot (default: off)");
     command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
         .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
@@ -329,7 +328,7 @@ void add_simulate(Options& program) {
     command.option("--measure", &args.measures, "EXPRESSION",
                    "Print a measure that carom describe measures lists, or an expression; may be repeated "
                    "(default: none)");
-    command.option("--game", &args.game, "GAME", "What measures such as point judge by (default: none)")
+    command.option("--game", &args.game, "GAME", "Rules for measures such as point (default: none)")
         .one_of(game_names());
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.flag("--verify", args.verify,

@@ -111,19 +111,18 @@ int run(const BreakArgs& args) {
 }  // namespace
 
 void add_break(Options& program) {
-    auto [command, args] = program.command<BreakArgs>(
-        "break", "Recommend a break: where from, how full, how hard, and how sure it is", run);
+    auto [command, args] =
+        program.command<BreakArgs>("break", "Recommend a break: place, cut, speed, and success rate", run);
     Option& game = command.argument("GAME", args.wanted.game, "The game");
     game.choices.assign(games::kBreakGames.begin(), games::kBreakGames.end());
     command.option("--table", &args.wanted.table, "PRESET", "The table, as a scene names it");
     command.flag("--box", args.wanted.box,
-                 "The cue ball at least a diamond from either long rail (default: off)");
+                 "Place the cue ball at least a diamond from either long rail (default: off)");
     command.option("--rack", &args.wanted.rack, "RACK",
                    "template: the balls touch; triangle: 50 micrometres apart; or gap=METRES");
     command.option("--radius-sd", &args.wanted.radius_sd, "METRES",
-                   "How much the radii of the racked balls vary: their standard deviation");
-    command.option("--speed-max", &args.wanted.speed_max, "V",
-                   "The hardest that the player hits: speed of the cue ball in m/s");
+                   "Standard deviation of the radii of the racked balls");
+    command.option("--speed-max", &args.wanted.speed_max, "V", "Maximum cue-ball speed in m/s");
     add_search(command, args.search);
     command.option("--diagram", &args.diagram, "FILE",
                    "Draw the best break: .svg, .pdf or .png (default: not drawn)");

@@ -138,19 +138,18 @@ int run(const SolveArgs& args) {
 
 void add_solve(Options& program) {
     auto [command, args] = program.command<SolveArgs>(
-        "solve", "Find the shot that most surely does what is wanted, with a hand that errs", run);
+        "solve", "Find the shot most likely to achieve a goal, given the player's errors", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command
         .option("--want", &args.want, "EXPRESSION",
-                "What the shot has to do (carom describe measures); several must all hold")
+                "The goal, an expression of carom describe measures; several must all hold")
         .required = true;
-    command.option(
-        "--vary", &args.vary, "KEY=uniform(a,b)",
-        "What the search may choose; hit.BALL=uniform(-1,1) aims at a ball (default: aim, speed and "
-        "height of the tip)");
+    command.option("--vary", &args.vary, "KEY=uniform(a,b)",
+                   "An input to search; hit.BALL=uniform(-1,1) aims at a ball (default: aim, speed and "
+                   "height of the tip)");
     command.flag("--exact", args.exact,
                  "Move the shots until the balls rest at the centre of every near (default: off)");
-    command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
+    command.option("--game", &args.game, "GAME", "Rules for measures such as foul (default: none)")
         .one_of(game_names());
     command
         .option("--layouts", &args.layouts, "N", "Racks that the shot must cope with, if the scene has one")

@@ -244,9 +244,9 @@ void add_sweep(Options& program) {
                                   "make a product, the last one fastest");
     vary.required = true;
     command.option("--measure", &args.measures, "EXPRESSION",
-                   "A column more, and a line of the summary: any measure or expression that carom describe "
-                   "measures explains, as often as wanted (default: none)");
-    command.option("--game", &args.game, "GAME", "What measures such as foul judge by (default: none)")
+                   "Add a column and a summary line for a measure or an expression of carom describe "
+                   "measures; may be repeated (default: none)");
+    command.option("--game", &args.game, "GAME", "Rules for measures such as foul (default: none)")
         .one_of(game_names());
     command.option("--plot", &args.plot, "FILE",
                    "Draw the first measure: a map over the first two numbers that "
