@@ -47,5 +47,5 @@ endforeach()
 # Where clang 14 of emscripten 3.1.6 makes vectors of scalar code by itself, impacts of unlike balls get other
 # bits: 6 of 2000 variations did. Vectors that the source asks for are not affected.
 target_compile_options(carom_flags INTERFACE -fno-slp-vectorize)
-# What the C++ library of older emscripten versions lacks.
+# Fills gaps in the C++ library of older emscripten versions.
 target_compile_options(carom_flags INTERFACE "SHELL:-include ${PROJECT_SOURCE_DIR}/web/src/compat.h")

@@ -58,7 +58,7 @@ static void shot(void) {
     }
     carom_record_free(record);
 
-    /* What goes wrong is a status and a message. */
+    /* An error is a status and a message. */
     check(carom_scene_set_ball(scene, "1", (const double[9]){0.635, 0.61, radius}));
     if (carom_simulate(scene, -1.0, &record) == CAROM_BAD_SCENE) printf("refused: %s\n", carom_last_error());
     carom_scene_free(scene);

@@ -9,7 +9,7 @@
 #    tolerance.
 # 2. What does a shot do with a small error? We expect the error to grow in proportion, by a factor called the
 #    *gain* of the shot.
-# 3. Is it fast enough? A film has 1/60 s per frame. What is left of that time is the *margin*.
+# 3. Is it fast enough? A film has 1/60 s per frame. The rest of that time is the *margin*.
 
 # %%
 import carom

@@ -1,4 +1,4 @@
-// What the rules of all games share.
+// Shared by the rules of all games.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the two halves of the aiming aid share.
+// Shared by the two halves of the aiming aid.
 #pragma once
 
 #include <optional>

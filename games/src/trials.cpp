@@ -33,7 +33,7 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
         else
             check_varies(scene, choice.key);
     }
-    // What every shot sets, whether it is chosen or not.
+    // Every shot sets these, chosen or not.
     keys_ = {"cue.aim_deg", "cue.speed", "cue.offset.side", "cue.offset.height", "cue.elevation_deg"};
     for (const Choice& choice : options.choices)
         if (choice.key.rfind("hit.", 0) != 0 &&

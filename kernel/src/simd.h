@@ -66,7 +66,7 @@ struct PackType<8> {
 template <int N>
 using Pack = typename PackType<N>::Type;
 
-// Operators of halves. Those of packs that fit into a register are the compiler's.
+// Operators of halves. The compiler has operators for packs that fit into a register.
 #define CAROM_BINARY(op)                                                   \
     template <class Half>                                                  \
     CAROM_INLINE auto operator op(Halves<Half> a, Halves<Half> b) {        \

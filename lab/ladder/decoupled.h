@@ -64,7 +64,7 @@ struct DecoupledMarch {
         s.R[0] = R;
     }
 
-    // What the fast steps carry besides the state.
+    // Values that the fast steps carry besides the state.
     struct Ahead {
         __m128d estimate[kLag], used[kLag];
     };

@@ -155,7 +155,7 @@ struct LaneCarriedRoots {
     }
 };
 
-// What a lane needs besides its vectors.
+// The data of a lane besides its vectors.
 struct LaneRecord : BatchImpact {
     Reduced start;
     ReducedConstants k;

@@ -1,4 +1,4 @@
-// What the kernel variants of the ladder share: constants, and loops with the published stop test. A variant
+// Shared by the kernel variants of the ladder: constants, and loops with the published stop test. A variant
 // contains only what differs: a step, or its own loop.
 #pragma once
 

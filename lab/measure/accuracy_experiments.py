@@ -84,7 +84,7 @@ def balls(text, line):
     return text + f"[balls]\n{line}\n"
 
 
-# What may disturb a shot, and how. Everything is compared with the result at the tolerance TIGHT.
+# Disturbances of a shot. Everything is compared with the result at the tolerance TIGHT.
 TIGHT = "tolerance = 1e-13"
 NOISE = (
     ("last bit of one coordinate", lambda t: physics(moved(t, 1.2e-16), TIGHT)),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the contact phase of a rack costs: baseline impacts, steps, instructions by part, and the error of
+"""The cost of the contact phase of a rack: baseline impacts, steps, instructions by part, and the error of
 fewer steps.
 
 A cue ball meets a touching rack of 15 head-on at 8 m/s (pool balls, the engine's defaults). The kernel is

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What Python costs on top of the engine: importing, one shot, a batch, and states, in one process,
+"""The cost of Python on top of the engine: importing, one shot, a batch, and states, in one process,
 alternating.
 
 The engine's batch is carom_simulate_many of libcarom.so, which passes its arrays to the engine unchanged.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What sharded sweeps cost: CPU time beside the engine's batch and `carom sweep`, bytes per row, memory of
+"""The cost of sharded sweeps: CPU time beside the engine's batch and `carom sweep`, bytes per row, memory of
 the client.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]

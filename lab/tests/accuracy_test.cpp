@@ -1,4 +1,4 @@
-// What carom-lab accuracy concludes from its measurements, and the shot in Box2D.
+// The conclusions of carom-lab accuracy from its measurements, and the shot in Box2D.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What carom-lab bench render refuses.
+// Input that carom-lab bench render refuses.
 #include "bench/render.h"
 
 #include <gtest/gtest.h>

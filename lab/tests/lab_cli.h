@@ -1,4 +1,4 @@
-// What the tests of the laboratory's command line share.
+// Shared by the tests of the laboratory's command line.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class FitResult(NamedTuple):
-    """What `fit` found, with the names of `scipy.optimize.least_squares` where it has them."""
+    """The result of `fit`, with the names of `scipy.optimize.least_squares` where it has them."""
 
     #: The fitted values, in the order of `vary`.
     x: NDArray[np.float64]
@@ -34,7 +34,7 @@ class FitResult(NamedTuple):
     outliers: int
     #: Shots simulated.
     nfev: int
-    #: What the tracks cannot tell apart, a sentence each.
+    #: Values that the tracks cannot separate, a sentence each.
     warnings: tuple[str, ...]
     #: The scene with the fitted values.
     scene: Scene

@@ -68,7 +68,7 @@ class TablePlan(NamedTuple):
 
 @checked
 class Record:
-    """What happened in a shot: motion segments in closed form, and events. Immutable.
+    """A simulated shot: motion segments in closed form, and events. Immutable.
 
     Arrays described as views share the record's memory, are read-only, and keep it alive. Balls are in the
     order of `ids`. A pickled record holds what `save` writes, and its scene.
@@ -148,7 +148,7 @@ class Record:
 
     @property
     def event_details(self) -> NDArray[np.void]:
-        """What every event tells beyond `events`: a new structured array with one row per event.
+        """Details of every event beyond `events`: a new structured array with one row per event.
 
         The columns are those of `carom simulate --events`, and `carom.event_columns()` lists them: position,
         velocity and spin of both balls before and after [m, m/s, rad/s], the point of contact and the normal,
@@ -160,7 +160,7 @@ class Record:
 
     @property
     def met(self) -> list[str]:
-        """What ball a of every event met, by the name that people use: "left rail, head half", "corner
+        """The partner of ball a in every event, by the name that people use: "left rail, head half", "corner
         pocket, foot left", the id of a ball, "" for nothing."""
         return _carom.met_names(self._native)
 

@@ -174,7 +174,7 @@ class Scene:
         return f"<carom.Scene {self.file}: {place}{len(self.ids)} balls ({some})>"
 
 
-#: What functions accept as a scene: a Scene, the path of its file, or its tree.
+#: Accepted as a scene: a Scene, the path of its file, or its tree.
 SceneLike: TypeAlias = Scene | str | os.PathLike[str] | Mapping[str, Any]
 may_be("SceneLike", "Scene | str | PathLike | Mapping")
 

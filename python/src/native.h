@@ -1,4 +1,4 @@
-// What the parts of the extension module share. The Python sources in python/carom are the public interface;
+// Shared by the parts of the extension module. The Python sources in python/carom are the public interface;
 // the module takes flat arrays, which they have checked and shaped.
 #pragma once
 

@@ -98,7 +98,7 @@ TEST(Cloth, LandingsOfTheReference) {
     EXPECT_EQ(on_cloth({{0.0, 0.0, -2.0}, {0.0, 0.0, -1.0}}, balls(), true).w.z(), 0.0) << "not past 0";
 }
 
-// What all landings conserve: v - (2/5) R (z x w) and the direction of the slip; and their balance: energy,
+// Conserved by all landings: v - (2/5) R (z x w) and the direction of the slip; and their balance: energy,
 // and the 2/7 of a slip that ends.
 TEST(Cloth, LandingsKeepTheirLaws) {
     Generator random(22);

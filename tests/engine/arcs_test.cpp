@@ -307,7 +307,7 @@ TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
     EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");
 }
 
-// What draws a table sees arcs as short cushions.
+// Code that draws a table sees arcs as short cushions.
 TEST(Arcs, AreDrawnAsShortCushions) {
     const Scene scene = stadium();
     const Table drawn = without_arcs(scene.table);

@@ -245,7 +245,7 @@ double largest_jump(Three from, const Three& to, int parts) {
 }
 
 // Where a third ball gets out of reach, and where its contact becomes a separate impact, one formula takes
-// over from another. What remains is the step of the one and the regularisation of its friction.
+// over from another. The rest comes from the step of the one and the regularisation of its friction.
 TEST(MovingCluster, NothingJumpsInTheGapAndTheAngle) {
     for (const double mu_b : {0.0, 0.05}) {
         double worst = 0.0;

@@ -95,7 +95,7 @@ TEST(Detector, LooksAgainWhereAPartnerHasTurned) {
     EXPECT_NEAR(next.time, (3.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
 }
 
-// What happens at one instant has an order: pocket, transition, ball, cushion. All numbers here are exact.
+// Events at one instant have an order: pocket, transition, ball, cushion. All numbers here are exact.
 TEST(Detector, OrderAtOneInstant) {
     Scene scene = gliding_scene();
     scene.balls.R = 0.03125;

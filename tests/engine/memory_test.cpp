@@ -1,4 +1,4 @@
-// What the event loop takes from the heap: operator new is replaced here and counts.
+// Heap allocations of the event loop: operator new is replaced here and counts.
 #include <box2d/b2_dynamic_tree.h>
 
 #include <algorithm>

@@ -259,7 +259,7 @@ TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
     const Scene other = scene("[balls]\npreset = \"bar_box_heavy\"\n[cue]\nball = \"1\"\n");
     EXPECT_FALSE(other.ball[0].own);
     EXPECT_TRUE(other.ball[1].own);
-    // What the ball itself says wins, and if that is the common size.
+    // The size of the ball itself wins, even if it equals the common one.
     const Scene plain = parse_scene(
         "[[ball]]\nradius = 0.028575\nmass = 0.170097\n"
         "[balls]\npreset = \"bar_box_oversized\"\n",

@@ -255,7 +255,7 @@ bool in_range(const std::string& head, const std::string& key, const std::string
     return message.find("is out of range") == std::string::npos;
 }
 
-// What must precede a key for it to be read at all.
+// The lines that must precede a key for it to be read at all.
 std::string opening(const std::string& name, const std::string& key) {
     for (const Place& place : kSections) {
         if (name != place.name) continue;

@@ -142,7 +142,7 @@ TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
             const double rate = (gap(kStep) - gap(-kStep)) / (2.0 * kStep),
                          bend = (gap(kStep) - 2.0 * gap(0.0) + gap(-kStep)) / (kStep * kStep);
             // The error of the speed: step^2 / 6 times the third derivative, up to 3 v a / R + 3 v^3 / R^2.
-            // That of the acceleration: step^2 / 12 times the fourth, and rounding over step^2.
+            // The error of the acceleration: step^2 / 12 times the fourth, and rounding over step^2.
             EXPECT_NEAR(touch.closing, -rate, 1e-7) << kind.name << " " << k;
             EXPECT_NEAR(touch.pressing(planar(a)) + touch.n.z() * a.z(), -bend, 1e-6)
                 << kind.name << " " << k;

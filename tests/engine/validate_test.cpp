@@ -346,7 +346,7 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
     EXPECT_GT(kinds.size(), 20u);
 }
 
-// What no file can express.
+// Values that no file can express.
 TEST(Validate, RefusesWhatNoFileCanSay) {
     Scene scene = good();
     scene.physics.ball_ball = nullptr;

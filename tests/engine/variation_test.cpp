@@ -233,7 +233,7 @@ TEST_F(VariationTest, GridsMakeAProductWhoseLastIsFastest) {
         EXPECT_EQ(shot.scene->cue->speed, 1.0 + 0.5 * static_cast<double>(i / 2 % 7)) << i;
         EXPECT_EQ(drawn(shot, 2), i % 2 == 0 ? "stronge" : "han_2005");
     }
-    // What is drawn beside a grid is drawn anew in its second round.
+    // Keys beside a grid are drawn anew in its second round.
     EXPECT_NE(drawn(v.shot(0), 1), drawn(v.shot(14), 1));
     EXPECT_EQ(vary({"cue.speed=uniform(1,2)"}).grid(), 0u);
     // The ends are exact, and whole steps are whole numbers.

@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             const carom::Variation rules = carom::Variation::from_text(kScene, "n.toml", {rule}, 1);
             const carom::VariedShot shot = rules.shot(0);
             if (rule[0] == 'c') check_number(shot.scene->cue->speed, text);
-            // What a batch sets without the file is what the file gives.
+            // A batch that sets a number without the file equals the file with it.
             carom::Scene quick = rules.base();
             if (!rules.put(shot.values, quick)) continue;
             expect(quick.cue->speed == shot.scene->cue->speed);

@@ -1,4 +1,4 @@
-// What an impact must conserve: energy, momentum and, bit for bit, its mirror image, its turn by 90 degrees,
+// Conserved by every impact: energy, momentum and, bit for bit, its mirror image, its turn by 90 degrees,
 // the exchange of the balls and any power of two of its speeds.
 #include <gtest/gtest.h>
 

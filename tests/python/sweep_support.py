@@ -1,4 +1,4 @@
-"""What the tests of sharded sweeps share: plans, workers, and the contents of folders."""
+"""Shared by the tests of sharded sweeps: plans, workers, and the contents of folders."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What events tell, measures, and the search for a shot: the program's numbers, and closed forms."""
+"""Details of events, measures, and the search for a shot: the program's numbers, and closed forms."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ long peak_memory_kb() {
     return -1;
 }
 
-// What Mesa itself takes differs between releases by tens of megabytes, so the memory of a sequence is
+// Mesa's own memory differs between releases by tens of megabytes, so the memory of a sequence is
 // counted from there.
 TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
 #ifdef CAROM_SANITIZED

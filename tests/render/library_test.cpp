@@ -1,4 +1,4 @@
-// What a machine without the libraries reports.
+// Messages on a machine without the libraries.
 #include <gtest/gtest.h>
 
 #include <memory>

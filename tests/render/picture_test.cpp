@@ -1,4 +1,4 @@
-// What the pixels show, checked by statistics of the image.
+// Pictures, checked by statistics of their pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>

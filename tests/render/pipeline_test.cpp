@@ -253,7 +253,7 @@ TEST(Pipeline, ProgressMayStopTheRun) {
         if (done == 8) throw std::runtime_error("interrupted");
     };
     EXPECT_THROW(render_sequence(rolling_ball(), options), std::runtime_error);
-    // What exists is whole.
+    // Every existing file is whole.
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
         EXPECT_EQ(render_test::read_png(entry.path().string()).size, options.size);
     }

@@ -83,7 +83,7 @@ std::uint32_t big(const Bytes& bytes, std::size_t at) {
            std::uint32_t{bytes.at(at + 2)} << 8U | bytes.at(at + 3);
 }
 
-// What libpng may ignore silently: the checksum of every chunk, and that of the zlib stream, which must end
+// libpng may silently ignore: the checksum of every chunk, and that of the zlib stream, which must end
 // where the rows do.
 void expect_sound(const Bytes& bytes, FrameSize size) {
     std::string types;

@@ -155,7 +155,7 @@ TEST(RedrawKept, AnImageMayGoFromOneRendererToAnother) {
     }
 }
 
-// What makes a frame cheap: nothing to do if nothing moves, and only the moving balls if they do.
+// A frame is cheap: nothing to do if nothing moves, and only the moving balls if they do.
 TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     const Stage stage = stage_of("top");
     const ClothMap none;

@@ -1,4 +1,4 @@
-// What a reader of scenes says about a text.
+// The messages of the reader of scenes about a text.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What carom accuracy concludes from its measurements, and the promise of its recommendation.
+// The conclusions of carom accuracy from its measurements, and the promise of its recommendation.
 #include <gtest/gtest.h>
 
 #include <cmath>

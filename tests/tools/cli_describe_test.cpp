@@ -73,7 +73,7 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     if (run_process({"zsh", "--version"}).status != 0) GTEST_SKIP() << "zsh is not installed";
     const ProcessResult result = shell("zsh", "zsh -n _carom", folder.path().string());
     EXPECT_EQ(result.status, 0) << result.err;
-    // What the functions pass to _arguments and _describe, seen by substitutes for them.
+    // The arguments of _arguments and _describe, seen by substitutes for them.
     const ProcessResult seen =
         shell("zsh",
               "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"

@@ -145,7 +145,7 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
         process.send(SIGKILL);
         process.finish("");
     }
-    // Whatever has a frame's name is whole: only a temporary file can be killed between two system calls.
+    // A file with a frame's name is whole: only a temporary file can be killed between two system calls.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
             EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
@@ -245,7 +245,7 @@ TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
     const std::string pipe = folder_.file(".carom.3.0.tmp"), link = folder_.file(".carom.4.0.tmp");
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     fs::create_symlink(scene_, link);
-    // What another program has begun stays until it is whole.
+    // The unfinished file of another program stays.
     OutputFile begun(folder_.file("other.txt"));
     begun.write("whole");
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);

@@ -1,4 +1,4 @@
-// What people mistype, and what others put in the way: files, names, numbers.
+// Mistyped files, names and numbers, and obstacles that others put in the way.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -125,7 +125,7 @@ std::string read_page(const std::string& name) {
     return read_file(std::string(CAROM_SOURCE_DIR "/") + name);
 }
 
-// What a machine may lack, and the Debian package that has it: without the package, the command fails.
+// Programs that a machine may lack, and their Debian packages: without the package, the command fails.
 const std::map<std::string, std::string> kConditions = {
     {"python3 -c 'import numpy'", "python3-numpy"},
     {"python3 -c 'import matplotlib'", "python3-matplotlib"},

@@ -43,7 +43,7 @@ std::vector<Scene> scenes() {
     for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
         if (entry.path().extension() == ".toml") all.push_back(read_scene(entry.path().string()));
     EXPECT_GE(all.size(), 10u);
-    // What no scene of the folder has: friction that falls with the slip, a ball with its own size, an eye.
+    // Missing from the folder's scenes: friction that falls with the slip, a ball with its own size, an eye.
     all.push_back(parse_scene(
         "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[render]\neye = [1, 1, 1]\ntarget = [0, 1, 0]\n"
         "[stop]\nevents = 3\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nmass = 0.2\n"

@@ -22,8 +22,8 @@ using test::TemporaryFolder;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a record file must keep. If you add a field to one of these structs, the compiler leads you here: the
-// names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
+// All that a record file must keep. If you add a field to one of these structs, the compiler leads you here:
+// the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
 // beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and give it
 // a distinct value in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
 struct FieldsOfARecord {

@@ -1,4 +1,4 @@
-// What the tests of the package share.
+// Shared by the tests of the package.
 import {execFileSync} from "node:child_process";
 import {existsSync, readFileSync, readdirSync} from "node:fs";
 import {fileURLToPath} from "node:url";

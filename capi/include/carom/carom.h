@@ -268,13 +268,13 @@ CAROM_API carom_status carom_game_new(carom_game game, int first, int target, ca
  * a message that lists the keys or values, if the game has no such option. */
 CAROM_API carom_status carom_game_rule(carom_game_state* state, const char* option);
 
-/* What the next shot may do with `count` balls, named by their ids: `strike`, `first` and `callable` receive
+/* The rules of the next shot for `count` balls, named by their ids: `strike`, `first` and `callable` receive
  * 1 or 0 for each: whether the ball may be struck, may be hit first by the cue ball, and may be called. Each
  * of them may be NULL. */
 CAROM_API carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids,
                                    uint8_t* strike, uint8_t* first, uint8_t* callable);
 
-/* What a player announces before a shot. A text that is NULL announces nothing. */
+/* An announcement before a shot. A text that is NULL announces nothing. */
 typedef struct carom_call {
     const char* ball;   /* eight-ball: the called ball; snooker: the nominated colour or free ball */
     const char* pocket; /* eight-ball: "p1", ... */
@@ -381,7 +381,7 @@ typedef struct carom_table {
 } carom_table;
 CAROM_API carom_status carom_scene_table(const carom_scene* scene, carom_table* table);
 
-/* What a ball meets in an event, and the parts of a table. */
+/* The partner of a ball in an event, and the parts of a table. */
 typedef enum carom_partner {
     CAROM_NO_PARTNER = 0,
     CAROM_BALL = 1,
@@ -437,7 +437,7 @@ typedef enum carom_event_type {
     CAROM_BALL_OUT = 18
 } carom_event_type;
 
-/* What an event tells beyond carom_event; NaN for what an event of its type does not have. */
+/* Details of an event beyond carom_event; NaN for those that its type does not have. */
 typedef struct carom_event_details {
     double time;      /* [s] */
     int32_t type;     /* a carom_event_type */

@@ -182,7 +182,7 @@ std::optional<Misfit> misfit(const PocketTable& t, double smallest, double large
     if (t.width > t.length)
         return Misfit{"", "size",
                       fmt::format("= [{}, {}] has the long side first; swap the two", t.width, t.length)};
-    // What the pockets take of a rail: half a mouth, and the rounded point.
+    // The part of a rail that a pocket removes: half a mouth, and the rounded point.
     const double at_corner =
         t.corner.mouth / kRoot2 + t.corner.jaw_radius / tan_deg((90.0 + corner_angle) / 2.0);
     const double at_side = t.side.mouth / 2.0 + t.side.jaw_radius / tan_deg((90.0 + t.side.angle) / 2.0);

@@ -103,7 +103,7 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map)
                 now[i] = (8.0 * (near_above[i] - near_below[i]) - (above[i] - below[i])) / (12.0 * h) * size;
                 apart = std::max(apart, std::abs(now[i] - last[i]));
             }
-            // What is far below the size of the impact itself is rounding.
+            // Changes far below the size of the impact itself are rounding.
             const double scale = std::max({largest(now), largest(last), kRounding * size * largest(y)});
             const double error = scale > 0.0 ? apart / scale : 0.0;
             if (h < kFirstStep && error < best) {

@@ -1,4 +1,4 @@
-// What a shot depends on, with the derivatives by its inputs.
+// All that a shot depends on, with the derivatives by its inputs.
 #pragma once
 
 #include <algorithm>

@@ -65,7 +65,7 @@ double size(double a, double b) {
     return square_root(a * a + b * b);
 }
 
-// What the closing speed loses per normal impulse.
+// The loss of closing speed per normal impulse.
 double parting(const Tilt& t, const Forces& f) {
     return t.C * ((t.C - t.S * f.zeta) + t.share[0] * f.gy[0] - t.share[1] * f.gy[1]);
 }

@@ -1,4 +1,4 @@
-// What carom-lab bench kernel times: every variant of the ladder
+// Times for carom-lab bench kernel: every variant of the ladder
 // and every tolerance, on single impacts or on batches.
 #pragma once
 

@@ -49,7 +49,7 @@ class State(NamedTuple):
 
 
 class Call(NamedTuple):
-    """What a player calls before a shot."""
+    """A player's calls before a shot."""
 
     # eight-ball, ten-ball, straight pool: the ball that will fall; snooker: the nominated colour or free
     # ball, "" for the ball hit first
@@ -60,7 +60,7 @@ class Call(NamedTuple):
 
 
 class Legal(NamedTuple):
-    """What the rules allow for the next shot."""
+    """The shots that the rules allow next."""
 
     cue_balls: list[str]  # the balls that may be struck: one id, in free pyramid any
     first: list[str]  # the balls that the cue ball may meet first
@@ -164,7 +164,7 @@ def new_game(
 
 @checked
 def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
-    """What the rules allow for the next shot.
+    """Returns what the rules allow for the next shot.
 
     balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
         "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name

@@ -77,7 +77,7 @@ class TableOptions(Options):
 
 @checked
 class TablesEnv:
-    """What the environments of one table and of many have in common."""
+    """Shared by the environments of one table and of many."""
 
     _rules: Rules
     _options: TableOptions

@@ -94,7 +94,7 @@ class Game:
         return legal
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
-        """What the shots that began with `states` and these strikes are worth.
+        """The rewards of the shots that began with `states` and these strikes.
 
         Results for shots without an end are ignored.
         """
@@ -109,7 +109,7 @@ class Game:
         return shots, self.judge(states, cue, shots)
 
     def points(self, states: States) -> NDArray[np.float64]:
-        """What an observation shows besides the balls [m]: (n, places, 2)."""
+        """Places that an observation shows besides the balls [m]: (n, places, 2)."""
         return np.empty((len(states.xy), 0, 2))
 
     # Common to all games.

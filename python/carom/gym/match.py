@@ -121,7 +121,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
 
     @property
     def state_of_the_game(self) -> games.State:
-        """What the rules remember between shots."""
+        """The state that the rules keep between shots."""
         return self._state
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:

@@ -1,5 +1,5 @@
-"""The contents of a file from elsewhere. Whatever it holds, only SceneError comes out, and memory is bounded
-by a multiple of its size."""
+"""The contents of a file from elsewhere. For any content, the only exception is SceneError, and memory is
+bounded by a multiple of its size."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _parsed(name: str) -> Any:
 
 
 def _array(item: dict[Any, Any]) -> Any:
-    """What msgpack-numpy wrote: arrays and numbers of numpy are maps with their type and bytes."""
+    """Reads the maps of msgpack-numpy: arrays and numbers of numpy are maps with their type and bytes."""
     if b"nd" not in item:
         return item
     kind = item[b"type"]

@@ -34,7 +34,7 @@ class SweepError(RuntimeError):
 
 @checked
 class Plan(NamedTuple):
-    """What the shots of a sweep are. Made by `plan`, or read by `Plan.load`."""
+    """The shots of a sweep. Made by `plan`, or read by `Plan.load`."""
 
     scene: str  # TOML
     name: str  # the scene's, for messages

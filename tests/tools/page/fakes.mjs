@@ -32,7 +32,7 @@ class FakeShot {
   free() { this.freed = true; }
 }
 
-/** What decides a verdict: the options that judge() returns. */
+/** The options that decide a verdict: those that judge() returns. */
 export const OPTIONS = [{decision: "play", text: "player 2 plays", state: {game: "nine_ball", turn: 1}}];
 
 export const carom = {

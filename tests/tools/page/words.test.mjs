@@ -18,7 +18,7 @@ test("every type of event has its own words", () => {
   assert.equal(KINDS.length, 19);
   const told = KINDS.map(({type}) => eventWords(event(type), "metric"));
   assert.equal(new Set(told).size, KINDS.length);
-  // Those of resting contacts are only in the list of all events, under their names.
+  // Events of resting contacts are only in the list of all events, under their names.
   const named = KINDS.filter(({type}, i) => told[i] === `The cue ball: ${type.replaceAll("_", " ")} 1`);
   assert.deepEqual(named, KINDS.filter(({type}) => /_(hold|release)$/.test(type)));
 });

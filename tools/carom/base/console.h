@@ -1,4 +1,4 @@
-// What every command needs to talk to its caller, person or program: output, progress, interruption.
+// Every command talks to its caller, a person or a program, by these: output, progress, interruption.
 #pragma once
 
 #include <chrono>

@@ -34,7 +34,7 @@ std::vector<FrameCost> costs_by_frame(const Record& record, double from, double 
 /// @param sorted ascending, not empty @param p 0..100
 double percentile(const std::vector<double>& sorted, double p);
 
-/// Measures the wall time of frames made one after the other. What the caller does between them (progress
+/// Measures the wall time of frames made one after the other. Work of the caller between them (progress
 /// bar, removing files) does not count. The caller supplies the clock, so that a test can replace it.
 class FrameWalls {
   public:

@@ -1,4 +1,4 @@
-// What a benchmark reports about the machine it runs on.
+// The lines of a benchmark about its machine.
 #pragma once
 
 #include <fstream>

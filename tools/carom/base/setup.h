@@ -16,8 +16,8 @@
 
 namespace carom::tools {
 
-// Each of these adds options, whose variables hold the defaults. Those of add_picture are empty: the scene
-// has the defaults.
+// Each of these adds options, whose variables hold the defaults. The variables of add_picture are empty: the
+// scene has the defaults.
 void add_gl(Options& command, std::string& gl);
 void add_picture(Options& command, std::optional<double>& fps, std::string& size);
 void add_repeat(Options& command, int& rounds, std::string description);

@@ -4,7 +4,7 @@ import {duration, make} from "./dom.js";
 
 export const words = (type) => type.replaceAll("_", " ");
 
-/** What meets ball a in an event: another ball or a part of the table. */
+/** The partner of ball a in an event: another ball or a part of the table. */
 export function partner(record, e) {
   const {jaws, pockets, cushions} = record.table;
   const lists = {ball_jaw: jaws, ball_edge: pockets, ball_pocket: pockets, ball_cushion: cushions};

@@ -1,5 +1,5 @@
-// What rules ask about a shot: which ball hit which first, which cushions, what fell. The record has all of
-// it.
+// The facts that rules need about a shot: which ball hit which first, the cushions, the balls that fell. The
+// record has all of them.
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ struct ImpactAnswer {
     bool ok = false;   ///< false: json is {"error": ...}
 };
 
-/// Computes one line. Whatever the line holds, the answer is a result or an error.
+/// Computes one line. For any line, the answer is a result or an error.
 ImpactAnswer answer_impact(std::string_view line, const ImpactSettings& settings);
 
 /// The kinds of lines and their keys for people, one line each after a first line.

@@ -1,4 +1,4 @@
-// What happened in a shot, told as a person would tell it.
+// The story of a shot, as a person would tell it.
 #pragma once
 
 #include <string>

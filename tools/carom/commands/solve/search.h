@@ -1,4 +1,4 @@
-// What carom solve and carom break share: the hand, the racks, the search with its progress.
+// Shared by carom solve and carom break: the hand, the racks, the search with its progress.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the shots of a sweep come to: shares with their intervals, means and spreads.
+// Sums over the shots of a sweep: shares with their intervals, means and spreads.
 #pragma once
 
 #include <cstddef>
