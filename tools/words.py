@@ -28,6 +28,8 @@ PHRASES = {
     r"\bwho (asks|calls|reads|wants|needs)\b": "the caller, or the reader",
     r"\bthat is there\b": "existing",
     r"\bin touch\b": "touching",
+    r"\btells\b": "says, prints, states or shows",
+    r"^[\s/<*]*(?-i:What|Whatever|Those of|That of)\b(?!.*\?)": "a subject that is no clause",
 }
 
 

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Cushions
 #
-# A ball does not leave a cushion like light from a mirror. The cushion takes speed, its nose rubs, and the
+# A ball does not leave a cushion like light from a mirror. The cushion removes speed, its nose rubs, and the
 # spin that the ball brings or picks up there bends its path until it rolls. We expect
 #
 # * a rolling ball that comes straight in to have about 0.55 of its speed when it rolls again (W. Marlow, The

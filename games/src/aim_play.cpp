@@ -33,7 +33,7 @@ constexpr double kNearMiddle = 1e-3;
 /// [-] Aims tried for banks, from one edge of the ball to the other.
 constexpr int kBankAims = 240;
 
-/// What one strike does to the ball to be potted.
+/// The effect of one strike on the ball to be potted.
 struct Played {
     /// Sine of its angle to the wanted direction, positive to the left; empty if the strike misses
     std::optional<double> off;

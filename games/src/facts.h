@@ -108,7 +108,7 @@ std::vector<Foul> rotation_fouls(const Facts& facts, bool push);
 /// The other player's choice after a push out (WPA 2.4, 9.4), or after a ball that does not count (9.7).
 Verdict shoot_or_pass_back(const State& next, const std::vector<Respot>& respots);
 
-/// What a game is: a row of a table in the order of Game.
+/// A game: a row of a table in the order of Game.
 struct GameRules {
     enum class Book : std::uint8_t { kPool, kCarom, kSnooker, kPyramid, kFourBall };
     enum class Struck : std::uint8_t { kCueBall, kOwn, kAny };

@@ -33,7 +33,7 @@ struct Unit {
 constexpr std::array<Unit, 4> kUnits = {
     {{"mm", 1000.0}, {"cm", 100.0}, {"inches", 39.3701}, {"feet", 3.28084}}};
 
-/// What is left of the residuals if these columns explain what they can.
+/// The residuals that these columns cannot explain.
 VectorXd rest_of(const MatrixXd& columns, const VectorXd& residuals) {
     return residuals - columns * columns.completeOrthogonalDecomposition().solve(residuals);
 }

@@ -48,7 +48,7 @@ struct MeasureRow {
     MeasureValue (*value)(const PlayedShot&, const Arguments&);
 };
 std::span<const MeasureRow> measure_rows();
-/// Those of a ball's route, and of the points that it scores (routes.cpp).
+/// Measures of a ball's route, and of the points that it scores (routes.cpp).
 std::span<const MeasureRow> route_rows();
 
 /// The events in which a ball is driven to a cushion or a jaw.

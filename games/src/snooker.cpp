@@ -39,7 +39,7 @@ std::vector<std::string> balls_on(BallOn on, const std::vector<std::string>& bal
     return list;
 }
 
-/// What is on after a miss or a foul, or after the colour that follows the last red.
+/// The ball on after a miss or a foul, or after the colour that follows the last red.
 BallOn lowest_on(const std::vector<std::string>& balls) {
     int least = static_cast<int>(BallOn::kBlack);
     for (const std::string& ball : balls)

@@ -9,7 +9,7 @@
 //   kTwoAhead in the same way from values one step older, so that the extrapolation, too, is off the
 //               critical path
 //
-// A step whose e is too large for its form takes the series, or square root and division (at the start, near
+// A step whose e is too large for its form uses the series, or square root and division (at the start, near
 // u = 0 or c = 0).
 #pragma once
 

@@ -116,7 +116,7 @@ def _checked_hand(hand: Hand) -> tuple[float, float, float, float]:
     return hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg
 
 
-#: A range as `carom solve --vary` takes it.
+#: A range as `carom solve --vary` accepts it.
 _UNIFORM = re.compile(r"uniform\(([^,]+),([^,]+)\)")
 
 

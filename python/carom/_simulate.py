@@ -164,7 +164,7 @@ class Shots(NamedTuple):
         )
 
     def _native(self) -> Any:
-        """The arrays as the extension module takes them."""
+        """The arrays as the extension module accepts them."""
         arrays = [array.reshape(-1) for array in self[:11] if isinstance(array, np.ndarray)]
         return tuple(arrays if self.hash is not None else [*arrays, np.empty(0, np.uint64)])
 

@@ -105,7 +105,7 @@ bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& 
     return all;
 }
 
-/// What is observed of n tables: x and y from -1 to 1 across the table, and 1; three zeros for a missing ball
+/// Observations of n tables: x and y from -1 to 1 across the table, and 1; three zeros for a missing ball
 /// (NaN).
 /// @param balls n x a x 2 [m] @param marks n x b x 2 [m] @param middle, half of the table, 2 each [m]
 /// @param out n x (a + b) x 3

@@ -86,7 +86,7 @@ std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int thr
     });
 }
 
-/// The same for shots that differ in the numbers of columns. @param play takes the scene, the columns, the
+/// The same for shots that differ in the numbers of columns. @param play gets the scene, the columns, the
 /// instruction set, options and arrays
 template <class Play>
 std::vector<Failure> played_columns(const NativeScene& native, const std::vector<Column>& columns,

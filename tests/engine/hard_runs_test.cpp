@@ -273,7 +273,7 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
     }
 }
 
-// The same where nothing more happens, and time alone goes on to the end of the run.
+// The same where nothing more happens, and only time continues to the end of the run.
 TEST(HardRuns, NoneCreepsUnseenToTheEndOfTheTime) {
     const std::string scene =
         "[[table.cushion]]\nfrom = [0.2, 0.1]\nto = [0.2, 0.9]\n[balls]\nmu_s = 0.0\nmu_r = 0.0\nmu_sp = "

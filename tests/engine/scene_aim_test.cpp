@@ -29,7 +29,7 @@ Cue cue_of(const std::string& cue, const std::string& more = "") {
     return parse_scene(scene_with(cue, more), "aim.toml").cue.value();
 }
 
-/// What happens at the first contact, without squirt.
+/// The first contact, without squirt.
 EventDetails first_contact(const std::string& aim) {
     const Scene scene = parse_scene(scene_with("speed = 2\nend_mass = 0\n" + aim), "aim.toml");
     const Record record = simulate(plan_of(scene));

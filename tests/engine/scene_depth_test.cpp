@@ -23,7 +23,7 @@ std::string dotted(int parts, const std::string& part = "a") {
     return key;
 }
 
-/// Every place where TOML takes a dotted key.
+/// Every place where TOML accepts a dotted key.
 std::vector<std::string> all_places(const std::string& key) {
     return {key + " = 1\n",
             "[" + key + "]\n",

@@ -1,5 +1,5 @@
 // docs/reference/scene_format.md and docs/reference/scene.schema.json against the reader: the same keys, and
-// the defaults that they state are those that the reader takes.
+// the defaults that they state are those that the reader uses.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -112,7 +112,7 @@ TEST(Scenes, TooLargeFile) {
     EXPECT_EQ(error_of(kOneBall + "#" + std::string(carom::kMaxFileSize - kOneBall.size() - 1, 'x')), "");
 }
 
-// A file is read in pieces, and no farther than tells that it is too large.
+// A file is read in pieces, and only until it is known to be too large.
 TEST(Scenes, FilesAreReadAsAWhole) {
     const carom::TemporaryFolder folder;
     const std::string path = folder.file("s.toml");

@@ -119,7 +119,7 @@ TEST(SceneShots, HelloMeetsTwice) {
     EXPECT_EQ(r.duration, 4.0);
 }
 
-/// What a ball hits, in order: ids of balls, cushions and jaws.
+/// The contacts of a ball, in order: ids of balls, cushions and jaws.
 std::vector<std::string> met_by(const Record& r, int ball) {
     std::vector<std::string> met;
     for (const carom::Event& e : r.events) {

@@ -133,7 +133,7 @@ TEST_F(VariationTest, InvalidValuesAreNoScene) {
     EXPECT_GT(bad, 5);
 }
 
-/// What shot() makes has no places in a file: toml++ does not copy them.
+/// Scenes of shot() have no places in a file: toml++ does not copy them.
 Scene without_places(Scene scene) {
     for (BallStart& ball : scene.ball) ball.where = {};
     if (scene.cue) scene.cue->where = {};

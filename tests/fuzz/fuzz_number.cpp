@@ -1,4 +1,4 @@
-// Any text as a number, wherever a scene or a rule takes one: it is refused, or it is the number that the
+// Any text as a number, wherever a scene or a rule accepts one: it is refused, or it is the number that the
 // text says.
 #include <cstddef>
 #include <cstdint>

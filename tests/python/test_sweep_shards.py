@@ -145,7 +145,7 @@ def test_the_hash_of_the_content_does_not_depend_on_how_a_table_is_cut(draw_scen
     assert whole == digest(table.slice(0, 0), table.slice(0, 33), table.slice(33, 1), table.slice(34))
     assert whole == digest(pyarrow.concat_tables([table.slice(0, 50), table.slice(50)]))
     assert whole != digest(table.slice(0, 99)) and whole != digest(table.slice(50), table.slice(0, 50))
-    # The digest tells null from 0, and where one string ends and the next begins.
+    # The digest distinguishes null from 0, and where one string ends and the next begins.
     one, two = (pyarrow.table({"a": pyarrow.array(values)}) for values in (["ab", "c"], ["a", "bc"]))
     null, zero = (
         pyarrow.table({"a": pyarrow.array(values, pyarrow.int64())}) for values in ([1, None], [1, 0]))

@@ -135,7 +135,7 @@ TEST(Picture, BallAtTheRightPixel) {
                  ++y) {
                 for (int x = static_cast<int>(expected.x()) - reach;
                      x <= static_cast<int>(expected.x()) + reach; ++x) {
-                    // Red tells ball from cloth; shadows only darken. 0.5
+                    // Red distinguishes ball from cloth; shadows only darken. 0.5
                     // of the ball's red is saturation for its middle.
                     const double w =
                         std::clamp((whiteness(image, x, y) - whiteness(empty, x, y)) / 0.3, 0.0, 1.0);

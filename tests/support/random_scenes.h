@@ -253,7 +253,7 @@ inline std::string dump(const Scene& scene) {
     return text;
 }
 
-/// What went wrong in a run of the scene: a broken law or an error; empty if nothing. `options` lets a caller
+/// The fault of a run of the scene: a broken law or an error; empty if nothing. `options` lets a caller
 /// watch the run and abandon it (by throwing from its progress function).
 inline std::string what_breaks(const Scene& scene, const SimulateOptions& options = {}) {
     const Plan plan = plan_of(scene);

@@ -17,7 +17,7 @@
 
 namespace carom::test {
 
-/// What a terminal of this width shows after all of `text`: lines without trailing spaces. Knows what the
+/// The screen of a terminal of this width after all of `text`: lines without trailing spaces. Knows what the
 /// program writes: line ends, carriage returns, and "erase to the end of the line".
 inline std::vector<std::string> screen_of(const std::string& text, std::size_t columns) {
     std::vector<std::string> lines(1);

@@ -24,7 +24,7 @@ std::string described(const std::string& format) {
     return result.out;
 }
 
-/// What bash offers for a line whose last word is being typed.
+/// Completions that bash offers for a line whose last word is being typed.
 std::set<std::string> offered(const TemporaryFolder& folder, const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) line += " '" + word + "'";

@@ -188,7 +188,7 @@ double constant_of(const std::string& name, const std::string& file) {
     return found ? std::stod(value.str(1)) : std::nan("");
 }
 
-/// What is wrong with the figures of a page. @param run  returns what a command prints
+/// The wrong figures of a page. @param run  returns what a command prints
 std::vector<std::string> figure_faults(const std::string& page,
                                        const std::function<std::string(const std::string&)>& run) {
     std::vector<std::string> faults;
@@ -216,7 +216,7 @@ std::vector<std::string> figure_faults(const std::string& page,
     return faults;
 }
 
-/// What matches `claim` in a page's sentences and is in no comment of their paragraph. Headings, tables, code
+/// Matches of `claim` in a page's sentences that are in no comment of their paragraph. Headings, tables, code
 /// and targets of links do not count.
 std::vector<std::string> unchecked(const std::string& page, const std::regex& claim) {
     static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)");

@@ -82,7 +82,7 @@ std::set<std::string> anchors_of(const std::string& page) {
     return anchors;
 }
 
-/// What is wrong with the links of a page. `exists` knows the files and folders by their paths from the top
+/// The dead links of a page. `exists` knows the files and folders by their paths from the top
 /// folder.
 std::vector<std::string> dead_links(const Pages& pages, const std::string& name,
                                     const std::function<bool(const std::string&)>& exists) {

@@ -13,7 +13,7 @@ namespace carom::detail {
 /// The type of a value, for messages: "an integer", "a table".
 const char* type_name(const toml::node& node);
 
-/// What is wrong with a number, to follow the name of the value in a message; "" if nothing is.
+/// The fault of a number, to follow the name of the value in a message; "" if nothing is.
 std::string objection(double x, const Interval& allowed);
 std::string objection(std::int64_t x, std::int64_t low, std::int64_t high);
 

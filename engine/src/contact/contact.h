@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// What a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end) counts as a
+/// The partners that a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end) counts as a
 /// cushion. kOut: the border of the table, over which a ball flies.
 enum class With : std::uint8_t { kPocket, kNothing, kBall, kCushion, kNose, kOut };
 

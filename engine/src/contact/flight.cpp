@@ -27,7 +27,7 @@ double dot_of(const Vec3& a, const Vec3& b) {
     return dot3(a, b);
 }
 
-/// Those of the length of a vector x(t) with the derivatives v and a.
+/// The derivatives of the length of a vector x(t) with the derivatives v and a.
 template <class Vector>
 Distance of_length(const Vector& x, const Vector& v, const Vector& a) {
     const double d = std::sqrt(dot_of(x, x));

@@ -48,7 +48,7 @@ inline constexpr double kGapLeft = 1e-7;
 inline constexpr double kGapKept = 0.5 * kGapLeft;
 // [last intervals] A contact with a gap may close it in this time, or slower, without an impulse.
 inline constexpr double kSlackTime = 4.0;
-// [of the speeds] Where nothing takes energy, a contact rests only if it closes more slowly: the energy of
+// [of the speeds] Without dissipation, a contact rests only if it closes more slowly: the energy of
 // its bounce is then less than --verify sees.
 inline constexpr double kLosslessShare = 5e-7;
 

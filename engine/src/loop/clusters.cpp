@@ -282,7 +282,7 @@ bool Clusters::is_member(int ball) const {
                        [ball](const ClusterBall& m) { return m.ball == ball; });
 }
 
-// Whether a ball on its path does not meet another one, which goes on as it does now.
+// Whether a ball on its path does not meet another one, which continues as it does now.
 bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) const {
     const Segment& s = balls_.segment(other);
     if (is_gone(s.state)) return true;

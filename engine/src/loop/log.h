@@ -17,7 +17,7 @@
 
 namespace carom {
 
-/// What a run produces: a record with every segment, an outcome, or an outcome with the hash of the record.
+/// The result of a run: a record with every segment, an outcome, or an outcome with the hash of the record.
 enum class Keep : std::uint8_t { kRecord, kOutcome, kHash };
 
 struct LogMemory {

@@ -126,7 +126,7 @@ void RestingContacts::start(int ball) {
 }
 
 bool RestingContacts::chatters(const Contact& contact, double v_n) const {
-    // Bounces that lose nothing go on. Only those that take no time have to come to an end.
+    // Bounces without losses continue. Only those without duration must end.
     const double since = lossless_ ? balls_.now() : balls_.now() - resting::kChatterSpan;
     const double restitution = contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c;
     int bounces = 0;

@@ -86,7 +86,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     const Plan& plan_;
     const Balls& balls_;
     Log& log_;
-    const bool lossless_;  // nothing takes energy, so that no bounces come to an end
+    const bool lossless_;  // nothing dissipates energy, so that no bounces end
 };
 
 }  // namespace carom

@@ -75,7 +75,7 @@ bool clears(const Cone& cone, const Vec3& ball, double R) {
     return length3(cone.at(s) - ball) >= R + cone.radius_at(s);
 }
 
-/// What the cue would be in, or "".
+/// The obstacle that the cue would be in, or "".
 std::string met(const Scene& scene, const Cue& cue, double elevation_deg) {
     const BallStart* struck = nullptr;
     for (const BallStart& ball : scene.ball)

@@ -1,4 +1,4 @@
-// Whether anything in a plan takes energy.
+// Whether anything in a plan dissipates energy.
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/cushion.h"
 #include "carom/engine/plan.h"

@@ -55,7 +55,7 @@ std::optional<Section> balls_section(const Section& top) {
     return top.section("balls", keys);
 }
 
-/// What the method of a rack says of its other keys, and what it leaves no room for.
+/// The keys that the method of a rack sets, and those that it excludes.
 void apply_method(const Section& s, Rack& rack) {
     if (rack.method == RackMethod::kGap) return;
     for (const RackGame game :

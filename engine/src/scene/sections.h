@@ -1,4 +1,4 @@
-// One reader per section of a scene file. Each takes the file's top level and reads its part of the scene.
+// One reader per section of a scene file. Each gets the file's top level and reads its part of the scene.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The measures of a table as people take them, and the dimensions that they stand for.
+// The measures of a table as people take them, and the dimensions that they mean.
 #include <fmt/format.h>
 
 #include <cmath>

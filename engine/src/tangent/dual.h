@@ -10,7 +10,7 @@
 
 namespace carom::tangent {
 
-// The same functions of duals stand beside these.
+// The same functions of duals follow.
 using carom::contact_distance, carom::cross, carom::cross3, carom::dot, carom::dot3, carom::length,
     carom::length3, carom::planar;
 

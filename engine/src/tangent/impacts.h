@@ -10,7 +10,7 @@
 
 namespace carom::tangent {
 
-/// What all impacts of a replay share.
+/// Shared by all impacts of a replay.
 struct Laws {
     const Plan& plan;
     const Numbers& numbers;

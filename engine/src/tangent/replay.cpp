@@ -188,7 +188,7 @@ void Replay::replay(const Event& event) {
             break;
         }
         case EventType::kBallOut:
-            // The flight goes on unchanged, so when it does so matters to nothing here.
+            // The flight continues unchanged, so its start has no influence here.
             begin(event.a, time, balls_[event.a].legs.back().at(time));
             time.d.fill(std::numeric_limits<double>::quiet_NaN());
             break;

@@ -13,7 +13,7 @@
 
 namespace carom::tangent {
 
-/// What must stay above 0 for the order of events to hold.
+/// Quantities that must stay above 0 for the order of events to hold.
 struct Room {
     Dual left;
     std::string what;  ///< happens at 0

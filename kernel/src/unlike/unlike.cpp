@@ -308,7 +308,7 @@ bool friction_in_range(const Tilt& t) {
         const double still = 3.5 * t.mu_s[ball] * t.S, most = 3.5 * t.mu_s[ball] * down;
         if (!(still <= kMostTaken * t.C && most <= kMostTaken * (t.C + (2.5 - t.S) * t.mu_b))) return false;
     }
-    // Friction upwards on ball 1 takes load off it, and turns it with the force.
+    // Friction upwards on ball 1 removes load from it, and turns it with the force.
     if (t.drag > 0.0) {
         const double up = smallest(t.mu_b, t.S / t.C);
         const double force = t.C - (2.5 - t.S) * up, load = t.S - t.C * up;
@@ -416,7 +416,7 @@ void solve_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
                   ImpactResult& result) noexcept {
     const bool in_range = tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance;
     impact(ball1, ball2, params, in_range, result, [&](const Tilt& tilt, const auto& slips) {
-        // A ball takes up to twice the error that the same impulse makes between equal ones, and stretches
+        // A ball gets up to twice the error that the same impulse makes between equal ones, and stretches
         // add up.
         const double solved =
             0.25 * smallest(tolerance, kLoosestSolved) / largest(tilt.share[0], tilt.share[1]);

@@ -164,7 +164,7 @@ struct Converged {
     double worst = 0.0;
 };
 
-/// What rounding can do to an impact, as a fraction of the approach speed: a fast glancing ball has large
+/// The effect of rounding on an impact, as a fraction of the approach speed: a fast glancing ball has large
 /// speeds and a small approach.
 double rounding_share(const Impact& impact, double approach) {
     double most = approach;

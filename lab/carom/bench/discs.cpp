@@ -39,7 +39,7 @@ struct BenchDiscsArgs {
     long events = 100000;
 };
 
-/// What a run of one size costs.
+/// The cost of a run of one size.
 struct DiscsRun {
     enum Kind { kReference, kOutcome, kRecord } kind;
     Plan plan;

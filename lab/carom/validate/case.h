@@ -14,7 +14,7 @@
 
 namespace carom::tools {
 
-/// What is measured: of one ball, or, for a share and a mean, of many shots.
+/// The measured quantity: of one ball, or, for a share and a mean, of many shots.
 enum class Quantity : std::uint8_t {
     kSpeed,
     kSpeedRatio,
@@ -83,7 +83,7 @@ struct ValidationShot {
     std::vector<Measured> measured;
 };
 
-/// What a variant is claimed to compute for one number. Empty: a value within the uncertainty; otherwise the
+/// The claim about a variant for one number. Empty: a value within the uncertainty; otherwise the
 /// value itself.
 using Claim = std::optional<double>;
 

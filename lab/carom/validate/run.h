@@ -20,7 +20,7 @@ struct ValidationRow {
     Claim claim;
     double computed;
     double sampled;  ///< standard deviation of `computed` for the number of shots that were played
-    /// That of the measured number, and 1.96 times `sampled`.
+    /// The uncertainty of the measured number, and 1.96 times `sampled`.
     double uncertainty;
 
     /// computed - measured, in units of the uncertainty

@@ -202,7 +202,7 @@ def _option(record: str, decision: str, state: Any, respots: list[tuple[str, tup
 
 
 def _check_whole(name: str, value: int) -> None:
-    # The extension module takes 32 bits, and has the narrower ranges.
+    # The extension module accepts 32 bits, and has the narrower ranges.
     if not -(2**31) <= value < 2**31:
         wanted = "0 or 1" if name in ("first", "turn", "winner") else "0 to 1000000000"
         raise ValueError(f"{name} = {value} is out of range; it must be {wanted}")

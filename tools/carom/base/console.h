@@ -58,7 +58,7 @@ bool interrupted() noexcept;
 void throw_if_interrupted();
 int interrupted_status() noexcept;
 
-/// A line on standard error that is updated while work goes on. It is never wider than the terminal, and it
+/// A line on standard error that is updated during the work. It is never wider than the terminal, and it
 /// is removed before anything else is written. If standard error is not a terminal, nothing is written.
 class ProgressLine {
   public:

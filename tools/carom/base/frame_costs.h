@@ -15,7 +15,7 @@ namespace carom::tools {
 /// frame belongs to the first one, an event after the last frame to the last one.
 long frame_of(double t, double from, double fps, long frames);
 
-/// What the simulation cost during one frame [ms].
+/// The cost of the simulation during one frame [ms].
 struct FrameCost {
     double detect_ms = 0.0;           ///< finding its events, and searching again after each
     double resolve_ms = 0.0;          ///< advancing and resolving, without the next two

@@ -73,7 +73,7 @@ struct Range {
     double low = 0.0, high = 0.0;
 };
 
-/// What the measurement itself costs, from alternating runs with and without it.
+/// The cost of the measurement itself, from alternating runs with and without it.
 struct TimingCost {
     double clock_ns = 0.0;                     ///< one reading of the clock
     double plain_ms = 0.0, profiled_ms = 0.0;  ///< the whole simulation; minimum over the runs

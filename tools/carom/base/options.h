@@ -25,7 +25,7 @@ using OptionTarget = std::variant<std::monostate, bool*, int*, long*, std::uint6
 struct Option {
     std::vector<std::string> names;  ///< "-o", "--output"; "SCENE" for an argument
     OptionTarget target;
-    std::string value;  ///< what the option takes, "FILE.csv"; empty for flags and arguments
+    std::string value;  ///< the value of the option, "FILE.csv"; empty for flags and arguments
     std::string text;
     std::vector<std::string> choices;                ///< all allowed values; empty: any
     std::optional<std::pair<double, double>> range;  ///< allowed values, both ends included

@@ -19,12 +19,12 @@ const std::vector<PageFile>& page_files();
 /// Adds the page files of another library: the laboratory's.
 void add_page_files(const std::vector<PageFile>& more);
 
-/// What a page's scripts read: JSON in an element with this id.
+/// Data for a page's scripts: JSON in an element with this id.
 struct PageData {
     std::string id, json;
 };
 
-/// What few pages need.
+/// For a few pages only.
 struct PageExtras {
     std::vector<std::string> styles;  ///< names of page files, after style.css
     bool wasm = false;                ///< the page may compile WebAssembly
@@ -34,7 +34,7 @@ struct PageExtras {
 std::string page_html(const std::string& title, const std::string& script, const std::vector<PageData>& data,
                       const PageExtras& extras = {});
 
-/// What every page says about itself: title, subtitle, the command that made it, program and machine.
+/// The header of every page: title, subtitle, the command that made it, program and machine.
 nlohmann::ordered_json page_json(const std::string& title, const std::string& lead,
                                  const std::string& command, const std::string& version);
 

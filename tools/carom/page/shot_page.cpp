@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a page needs besides the record: the shape of the table, and each ball's look as the renderer paints
+/// Data for a page besides the record: the shape of the table, and each ball's look as the renderer paints
 /// it.
 Json shot_json(const Record& record) {
     const render::Stage stage(record, {});

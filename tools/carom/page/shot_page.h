@@ -8,7 +8,7 @@
 
 namespace carom::tools {
 
-/// What the page says about itself.
+/// The header of the page.
 struct ShotPageTexts {
     std::string title;
     /// How it was made, and by which version.

@@ -12,7 +12,7 @@
 
 namespace carom::tools {
 
-/// One value: nothing, a boolean, a count, a number or a text. In the text form `text` takes its place,
+/// One value: nothing, a boolean, a count, a number or a text. In the text form `text` replaces it,
 /// unless it is empty.
 struct Cell {
     Cell() = default;

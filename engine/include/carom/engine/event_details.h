@@ -45,7 +45,7 @@ struct EventDetails {
 /// @param event  index into Record::events
 EventDetails details_of(const Record& record, std::size_t event);
 
-/// What ball a meets, for people: "left rail, head half", "corner pocket, foot left"; its id if it has no
+/// The partner of ball a, for people: "left rail, head half", "corner pocket, foot left"; its id if it has no
 /// name, and "" for nothing.
 std::string met_name(const Record& record, const Event& event);
 

@@ -95,10 +95,10 @@ enum class EventType : std::uint8_t {
 };
 inline constexpr int kEventTypes = 19;
 
-/// What Event::b is the index of.
+/// The list that Event::b is an index of.
 enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
 
-/// What happens to the ball.
+/// The change for the ball.
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it
     kImpact,      ///< it meets another ball, a cushion, a jaw, a pocket or the cloth

@@ -541,7 +541,7 @@ std::string scene_text(const Scene& scene);
 /// @throws SceneError without a line
 void validate(const Scene& scene);
 
-/// A preset by name, with measures of its own. validate() tells whether they fit each other.
+/// A preset by name, with other measures. validate() checks whether they fit each other.
 /// @throws std::invalid_argument for an unknown preset
 Table make_table(std::string_view preset, const Measures& changed = {});
 /// All the measures of such a table; those of pockets are absent if it has none.

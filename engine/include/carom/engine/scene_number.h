@@ -11,7 +11,7 @@
 
 namespace carom {
 
-/// What must be checked after a change of a scene, from the least to the most.
+/// The checks that a change of a scene needs, from the least to the most.
 enum class Change : std::uint8_t {
     kNumbers,   ///< of the cue, of velocities, of the balls' material and of the physics, within their ranges
     kPlaces,    ///< also where balls are

@@ -24,7 +24,7 @@ struct Violation {
 ///   U2 times never decrease
 ///   U3 no penetration deeper than 1e-12 m plus the accumulated rounding of the motion; every ball in play is
 ///      on the table's side of every wall over which it has not flown
-///   U4 energy never rises (tolerance: 1e-12 of the initial energy), nor falls if nothing takes any (in a
+///   U4 energy never rises (tolerance: 1e-12 of the initial energy), nor falls if nothing dissipates it (in a
 ///      cluster 1e-5)
 ///   U5 a ball-ball impact keeps the pair's momentum up to the cloth's impulse and the tolerance of the
 ///      solution, and exactly if mu_s = 0

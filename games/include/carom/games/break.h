@@ -29,7 +29,7 @@ struct BreakOptions {
     int layouts = 64;         ///< racks that the break must cope with
 };
 
-/// What solve() is asked.
+/// The arguments of solve().
 struct BreakSearch {
     Scene scene;
     std::string want;

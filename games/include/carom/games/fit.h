@@ -20,7 +20,7 @@ struct TrackPoint {
 };
 
 struct FitOptions {
-    /// Keys as SceneNumber takes them; and clock, the time of the stroke on the clock of the tracks [s].
+    /// Keys as SceneNumber accepts them; and clock, the time of the stroke on the clock of the tracks [s].
     std::vector<std::string> vary;
     int most_shots = 100;  ///< simulated until it gives up
 };
@@ -40,7 +40,7 @@ struct Fit {
     bool converged = false;
     /// Why not.
     std::string trouble;
-    /// What the tracks cannot tell apart, a sentence each.
+    /// Values that the tracks cannot separate, a sentence each.
     std::vector<std::string> warnings;
     std::vector<Vec2> residuals;  ///< [m] of every point: simulated minus seen; zero if it does not count
     Scene scene;                  ///< with the values

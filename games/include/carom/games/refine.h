@@ -37,7 +37,7 @@ struct Exact {
     std::vector<Choice> choices;       ///< those of the search, with cue.aim_deg for an aim at a ball
     std::optional<Solution> solution;  ///< nothing if there is no exact shot near
 };
-/// @param options  those of the search; a tenth of its shots tells how sure the result is
+/// @param options  those of the search; a tenth of its shots gives the success rate of the result
 /// @throws std::invalid_argument if nothing has to be near a place; as solve()
 Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const SolveOptions& options);
 

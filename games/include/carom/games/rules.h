@@ -98,7 +98,7 @@ void set_rule(State& state, std::string_view option);
 /// The chosen options that are not defaults, as set_rule() reads them.
 std::vector<std::string> chosen_rules(const State& state);
 
-/// What a player announces before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
+/// An announcement before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
 /// empty, the ball that is hit first.
 struct Call {
     std::string ball;       ///< id, or ""
@@ -108,7 +108,7 @@ struct Call {
     bool operator==(const Call&) const = default;
 };
 
-/// What the next shot may do.
+/// The rules of the next shot.
 struct Legal {
     std::vector<std::string> cue_balls;  ///< ids that may be struck: one, in free pyramid any
     std::vector<std::string> first;      ///< what the cue ball may hit first
@@ -203,7 +203,7 @@ struct Verdict {
     std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
     int points = 0;           ///< scored by the shot
     int penalty = 0;          ///< snooker: what the other player receives
-    /// At least one. If there are several, the first one applies unless `chooser` takes another.
+    /// At least one. If there are several, the first one applies unless `chooser` chooses another.
     std::vector<Option> options;
     int chooser = -1;  ///< the player who chooses; -1 if there is one option
     const State& next() const { return options.front().state; }

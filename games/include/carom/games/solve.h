@@ -34,7 +34,7 @@ struct Hand {
 
 /// An input that the search chooses.
 struct Choice {
-    /// As SceneNumber takes it; or hit.BALL, which aims at that ball: 0 is full, 1 and -1 pass its left and
+    /// As SceneNumber accepts it; or hit.BALL, which aims at that ball: 0 is full, 1 and -1 pass its left and
     /// right edge, with nothing allowed for squirt.
     std::string key;
     double low = 0.0, high = 0.0;

@@ -19,7 +19,7 @@ struct Lying {
     double gap = 0.0;           ///< [m] how far others must stay away; 0: they may touch it
 };
 
-// Where the balls of a table stand (carom/engine/table.h).
+// The spots of a table's balls (carom/engine/table.h).
 using carom::center_spot;
 using carom::head_spot;
 using carom::kColours;

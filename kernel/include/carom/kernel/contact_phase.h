@@ -78,13 +78,13 @@ struct HertzContactInSpace {
     double overlap;  ///< [L] at the start; negative: a gap
 };
 
-/// What differs between balls that are not alike, in units of one of them: its mass and the stiffness of two
+/// Properties of unlike balls, in units of one of them: its mass and the stiffness of two
 /// such balls are 1.
 struct UnlikeBalls {
     const double* inverse_mass;  ///< per ball
     const double* stiffness;     ///< per contact
     /// Per contact [1/L]: 1 over the distance of the centres at the touch, times the share of the turning of
-    /// the balls that the normal takes part in; 0: it stays as it is.
+    /// the balls that the normal follows; 0: it stays as it is.
     const double* curvature;
     bool held;  ///< all balls stay on the cloth, and have its friction
 };

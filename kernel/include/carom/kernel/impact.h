@@ -45,7 +45,7 @@ enum class ImpactStatus : unsigned char {
     kStepLimit,       ///< the integration reached its limit of steps (march.h): result = input
 };
 
-/// What is wrong, in words; "" for kOk and kNotApproaching.
+/// The fault, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
 /// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel and if nothing was

@@ -53,7 +53,7 @@ std::string isa_line(const Plan& plan) {
                                              : "the widest; this processor was not measured"));
 }
 
-/// What can be measured at a table: its spots, and, of a preset, its noses and pockets.
+/// Measures of a table: its spots, and, of a preset, its noses and pockets.
 std::string measures_lines(const carom::Table& table, double R) {
     constexpr double kMillimetres = 1000.0, kInches = 1.0 / 0.0254;
     std::string text;

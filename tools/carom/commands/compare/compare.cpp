@@ -30,7 +30,7 @@ struct CompareArgs {
     bool json = false;
 };
 
-/// What is reported about one shot alone.
+/// The report about one shot alone.
 struct ComparedShot {
     const std::string& file;
     const Record& record;

@@ -268,7 +268,7 @@ std::string zsh_value(const Option& row) {
     return takes_file(row) ? "_files" : " ";
 }
 
-/// A command's options and positional arguments, in the form that _arguments takes.
+/// A command's options and positional arguments, in the form that _arguments accepts.
 std::string zsh_arguments(const Options& command) {
     std::string out;
     for (const Option& row : rows_of(command, false)) {
@@ -343,7 +343,7 @@ std::string events_text() {
 
 // ---- the command -----------------------------------------------------------------------------------------
 
-/// What the command can print: one row per format.
+/// The formats of the command, one row each.
 constexpr struct {
     const char* name;
     std::string (*text)(const Options& program);

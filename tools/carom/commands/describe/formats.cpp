@@ -153,7 +153,7 @@ std::string default_text(const Key& key, const FieldValue& value) {
     return code("[" + text + "]");
 }
 
-/// The values a key takes: the names of a choice, or a range.
+/// The values a key accepts: the names of a choice, or a range.
 std::string values_text(const Key& key) {
     std::string text;
     const std::vector<const char*> names = key.names();

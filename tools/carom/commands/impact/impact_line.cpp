@@ -28,7 +28,7 @@ constexpr int kDeepest = 8;
 /// A normal written with four digits is accepted as a unit vector; a larger difference from 1 is an error.
 constexpr double kUnitSlack = 1e-3;
 
-/// What is wrong with a line.
+/// The fault of a line.
 class LineError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

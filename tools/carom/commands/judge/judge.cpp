@@ -32,7 +32,7 @@ using games::InHand;
 using games::State;
 using games::Verdict;
 
-/// What both commands ask about the game.
+/// The options of both commands about the game.
 struct GameArgs {
     std::string game, state, state_out, ball, pocket;
     std::vector<std::string> rules;

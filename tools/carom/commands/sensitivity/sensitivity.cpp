@@ -133,7 +133,7 @@ struct Sensitivity {
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// What of a shot tells whether its events are the same: each ball's cushions and pocket, and all events.
+/// Equal for two shots with the same events: each ball's cushions and pocket, and all events.
 bool same_kind(const Outcome& one, const Outcome& two) {
     if (one.events != two.events) return false;
     for (std::size_t i = 0; i < one.balls.size(); ++i)

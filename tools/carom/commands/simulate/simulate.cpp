@@ -47,7 +47,7 @@ struct SimulateArgs {
     std::string game;  ///< that measures judge by
 };
 
-/// What --measure asks for.
+/// The measures of --measure.
 std::vector<games::Measure> measures_of(const SimulateArgs& args, const Scene& scene) {
     std::optional<games::Game> game;
     if (!args.game.empty()) game = game_of(args.game);
@@ -62,7 +62,7 @@ std::vector<games::Measure> measures_of(const SimulateArgs& args, const Scene& s
     return list;
 }
 
-/// What a function says of a measure, or why the game cannot judge the shot.
+/// The value of a measure, or why the game cannot judge the shot.
 template <class F>
 auto measured(const games::Measure& measure, F&& f) {
     try {

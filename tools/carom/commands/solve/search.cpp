@@ -72,7 +72,7 @@ void add_search(Options& command, SearchArgs& args) {
 
 namespace {
 
-/// Plays with a progress bar: `play` gets what games::solve takes.
+/// Plays with a progress bar: `play` gets the arguments of games::solve.
 template <class Play>
 auto played(const Search& what, const SearchArgs& args, const char* title, Play&& play) {
     games::SolveOptions options;

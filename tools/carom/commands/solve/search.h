@@ -23,7 +23,7 @@ struct SearchArgs {
 };
 void add_search(Options& command, SearchArgs& args);
 
-/// What is searched.
+/// The search space.
 struct Search {
     const Scene& scene;
     std::string name;  ///< of the scene, for messages

@@ -77,7 +77,7 @@ std::uint64_t failures(const Outcomes& outcomes) {
     return outcomes[static_cast<std::size_t>(ShotStatus::kFailed)];
 }
 
-/// What the played shots come to.
+/// Sums over the played shots.
 struct Totals {
     Outcomes outcomes{};
     std::vector<Tally> tallies;
@@ -128,7 +128,7 @@ void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa,
     }
 }
 
-/// What the shots that this run has played came to.
+/// Sums over the shots of this run.
 std::string summary(const Totals& totals, const SweepArgs& args, int jobs, double seconds) {
     const auto& [outcomes, tallies, plot] = totals;
     const std::uint64_t shots = std::accumulate(outcomes.begin(), outcomes.end(), std::uint64_t{0});
