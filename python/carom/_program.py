@@ -97,7 +97,7 @@ def margin(
 def sensitivity(
     scene: SceneLike, *, hand: str = "aim=0.2,speed=3%,tip=0.02", shots: int = 1000, seed: int = 1
 ) -> dict[str, Any]:
-    """Reports what small errors of aim, speed, tip and place do to a shot: the report of `carom sensitivity` as
+    """The effect of small errors of aim, speed, tip and place on a shot: the report of `carom sensitivity` as
     data (docs/guide/find.md).
 
     hand: standard deviations of the errors, as the command takes them

@@ -7,8 +7,8 @@
 
 namespace carom {
 
-/// The partners that a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end) counts as a
-/// cushion. kOut: the border of the table, over which a ball flies.
+/// The partners that a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end)
+/// counts as a cushion. kOut: the border of the table, over which a ball flies.
 enum class With : std::uint8_t { kPocket, kNothing, kBall, kCushion, kNose, kOut };
 
 struct Contact {

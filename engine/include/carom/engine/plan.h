@@ -92,7 +92,7 @@ struct Plan {
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
 /// Whether nothing in a plan dissipates energy: impacts return all of it, and there is no friction, no pocket
-/// and no flight. A nose above or below the centre of a ball drives it into the cloth, and so dissipates some.
+/// and no flight. A nose above or below the centre of a ball drives it into the cloth, which dissipates some.
 bool loses_nothing(const Plan& plan);
 
 /// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The

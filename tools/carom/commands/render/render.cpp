@@ -191,7 +191,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     return options;
 }
 
-/// Passes to the margin bar the simulation cost of each frame: the sum over the events up to the next frame. A
+/// Gives the margin bar the simulation cost of each frame: the sum over the events up to the next frame. A
 /// record that was not profiled has no costs; its bar shows only drawing, reading back and encoding.
 void set_simulation_costs(const Record& record, render::SequenceOptions& options) {
     if (record.costs.empty()) return;
