@@ -3,8 +3,8 @@
 // Every candidate is played with the same errors and the same layouts of the balls (common random numbers),
 // so that candidates differ by what they are and not by luck. Most are dropped after a few shots and the rest
 // get more (successive halving: Jamieson and Talwalkar, "Non-stochastic best arm identification and
-// hyperparameter optimization", AISTATS 2016). The best then have descendants nearby, in several generations.
-// The figures that are reported come from shots that the search has not seen.
+// hyperparameter optimization", AISTATS 2016). The best then have descendants nearby, in several generations,
+// and more shots decide among the last one. The reported figures come from shots that the search has not seen.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct SolveOptions {
     std::vector<Choice> choices;
     Hand hand;
     std::uint64_t seed = 1;
-    std::size_t shots = 400000;  ///< all that the search plays
+    std::size_t shots = 200000;  ///< all that the search plays
     int threads = 0;             ///< 0: one for each core
     std::size_t best = 3;        ///< how many shots that differ in kind
     /// Scenes that differ from `scene` in the places of their balls only, such as racks; or empty.

@@ -17,7 +17,7 @@ namespace carom::tools {
 /// The options of a search.
 struct SearchArgs {
     std::string hand = kHand, output, plot;
-    std::uint64_t shots = 400000, seed = 1;
+    std::uint64_t shots = games::SolveOptions().shots, seed = 1;
     int jobs = 0, best = 3;
     bool json = false;
 };
