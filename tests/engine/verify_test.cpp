@@ -173,6 +173,21 @@ TEST(Verify, ARunStopsInsideACluster) {
     EXPECT_EQ(next.ball[1].velocity, part.tracks[1].segments.back().v);
 }
 
+TEST(Verify, EnergyMayNotRiseInTheLastCluster) {
+    const Plan plan = plan_of(read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml"));
+    const Record whole = simulate(plan);
+    double hit = 0.0;
+    for (const Event& e : whole.events)
+        if (e.type == EventType::kBallCluster && hit == 0.0) hit = e.time;
+    Record record = simulate(plan, {.until = hit + 2e-3});
+    ASSERT_EQ(record.events.back().type, EventType::kBallCluster);
+    ASSERT_EQ(verify(record, plan), std::nullopt);
+    for (BallTrack& track : record.tracks) track.segments.back().v *= 1.2;
+    const auto violation = verify(record, plan);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->law, "U4") << violation->message;
+}
+
 // Frames, pages, glTF and samples read the places of a record.
 TEST(Verify, PlacesDoNotJumpInABreak) {
     constexpr double kStep = 1e-5, kFastest = 15.0;  // [s], [m/s]
