@@ -22,9 +22,9 @@ namespace carom {
 namespace {
 
 // [-] Most shots that a thread takes at once. Each needs at least a few microseconds, so that taking them
-// costs nothing. Small batches are divided into smaller blocks, so that all threads end at about the same
-// time.
-constexpr std::size_t kBlock = 16;
+// costs nothing. Towards the end blocks become smaller, to this share of the shots that are left for each
+// thread, so that all threads end at about the same time.
+constexpr std::size_t kBlock = 16, kShareLeft = 4;
 
 std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
                                     std::span<const BatchColumn> columns) {
@@ -178,7 +178,7 @@ struct Work {
     const BatchArrays& out;
     std::uint64_t number = 0;  // of the first shot, if shots have numbers
     std::vector<Batch::Message> messages;
-    std::size_t block = kBlock;
+    std::size_t threads = 1;
     std::atomic<std::size_t> next{0};
     std::atomic<bool> stopped{false};
     std::mutex mutex;
@@ -215,9 +215,13 @@ struct Work {
         try {
             Player player(scene, isa, options.judge != nullptr);
             while (!stopped) {
-                const std::size_t first = next.fetch_add(block);
-                if (first >= shots) return;
-                for (std::size_t shot = first; shot < std::min(first + block, shots); ++shot) {
+                std::size_t first = next, last = 0;
+                do {
+                    if (first >= shots) return;
+                    last =
+                        first + std::clamp((shots - first) / (kShareLeft * threads), std::size_t{1}, kBlock);
+                } while (!next.compare_exchange_weak(first, last));
+                for (std::size_t shot = first; shot < last; ++shot) {
                     if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
                     play_one(player, shot);
                 }
@@ -228,18 +232,17 @@ struct Work {
     }
 
     std::vector<Batch::Message> run() {
-        const std::size_t wanted = options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                                                       : std::max(1u, std::thread::hardware_concurrency());
-        block = std::clamp(shots / (4 * wanted), std::size_t{1}, kBlock);
-        const std::size_t most = std::min(wanted, (shots + block - 1) / block);
-        std::vector<std::thread> threads;
+        threads = options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                                      : std::max(1u, std::thread::hardware_concurrency());
+        threads = std::max<std::size_t>(1, std::min(threads, shots));
+        std::vector<std::thread> others;
         try {
-            for (std::size_t i = 1; i < most; ++i) threads.emplace_back([this] { play_all(); });
+            for (std::size_t i = 1; i < threads; ++i) others.emplace_back([this] { play_all(); });
         } catch (...) {
             stop(std::current_exception());
         }
         play_all();
-        for (std::thread& thread : threads) thread.join();
+        for (std::thread& thread : others) thread.join();
         if (error) std::rethrow_exception(error);
         std::sort(messages.begin(), messages.end(),
                   [](const Batch::Message& p, const Batch::Message& q) { return p.shot < q.shot; });
