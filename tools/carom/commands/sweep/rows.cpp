@@ -43,11 +43,12 @@ std::string row_of(const games::Sweep& sweep, const games::SweptShots& shots, st
 }  // namespace
 
 SweepBlock play_block(const games::Sweep& sweep, std::uint64_t first, std::size_t count, kernel::Isa isa,
-                      int threads) {
+                      int threads, std::mutex& playing) {
     BatchOptions options;
     options.threads = threads;
     options.stop = [] { return interrupted(); };
     SweepBlock block{Batch(count, sweep.variation().base().ball.size()), {}, std::vector<std::string>(count)};
+    const std::lock_guard turn(playing);
     try {
         block.shots = sweep.play(first, count, isa, options, block.batch.arrays(),
                                  [&](const games::SweptShots& shots, std::size_t shot) {

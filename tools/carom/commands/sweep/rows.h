@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,10 @@ struct SweepBlock {
     std::vector<std::string> rows;
 };
 
-/// Plays shots first, first + 1, ... @throws Interrupted; std::system_error if the system cannot start the
-/// threads; UsageError for a measure that does not apply to such shots
+/// Plays shots first, first + 1, ..., while it holds `playing`. @throws Interrupted; std::system_error if the
+/// system cannot start the threads; UsageError for a measure that does not apply to such shots
 SweepBlock play_block(const games::Sweep& sweep, std::uint64_t first, std::size_t count, kernel::Isa isa,
-                      int threads);
+                      int threads, std::mutex& playing);
 
 /// The names of the columns, with a line end.
 std::string sweep_header(const games::Sweep& sweep);

@@ -8,8 +8,10 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -97,28 +99,32 @@ struct Totals {
     }
 };
 
-/// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played.
-/// Two blocks are never played at once, because each uses all threads.
+/// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played
+/// and the one after it gets its memory. Two blocks are never played at once, because each uses all threads.
 void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa, int threads,
                 const ShotRange& range, SweepStatus& status, Totals& totals) {
     ProgressLine line("sweep");
     auto size = 2 * static_cast<std::uint64_t>(threads);
     std::uint64_t begun = table.next();
-    std::future<SweepBlock> next;
+    std::mutex playing;
+    std::deque<std::future<SweepBlock>> blocks;
     std::string rows;
     const auto begin_next = [&] {
         const std::uint64_t first = begun, shots = std::min(size, range.last - begun);
+        if (shots == 0) return;
         begun += shots;
-        next = std::async(std::launch::async, [&sweep, isa, threads, first, shots] {
-            return play_block(sweep, first, static_cast<std::size_t>(shots), isa, threads);
-        });
+        blocks.push_back(std::async(std::launch::async, [&sweep, &playing, isa, threads, first, shots] {
+            return play_block(sweep, first, static_cast<std::size_t>(shots), isa, threads, playing);
+        }));
     };
-    if (begun < range.last) begin_next();
+    begin_next();
+    begin_next();
     while (table.next() < range.last) {
         const Clock::time_point start = Clock::now();
-        const SweepBlock block = next.get();
+        const SweepBlock block = blocks.front().get();
+        blocks.pop_front();
         if (Clock::now() - start < kBlockTime && size < kLargestBlock) size *= 2;
-        if (begun < range.last) begin_next();
+        begin_next();
         rows.clear();
         for (const std::string& row : block.rows) rows += row;
         table.add(rows, block.shots.count, totals.add(block.shots));
@@ -199,7 +205,8 @@ int run(const SweepArgs& args) {
     const std::uint64_t from = table.next();
     if (from > range.first) {
         // Another build may have other bits.
-        if (!table.ends_with(play_block(sweep, from - 1, 1, isa, 1).rows.front()))
+        std::mutex playing;
+        if (!table.ends_with(play_block(sweep, from - 1, 1, isa, 1, playing).rows.front()))
             throw std::runtime_error(
                 fmt::format("{}: its last row is not what this program computes; remove it to start again",
                             table.folder()));
