@@ -45,7 +45,8 @@ def main():
         out = rack % FOLDS == fold
         p[out] = chance(x[out], fitted(x[~out], y[~out]))
     print(f"{len(np.unique(rack))} seeds, {len(y)} positions")
-    print(f"log loss {log_loss(y, np.clip(p, 1e-6, 1 - 1e-6)):.4f}; of a constant {log_loss(y, np.full(len(y), y.mean())):.4f}")
+    p = np.clip(p, 1e-6, 1 - 1e-6)
+    print(f"log loss {log_loss(y, p):.4f}; of a constant {log_loss(y, np.full(len(y), y.mean())):.4f}")
     order = np.argsort(p)
     for part in np.array_split(order, BINS):
         print(f"  chance {100 * p[part].mean():5.1f} %, won {100 * y[part].mean():5.1f} %")

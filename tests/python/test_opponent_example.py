@@ -33,6 +33,6 @@ def test_the_learner_pots_a_ball_that_hangs(example):
 
 def test_a_round_is_learned_and_told(example, capsys):
     example["learn"].__globals__["CANDIDATES"] = 3
-    example["main"](["--rounds", "1", "--games", "1", "--test", "1"])
+    example["main"](["--rounds", "1", "--test", "1"])
     said = capsys.readouterr().out.splitlines()
     assert said[0].startswith("round 1: score ") and said[1].startswith("won against beginner: ")
