@@ -6,7 +6,8 @@
 
 Each line of the file: the rack, the features, and whether the player to shoot won. Logistic regression by
 Newton's method with a small ridge. Calibration is on the racks that a fit has not seen (five folds): ten bins
-of equal size, in each the mean chance and the share of wins.
+of equal size, in each the mean chance and the share of wins. A file of `player_games chances` has a chance in
+place of the features: only its calibration is printed.
 """
 import sys
 
@@ -38,16 +39,19 @@ def log_loss(y, p):
 def main():
     data = np.loadtxt(sys.argv[1])
     rack, x, y = data[:, 0].astype(int), data[:, 1:-1], data[:, -1]
-    p = np.empty(len(y))
-    for fold in range(FOLDS):
+    told = x.shape[1] == 1
+    p = x[:, 0].copy()
+    for fold in range(0 if told else FOLDS):
         out = rack % FOLDS == fold
         p[out] = chance(x[out], fitted(x[~out], y[~out]))
     print(f"{len(np.unique(rack))} seeds, {len(y)} positions")
+    p = np.clip(p, 1e-6, 1 - 1e-6)
     print(f"log loss {log_loss(y, p):.4f}; of a constant {log_loss(y, np.full(len(y), y.mean())):.4f}")
     order = np.argsort(p)
     for part in np.array_split(order, BINS):
         print(f"  chance {100 * p[part].mean():5.1f} %, won {100 * y[part].mean():5.1f} %")
-    print(", ".join(f"{value:.2f}" for value in fitted(x, y)))
+    if not told:
+        print(", ".join(f"{value:.2f}" for value in fitted(x, y)))
 
 
 if __name__ == "__main__":

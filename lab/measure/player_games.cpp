@@ -1,10 +1,17 @@
-// Lets the player of carom/games/player.h play racks of eight-ball or nine-ball, and prints what it reaches.
+// Lets the player of carom/games/player.h play racks, and prints what it reaches.
 //
-//     player_games alone LEVEL [RACKS [GAME]]           from the break until the turn is lost
-//     player_games match LEVEL LEVEL [RACKS [GAME]]     the break alternates
-//     player_games positions LEVEL LEVEL [RACKS [GAME]]  the same; prints the features of every position, and
-//                                                       whether the player to shoot wins, for player_fit.py
+//     player_games alone LEVEL [RACKS [GAME [FIRST]]]            from the break until the turn is lost
+//     player_games match LEVEL LEVEL [RACKS [GAME [FIRST]]]      the break alternates
+//     player_games positions LEVEL LEVEL [RACKS [GAME [FIRST]]]  the same; prints the features of every
+//         position, and whether the player to shoot wins, for player_fit.py
+//     player_games chances LEVEL LEVEL [RACKS [GAME [FIRST]]]    the same with the chance to win of the shot
+//     that is
+//         played, from fresh shots, in place of the features
 //
+//     player_games breaks TABLE [RACKS [GAME [FIRST]]]    how often the break of a professional keeps the
+//     turn player_games ai3603 RACKS    against BasicAgentPro by the rules and errors of AI3603
+//
+// FIRST is the seed of the first rack.
 // LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz"), or pro: BasicAgentPro with
 // the errors of "fastfiz", eight-ball only.
 #include <fmt/format.h>
@@ -18,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "ai3603.h"
 #include "basic_pro.h"
 #include "carom/engine/math.h"
 #include "carom/games/player.h"
@@ -56,14 +64,30 @@ Skill skill_of(const std::string& text) {
     return skill;
 }
 
+/// What is printed of every shot.
+enum class Tell { kNothing, kFeatures, kWins };
+
+/// The chance to win is told from this many fresh ones.
+test::Adviser fresh_adviser(const Skill& skill) {
+    return [skill](const State& state, const Scene& scene, std::uint64_t seed) {
+        AdviceOptions options;
+        options.seed = seed;
+        options.best = 1;
+        options.fresh = 200;
+        return advise(state, scene, skill, kernel::best_isa(), options).front();
+    };
+}
+
 /// One rack. @param alone  it ends when the breaker's turn does
 void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro, Game game,
-          std::uint64_t seed, int breaker, bool alone, bool positions, Count& count) {
+          std::uint64_t seed, int breaker, bool alone, Tell tell, Count& count) {
     std::vector<std::pair<int, std::string>> told;
     bool first = true;
     const auto timed = [&](std::size_t player) -> test::Adviser {
         const bool pro = is_pro[player];
-        return [&, ask = pro ? test::Adviser(lab::basic_pro) : test::adviser(skills[player])](
+        return [&, ask = pro                   ? test::Adviser(lab::basic_pro)
+                         : tell == Tell::kWins ? fresh_adviser(skills[player])
+                                               : test::adviser(skills[player])](
                    const State& state, const Scene& scene, std::uint64_t number) {
             const double start = cpu();
             Advice advice = ask(state, scene, number);
@@ -75,9 +99,11 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
     const auto each = [&](const test::RackShot& shot) {
         const State& before = shot.before;
         const bool opening = before.opening, made = shot.made();
-        if (positions && !opening) {
+        if (tell == Tell::kWins)
+            told.emplace_back(before.turn, fmt::format("{} {}", seed, shot.advice.worth));
+        if (tell == Tell::kFeatures && !opening) {
             const Skill& skill = skills[static_cast<std::size_t>(before.turn)];
-            const auto features = games::detail::Potting(shot.table, skill.noise.aim_deg / kDegrees)
+            const auto features = games::detail::Potting(shot.table, skill.noise)
                                       .features(before, games::detail::lie_of(shot.table));
             told.emplace_back(before.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
         }
@@ -90,9 +116,8 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
         if (!opening) count.fouls += !shot.verdict.fouls.empty();
         if (std::getenv("TELL") != nullptr)
             fmt::print(
-                "player {}: {}, foretold {:.2f}, worth {:.2f}: {}{}\n", before.turn + 1,
-                words_of(shot.advice, shot.table.table), shot.advice.makes.value, shot.advice.worth,
-                made ? "made" : "missed",
+                "player {}: {}, foretold {:.2f}: {}{}\n", before.turn + 1,
+                words_of(shot.advice, shot.table.table), shot.advice.makes.value, made ? "made" : "missed",
                 shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0]));
         if (first) count.breaks += made && !shot.taken.state.over;
         first = false;
@@ -112,25 +137,50 @@ std::string share(int part, int whole) {
                        whole);
 }
 
+void ai3603(int racks) {
+    const std::array<test::Adviser, 2> advisers = {test::adviser({noise_by_name("ai3603", kR), Look::kWhole}),
+                                                   lab::basic_pro};
+    int won = 0, drawn = 0;
+    for (int k = 0; k < racks; ++k) {
+        const double got =
+            lab::ai3603_rack(advisers, static_cast<std::uint64_t>(k / 4) + 1, k % 2, k % 4 < 2);
+        won += got == 1.0;
+        drawn += got == 0.5;
+    }
+    fmt::print("won by the first               {}; drawn {}\n", share(won, racks), drawn);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 3) return 2;
     const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words[0] == "ai3603") {
+        ai3603(std::stoi(words[1]));
+        return 0;
+    }
     const bool alone = words[0] == "alone";
-    const std::size_t levels = alone ? 1 : 2;
-    const std::array<Skill, 2> skills = {skill_of(words[1]), skill_of(words[levels])};
+    const std::size_t levels = alone || words[0] == "breaks" ? 1 : 2;
     const int racks = words.size() > levels + 1 ? std::stoi(words[levels + 1]) : 20;
     const std::string named = words.size() > levels + 2 ? words[levels + 2] : "eight_ball";
     const Game game = named == "nine_ball"  ? Game::kNineBall
                       : named == "ten_ball" ? Game::kTenBall
                                             : Game::kEightBall;
+    const std::uint64_t seed = words.size() > levels + 3 ? std::stoull(words[levels + 3]) : 1;
+    const Tell tell = words[0] == "positions" ? Tell::kFeatures
+                      : words[0] == "chances" ? Tell::kWins
+                                              : Tell::kNothing;
+    if (words[0] == "breaks") {
+        const int kept = test::breaks_kept(words[1], game, skill_by_name("professional", kR), racks, seed);
+        fmt::print("break pots and keeps the turn  {}\n", share(kept, racks));
+        return 0;
+    }
+    const std::array<Skill, 2> skills = {skill_of(words[1]), skill_of(words[levels])};
     Count count;
     for (int k = 0; k < racks; ++k)
         play(skills, {words[1] == "pro", words[levels] == "pro"}, game,
-             static_cast<std::uint64_t>(alone ? k : k / 2) + 1, alone ? 0 : k % 2, alone,
-             words[0] == "positions", count);
-    if (words[0] == "positions") return 0;
+             seed + static_cast<std::uint64_t>(alone ? k : k / 2), alone ? 0 : k % 2, alone, tell, count);
+    if (tell != Tell::kNothing) return 0;
     fmt::print("{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
                count.seconds / count.decisions);
     fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));

@@ -29,12 +29,16 @@ struct RackShot {
     }
 };
 
-inline Scene nine_foot_rack(games::Game game, std::uint64_t seed) {
+inline Scene pool_rack(const std::string& table, games::Game game, std::uint64_t seed) {
     const std::string more = game == games::Game::kNineBall ? "spot_ball = 9\n" : "";
-    return parse_scene("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = \"" +
+    return parse_scene("[table]\npreset = \"" + table + "\"\n[balls]\npreset = \"pool\"\n[rack]\ngame = \"" +
                            std::string(name(game)) + "\"\nseed = " + std::to_string(seed % 1000000007) +
                            "\n" + more + "[[ball]]\nid = \"cue\"\nposition = [0.5, 0.5]\n[cue]\n",
                        "rack");
+}
+
+inline Scene nine_foot_rack(games::Game game, std::uint64_t seed) {
+    return pool_rack("nine_foot", game, seed);
 }
 
 /// What advises a player: games::advise(), or another player.
@@ -48,6 +52,24 @@ inline Adviser adviser(const games::Skill& skill, kernel::Isa isa = kernel::best
         options.fresh = state.opening ? 1 : 0;
         return games::advise(state, scene, skill, isa, options).front();
     };
+}
+
+/// How many of these racks keep the turn after the break.
+inline int breaks_kept(const std::string& table, games::Game game, const games::Skill& skill, int racks,
+                       std::uint64_t first_seed) {
+    const kernel::Isa isa = kernel::best_isa();
+    int kept = 0;
+    for (std::uint64_t seed = first_seed; seed < first_seed + static_cast<std::uint64_t>(racks); ++seed) {
+        RackShot shot;
+        shot.before = games::new_game(game);
+        shot.table = pool_rack(table, game, seed);
+        Scene scene = games::scene_with(shot.table, adviser(skill)(shot.before, shot.table, seed));
+        scene.cue = games::with_noise(*scene.cue, skill.noise, seed, 0);
+        shot.verdict = games::judge(shot.before, simulate(make_plan(scene, isa)));
+        shot.taken = shot.verdict.options.front();
+        kept += shot.made();
+    }
+    return kept;
 }
 
 inline constexpr int kLongestRack = 300;

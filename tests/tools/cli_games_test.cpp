@@ -1,4 +1,4 @@
-// carom judge and carom next: a match from the shell, and states that are refused.
+// carom judge, next and advise: a match from the shell, states that are refused, and advice.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -45,6 +45,26 @@ TEST_F(CliGames, AMatchIsPlayedByTwoCommands) {
         state = {"--state", after};
     }
     EXPECT_GE(shots, 3);
+}
+
+TEST_F(CliGames, AHandThatErrsMoreMakesAndWinsLess) {
+    const std::string far = folder_.write("far.toml",
+                                          "[table]\npreset = \"nine_foot\"\n"
+                                          "[[ball]]\nid = \"cue\"\nposition = [0.6, 0.4]\n"
+                                          "[[ball]]\nid = \"3\"\nposition = [0.8, 1.6]\n"
+                                          "[[ball]]\nid = \"8\"\nposition = [0.2, 1.3]\n");
+    const auto best = [&](const std::string& hand) {
+        const ProcessResult told =
+            carom({"advise", far, "--skill", "club", "--best", "1", "--json", "--hand", hand});
+        EXPECT_EQ(told.status, 0) << told.err;
+        return Json::parse(told.out).at(0);
+    };
+    const Json sure = best("aim=0.05,speed=1%,tip=0"), errs = best("aim=0.8,speed=1%,tip=0"),
+               slips = best("aim=0.05,speed=40%,tip=0");
+    EXPECT_GT(sure.at("makes").at(0), errs.at("makes").at(0));
+    EXPECT_GT(sure.at("worth"), errs.at("worth"));
+    EXPECT_GT(sure.at("worth"), slips.at("worth"));
+    EXPECT_EQ(carom({"advise", far, "--hand", "grip=1"}).status, 2);
 }
 
 TEST_F(CliGames, AFoulGivesTheCueBallInHand) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -29,21 +31,26 @@ using detail::Search;
 /// length, and how it is struck.
 struct BreakStroke {
     Game game;
+    double length;  ///< [m] of the table; the stroke serves tables whose length is nearest to it
     double x, y;
     double hit;  ///< [-] of the apex ball: 0 is full, 1 and -1 pass its left and right edge
     double speed, height;
 };
-// By carom solve on the nine-foot table, for a rack with the default gaps and errors of
-// --hand aim=0.125,speed=1%,tip=0.0175: 78, 92 and 62 % of fresh shots are legal and pot a ball.
+// By carom solve and carom break for a rack with the default gaps and errors of
+// --hand aim=0.125,speed=1%,tip=0.0175: 78, 77, 68, 92, 51 and 62 % of fresh shots are legal and pot a ball.
 constexpr BreakStroke kBreaks[] = {
-    {Game::kEightBall, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
-    {Game::kNineBall, 0.0455, 0.1881, 0.3860, 4.812, 0.109},
-    {Game::kTenBall, 0.0725, 0.2321, -0.0138, 5.926, 0.034},
+    {Game::kEightBall, 2.54, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
+    {Game::kNineBall, 1.9812, 0.7601, 0.1964, -0.2716, 7.060, 0.135},
+    {Game::kNineBall, 2.3368, 0.8803, 0.2483, -0.1177, 6.971, 0.056},
+    {Game::kNineBall, 2.54, 0.0455, 0.1881, 0.3860, 4.812, 0.109},
+    {Game::kNineBall, 2.8448, 0.1480, 0.2335, 0.1807, 6.436, 0.013},
+    {Game::kTenBall, 2.54, 0.0725, 0.2321, -0.0138, 5.926, 0.034},
 };
 
 std::vector<std::string> player_games() {
     std::vector<std::string> names;
-    for (const BreakStroke& row : kBreaks) names.emplace_back(name(row.game));
+    for (const BreakStroke& row : kBreaks)
+        if (names.empty() || names.back() != name(row.game)) names.emplace_back(name(row.game));
     return names;
 }
 
@@ -85,14 +92,15 @@ Scene completed(const State& state, Scene scene) {
     Cue cue = scene.cue.value_or(Cue{});
     cue.ball = cue_ball(state);
     scene.cue = cue;
-    if (index_of(scene.ball, cue.ball) >= 0) return scene;
+    const bool there = index_of(scene.ball, cue.ball) >= 0;
+    if (state.in_hand == InHand::kNo && there) return scene;
     if (state.in_hand == InHand::kNo)
         throw std::invalid_argument("there is no cue ball, and it is not in hand");
     const double R = scene.balls.R, beside = R + kSpotGap;
     std::vector<Lying> others;
     for (const BallStart& ball : scene.ball)
-        others.push_back({planar(ball.position), scene.size_of(ball).R, kSpotGap});
-    // Behind the head string, so that it may lie there in any game.
+        if (ball.id != cue.ball) others.push_back({planar(ball.position), scene.size_of(ball).R, kSpotGap});
+    // Behind the head string, so that it may lie there in any game; where it lies now, it may not be allowed.
     const Vec2 from = scene.table.corner + Vec2(beside, 0.2 * scene.table.length);
     const auto place = nearest_free(from, {1.0, 0.0}, scene.table.width - 2.0 * beside, R, others);
     if (!place) throw std::invalid_argument("there is no room for the cue ball");
@@ -100,8 +108,12 @@ Scene completed(const State& state, Scene scene) {
 }
 
 Attempt break_of(const State& state, const Scene& scene) {
-    const auto& b = *std::find_if(std::begin(kBreaks), std::end(kBreaks),
-                                  [&](const auto& row) { return row.game == state.game; });
+    const auto unlike = [&](const BreakStroke& row) {
+        return row.game == state.game ? std::abs(row.length - scene.table.length)
+                                      : std::numeric_limits<double>::infinity();
+    };
+    const auto& b = *std::min_element(std::begin(kBreaks), std::end(kBreaks),
+                                      [&](const auto& p, const auto& q) { return unlike(p) < unlike(q); });
     // The apex is the object ball nearest to the head rail; its number depends on the rack.
     const BallStart* apex = nullptr;
     for (const BallStart& ball : scene.ball)
@@ -181,6 +193,12 @@ Skill skill_by_name(std::string_view name, double R) {
     return skill;
 }
 
+Noise Skill::noise_at(double speed) const {
+    Noise at = noise;
+    at.speed = length(Vec2(noise.speed, of_speed * speed));
+    return at;
+}
+
 std::vector<Advice> advise(const State& state, const Scene& given, const Skill& skill, kernel::Isa isa,
                            const AdviceOptions& options) {
     check_game(state.game);
@@ -229,7 +247,7 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
     Scene scene;
     scene.table = record.table;
     scene.balls = record.balls;
-    const detail::Potting potting(scene, skill.noise.aim_deg / kDegrees);
+    const detail::Potting potting(scene, skill.noise);
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
         const Option& option = verdict.options[i];
         check_game(option.state.game);

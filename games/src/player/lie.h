@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "carom/games/noise.h"
 #include "carom/games/rules.h"
 
 namespace carom::games::detail {
@@ -47,8 +48,7 @@ struct Pot {
 /// Geometry of one table for a player with given errors.
 class Potting {
   public:
-    /// @param sd_aim standard deviation of the cue ball's direction [rad]
-    Potting(const Scene& scene, double sd_aim);
+    Potting(const Scene& scene, const Noise& noise);
 
     /// Direct pots of these balls with at least this chance; nothing without a cue ball.
     std::vector<Pot> pots(const Lie& lie, Numbers balls, double least) const;
@@ -89,7 +89,8 @@ class Potting {
     };
     std::vector<Mouth> mouths_;
     Rectangle noses_;
-    double R_, both_, sd_aim_;
+    double R_, both_;
+    double sd_aim_;  ///< standard deviation of the cue ball's direction [rad]
 };
 
 }  // namespace carom::games::detail

@@ -79,12 +79,6 @@ double turn_deg(const Vec2& from, const Vec2& to) {
     return direction_deg({dot(from, to), cross(from, to)});
 }
 
-double sd_of_aim(const Noise& noise) {
-    // A tip that is off to the side by a tenth of a radius turns the ball's path by some tenths of a degree.
-    constexpr double kTurnOfSide = 2.0;  // degrees a radius
-    return length(Vec2(noise.aim_deg, noise.side * kTurnOfSide)) / kDegrees;
-}
-
 }  // namespace
 
 struct Search::Line {
@@ -101,7 +95,7 @@ Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa 
       skill_(skill),
       isa_(isa),
       options_(options),
-      potting_(scene_, sd_of_aim(skill.noise)),
+      potting_(scene_, skill.noise),
       lie_(lie_of(scene_)),
       targets_(targets(state, lie_)),
       first_(0),
@@ -146,7 +140,7 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
     result.foul = !verdict.fouls.empty();
     const State& next = verdict.next();
     result.made = next.over ? next.winner == state_.turn : next.turn == state_.turn && !call.push_out;
-    if (skill_.look == Look::kPot) {
+    if (skill_.look == Look::kPot && !closer) {
         result.worth = result.made ? 1.0 : result.foul ? -kFoulCost : 0.0;
         return result;
     }
@@ -376,8 +370,9 @@ void Search::rate(std::span<Attempt* const> candidates, std::size_t shots, std::
     std::vector<Cue> cues;
     std::vector<Vec2> places;
     for (const Attempt* candidate : candidates) {
+        const Noise noise = skill_.noise_at(candidate->cue.speed);
         for (std::size_t k = 0; k < shots; ++k) {
-            cues.push_back(with_noise(candidate->cue, skill_.noise, options_.seed, first + k));
+            cues.push_back(with_noise(candidate->cue, noise, options_.seed, first + k));
             places.push_back(candidate->place);
         }
     }

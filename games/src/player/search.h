@@ -41,7 +41,7 @@ class Search {
     /// The candidates that reached the last round, the best first; at least one.
     std::vector<Attempt> best();
     /// Plays more shots of some candidates. @param first  number of the first draw of errors
-    /// @param closer  whether to count Tally::leaves
+    /// @param closer  as in result()
     void rate(std::span<Attempt* const> candidates, std::size_t shots, std::size_t first,
               bool closer = false) const;
     /// The number of draws after which errors are fresh: best() uses fewer.
@@ -59,7 +59,8 @@ class Search {
 
     using Judge = std::function<void(std::size_t, const Record&)>;
     void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
-    /// @param closer  whether to find Result::leaves, too
+    /// @param closer  whether to find Result::leaves, too, and the chance to win in place of what the skill
+    /// looks at
     Result result(const Record& record, const Call& call, bool closer = false) const;
     void lift(Attempt& candidate) const;
     std::vector<Attempt> pots(std::span<const Vec2> places) const;

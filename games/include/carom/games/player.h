@@ -34,6 +34,9 @@ constexpr auto names_of(Look) {
 struct Skill {
     Noise noise;
     Look look = Look::kWhole;
+    double of_speed = 0.0;  ///< [-] another error of the speed, in parts of it
+    /// Of a strike with this speed [m/s].
+    Noise noise_at(double speed) const;
     bool operator==(const Skill&) const = default;
 };
 inline constexpr std::array kSkills{"beginner", "club", "league", "professional", "machine"};

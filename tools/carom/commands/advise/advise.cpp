@@ -11,6 +11,7 @@
 
 #include "base/console.h"
 #include "base/game_state.h"
+#include "base/hand.h"
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/verdict.h"
@@ -26,7 +27,7 @@ using games::Advice;
 using games::State;
 
 struct AdviseArgs {
-    std::string scene, game, state, skill = "professional", output;
+    std::string scene, game, state, skill = "professional", hand, output;
     int best = 3, jobs = 0;
     std::uint64_t seed = 1;
     bool json = false;
@@ -52,6 +53,15 @@ State state_of(const AdviseArgs& args, const Scene& scene) {
         state.in_hand = games::InHand::kNo;
     }
     return state;
+}
+
+games::Skill skill_of(const AdviseArgs& args, const Scene& scene) {
+    games::Skill skill = games::skill_by_name(args.skill, scene.balls.R);
+    if (args.hand.empty()) return skill;
+    const games::Hand hand = read_hand(args.hand);
+    skill.noise = {0.0, hand.aim_deg, hand.elevation_deg, hand.tip, hand.tip};
+    skill.of_speed = hand.speed;
+    return skill;
 }
 
 std::string percent(double share) {
@@ -85,8 +95,7 @@ int run_advise(const AdviseArgs& args) {
     options.stop = [] { return interrupted(); };
     const auto advice = [&] {
         try {
-            const games::Skill skill = games::skill_by_name(args.skill, plan.scene.balls.R);
-            return games::advise(state, plan.scene, skill, chosen_isa(), options);
+            return games::advise(state, plan.scene, skill_of(args, plan.scene), chosen_isa(), options);
         } catch (const BatchStopped&) {
             throw Interrupted();
         } catch (const std::invalid_argument& refused) {
@@ -119,6 +128,8 @@ void add_advise(Options& program) {
         "the middle of a turn on an open table)");
     command.option("--skill", &args.skill, "LEVEL", "How well the player strikes, and how much it looks at")
         .one_of({games::kSkills.begin(), games::kSkills.end()});
+    command.option("--hand", &args.hand, "ERRORS",
+                   "The player's own errors, as carom solve takes them (default: those of the level)");
     command.option("--best", &args.best, "N", "How many shots are shown").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the player's errors");
     command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the result does not depend on it")
