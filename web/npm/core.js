@@ -228,8 +228,8 @@ export class Shot extends Held {
   #events = null;
   constructor(brief, scene) {
     super("carom_free_shot");
-    const [duration, eventCount] = JSON.parse(brief);
-    Object.assign(this, {scene, duration, eventCount});
+    const [duration, eventCount, warnings] = JSON.parse(brief);
+    Object.assign(this, {scene, duration, eventCount, warnings});
   }
   get hash() { return this.#hash ??= call("carom_shot_hash", this.handle); }
   get outcome() { return this.#outcome ??= JSON.parse(call("carom_shot_outcome", this.handle)); }
@@ -322,6 +322,10 @@ export class Verdict extends Held {
     expectNumber("y", y);
     expectWhole("option", option);
     return call("carom_game_may_place", this.#shot.handle, this.handle, option, x, y) === "true";
+  }
+  choose(skill = "professional") {
+    expectText("skill", skill);
+    return Number(call("carom_game_choose", this.#shot.handle, this.handle, skill));
   }
   next({option = 0, place = null} = {}) {
     expectWhole("option", option);

@@ -126,7 +126,7 @@ CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds
         const Plan plan = make_plan(shot->scene, kIsa);
         simulate(plan, buffers, shot->outcome, shot->record, options);
         // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
-        const Json brief = {shot->record.duration, shot->record.events.size()};
+        const Json brief = {shot->record.duration, shot->record.events.size(), plan.warnings};
         give(shot.release(), brief.dump());
     });
 }

@@ -24,7 +24,7 @@ test("every type of event has its own words", () => {
 });
 
 test("words and units", () => {
-  assert.equal(eventWords(event("ball_ball"), "metric"), "The cue ball hits 1 at 1.00 m/s, cut 29°");
+  assert.equal(eventWords(event("ball_ball"), "metric"), "The cue ball hits the 1 at 1.00 m/s, cut 29°");
   assert.equal(eventWords(event("ball_cushion"), "inch"),
     "The cue ball bounces off the head rail at diamond 1.3: 4.5 mph");
   assert.equal(eventWords(event("ball_cushion", {speed: null, diamond: null}), "metric"),
