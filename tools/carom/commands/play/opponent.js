@@ -58,6 +58,14 @@ export async function takeTurn(state) {
   if (goes) state.clock.run(true);
 }
 
+/** Another table: what was thought about the last one is of no use. */
+export function newTable(state) {
+  if (state.busy) done(state, state.busy);
+  state.thinker.stop();
+  state.yielded = false;
+  takeTurn(state);
+}
+
 /** Stops thinking, or a shot that is announced. */
 export function stopThinking(state) {
   const {busy} = state;

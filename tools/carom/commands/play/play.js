@@ -8,7 +8,7 @@ import {openScene} from "./extras.js";
 import {judge, newGame} from "./game.js";
 import {gameCard, gameDialog} from "./game_card.js";
 import {keepMatch, resumeMatch} from "./match.js";
-import {goOn, hint, takeTurn} from "./opponent.js";
+import {goOn, hint, newTable} from "./opponent.js";
 import {followKeys} from "./pointer.js";
 import {scoreBar} from "./score.js";
 import {setupCard} from "./setup_card.js";
@@ -102,10 +102,7 @@ function build(state) {
   document.body.prepend(make("main", {class: "play"}, topBar(state, sound), scoreBar(state), ...table.parts,
     make("div", {class: "right"}, gameCard(state), side)));
   followKeys(state, table.tip);
-  state.on("table", () => {
-    state.yielded = false;
-    takeTurn(state);
-  });
+  state.on("table", () => newTable(state));
   state.on("starts", () => {
     if (state.clock.now > 0) return;
     keep(state);
