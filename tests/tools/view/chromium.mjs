@@ -97,6 +97,8 @@ export class Browser {
     for (const at of steps) await (type === "touch" ? touch("touchMove", at) : this.mouse("mouseMoved", ...at));
     await this.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
     await (type === "touch" ? touch("touchEnd") : this.mouse("mouseReleased", ...last));
+    // A touch right after a swipe would only stop the swipe, and click nothing.
+    if (type === "touch" && more.length > 0) await new Promise((resolve) => setTimeout(resolve, 400));
   }
   async picture(name) {
     if (!this.pictures) return;
