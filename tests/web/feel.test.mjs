@@ -168,7 +168,7 @@ test("the words of the game", skip, async () => {
   await value(`caromPlay.change({"cue.offset.side": 0.3, "cue.offset.height": -0.4, "cue.speed": 2})`);
   const words = await value("document.querySelector('.stroke-words').textContent");
   assert.match(words, /full draw, half left English/);
-  assert.match(words, /^The 1 (thin|\w+ ball|full), cut \d+° (left|right)/);
+  assert.match(words, /^The 1 (thin|[\w-]+ ball|full), cut \d+° (left|right)/);
   assert.match(await value("document.querySelector('.pull-words').textContent"), /^medium, 2.00 m\/s$/);
   assert.equal(await value("document.querySelector('[aria-label=\"Speed\"]').max"), "12");
 });
@@ -275,9 +275,8 @@ test("axe finds nothing serious", withAxe, async () => {
 test("how fast it is, is told", skip, async (t) => {
   await sized(1920, 1080);
   await player.open();
-  const opened = await value(`(() => { const [n] = performance.getEntriesByType("navigation");
-    return performance.now() - n.startTime; })()`);
-  assert.ok(opened > 0);
+  t.diagnostic(`usable ${await value("performance.getEntriesByName('usable')[0].startTime.toFixed(0)")} ms after ` +
+    "opening");
   await value("localStorage.clear()");
   const aims = (scene) => value(`(async () => { const times = [];
     ${scene}; const {cue} = caromPlay.scene();
@@ -285,12 +284,13 @@ test("how fast it is, is told", skip, async (t) => {
       caromPlay.change({"cue.aim_deg": cue.aim_deg + 0.01 * i});
       caromPlay.state.view.over.getContext("2d").getImageData(0, 0, 1, 1);
       times.push(performance.now() - begin); await new Promise((done) => setTimeout(done)); }
-    return times.sort((a, b) => a - b)[30]; })()`);
+    times.sort((a, b) => a - b); return [times[30], times[0]]; })()`);
+  const told = ([median, least]) => `${median.toFixed(1)} ms (at best ${least.toFixed(1)})`;
   for (const mode of ["Practise", "Play"]) {
     await player.press(mode);
     const two = await aims(`caromPlay.begin(${JSON.stringify(sceneText("draw.toml"))})`);
     const breaks = await aims(`caromPlay.begin(${JSON.stringify(sceneText("eight_ball_break.toml"))})`);
-    t.diagnostic(`${mode}, 1920x1080: aim drawn in ${two.toFixed(1)} ms (two balls), ${breaks.toFixed(1)} ms (break)`);
+    t.diagnostic(`${mode}, 1920x1080: an aim is drawn in ${told(two)} for two balls, ${told(breaks)} for a break`);
   }
   const frames = await value(`(async () => { const times = []; caromPlay.show(0); caromPlay.run(true);
     let last = performance.now();

@@ -157,6 +157,8 @@ export class Shot {
   /** The record file (docs/reference/record_format.md), as text and parsed. */
   readonly recordJson: string;
   readonly record: object;
+  /** Its duration, gravity and tracks alone, in the form of the record: much faster. */
+  readonly motion: {duration: number; gravity: number; tracks: object[]};
   /** States of all balls at these times [s]. `numbers` has nine for each time and ball, ball after ball:
    * centre [m], velocity [m/s], angular velocity [rad/s]. `states` has one for each: an index into STATES. */
   states(times: number | ArrayLike<number>): {balls: number; numbers: Float64Array; states: Uint8Array};

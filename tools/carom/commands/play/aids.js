@@ -4,6 +4,7 @@ import {radiusOf, stateAt} from "../../page/motion.js";
 
 const MEETS = ["ball_ball", "ball_cluster", "ball_cushion", "ball_jaw", "ball_pocket", "ball_out"];
 const SHORT = 0.22;  // [m] the line of a ball after the contact
+const OBVIOUS = 0.1;  // [rad]
 export const PULL = 0.3;  // [m] how far the cue is pulled back for the hardest stroke
 export const HARDEST = 12;  // [m/s] a break
 export const HINT_COLOURS = ["#ffd84d", "#7fd4ff", "#ffb0e0"];
@@ -14,10 +15,10 @@ export const speedOf = (way) => HARDEST * Math.min(Math.max(way / PULL, 0), 1) *
 
 /** What the struck ball meets first: {ball, at, time, R, lines, met}: where it is then, the short lines of
  * both balls, and {id, cut, left} of the ball that it meets, or null; `cut` in radians, and its side. */
-export function firstContact(record, id) {
-  const ball = record.tracks.findIndex((track) => track.id === id);
-  const has = (e) => e.a === ball || e.b === ball && e.type === "ball_ball" || e.balls?.includes(ball);
-  const e = record.events.find((event) => MEETS.includes(event.type) && has(event));
+export function firstContact({motion: record, events}, id) {
+  const indexOf = (name) => record.tracks.findIndex((track) => track.id === name), ball = indexOf(id);
+  const has = (e) => e.ball === id || e.other === id && e.type === "ball_ball" || e.balls?.includes(id);
+  const e = events.find((event) => MEETS.includes(event.type) && has(event));
   if (!e) return null;
   const R = radiusOf(record, ball), {r: at, v} = stateAt(record, ball, e.time), lines = [];
   const found = {ball, at, time: e.time, R, lines, met: null};
@@ -26,7 +27,7 @@ export function firstContact(record, id) {
     const speed = Math.hypot(way[0], way[1]);
     if (speed > 1e-3) lines.push([from, [0, 1].map((k) => from[k] + SHORT * way[k] / speed)]);
   };
-  const others = (e.balls ?? [e.a, e.b]).filter((other) => other !== ball);
+  const others = (e.balls ?? [e.ball, e.other]).filter((other) => other !== id).map(indexOf);
   const along = (other) => [0, 1].map((k) => stateAt(record, other, e.time).r[k] - at[k]);
   const came = stateAt(record, ball, Math.max(e.time - 1e-6, 0)).v;
   const ahead = (other) => along(other).reduce((sum, x, k) => sum + x * came[k], 0);
@@ -36,6 +37,19 @@ export function firstContact(record, id) {
   const cross = came[0] * to[1] - came[1] * to[0];
   found.met = {id: record.tracks[first].id, cut: Math.atan2(Math.abs(cross), ahead(first)), left: cross > 0};
   return found;
+}
+
+/** The ball and the pocket that an obvious shot need not call: the ball that is met, and the pocket that it runs
+ * towards; null if there is none. */
+export function obviousCall(contact, pockets) {
+  if (!contact?.met || contact.lines.length === 0) return null;
+  const [from, to] = contact.lines[0], away = (a, b) => [0, 1].map((k) => b[k] - a[k]), way = away(from, to);
+  const turn = ({center}) => {
+    const [x, y] = away(from, center);
+    return Math.abs(Math.atan2(way[0] * y - way[1] * x, way[0] * x + way[1] * y));
+  };
+  const [nearest] = [...pockets].sort((a, b) => turn(a) - turn(b));
+  return nearest && turn(nearest) < OBVIOUS ? {ball: contact.met.id, pocket: nearest.id} : null;
 }
 
 /** Lines in canvas pixels. */

@@ -7,7 +7,7 @@ import {eventWords} from "./words.js";
 const BUSY = 50;  // [ms] If a picture takes longer, the list waits until the shot stops.
 
 export function eventsCard(state) {
-  const {clock} = state, list = new EventList(clock, 3), head = make("h2", {});
+  const {clock} = state, list = new EventList(clock, 3), head = make("h2", {}, "Events");
   let shown = [];
   const mark = () => {
     const busy = clock.playing && performance.now() - clock.drawn > BUSY;

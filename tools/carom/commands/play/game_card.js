@@ -1,7 +1,7 @@
 // The game on the page: what the player may do and announces, the verdict, and the options after it.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
-import {HINT_COLOURS} from "./aids.js";
+import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
 import {dialog} from "./extras.js";
 import {judge, legal, newGame, nextShot, sentence} from "./game.js";
 import {LEVELS, PLAYED, take} from "./opponent.js";
@@ -11,8 +11,10 @@ import {verdictWords} from "./words.js";
 
 /** What the player calls before the shot. */
 function announcements(state) {
+  let chosen = false;
   const announce = (what) => (value) => {
     state.announced[what] = value;
+    chosen = true;
     judge(state);
   };
   const box = (what) => make("input", {type: "checkbox", onchange: (e) => announce(what)(e.target.checked)});
@@ -30,16 +32,32 @@ function announcements(state) {
     const pockets = state.scene.table.pockets.map(({id, name}) => [id, name || id]);
     pocket.replaceChildren(...optionsOf([["", "and a pocket"], ...pockets]));
     state.announced.pocket = "";
+    chosen = false;
     tell();
   });
-  const show = ({callable, mayPushOut}) => {
+  let callable = [];
+  // What is obvious is called by itself, until the player calls something.
+  const obvious = () => {
+    const {announced, scene, shot, clock} = state;
+    if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;
+    const call = obviousCall(firstContact(shot, scene.cue.ball), scene.table.pockets);
+    const right = call && callable.includes(call.ball) ? call : {ball: "", pocket: ""};
+    Object.assign(announced, right);
+    ball.value = right.ball;
+    tell();
+  };
+  state.on("starts", obvious);
+  state.on("announced", () => { chosen = true; });
+  const show = ({callable: now, mayPushOut}) => {
     const {announced} = state, person = !state.level && state.aiming;
+    callable = now;
     callRow.hidden = callable.length === 0 || !person;
     pushRow.hidden = !mayPushOut || !person;
     ball.replaceChildren(...optionsOf([["", "call a ball"], ...callable.map((id) => [id, id])]));
     if (!callable.includes(announced.ball)) announced.ball = "";
     ball.value = announced.ball;
     tell();
+    obvious();
   };
   return {rows: [callRow, pushRow], show};
 }

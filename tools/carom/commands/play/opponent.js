@@ -107,7 +107,7 @@ export async function hint(state) {
   if (advice) state.hints = advice.map((one) => {
     const changed = scene.with(changesOf(state, one.cue, one.place)), shot = carom.simulate(changed, LIMITS);
     const {x, y} = changed.balls.find(({id}) => id === changed.cue.ball);
-    const contact = firstContact(shot.record, changed.cue.ball);
+    const contact = firstContact(shot, changed.cue.ball);
     shot.free();
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};

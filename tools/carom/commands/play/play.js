@@ -143,6 +143,7 @@ async function main() {
     change: (changes, how) => change(state, changes, how),
     begin: (toml, how) => begin(state, toml, how), newGame: (name, match) => newGame(state, name, {}, match),
     hint: () => hint(state), share: () => share(state, shared.address), download: shared.download};
+  performance.mark("usable");
   document.body.dataset.ready = "true";
 }
 

@@ -26,10 +26,10 @@ function standing({game: {state: now}}, player) {
 
 export function scoreBar(state) {
   const element = make("section", {class: "score", "aria-label": "Score"});
-  const again = button("Start again", () => {
+  const again = button(["↺", make("span", {class: "word"}, " Start again")], () => {
     const {game: {state: now}, match} = state;
     newGame(state, now.game, match?.rules ?? {}, match);
-  });
+  }, {"aria-label": "Start again", title: "Start again"});
   const show = () => {
     if (!state.shot) return;
     const {game, set, scene, clock, shot} = state, now = game?.state, time = clock.now > 0 ? clock.now : -1;

@@ -67,7 +67,7 @@ export function strokeParts(state) {
     if (!cue) return;
     tip.show(cue.side, cue.height);
     const raised = cue.elevation_deg >= 0.5 ? [`cue raised ${cue.elevation_deg.toFixed(0)}°`] : [];
-    const aim = aimWords(firstContact(state.shot.record, cue.ball)?.met);
+    const aim = aimWords(firstContact(state.shot, cue.ball)?.met);
     words.textContent = [aim.charAt(0).toUpperCase() + aim.slice(1), tip.words, ...raised].join(" · ");
   });
   return {tip, parts: [tip.element, hand]};

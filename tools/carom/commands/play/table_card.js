@@ -13,7 +13,7 @@ import {strokeParts} from "./stroke.js";
 
 /** The balls at this time; while aiming, what the mode shows of the shot, and the cue. */
 function draw(state) {
-  const {view, shot, scene, paths, mode, clock: {now}} = state, {record} = shot;
+  const {view, shot, scene, paths, mode, clock: {now}} = state, record = shot.motion;
   view.record = record;
   if (!state.aiming) {
     view.orientation = state.rotations ??= orientations(record);
@@ -23,7 +23,7 @@ function draw(state) {
   view.orientation = () => [1, 0, 0, 0];
   const from = state.struck(), only = scene.cue ? shot.balls.indexOf(scene.cue.ball) : -1;
   if (mode === "play") {
-    const contact = from && !state.level ? firstContact(record, scene.cue.ball) : null;
+    const contact = from && !state.level ? firstContact(shot, scene.cue.ball) : null;
     view.draw(0, {trails: contact ? "ball" : "off", until: contact?.time, only});
     if (contact) drawContact(view, contact, "rgba(255, 255, 255, 0.85)");
   } else {
@@ -115,7 +115,7 @@ export function tableCard(state) {
   };
   state.on("table", () => {
     const {shape, styles} = state.scene.look();
-    state.view = new TableView(state.shot.record, shape, styles, "The table from above");
+    state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);
     box.replaceChildren(state.view.element);
