@@ -11,8 +11,8 @@ const BALLS = {cue: [0.6, 0.7], 8: [0.9, 1.7], 9: [0.3, 2.0]};
 /** Tabs to a button and presses it. */
 async function pressByKeys(player, text) {
   for (let i = 0; i < 90; ++i) {
-    const there = await player.value(`document.activeElement.textContent.startsWith(${JSON.stringify(text)})`);
-    if (there) return player.browser.key("Enter");
+    const begins = `document.activeElement.textContent.startsWith(${JSON.stringify(text)})`;
+    if (await player.value(begins)) return player.browser.key("Enter");
     await player.browser.key("Tab");
   }
   throw new Error(`no key leads to ${text}`);
@@ -20,7 +20,8 @@ async function pressByKeys(player, text) {
 
 /** Asks for a hint, takes the first one and shoots. */
 async function takeHint(player, by) {
-  const {browser} = player, press = (what) => by === "keys" ? pressByKeys(player, what) : player.press(what, by);
+  const {browser} = player;
+  const press = (what) => by === "keys" ? pressByKeys(player, what) : player.press(what, by);
   await press("Hint");
   await browser.until("caromPlay.state.hints.length > 0");
   const aim = await player.value("caromPlay.state.hints[0].cue.aim_deg");
@@ -48,7 +49,9 @@ async function playOut(player, by) {
   assert.notEqual(await player.value("caromPlay.scene().cue.aim_deg"), aim);
   await player.value(`caromPlay.change({"cue.aim_deg": -90, "cue.speed": 0.5})`);
   await player.value(`(() => { const {state} = caromPlay, turns = state.turns = {person: 0, carom: 0};
-    state.on("starts", () => { if (state.clock.now === 0) ++turns[state.level ? "carom" : "person"]; }); })()`);
+    state.on("starts", () => {
+      if (state.clock.now === 0) ++turns[state.level ? "carom" : "person"];
+    }); })()`);
   if (by === "keys") await player.browser.key(" ", "Space");
   else await player.press("Shoot", by);
   await player.browser.until(`!(${YOURS})`);
@@ -62,11 +65,7 @@ async function playOut(player, by) {
   return player.value("caromPlay.state.turns");
 }
 
-for (const name of ["chromium", "firefox-esr"]) describe(name, {skip: missing(name)}, () => {
-  const player = new Player(name);
-  before(() => player.start());
-  after(() => player.end());
-
+function matches(player, name) {
   for (const by of ["mouse", "touch", "keys"])
     test(`a match against carom to its end, by ${by}`, async (t) => {
       const turns = await playOut(player, by);
@@ -92,7 +91,9 @@ for (const name of ["chromium", "firefox-esr"]) describe(name, {skip: missing(na
     assert.equal(await player.value("caromPlay.state.clock.playing"), false, "it strikes before it is read");
     await player.browser.until("caromPlay.state.clock.playing");
   });
+}
 
+function survivals(player) {
   test("a match survives a reload, and starts again", async () => {
     await player.open();
     await player.value("caromPlay.state.quick = true");
@@ -129,10 +130,19 @@ for (const name of ["chromium", "firefox-esr"]) describe(name, {skip: missing(na
     await player.browser.until("!caromPlay.state.aiming");
     await player.value("caromPlay.run(false)");
     await player.value("caromPlay.show(1e9)");
-    assert.ok(await player.value("caromPlay.shot().outcome.balls.find(({id}) => id === 'cue').pocket !== null"));
+    const cue = "caromPlay.shot().outcome.balls.find(({id}) => id === 'cue')";
+    assert.ok(await player.value(`${cue}.pocket !== null`));
     await player.press("Next shot");
     assert.deepEqual(await player.value("caromPlay.scene().balls.map(({id}) => id).sort()"), ["9", "cue"]);
     assert.match(await player.value("document.querySelector('.says').textContent"), /in hand/);
     assert.equal(await player.value("caromPlay.state.free"), true);
   });
+}
+
+for (const name of ["chromium", "firefox-esr"]) describe(name, {skip: missing(name)}, () => {
+  const player = new Player(name);
+  before(() => player.start());
+  after(() => player.end());
+  matches(player, name);
+  survivals(player);
 });

@@ -5,7 +5,7 @@ import {existsSync, mkdtempSync, rmSync} from "node:fs";
 import {tmpdir} from "node:os";
 import * as path from "node:path";
 import {pathToFileURL} from "node:url";
-import {Browser} from "../tools/view/chromium.mjs";
+import {Browser, TWO_FRAMES} from "../tools/view/chromium.mjs";
 import {Firefox} from "../tools/view/firefox.mjs";
 import {PROGRAM, native, withoutProgram} from "./support.mjs";
 
@@ -48,7 +48,7 @@ export class Player {
   }
   value(expression) { return this.browser.value(expression); }
   settled() {
-    return this.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+    return this.value(TWO_FRAMES);
   }
   /** The middle of the first element that a selector finds, or that has this text. */
   placeOf(what) {
@@ -65,7 +65,8 @@ export class Player {
   /** The place on the screen of a place of the table [m]. */
   onTable(x, y) {
     return this.value(`(() => { const {view} = caromPlay.state, b = view.over.getBoundingClientRect(),
-      [px, py] = view.projection.at(${x}, ${y}); return [b.left + px / view.dense, b.top + py / view.dense]; })()`);
+      [px, py] = view.projection.at(${x}, ${y});
+      return [b.left + px / view.dense, b.top + py / view.dense]; })()`);
   }
   async drag(places, type = "mouse") {
     const at = [];
@@ -75,11 +76,12 @@ export class Player {
   }
   /** Begins a game in the middle: with these balls, {id: [x, y]}. */
   async frame(game, balls, {players = ["", "machine"], more = {}} = {}) {
-    const toml = Object.entries(balls).map(([id, at]) => `[[ball]]\nid = "${id}"\nposition = [${at}]\n`).join("") +
-      '[cue]\nball = "cue"\nspeed = 2\naim_deg = 90\n';
-    const text = JSON.stringify('[table]\npreset = "nine_foot"\n[balls]\npreset = "pool"\n' + toml);
+    const toml = Object.entries(balls).map(([id, at]) => `[[ball]]\nid = "${id}"\nposition = [${at}]\n`);
+    const text = JSON.stringify(`[table]\npreset = "nine_foot"\n[balls]\npreset = "pool"\n${toml.join("")}` +
+      '[cue]\nball = "cue"\nspeed = 2\naim_deg = 90\n');
+    const match = JSON.stringify({players, hints: true, rules: {}});
     await this.value(`(() => { const {state} = caromPlay;
-      Object.assign(state, {mode: "play", match: {players: ${JSON.stringify(players)}, hints: true, rules: {}}});
+      Object.assign(state, {mode: "play", match: ${match}});
       state.tell("mode");
       return caromPlay.begin(${text}, {game: {option: 0, state: {...state.carom.games.start("${game}"),
         opening: false, in_hand: "no", ...${JSON.stringify(more)}}}}); })()`);

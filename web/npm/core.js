@@ -227,8 +227,8 @@ function motionOf(numbers, ids) {
     const [pocket, radius, mass, count] = next(4), segments = [];
     for (let i = 0; i < count; ++i) {
       const [start, lasts, state, held] = next(4), [r, v, w] = [next(3), next(3), next(3)];
-      segments.push({start, duration: lasts === Infinity ? null : lasts, state: STATES[state], held: held === 1,
-        r, v, w, a: next(2), dw: next(2), spin_decay: next(1)[0]});
+      segments.push({start, duration: lasts === Infinity ? null : lasts, state: STATES[state],
+        held: held === 1, r, v, w, a: next(2), dw: next(2), spin_decay: next(1)[0]});
     }
     return {id, pocket, radius, mass, segments};
   });

@@ -2,6 +2,10 @@
 import {spawn} from "node:child_process";
 import {writeFileSync} from "node:fs";
 
+/** Waits until the page has drawn. */
+export const TWO_FRAMES =
+  "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))";
+
 /** A browser with two pipes, file descriptors 3 and 4: messages are JSON, each followed by a 0. */
 export class Browser {
   /** `pictures`: a folder for screenshots. `server`: the address of a test's own server; nothing else can be
@@ -90,12 +94,14 @@ export class Browser {
     const [from, ...more] = places, last = places.at(-1), steps = [];
     let [x, y] = from;
     for (const to of more) {
-      for (const share of [0.25, 0.5, 0.75, 1]) steps.push([x + share * (to[0] - x), y + share * (to[1] - y)]);
+      for (const share of [0.25, 0.5, 0.75, 1])
+        steps.push([x + share * (to[0] - x), y + share * (to[1] - y)]);
       [x, y] = to;
     }
     await (type === "touch" ? touch("touchStart", from) : this.mouse("mousePressed", ...from));
-    for (const at of steps) await (type === "touch" ? touch("touchMove", at) : this.mouse("mouseMoved", ...at));
-    await this.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+    for (const at of steps)
+      await (type === "touch" ? touch("touchMove", at) : this.mouse("mouseMoved", ...at));
+    await this.value(TWO_FRAMES);
     await (type === "touch" ? touch("touchEnd") : this.mouse("mouseReleased", ...last));
     // A touch right after a swipe would only stop the swipe, and click nothing.
     if (type === "touch" && more.length > 0) await new Promise((resolve) => setTimeout(resolve, 400));

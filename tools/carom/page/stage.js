@@ -7,7 +7,7 @@ import {isGone, orientations, pathPiece, product, radiusOf, stateAt} from "./mot
 
 const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
 const SINK_TIME = 0.15;  // [s] how long a pocketed ball is seen sinking, as in rendered frames
-const QUARTER = [Math.SQRT1_2, 0, 0, Math.SQRT1_2];
+const QUARTER = [Math.SQRT1_2, 0, 0, -Math.SQRT1_2];
 const MOST_ZOOM = 6, SETTLED = 120;  // [ms] after a change, until the table is painted anew
 const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
 

@@ -39,8 +39,8 @@ export function firstContact({motion: record, events}, id) {
   return found;
 }
 
-/** The ball and the pocket that an obvious shot need not call: the ball that is met, and the pocket that it runs
- * towards; null if there is none. */
+/** The ball and the pocket that an obvious shot need not call: the ball that is met, and the pocket that it
+ * runs towards; null if there is none. */
 export function obviousCall(contact, pockets) {
   if (!contact?.met || contact.lines.length === 0) return null;
   const [from, to] = contact.lines[0], away = (a, b) => [0, 1].map((k) => b[k] - a[k]), way = away(from, to);

@@ -30,7 +30,7 @@ function announcements(state) {
   };
   state.on("table", () => {
     const pockets = state.scene.table.pockets.map(({id, name}) => [id, name || id]);
-    pocket.replaceChildren(...optionsOf([["", "and a pocket"], ...pockets]));
+    pocket.replaceChildren(...optionsOf([["", "pocket …"], ...pockets]));
     state.announced.pocket = "";
     chosen = false;
     tell();
@@ -53,7 +53,7 @@ function announcements(state) {
     callable = now;
     callRow.hidden = callable.length === 0 || !person;
     pushRow.hidden = !mayPushOut || !person;
-    ball.replaceChildren(...optionsOf([["", "call a ball"], ...callable.map((id) => [id, id])]));
+    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, id])]));
     if (!callable.includes(announced.ball)) announced.ball = "";
     ball.value = announced.ball;
     tell();
