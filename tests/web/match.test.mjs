@@ -82,6 +82,7 @@ function matches(player, name) {
       game.value = "ten_ball"; game.onchange(); players[0].value = "machine"; })()`);
     await player.press("Start");
     assert.equal(await player.value("document.body.classList.contains('thinking')"), true);
+    assert.match(await player.value("document.querySelector('.says').textContent"), /machine.* is thinking/);
     await player.browser.picture(`${name}_thinks`);
     await player.press("Stop");
     assert.match(await player.value("caromPlay.state.said"), /^Stopped/);

@@ -29,13 +29,14 @@ export class TableView {
     this.ratio = clamp(Math.min(...sides) / Math.max(...sides), 0.4, 1);
   }
 
-  /** Fits into a width and a height [CSS px]; the table is upright on narrow screens, lying on wide ones. */
+  /** Fits into a width and a height [CSS px]; the table is upright on narrow screens, lying on wide ones.
+   * @returns whether that changes anything */
   fit(width, height) {
     const lying = Math.min(width, height / this.ratio) >= Math.min(height, width / this.ratio);
     const w = Math.floor(lying ? Math.min(width, height / this.ratio) : Math.min(width, height * this.ratio));
     const h = Math.floor(lying ? w * this.ratio : w / this.ratio);
     const dense = Math.min(window.devicePixelRatio || 1, 2);
-    if (w === this.width && h === this.height && dense === this.dense) return;
+    if (w === this.width && h === this.height && dense === this.dense) return false;
     Object.assign(this, {width: w, height: h, dense});
     for (const canvas of [this.under, this.over]) {
       canvas.width = Math.round(w * dense);
@@ -46,6 +47,7 @@ export class TableView {
     this.element.style.width = `${w}px`;
     this.element.style.height = `${h}px`;
     this.look(0);
+    return true;
   }
 
   /** Shows the table `times` as large as now, the pixel `from` at `to`, but never less than all of it; 0: all
@@ -202,16 +204,20 @@ export class TableView {
     if (dashed) context.setLineDash([5, 4].map((x) => x * this.dense / this.projection.scale));
     record.tracks.forEach((track, ball) => {
       if (only >= 0 && ball !== only) return;
+      const own = cssColour(this.styles[ball % this.styles.length].color), paths = new Map();
       track.segments.forEach((s, k) => {
         const piece = pathPiece(record, track, k, t);
         if (piece === null) return;
-        const own = this.styles[ball % this.styles.length].color;
-        context.strokeStyle = kind === "ball" ? cssColour(own) : TRAIL_COLOURS[s.state] || "#8cbfff";
-        context.beginPath();
-        context.moveTo(...piece[0]);
-        context.quadraticCurveTo(...piece[1], ...piece[2]);
-        context.stroke();
+        const colour = kind === "ball" ? own : TRAIL_COLOURS[s.state] || "#8cbfff";
+        if (!paths.has(colour)) paths.set(colour, new Path2D());
+        paths.get(colour).moveTo(...piece[0]);
+        paths.get(colour).quadraticCurveTo(...piece[1], ...piece[2]);
       });
+      // One stroke for each colour: many short ones take longer.
+      for (const [colour, path] of paths) {
+        context.strokeStyle = colour;
+        context.stroke(path);
+      }
     });
     context.restore();
   }

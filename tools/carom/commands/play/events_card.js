@@ -31,6 +31,11 @@ export function eventsCard(state) {
     fill();
   }});
   state.on("lists", fill);
+  state.on("table", () => {
+    list.element.replaceChildren();
+    list.marked = -1;
+    head.textContent = "Events";
+  });
   state.on("time", mark);
   state.on("mode", () => { if (state.shot) mark(); });
   return make("section", {class: "card event-card"}, make("div", {class: "bar"}, head,

@@ -81,7 +81,7 @@ function advance(state, after, game) {
   }
   state.announced = {...NOTHING, ball: state.announced.ball};
   // A raised cue was for one shot of a game.
-  if (enter(state, after, {game, set}) && (game || state.raised !== raised))
+  if (enter(state, after, {game, set}) && !state.level && (game || state.raised !== raised))
     change(state, {"cue.elevation_deg": game ? 0 : raised}, {remember: false});
   if (said) state.say(said);
 }

@@ -23,9 +23,10 @@ function changesOf(state, strike, place) {
     "cue.offset.side": side, "cue.offset.height": height};
 }
 
-/** Thinks. @returns the advice, or null if it is stopped or fails, which is said */
+/** Thinks, and says so. @returns the advice, or null if it is stopped or fails, which is said */
 async function think(state, busy, game, options) {
   state.busy = busy;
+  state.say(busy.level ? `carom (${busy.level}) is thinking …` : "carom looks for the best shots …");
   state.tell("busy");
   try {
     const advice = await state.thinker.advise(state.scene.toml, game, {seed: seedOf(), ...options});
@@ -81,12 +82,12 @@ export function stopThinking(state) {
 /** After a shot: carom chooses, and a match goes on by itself where there is nothing to choose. */
 export async function goOn(state) {
   const {verdict, shot} = state, {players} = state.match ?? {players: []};
-  if (!verdict || state.mode !== "play") return;
-  const level = players[verdict.chooser];
+  const level = players[verdict?.chooser];
+  if (!verdict || state.mode !== "play" && !level) return;
   if (verdict.options[0].state.over || verdict.chooser >= 0 && !level) return;
   const option = level ? verdict.choose(level) : 0;
   if (level) state.say(`carom chooses: ${withNames(state, verdict.options[option].text)}.`);
-  await wait(state, SEEN);
+  await wait(state, verdict.fouls.length > 0 ? 1.6 * SEEN : SEEN);
   if (state.shot === shot && state.verdict === verdict && !state.clock.playing && !state.aiming)
     nextShot(state, option);
 }
@@ -104,7 +105,7 @@ export async function hint(state) {
   const {carom, scene, game} = state, busy = {hint: true};
   if (!state.aiming || state.busy) return;
   const advice = await think(state, busy, game?.state ?? practice(carom), {best: 3});
-  if (advice) state.hints = advice.map((one) => {
+  if (advice && state.scene === scene) state.hints = advice.map((one) => {
     const changed = scene.with(changesOf(state, one.cue, one.place)), shot = carom.simulate(changed, LIMITS);
     const {x, y} = changed.balls.find(({id}) => id === changed.cue.ball);
     const contact = firstContact(shot, changed.cue.ball);
@@ -112,6 +113,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
+  if (advice) state.say("");
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

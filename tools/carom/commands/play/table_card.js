@@ -110,8 +110,7 @@ export function tableCard(state) {
   });
   const lay = () => {
     if (!state.view) return;
-    state.view.fit(Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120));
-    state.clock.refresh();
+    if (state.view.fit(Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120))) state.clock.refresh();
   };
   state.on("table", () => {
     const {shape, styles} = state.scene.look();
@@ -125,6 +124,7 @@ export function tableCard(state) {
   const now = () => {
     document.body.classList.toggle("aiming", state.aiming);
     document.body.classList.toggle("thinking", state.busy !== null);
+    document.body.classList.toggle("in-game", state.game !== null);
     helps();
   };
   for (const what of ["label", "mode", "busy", "stroke"]) state.on(what, now);
@@ -134,6 +134,8 @@ export function tableCard(state) {
     else if (document.body.classList.contains("aiming")) now();
   });
   new ResizeObserver(() => requestAnimationFrame(lay)).observe(box);
+  // The lists may take room from the table, and give it back before the browser looks.
+  state.on("lists", lay);
   const strip = make("section", {class: "strip card", "aria-label": "Stroke"}, aims.element, watch);
   return {parts: [box, make("div", {class: "telling"}, says, help), strip], tip: aims.tip};
 }
