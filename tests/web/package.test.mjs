@@ -152,6 +152,14 @@ test("a look has outlines, and the numbers of the diamonds", () => {
     [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 5, 5, 6, 6, 7, 7]);
 });
 
+test("a rail of a table without pockets is one board", () => {
+  for (const preset of ["carom", "carom_small"]) {
+    const scene = Scene.parse(`[table]\npreset = "${preset}"\n[[ball]]\nid = "white"\nposition = [0.5, 0.5]\n`);
+    const corners = scene.look().shape.wood.map(({loops}) => loops.map((loop) => loop.length / 2));
+    assert.deepEqual(corners, [[4], [4], [4], [4]], preset);
+  }
+});
+
 test("until and seconds end a shot", () => {
   const scene = Scene.parse(sceneText("snooker_break.toml"));
   assert.equal(simulate(scene, {until: 0.5}).duration, 0.5);
