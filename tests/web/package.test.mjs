@@ -154,7 +154,8 @@ test("a look has outlines, and the numbers of the diamonds", () => {
 
 test("a rail of a table without pockets is one board", () => {
   for (const preset of ["carom", "carom_small"]) {
-    const scene = Scene.parse(`[table]\npreset = "${preset}"\n[[ball]]\nid = "white"\nposition = [0.5, 0.5]\n`);
+    const ball = '[[ball]]\nid = "white"\nposition = [0.5, 0.5]\n';
+    const scene = Scene.parse(`[table]\npreset = "${preset}"\n${ball}`);
     const corners = scene.look().shape.wood.map(({loops}) => loops.map((loop) => loop.length / 2));
     assert.deepEqual(corners, [[4], [4], [4], [4]], preset);
   }

@@ -104,7 +104,7 @@ export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &
 export async function hint(state) {
   const {carom, scene, game} = state, busy = {hint: true};
   if (!state.aiming || state.busy) return;
-  const advice = await think(state, busy, game?.state ?? practice(carom), {best: 3});
+  const advice = await think(state, busy, game?.state ?? practice(carom), {skill: "professional", best: 3});
   if (advice && state.scene === scene) state.hints = advice.map((one) => {
     const changed = scene.with(changesOf(state, one.cue, one.place)), shot = carom.simulate(changed, LIMITS);
     const {x, y} = changed.balls.find(({id}) => id === changed.cue.ball);
@@ -113,7 +113,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
-  if (advice) state.say("");
+  if (advice) state.say("The chances are those of a professional.");
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

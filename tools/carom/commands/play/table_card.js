@@ -110,7 +110,8 @@ export function tableCard(state) {
   });
   const lay = () => {
     if (!state.view) return;
-    if (state.view.fit(Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120))) state.clock.refresh();
+    const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
+    if (state.view.fit(...room)) state.clock.refresh();
   };
   state.on("table", () => {
     const {shape, styles} = state.scene.look();
