@@ -5,7 +5,8 @@ const globals = (names) => Object.fromEntries(names.split(/\s+/).map((name) => [
 const everywhere = globals(`Blob CompressionStream DecompressionStream FinalizationRegistry Response
   TextDecoder TextEncoder URL URLSearchParams WebAssembly atob btoa clearTimeout console fetch performance
   process setTimeout`);
-const page = globals(`Path2D ResizeObserver document history location matchMedia modules navigator print
+const page = globals(`AudioBufferSourceNode AudioContext OscillatorNode Path2D ResizeObserver Worker
+  WorkerGlobalScope document history localStorage location matchMedia modules navigator print
   requestAnimationFrame window`);
 const test = globals("Buffer WebSocket");
 

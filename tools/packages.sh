@@ -11,8 +11,8 @@ carom_packages=(
 # Continuous integration also needs a second compiler with its sanitizers, the static checks, valgrind, line
 # counts, readers for completions and man pages, node for the scripts of pages, and ffmpeg for films.
 carom_check_packages=(clang clang-format clang-tidy glslang-tools valgrind llvm zsh groff-base nodejs ffmpeg)
-# The browser for the tests of pages. Ubuntu has it only as a snap, so these tests are skipped there.
-carom_browser=chromium
+# The browsers for the tests of pages. Ubuntu has them only as snaps, so these tests are skipped there.
+carom_browsers=(chromium firefox-esr)
 # For building and testing the Python package (tools/python.sh); without them its tests are skipped.
 carom_python_packages=(python3-dev python3-venv)
 # For the site of tools/docs, which is skipped without them.
@@ -119,7 +119,8 @@ carom_ensure_check_packages() {
     carom_ensure "${carom_check_packages[@]}"
     # The sanitizers' library has clang's version: libclang-rt-14-dev in Debian 12.
     carom_ensure "libclang-rt-$(clang -dumpversion | cut -d. -f1)-dev"
-    if ! carom_installed "$carom_browser" && carom_available "$carom_browser"; then
-        carom_ensure "$carom_browser"
-    fi
+    local browser
+    for browser in "${carom_browsers[@]}"; do
+        if ! carom_installed "$browser" && carom_available "$browser"; then carom_ensure "$browser"; fi
+    done
 }

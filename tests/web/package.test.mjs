@@ -152,6 +152,15 @@ test("a look has outlines, and the numbers of the diamonds", () => {
     [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 5, 5, 6, 6, 7, 7]);
 });
 
+test("a rail of a table without pockets is one board", () => {
+  for (const preset of ["carom", "carom_small"]) {
+    const ball = '[[ball]]\nid = "white"\nposition = [0.5, 0.5]\n';
+    const scene = Scene.parse(`[table]\npreset = "${preset}"\n${ball}`);
+    const corners = scene.look().shape.wood.map(({loops}) => loops.map((loop) => loop.length / 2));
+    assert.deepEqual(corners, [[4], [4], [4], [4]], preset);
+  }
+});
+
 test("until and seconds end a shot", () => {
   const scene = Scene.parse(sceneText("snooker_break.toml"));
   assert.equal(simulate(scene, {until: 0.5}).duration, 0.5);
@@ -250,6 +259,46 @@ test("a machine without SIMD gets the plain module, and the same bits", {skip: w
   const traced = ["--input-type=module", "-e", program];
   const plain = execFileSync(process.execPath, traced, {encoding: "utf8"}).trim();
   assert.equal(plain, simulate(Scene.parse(sceneText("eight_ball_break.toml"))).hash);
+});
+
+test("motion has the tracks of the record, to the bit", () => {
+  for (const name of ["eight_ball_break.toml", "jump_pot.toml", "bar_break.toml"]) {
+    const {motion, record} = simulate(Scene.parse(sceneText(name)));
+    assert.deepEqual([motion.duration, motion.gravity], [record.duration, record.gravity]);
+    assert.equal(motion.tracks.length, record.tracks.length);
+    motion.tracks.forEach((track, i) => {
+      const {id, pocket, segments, radius = record.balls.R, mass = record.balls.m} = record.tracks[i];
+      assert.deepEqual([track.id, track.pocket, track.radius, track.mass], [id, pocket, radius, mass]);
+      segments.forEach((segment) => { delete segment.ends; });
+      assert.deepEqual(track.segments, segments, `${name}, ${id}`);
+    });
+  }
+});
+
+test("a scene says what its cue would be in, and a shot what may be wrong", () => {
+  const ball = (id, y) => `[[ball]]\nid = "${id}"\nposition = [0.6, ${y}]\n`;
+  const cue = '[cue]\nball = "cue"\nspeed = 2\naim_deg = 90\n';
+  const behind = Scene.parse(ball("cue", 1.2) + ball("1", 1) + cue);
+  assert.equal(behind.cue.in, "ball 1");
+  const raised = behind.with({"cue.elevation_deg": behind.cue.clears_deg});
+  assert.equal(raised.cue.in, "");
+  assert.deepEqual(simulate(draw()).warnings, []);
+  assert.match(simulate(Scene.parse(sceneText("masse.toml"))).warnings.join(), /elevat/);
+});
+
+test("an advised strike has the errors of its level, and the player who may choose does", () => {
+  const scene = Scene.parse(sceneText("nine_ball_break.toml")), state = games.start("nine_ball");
+  const strikes = [1, 2].map((seed) =>
+    games.advise(state, scene, {skill: "beginner", seed, best: 1, shots: 0})[0]);
+  for (const {cue, strike} of strikes) assert.notEqual(strike.aim_deg, cue.aim_deg);
+  assert.notEqual(strikes[0].strike.aim_deg - strikes[0].cue.aim_deg,
+    strikes[1].strike.aim_deg - strikes[1].cue.aim_deg);
+  const soft = simulate(Scene.parse(sceneText("eight_ball_break.toml")).with({"cue.speed": 1}));
+  const foul = games.judge(games.start("eight_ball"), soft);
+  assert.ok(foul.options.length > 1);
+  const choice = foul.choose("club");
+  assert.ok(choice >= 0 && choice < foul.options.length);
+  assert.throws(() => foul.choose("wizard"), /beginner, club/);
 });
 
 test("advice is a shot that can be played and judged", () => {

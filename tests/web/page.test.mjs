@@ -1,32 +1,15 @@
-// The page of `carom play` in headless Chromium. CAROM_PLAY_PAGE names an existing page;
-// CAROM_VIEW_PICTURES names a folder for screenshots.
+// The page of `carom play` in headless Chromium.
 import assert from "node:assert/strict";
-import {execFileSync} from "node:child_process";
-import {existsSync, mkdtempSync, rmSync, writeFileSync} from "node:fs";
-import {tmpdir} from "node:os";
+import {existsSync, writeFileSync} from "node:fs";
 import * as path from "node:path";
 import {after, before, test} from "node:test";
 import {pathToFileURL} from "node:url";
-import {Browser} from "../tools/view/chromium.mjs";
-import {PROGRAM, native, sceneText, scenes, withoutProgram} from "./support.mjs";
+import {Player, folder, missing, pageUrl} from "./play_page.mjs";
+import {native, sceneText, scenes, withoutProgram} from "./support.mjs";
 
-const folder = mkdtempSync(path.join(tmpdir(), "carom-play-")), faults = [];
-let browser, url;
-
-/** Why these tests are skipped; false if they are not. */
-const missing = (() => {
-  try {
-    execFileSync("chromium", ["--version"], {stdio: "ignore"});
-  } catch {
-    return "chromium is not installed";
-  }
-  if (process.env.CAROM_PLAY_PAGE) return false;
-  if (withoutProgram) return withoutProgram;
-  const page = path.join(folder, "play.html");
-  native(["play", "-o", page]);
-  return existsSync(page) ? false : `${PROGRAM} was built without WebAssembly`;
-})();
-const skip = {skip: missing};
+const faults = [], skip = {skip: missing("chromium")}, withProgram = {skip: skip.skip || withoutProgram};
+const player = new Player("chromium");
+let browser, url = pageUrl;
 
 /** Opens the page at an address; every message and every request counts as a fault. */
 async function open(fragment = "") {
@@ -39,13 +22,7 @@ const hash = () => value("caromPlay.shot().hash");
 /** Clicks the button with this text. */
 const press = (text) => value(`[...document.querySelectorAll("button")]
   .find((b) => b.textContent === ${JSON.stringify(text)}).click()`);
-const settled = () =>
-  value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))");
-const placeOf = (x, y) => value(`(() => { const v = document.querySelector(".table canvas:last-child");
-  const b = v.getBoundingClientRect(), {low, high} = caromPlay.scene().look().shape.bounds;
-  const [s, t] = [(${x} - low[0]) / (high[0] - low[0]), (${y} - low[1]) / (high[1] - low[1])];
-  return b.width > b.height ? [b.left + t * b.width, b.top + s * b.height]
-    : [b.left + s * b.width, b.top + (1 - t) * b.height]; })()`);
+const settled = () => player.settled(), placeOf = (x, y) => player.onTable(x, y);
 async function drag(from, to) {
   await browser.mouse("mousePressed", ...from);
   for (const share of [0.3, 0.6, 1])
@@ -57,10 +34,9 @@ async function drag(from, to) {
 const cueBall = `caromPlay.scene().balls.find((b) => b.id === caromPlay.scene().cue.ball)`;
 
 before(async () => {
-  if (missing) return;
-  url = pathToFileURL(process.env.CAROM_PLAY_PAGE || path.join(folder, "play.html")).href;
-  browser = new Browser({profile: path.join(folder, "profile"), pictures: process.env.CAROM_VIEW_PICTURES});
-  await browser.open();
+  if (skip.skip) return;
+  await player.start();
+  ({browser} = player);
   browser.listeners = [({method, params}) => {
     if (method === "Runtime.consoleAPICalled") faults.push(JSON.stringify(params.args.map((a) => a.value)));
     if (method === "Runtime.exceptionThrown")
@@ -73,11 +49,7 @@ before(async () => {
   await browser.size(1400, 900);
   await open();
 });
-after(async () => {
-  browser?.process.kill();
-  await new Promise((resolve) => browser ? browser.process.once("exit", resolve) : resolve());
-  rmSync(folder, {recursive: true, force: true, maxRetries: 5});
-});
+after(() => skip.skip ? null : player.end());
 
 test("it fits every screen, and every control has a name", skip, async () => {
   const sizes = [[1400, 900, "wide"], [820, 1180, "tablet"], [390, 844, "phone"], [844, 390, "sideways"]];
@@ -132,7 +104,7 @@ test("a shot is played, stepped and followed by the next", skip, async () => {
 
 test("games are played by their rules", skip, async () => {
   for (const game of ["eight_ball", "nine_ball", "three_cushion", "straight_pool", "free_pyramid",
-    "four_ball"]) {
+    "four_ball", "snooker", "sum_to_three"]) {
     await open();
     await value(`caromPlay.newGame("${game}")`);
     await settled();
@@ -140,9 +112,9 @@ test("games are played by their rules", skip, async () => {
     for (let shots = 0; shots < 3; ++shots) {
       await value("caromPlay.run(true)");
       await value("caromPlay.show(1e9)");
-      const options = `[...document.querySelectorAll(".side .card .bar button")]
+      const options = `[...document.querySelectorAll(".game .verdict button")]
         .filter((b) => /player/i.test(b.textContent))`;
-      const won = `/player . wins/i.test(document.querySelector(".side").textContent)`;
+      const won = `/player . wins/i.test(document.querySelector(".game").textContent)`;
       await browser.until(`${options}.length > 0 || ${won}`);
       if (await value(won)) break;
       await browser.picture(`play_${game}_${shots}`);
@@ -176,7 +148,7 @@ test("a bad address is refused with a sentence", skip, async () => {
   }
 });
 
-test("a locked page lets only the rest be moved", {skip: missing || withoutProgram}, async () => {
+test("a locked page lets only the rest be moved", withProgram, async () => {
   const page = path.join(folder, "locked.html"), scene = path.join(folder, "draw.toml");
   writeFileSync(scene, sceneText("draw.toml"));
   native(["play", scene, "--lock", "cue.speed,ball,balls,table,physics", "-o", page]);
@@ -189,7 +161,7 @@ test("a locked page lets only the rest be moved", {skip: missing || withoutProgr
     await drag(at, [at[0] + 60, at[1] + 20]);
     assert.deepEqual(await value(cueBall), ball);
     const disabled = (name) => value(`document.querySelector("[aria-label='${name}']").disabled`);
-    for (const name of ["Speed", "Table", "Game"]) assert.ok(await disabled(name), name);
+    for (const name of ["Speed", "Table", "New game"]) assert.ok(await disabled(name), name);
     assert.equal(await disabled("Aim"), false);
     await press("All values …");
     const enabled = `[...document.querySelectorAll(".key input, .key select")].filter((i) => !i.disabled)`;
@@ -199,7 +171,7 @@ test("a locked page lets only the rest be moved", {skip: missing || withoutProgr
   }
 });
 
-test("every scene that comes with carom opens with its hash", {skip: missing || withoutProgram}, async () => {
+test("every scene that comes with carom opens with its hash", withProgram, async () => {
   await open();
   for (const name of scenes) {
     await value(`(() => { const s = document.querySelector("select[aria-label='Open a scene']");
@@ -288,23 +260,6 @@ test("a script from elsewhere does not run, and nothing is loaded", skip, async 
     document.body.append(s); setTimeout(() => done("nothing"), 2000); })`);
   assert.equal(broken, "script-src-elem");
   faults.splice(0);
-});
-
-test("the time from a change to its picture is told", skip, async (t) => {
-  const median = (name) => value(`(async () => { const times = [], cue = () => caromPlay.scene().cue;
-    document.querySelector("select[aria-label='Open a scene']").value = "${name}";
-    document.querySelector("select[aria-label='Open a scene']").onchange();
-    for (let i = 0; i < 60; ++i) { const begin = performance.now();
-      caromPlay.change({"cue.aim_deg": cue().aim_deg + 0.01});
-      document.querySelector(".table canvas:last-child").getContext("2d").getImageData(0, 0, 1, 1);
-      times.push(performance.now() - begin); await new Promise((done) => setTimeout(done)); }
-    return times.sort((a, b) => a - b)[30]; })()`);
-  await open();
-  for (const name of ["draw.toml", "three_cushion.toml", "eight_ball_break.toml"]) {
-    const ms = await median(name);
-    t.diagnostic(`${name}: ${ms.toFixed(1)} ms from a change to its picture (median of 60)`);
-    assert.ok(ms > 0);  // no test asserts a time
-  }
 });
 
 test("printing gives the shot on white", skip, async () => {

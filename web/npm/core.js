@@ -121,15 +121,15 @@ function lend(values, use) {
   }
 }
 
-function lastText() {
-  return decoder.decode(new Uint8Array(wasm.memory.buffer, wasm.carom_text(), wasm.carom_text_size()));
-}
+const lastBytes = () => new Uint8Array(wasm.memory.buffer, wasm.carom_text(), wasm.carom_text_size());
+const lastText = () => decoder.decode(lastBytes());
 
-/** Calls a function of the module. @returns its text. @throws CaromError */
-function call(name, ...values) {
+/** Calls a function of the module. @returns its text, as `read` reads it. @throws CaromError */
+function call(name, ...values) { return callFor(lastText, name, ...values); }
+function callFor(read, name, ...values) {
   if (wasm === null) throw new Error("carom: call init() first, and await it");
   unclaimed = lend(values, (args) => wasm[name](...args)) === 0;
-  if (unclaimed) return lastText();
+  if (unclaimed) return read();
   throw new CaromError(JSON.parse(lastText() || '{"kind": "memory", "message": "out of memory"}'));
 }
 
@@ -219,6 +219,22 @@ export class Scene extends Held {
   look() { return JSON.parse(call("carom_scene_look", this.handle)); }
 }
 
+/** The record's motion from its numbers: those of the shot, of a ball, and of each of its segments. */
+function motionOf(numbers, ids) {
+  let at = 0;
+  const next = (count) => Array.from(numbers.subarray(at, at += count));
+  const [duration, gravity] = next(2), tracks = ids.map((id) => {
+    const [pocket, radius, mass, count] = next(4), segments = [];
+    for (let i = 0; i < count; ++i) {
+      const [start, lasts, state, held] = next(4), [r, v, w] = [next(3), next(3), next(3)];
+      segments.push({start, duration: lasts === Infinity ? null : lasts, state: STATES[state],
+        held: held === 1, r, v, w, a: next(2), dw: next(2), spin_decay: next(1)[0]});
+    }
+    return {id, pocket, radius, mass, segments};
+  });
+  return {duration, gravity, tracks};
+}
+
 /** A simulated shot. */
 export class Shot extends Held {
   #hash = null;
@@ -226,16 +242,22 @@ export class Shot extends Held {
   #recordText = null;
   #record = null;
   #events = null;
+  #motion = null;
   constructor(brief, scene) {
     super("carom_free_shot");
-    const [duration, eventCount] = JSON.parse(brief);
-    Object.assign(this, {scene, duration, eventCount});
+    const [duration, eventCount, warnings] = JSON.parse(brief);
+    Object.assign(this, {scene, duration, eventCount, warnings});
   }
   get hash() { return this.#hash ??= call("carom_shot_hash", this.handle); }
   get outcome() { return this.#outcome ??= JSON.parse(call("carom_shot_outcome", this.handle)); }
   get balls() { return this.outcome.balls.map((ball) => ball.id); }
   get recordJson() { return this.#recordText ??= call("carom_shot_record", this.handle); }
   get record() { return this.#record ??= JSON.parse(this.recordJson); }
+  get motion() {
+    const read = () => new Float64Array(lastBytes().slice().buffer);
+    return this.#motion ??= motionOf(callFor(read, "carom_shot_motion", this.handle),
+      this.scene.balls.map(({id}) => id));
+  }
   get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }
 
   states(times) {
@@ -322,6 +344,10 @@ export class Verdict extends Held {
     expectNumber("y", y);
     expectWhole("option", option);
     return call("carom_game_may_place", this.#shot.handle, this.handle, option, x, y) === "true";
+  }
+  choose(skill = "professional") {
+    expectText("skill", skill);
+    return Number(call("carom_game_choose", this.#shot.handle, this.handle, skill));
   }
   next({option = 0, place = null} = {}) {
     expectWhole("option", option);

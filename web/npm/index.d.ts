@@ -54,6 +54,10 @@ export interface Cue {
   /** Offset of the tip [ball radii]: left and up positive. */
   side: number;
   height: number;
+  /** What the cue itself would be in: "cushion c3", "ball 7"; "" if it has room. */
+  in: string;
+  /** The least elevation that clears it; null if none does. */
+  clears_deg: number | null;
 }
 
 export interface TableInfo {
@@ -144,6 +148,8 @@ export class Shot {
   /** [s] */
   readonly duration: number;
   readonly eventCount: number;
+  /** What may be wrong with the shot, a sentence each. */
+  readonly warnings: string[];
   /** Ids. */
   readonly balls: string[];
   readonly outcome: Outcome;
@@ -151,6 +157,8 @@ export class Shot {
   /** The record file (docs/reference/record_format.md), as text and parsed. */
   readonly recordJson: string;
   readonly record: object;
+  /** Its duration, gravity and tracks alone, in the form of the record: much faster. */
+  readonly motion: {duration: number; gravity: number; tracks: object[]};
   /** States of all balls at these times [s]. `numbers` has nine for each time and ball, ball after ball:
    * centre [m], velocity [m/s], angular velocity [rad/s]. `states` has one for each: an index into STATES. */
   states(times: number | ArrayLike<number>): {balls: number; numbers: Float64Array; states: Uint8Array};
@@ -234,6 +242,14 @@ export interface GameState {
   rules?: string[];
 }
 
+export interface Strike {
+  speed: number;
+  aim_deg: number;
+  elevation_deg: number;
+  /** Side and height [ball radii]. */
+  offset: [number, number];
+}
+
 /** A shot to play, and how sure it is. Shares have their intervals of 95 %: [share, low, high]. */
 export interface Advice {
   words: string;
@@ -242,7 +258,9 @@ export interface Advice {
   ball: string;
   pocket: string;
   cut_deg: number;
-  cue: {speed: number; aim_deg: number; elevation_deg: number; offset: [number, number]};
+  cue: Strike;
+  /** The same with errors of the level, as it would be struck. */
+  strike: Strike;
   /** As judge() takes it. */
   call: {ball: string; pocket: string; safety: boolean; pushOut: boolean};
   /** Of the cue ball in hand [m]. */
@@ -272,6 +290,8 @@ export class Verdict {
   }[];
   /** Whether the cue ball may lie there [m]. */
   mayPlace(x: number, y: number, option?: number): boolean;
+  /** The option that is best for the player who may choose: eight-ball, nine-ball and ten-ball. */
+  choose(skill?: string): number;
   /** The next scene. `place`: of the cue ball in hand [m]; without it, near the head spot.
    * @throws CaromError */
   next(choice?: {option?: number; place?: [number, number] | null}): Scene;

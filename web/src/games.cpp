@@ -8,6 +8,7 @@
 
 #include "base/game_state.h"
 #include "base/verdict.h"
+#include "carom/games/noise.h"
 #include "carom/games/player.h"
 #include "carom/games/rules.h"
 #include "web.h"
@@ -107,8 +108,18 @@ CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebSc
         how.fresh = asked.at("shots").get<std::size_t>();
         const games::Skill skill = games::skill_by_name(asked.at("skill").get<std::string>(), table.balls.R);
         const games::State before = state_at(state, size);
-        give(nullptr, dumped(tools::advice_json(games::advise(before, table, skill, kernel::best_isa(), how),
-                                                table.table)));
+        const auto advice = games::advise(before, table, skill, kernel::best_isa(), how);
+        Json list = tools::advice_json(advice, table.table);
+        for (std::size_t i = 0; i < advice.size(); ++i)
+            list[i]["strike"] = tools::cue_json(games::with_noise(advice[i].cue, skill.noise, how.seed, i));
+        give(nullptr, dumped(list));
+    });
+}
+CAROM_WEB int carom_game_choose(const WebShot* shot, const WebVerdict* verdict, const char* skill,
+                                std::size_t size) {
+    return guarded([&] {
+        const games::Skill by = games::skill_by_name(std::string(skill, size), shot->scene.balls.R);
+        give(nullptr, std::to_string(games::choose(verdict->verdict, shot->record, by)));
     });
 }
 CAROM_WEB void carom_free_verdict(WebVerdict* verdict) {

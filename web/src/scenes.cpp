@@ -12,6 +12,7 @@
 
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
+#include "carom/engine/strike.h"
 #include "carom/render/table_mesh.h"
 #include "page/ball_styles.h"
 #include "page/table_shape.h"
@@ -103,6 +104,9 @@ Json described(const Scene& scene) {
         cue = {{"ball", c.ball},       {"speed", c.speed},
                {"aim_deg", c.aim_deg}, {"elevation_deg", c.elevation_deg},
                {"side", c.side},       {"height", c.height}};
+        const CueRoom room = room_for(scene, c);
+        cue["in"] = room.in;
+        cue["clears_deg"] = room.clears_deg ? Json(*room.clears_deg) : Json();
     }
     // By the keys of [balls].
     Json material;

@@ -126,7 +126,7 @@ CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds
         const Plan plan = make_plan(shot->scene, kIsa);
         simulate(plan, buffers, shot->outcome, shot->record, options);
         // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
-        const Json brief = {shot->record.duration, shot->record.events.size()};
+        const Json brief = {shot->record.duration, shot->record.events.size(), plan.warnings};
         give(shot.release(), brief.dump());
     });
 }
@@ -151,6 +151,24 @@ CAROM_WEB void carom_free_shot(WebShot* shot) {
 }
 CAROM_WEB int carom_shot_record(const WebShot* shot) {
     return guarded([&] { give(nullptr, record_json(shot->record)); });
+}
+/// What drawing needs, as the bytes of numbers: duration, gravity, and for each ball its pocket, radius,
+/// mass, number of segments, and 18 numbers for each of them. Texts of numbers take longer than a break.
+CAROM_WEB int carom_shot_motion(const WebShot* shot) {
+    return guarded([&] {
+        const Record& record = shot->record;
+        std::vector<double> all = {record.duration, record.gravity};
+        for (const BallTrack& track : record.tracks) {
+            const BallSize size = track.own.value_or(BallSize{record.balls.R, record.balls.m});
+            const double count = static_cast<double>(track.segments.size());
+            all.insert(all.end(), {static_cast<double>(track.pocket), size.R, size.m, count});
+            for (const Segment& s : track.segments)
+                all.insert(all.end(), {s.start, s.duration, static_cast<double>(s.state), s.held ? 1.0 : 0.0,
+                                       s.r.x(), s.r.y(), s.r.z(), s.v.x(), s.v.y(), s.v.z(), s.w.x(), s.w.y(),
+                                       s.w.z(), s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay});
+        }
+        give(nullptr, std::string(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(double)));
+    });
 }
 CAROM_WEB int carom_shot_events(const WebShot* shot) {
     return guarded([&] { give(nullptr, dumped(events_json(shot->record))); });

@@ -88,8 +88,8 @@ test("a game needs its table", (t) => {
   begin(state, START);
   t.mock.method(carom.Scene, "parse", (toml) => {
     asked.push(/preset = "(\w+)"/.exec(toml)[1]);
-    return {table: {width: 1, length: 2}, with: null, free() {}, toml, cue: {speed: 11}};
+    return {table: {width: 1, length: 2}, balls: [], with: null, free() {}, toml, cue: {speed: 11}};
   });
-  for (const name of ["eight_ball", "three_cushion"]) newGame(state, name);
-  assert.deepEqual([...new Set(asked)], ["nine_foot", "carom"]);
+  for (const name of ["eight_ball", "three_cushion", "snooker"]) newGame(state, name);
+  assert.deepEqual([...new Set(asked)], ["nine_foot", "carom", "snooker"]);
 });

@@ -2,7 +2,9 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {put, refusal} from "../../../tools/carom/commands/play/place.js";
-import {rangeOf, sectionOf, without} from "../../../tools/carom/commands/play/scene_text.js";
+import {firstContact, obviousCall, onCue} from "../../../tools/carom/commands/play/aids.js";
+import {lookFor, rangeOf, sectionOf, titleOf, withBall, without, withoutBall}
+  from "../../../tools/carom/commands/play/scene_text.js";
 import {begin, change, takeBack} from "../../../tools/carom/commands/play/shots.js";
 import {aimAt, nudge, wrapped} from "../../../tools/carom/commands/play/stroke.js";
 import {reachable} from "../../../tools/carom/commands/play/tip.js";
@@ -101,4 +103,55 @@ test("keys of a scene file are those of its sections", () => {
   assert.deepEqual(sectionOf(toml, "table"), {cloth: '"club"', corners: "[", width: "1 # m"});
   assert.deepEqual(sectionOf(toml, "balls"), {});
   assert.equal(toml.slice(...rangeOf(toml, 6)), "width = 1 # m");
+});
+
+test("titles and what to look for are whole, and balls come and go", () => {
+  const toml = "# A break at 9.5 m/s. Second.\n# Look for: the 1,\n# and the 2.5 m.\n[table]\n";
+  assert.deepEqual([titleOf(toml), lookFor(toml)], ["A break at 9.5 m/s", "the 1, and the 2.5 m."]);
+  assert.deepEqual(["# Draw shot: straight in.\n", "# as scene.toml raised\n", ""].map(titleOf),
+    ["Draw shot", "as scene.toml raised", ""]);
+  assert.equal(lookFor(""), "");
+  const two = withBall(withBall("[table]\n", "1", [0.5, 1]), "2", [0.25, 1]);
+  assert.equal(withoutBall(two, "1"), withBall("[table]\n", "2", [0.25, 1]));
+});
+
+/** A shot in which the ball "cue" meets the ball "1", half of it, at 1 s. */
+function halfBall() {
+  const [c, s] = [Math.cos(Math.PI / 6), 0.5];
+  const piece = (start, state, r, v) =>
+    ({start, state, duration: 1, r, v, w: [0, 0, 0], a: [0, 0], dw: [0, 0], spin_decay: 0});
+  const moved = (id, r, v, before) =>
+    ({id, radius: 0.03, segments: [before, piece(1, "sliding", r, v)]});
+  const cue = moved("cue", [0, 1, 0.03], [-s * c, s * s, 0], piece(0, "sliding", [0, 0, 0.03], [0, 1, 0]));
+  const at = [0.06 * s, 1 + 0.06 * c, 0.03];
+  const one = moved("1", at, [s * c, c * c, 0], piece(0, "stationary", at, [0, 0, 0]));
+  return {motion: {duration: 2, gravity: 9.81, tracks: [cue, one]}, events: [
+    {time: 0, type: "cue_strike", ball: "cue"}, {time: 1, type: "ball_ball", ball: "1", other: "cue"}]};
+}
+
+test("the first contact: the ghost ball, the lines of both balls, and an obvious call", () => {
+  const shot = halfBall(), {at, time, lines, met} = firstContact(shot, "cue");
+  assert.deepEqual([at.map((x) => Math.round(x * 1e6) / 1e6), time, lines.length], [[0, 1, 0.03], 1, 2]);
+  assert.deepEqual([met.id, met.left, Math.round(met.cut * 180 / Math.PI)], ["1", false, 30]);
+  const pockets = [{id: "p1", center: [-1, 2]}, {id: "p2", center: [1, 1 + Math.sqrt(3)]}];
+  assert.deepEqual(obviousCall(firstContact(shot, "cue"), pockets), {ball: "1", pocket: "p2"});
+  assert.equal(obviousCall(firstContact(shot, "cue"), pockets.slice(0, 1)), null);
+  assert.equal(firstContact({...shot, events: []}, "cue"), null);
+});
+
+test("the cue is where it is drawn", () => {
+  const cue = {speed: 3, aim_deg: 90, elevation_deg: 0}, ball = {x: 0, y: 0, radius: 0.03};
+  assert.deepEqual([[0, -0.5], [0, 0.5], [0.1, -0.5], [0, -3]].map((at) => onCue(cue, ball, at, 0.03)),
+    [true, false, false, false]);
+});
+
+test("a person may not aim for carom, but for it when it was stopped", () => {
+  const {state} = begun();
+  Object.assign(state, {game: {state: {turn: 1, over: false}}, match: {players: ["", "club"]}});
+  assert.deepEqual([state.level, state.free], ["club", false]);
+  assert.match(refusal(state, "cue", 0.5, 0.5), /carom's turn/);
+  state.yielded = true;
+  assert.deepEqual([state.level, state.free], ["", true]);
+  state.game.state.turn = 0;
+  assert.equal(state.free, true);
 });

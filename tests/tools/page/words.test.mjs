@@ -2,7 +2,9 @@
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
-import {eventWords, isContact, verdictWords, withUnit} from "../../../tools/carom/commands/play/words.js";
+import {nameOf, withNames} from "../../../tools/carom/commands/play/players.js";
+import {adviceWords, aimWords, eventWords, isContact, speedWord, tipWords, verdictWords, withUnit}
+  from "../../../tools/carom/commands/play/words.js";
 import {partner} from "../../../tools/carom/page/event_words.js";
 
 const HEADER = new URL("../../../engine/include/carom/engine/record.h", import.meta.url);
@@ -24,7 +26,7 @@ test("every type of event has its own words", () => {
 });
 
 test("words and units", () => {
-  assert.equal(eventWords(event("ball_ball"), "metric"), "The cue ball hits 1 at 1.00 m/s, cut 29°");
+  assert.equal(eventWords(event("ball_ball"), "metric"), "The cue ball hits the 1 at 1.00 m/s, cut 29°");
   assert.equal(eventWords(event("ball_cushion"), "inch"),
     "The cue ball bounces off the head rail at diamond 1.3: 4.5 mph");
   assert.equal(eventWords(event("ball_cushion", {speed: null, diamond: null}), "metric"),
@@ -50,4 +52,29 @@ test("verdicts in a sentence", () => {
   assert.equal(verdictWords({fouls: [], points: 0}), "Fair shot.");
   assert.equal(verdictWords({fouls: [{foul: "no rail", rule: "6.3"}, {foul: "scratch"}], points: 2}),
     "Foul: no rail (6.3), scratch.");
+});
+
+test("a stroke in the words of the game", () => {
+  assert.deepEqual([0.5, 2, 3, 9].map(speedWord), ["soft", "medium", "hard", "break"]);
+  assert.equal(tipWords(0, 0), "centre");
+  assert.equal(tipWords(0.3, -0.4), "full draw, half left English");
+  assert.equal(tipWords(-0.1, 0.2), "half follow, a little right English");
+  const met = (degrees, left = true) => ({id: "7", cut: degrees * Math.PI / 180, left});
+  assert.equal(aimWords(met(0.2)), "the 7 full");
+  assert.equal(aimWords(met(30, false)), "the 7 half ball, cut 30° right");
+  assert.equal(aimWords(met(80)), "the 7 thin, cut 80° left");
+  assert.equal(aimWords(undefined), "no ball");
+  assert.equal(adviceWords("bank: 7 into p3 (foot-left corner pocket), cut 23 degrees left, slow"),
+    "bank: the 7 into the foot-left corner pocket, cut 23° left, slow");
+});
+
+test("players have names", () => {
+  const told = (...players) => [0, 1].map((k) => nameOf({match: {players}}, k));
+  assert.deepEqual(told("", "club"), ["You", "carom, club"]);
+  assert.deepEqual(told("", ""), ["Player 1", "Player 2"]);
+  assert.deepEqual(told("club", "machine"), ["carom 1, club", "carom 2, machine"]);
+  const names = (text, ...players) => withNames({match: {players}}, text);
+  assert.equal(names("player 2 shoots, or Player 1 wins", "", "club"), "carom shoots, or You win");
+  assert.equal(names("player 2 shoots", "", ""), "Player 2 shoots");
+  assert.equal(withNames({match: null}, "player 2 shoots"), "player 2 shoots");
 });

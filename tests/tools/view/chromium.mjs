@@ -2,6 +2,10 @@
 import {spawn} from "node:child_process";
 import {writeFileSync} from "node:fs";
 
+/** Waits until the page has drawn. */
+export const TWO_FRAMES =
+  "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))";
+
 /** A browser with two pipes, file descriptors 3 and 4: messages are JSON, each followed by a 0. */
 export class Browser {
   /** `pictures`: a folder for screenshots. `server`: the address of a test's own server; nothing else can be
@@ -50,8 +54,12 @@ export class Browser {
     if (exceptionDetails) throw new Error(exceptionDetails.exception?.description || exceptionDetails.text);
     return result.value;
   }
-  async until(expression) {
-    for (let i = 0; i < 400; ++i) {
+  async go(url) {
+    await this.send("Page.navigate", {url: "about:blank"});
+    await this.send("Page.navigate", {url});
+  }
+  async until(expression, tries = 400) {
+    for (let i = 0; i < tries; ++i) {
       if (await this.value(expression)) return;
       await new Promise((resolve) => setTimeout(resolve, 25));
     }
@@ -67,13 +75,36 @@ export class Browser {
     await this.send("Emulation.setEmulatedMedia", {features});
   }
   async key(key, code = key) {
-    const text = key.length === 1 ? key : undefined;
-    await this.send("Input.dispatchKeyEvent", {type: "keyDown", key, code, text});
-    await this.send("Input.dispatchKeyEvent", {type: "keyUp", key, code});
+    const text = key.length === 1 ? key : key === "Enter" ? "\r" : undefined;
+    const windowsVirtualKeyCode = {Enter: 13, Tab: 9}[key];
+    await this.send("Input.dispatchKeyEvent", {type: "keyDown", key, code, text, windowsVirtualKeyCode});
+    await this.send("Input.dispatchKeyEvent", {type: "keyUp", key, code, windowsVirtualKeyCode});
   }
   async mouse(type, x, y) {
     const buttons = type === "mouseReleased" ? 0 : 1;
     await this.send("Input.dispatchMouseEvent", {type, x, y, button: "left", buttons, clickCount: 1});
+  }
+  /** Presses at the first place, moves to the others and lets go; `type`: "mouse" or "touch". */
+  async drag(places, type = "mouse") {
+    const finger = ([x, y]) => ({x, y, id: 1, radiusX: 5, radiusY: 5, force: 1});
+    const touch = (name, at) => this.send("Input.dispatchTouchEvent",
+      {type: name, touchPoints: at ? [finger(at)] : []});
+    if (type === "touch")
+      await this.send("Emulation.setTouchEmulationEnabled", {enabled: true, maxTouchPoints: 5});
+    const [from, ...more] = places, last = places.at(-1), steps = [];
+    let [x, y] = from;
+    for (const to of more) {
+      for (const share of [0.25, 0.5, 0.75, 1])
+        steps.push([x + share * (to[0] - x), y + share * (to[1] - y)]);
+      [x, y] = to;
+    }
+    await (type === "touch" ? touch("touchStart", from) : this.mouse("mousePressed", ...from));
+    for (const at of steps)
+      await (type === "touch" ? touch("touchMove", at) : this.mouse("mouseMoved", ...at));
+    await this.value(TWO_FRAMES);
+    await (type === "touch" ? touch("touchEnd") : this.mouse("mouseReleased", ...last));
+    // A touch right after a swipe would only stop the swipe, and click nothing.
+    if (type === "touch" && more.length > 0) await new Promise((resolve) => setTimeout(resolve, 400));
   }
   async picture(name) {
     if (!this.pictures) return;

@@ -54,6 +54,13 @@ Json verdict_json(const Verdict& verdict, games::Game game) {
             {"options", options}};
 }
 
+Json cue_json(const Cue& cue) {
+    return {{"speed", cue.speed},
+            {"aim_deg", cue.aim_deg},
+            {"elevation_deg", cue.elevation_deg},
+            {"offset", {cue.side, cue.height}}};
+}
+
 Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table) {
     Json list = Json::array();
     for (const games::Advice& a : advice) {
@@ -65,11 +72,7 @@ Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& t
                         {"ball", a.ball},
                         {"pocket", a.pocket},
                         {"cut_deg", a.cut_deg},
-                        {"cue",
-                         {{"speed", a.cue.speed},
-                          {"aim_deg", a.cue.aim_deg},
-                          {"elevation_deg", a.cue.elevation_deg},
-                          {"offset", {a.cue.side, a.cue.height}}}},
+                        {"cue", cue_json(a.cue)},
                         {"call",
                          {{"ball", a.call.ball},
                           {"pocket", a.call.pocket},

@@ -20,6 +20,9 @@ std::string next_text(const games::State& state);
 /// The verdict as `carom judge --json` prints it.
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
 
+/// A strike: {speed, aim_deg, elevation_deg, offset}.
+nlohmann::ordered_json cue_json(const carom::Cue& cue);
+
 /// The advice as `carom advise --json` prints it.
 nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table);
 

@@ -55,6 +55,13 @@ export class Projection {
     this.matrix = this.lying ? [0, s, s, 0, width / 2 - s * y, height / 2 - s * x]
       : [s, 0, 0, -s, width / 2 - s * x, height / 2 + s * y];
   }
+  /** Makes it `times` as large; the pixel `from` is then at `to`. */
+  look(times, from, to) {
+    const m = this.matrix;
+    this.scale *= times;
+    const moved = [0, 1].map((k) => to[k] + times * (m[4 + k] - from[k]));
+    this.matrix = [...m.slice(0, 4).map((x) => times * x), ...moved];
+  }
   at(x, y) {
     const m = this.matrix;
     return [m[0] * x + m[2] * y + m[4], m[1] * x + m[3] * y + m[5]];

@@ -85,7 +85,7 @@ export function pathPiece(record, track, k, until) {
 }
 
 // Quaternions are [w, x, y, z].
-function product(p, q) {
+export function product(p, q) {
   return [p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
     p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
     p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],

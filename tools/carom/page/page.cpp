@@ -96,6 +96,8 @@ std::string page_html(const std::string& title, const std::string& script, const
     policy += "; script-src";
     if (extras.wasm) policy += " 'wasm-unsafe-eval'";
     for (const PageFile* const file : scripts) policy += policy_hash(*file);
+    // Its worker is a script that the page makes of its own ones.
+    if (extras.wasm) policy += "; worker-src blob:";
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"" +

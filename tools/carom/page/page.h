@@ -27,7 +27,7 @@ struct PageData {
 /// For a few pages only.
 struct PageExtras {
     std::vector<std::string> styles;  ///< names of page files, after style.css
-    bool wasm = false;                ///< the page may compile WebAssembly
+    bool wasm = false;                ///< the page may compile WebAssembly, also in a worker
 };
 
 /// The whole file. @param script  the name of the page's script, which brings all that it imports

@@ -3,10 +3,12 @@
 
 import {cssColour, make} from "./dom.js";
 import {BallPicture, Projection, clamp, paintTable, pathOf, shadowPicture} from "./look.js";
-import {isGone, orientations, pathPiece, radiusOf, stateAt} from "./motion.js";
+import {isGone, orientations, pathPiece, product, radiusOf, stateAt} from "./motion.js";
 
 const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
 const SINK_TIME = 0.15;  // [s] how long a pocketed ball is seen sinking, as in rendered frames
+const QUARTER = [Math.SQRT1_2, 0, 0, -Math.SQRT1_2];
+const MOST_ZOOM = 6, SETTLED = 120;  // [ms] after a change, until the table is painted anew
 const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
 
 export class TableView {
@@ -27,13 +29,14 @@ export class TableView {
     this.ratio = clamp(Math.min(...sides) / Math.max(...sides), 0.4, 1);
   }
 
-  /** Fits into a width and a height [CSS px]; the table is upright on narrow screens, lying on wide ones. */
+  /** Fits into a width and a height [CSS px]; the table is upright on narrow screens, lying on wide ones.
+   * @returns whether that changes anything */
   fit(width, height) {
     const lying = Math.min(width, height / this.ratio) >= Math.min(height, width / this.ratio);
     const w = Math.floor(lying ? Math.min(width, height / this.ratio) : Math.min(width, height * this.ratio));
     const h = Math.floor(lying ? w * this.ratio : w / this.ratio);
     const dense = Math.min(window.devicePixelRatio || 1, 2);
-    if (w === this.width && h === this.height && dense === this.dense) return;
+    if (w === this.width && h === this.height && dense === this.dense) return false;
     Object.assign(this, {width: w, height: h, dense});
     for (const canvas of [this.under, this.over]) {
       canvas.width = Math.round(w * dense);
@@ -43,8 +46,35 @@ export class TableView {
     }
     this.element.style.width = `${w}px`;
     this.element.style.height = `${h}px`;
-    this.projection = new Projection(this.shape.bounds, this.under.width, this.under.height, 0);
-    paintTable(this.under, this.projection, this.shape);
+    this.look(0);
+    return true;
+  }
+
+  /** Shows the table `times` as large as now, the pixel `from` at `to`, but never less than all of it; 0: all
+   * of it. While it changes, the painted table is stretched. */
+  look(times, from, to) {
+    const {under, shape} = this, {width, height} = under;
+    const paint = () => paintTable(under, this.projection, shape);
+    const whole = new Projection(shape.bounds, width, height, 0);
+    clearTimeout(this.painting);
+    if (times === 0 || this.projection.scale * times <= whole.scale) {
+      this.projection = whole;
+      return paint();
+    }
+    times = Math.min(times, MOST_ZOOM * whole.scale / this.projection.scale);
+    const {projection} = this, corner = (x, y) => projection.at(...whole.table(x, y)), before = corner(0, 0);
+    projection.look(times, from, to);
+    // No empty room beside the table.
+    const low = corner(0, 0), high = corner(width, height);
+    const shift = [width, height].map((size, k) => Math.max(0, size - high[k]) - Math.max(0, low[k]));
+    projection.look(1, [0, 0], shift);
+    const after = corner(0, 0), context = under.getContext("2d");
+    const copy = make("canvas", {width, height});
+    copy.getContext("2d").drawImage(under, 0, 0);
+    context.setTransform(times, 0, 0, times, after[0] - times * before[0], after[1] - times * before[1]);
+    context.drawImage(copy, 0, 0);
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    this.painting = setTimeout(paint, SETTLED);
   }
 
   /** Where a state is drawn: {x, y, r} in canvas pixels, and its place in m; null if it is not visible. */
@@ -88,8 +118,10 @@ export class TableView {
     this.seen = this.balls(this.record, t);
     this.shadows(context);
     const {projection, shape: {lamp}} = this;
+    // Balls begin with their numbers upright on a lying table.
+    const turned = (q) => projection.lying ? q : product(q, QUARTER);
     for (const {i, x, y, r, p, R} of this.seen)
-      this.pictures[i].draw(context, projection, lamp, x, y, r, p, R, this.orientation(i, t));
+      this.pictures[i].draw(context, projection, lamp, x, y, r, p, R, turned(this.orientation(i, t)));
     if (ghost !== null) this.ghosts(context, ghost, t);
     if (ends) {
       const moves = (i) => this.record.tracks[i].segments.length > 1 && (only < 0 || i === only);
@@ -172,16 +204,20 @@ export class TableView {
     if (dashed) context.setLineDash([5, 4].map((x) => x * this.dense / this.projection.scale));
     record.tracks.forEach((track, ball) => {
       if (only >= 0 && ball !== only) return;
+      const own = cssColour(this.styles[ball % this.styles.length].color), paths = new Map();
       track.segments.forEach((s, k) => {
         const piece = pathPiece(record, track, k, t);
         if (piece === null) return;
-        const own = this.styles[ball % this.styles.length].color;
-        context.strokeStyle = kind === "ball" ? cssColour(own) : TRAIL_COLOURS[s.state] || "#8cbfff";
-        context.beginPath();
-        context.moveTo(...piece[0]);
-        context.quadraticCurveTo(...piece[1], ...piece[2]);
-        context.stroke();
+        const colour = kind === "ball" ? own : TRAIL_COLOURS[s.state] || "#8cbfff";
+        if (!paths.has(colour)) paths.set(colour, new Path2D());
+        paths.get(colour).moveTo(...piece[0]);
+        paths.get(colour).quadraticCurveTo(...piece[1], ...piece[2]);
       });
+      // One stroke for each colour: many short ones take longer.
+      for (const [colour, path] of paths) {
+        context.strokeStyle = colour;
+        context.stroke(path);
+      }
     });
     context.restore();
   }

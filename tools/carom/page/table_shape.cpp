@@ -25,6 +25,9 @@ constexpr double kSimplify = 1.5e-4;
 // [m^2] Triangles that look smaller from above are walls, or face away.
 constexpr double kLeastArea = 1e-9;
 
+// The most by which the gradients of one board's triangles differ; boards begin 0.6 m of grain apart.
+constexpr double kSameGrain = 0.05;
+
 using Corner = std::pair<std::int64_t, std::int64_t>;  // in units of kGrid, relative to the mesh's origin
 using Outline = std::vector<Corner>;
 using Triangle = std::array<MeshVertex, 3>;
@@ -181,13 +184,17 @@ Json boards_json(const TableMesh& mesh) {
         double largest = 0.0;
         std::array<double, 3> u{}, v{};
     };
-    // Triangles with the same grain form a board. Its bevels have that grain too; its largest triangle is its
-    // flat top.
-    std::map<std::array<std::int64_t, 3>, Board> boards;
+    // Triangles with nearly the same grain form a board. Its bevels have that grain too; its largest triangle
+    // is its flat top.
+    std::vector<Board> boards;
     for (const Triangle& t : seen_from_above(mesh.solid, Material::kWood)) {
         const std::array<double, 3> u = gradient(t, &MeshVertex::u);
-        Board& board =
-            boards[{std::llround(50.0 * u[0]), std::llround(50.0 * u[1]), std::llround(50.0 * u[2])}];
+        const auto near = [](double a, double b) { return std::abs(a - b) < kSameGrain; };
+        auto found = std::find_if(boards.begin(), boards.end(), [&](const Board& board) {
+            return std::equal(u.begin(), u.end(), board.u.begin(), near);
+        });
+        if (found == boards.end()) found = boards.insert(found, Board{{}, 0.0, u, {}});
+        Board& board = *found;
         board.triangles.push_back(t);
         const double area = area_from_above(t[0], t[1], t[2]);
         if (area <= board.largest) continue;
@@ -196,7 +203,7 @@ Json boards_json(const TableMesh& mesh) {
         board.v = gradient(t, &MeshVertex::v);
     }
     Json list = Json::array();
-    for (const auto& [key, board] : boards) {
+    for (const Board& board : boards) {
         Json grain = Json::array();
         for (const auto& g : {board.u, board.v})
             for (const double x : {g[0], g[1], g[2] - g[0] * mesh.origin.x() - g[1] * mesh.origin.y()})

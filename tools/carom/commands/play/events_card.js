@@ -1,4 +1,4 @@
-// What happened in the shot, event by event.
+// What happened in the shot, event by event. Where it is played, the list fills while the balls move.
 
 import {make} from "../../page/dom.js";
 import {EventList, eventBefore} from "../../page/playback.js";
@@ -7,16 +7,22 @@ import {eventWords} from "./words.js";
 const BUSY = 50;  // [ms] If a picture takes longer, the list waits until the shot stops.
 
 export function eventsCard(state) {
-  const {clock} = state, list = new EventList(clock, 3), head = make("h2", {});
+  const {clock} = state, list = new EventList(clock, 3), head = make("h2", {}, "Events");
   let shown = [];
   const mark = () => {
     const busy = clock.playing && performance.now() - clock.drawn > BUSY;
-    if (!busy && state.shot === list.shot) list.mark(clock.now > 0 ? eventBefore(shown, clock.now) : -1);
+    if (busy || state.shot !== list.shot) return;
+    const at = clock.now > 0 ? eventBefore(shown, clock.now) : -1, all = state.mode === "practise";
+    if (at === list.marked && list.all === all && !list.fresh) return;
+    const open = all ? shown.length : at + 1;
+    head.textContent = `Events${open > 0 ? ` (${open})` : ""}`;
+    [...list.element.children].forEach((item, i) => { item.hidden = i >= open; });
+    Object.assign(list, {all, fresh: false});
+    list.mark(at);
   };
   const fill = () => {
     shown = state.events();
-    list.shot = state.shot;
-    head.textContent = `Events (${shown.length})`;
+    Object.assign(list, {shot: state.shot, fresh: true});
     list.fill(shown, (e) => ({words: [eventWords(e, state.units)]}));
     mark();
   };
@@ -25,7 +31,13 @@ export function eventsCard(state) {
     fill();
   }});
   state.on("lists", fill);
+  state.on("table", () => {
+    list.element.replaceChildren();
+    list.marked = -1;
+    head.textContent = "Events";
+  });
   state.on("time", mark);
+  state.on("mode", () => { if (state.shot) mark(); });
   return make("section", {class: "card event-card"}, make("div", {class: "bar"}, head,
     make("span", {class: "room"}), make("label", {}, all, " all")), list.element);
 }

@@ -2,7 +2,7 @@
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {printShots} from "./paper.js";
-import {sectionOf} from "./scene_text.js";
+import {lookFor, sectionOf, titleOf} from "./scene_text.js";
 import {begin, change} from "./shots.js";
 
 /** A dialog with a title, and a bar of buttons at its end that closes it. */
@@ -72,15 +72,24 @@ function settingsDialog(state, keys) {
   };
 }
 
+/** Begins with a scene, and says what to look for. */
+export function openScene(state, toml, how) {
+  state.match = null;
+  begin(state, toml, how);
+  const look = lookFor(toml);
+  if (look && !state.fixed) state.say(`Look for: ${look}`);
+}
+
 /** The controls of the card. */
 export function extras(state) {
   const {page} = state;
-  const open = select("Open a scene", [["", "Open …"], ...page.scenes.map(({name, title}) => [name, title])],
-    "", (name) => {
-      open.value = "";
-      const chosen = page.scenes.find((scene) => scene.name === name);
-      if (chosen) begin(state, chosen.text);
-    }, {class: "open"});
+  const scenes = page.scenes.map(({name, text}) => [name, titleOf(text)]);
+  scenes.sort((a, b) => a[1] < b[1] ? -1 : 1);
+  const open = select("Open a scene", [["", "Open …"], ...scenes], "", (name) => {
+    open.value = "";
+    const chosen = page.scenes.find((scene) => scene.name === name);
+    if (chosen) openScene(state, chosen.text);
+  }, {class: "open"});
   printShots(state);
   return [state.fixed ? null : open, button("All values …", settingsDialog(state, page.keys)),
     button("Print", () => print())];

@@ -1,27 +1,22 @@
 // Games: who may do what, the verdict on a shot, and what comes after it.
 
-import {begin, enter} from "./shots.js";
-import {CAROM, startOf} from "./tables.js";
+import {inHand} from "./place.js";
+import {begin, change, enter} from "./shots.js";
+import {CAROM, startOf, tableOf} from "./tables.js";
 
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
 const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** The table of a game; null for the present one. */
-function tableOf(name, preset) {
-  if (CAROM.includes(name)) return "carom";
-  if (name === "free_pyramid") return "pyramid";
-  return name !== "" && (preset === "carom" || preset === "pyramid") ? "nine_foot" : preset;
-}
-
-/** Begins a game by these options of its rules, or goes on without one if the name is "". */
-export function newGame(state, name, rules = {}) {
-  const {carom} = state, {preset} = state.scene.table;
-  const table = tableOf(name, preset);
+/** Begins a game by these options of its rules, or goes on without one if the name is "". `match`: as in the
+ * state. */
+export function newGame(state, name, rules = {}, match = null) {
+  const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
   const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
   const game = name === "" ? null : {state: carom.games.start(name, {target, rules}), option: 0};
-  begin(state, startOf(carom, name, table || preset || "nine_foot", randomSeed()), {game});
+  state.match = match;
+  begin(state, startOf(carom, name, table, randomSeed()), {game});
 }
 
 /** What the player may do: {callable, mayPushOut}, and all of it in words. */
@@ -56,7 +51,7 @@ export function judge(state) {
 
 /** Goes on where the balls rest; in a game, by one of the verdict's options. */
 export function nextShot(state, option = 0) {
-  const {carom, game, shot, scene} = state;
+  const {carom, game, shot, scene, announced} = state;
   if (!game) return advance(state, shot.after(), null);
   if (state.verdict === null) judge(state);
   const {verdict} = state;
@@ -66,19 +61,27 @@ export function nextShot(state, option = 0) {
   if (rerack)
     return begin(state, startOf(carom, then.game, scene.table.preset, randomSeed()),
       {game: {state: then, option: 0}});
+  const from = {toml: scene.toml, state: game.state, announced: {...announced}, option};
   try {
-    advance(state, verdict.next({option}), {state: then, judged: verdict, option, shot});
+    advance(state, verdict.next({option}), {state: then, judged: verdict, option, shot, from});
   } catch (error) {
     state.refuse(error);
   }
 }
 
 function advance(state, after, game) {
+  const {scene, set, raised} = state;
+  let said = "";
   if (after.cue === null) {
+    const {ball} = scene.cue ?? {}, placed = ball && inHand(state.carom, after, scene, ball);
     const [first] = after.balls;
-    if (!first) return state.say("No ball is left on the table.");
-    after = after.with({"cue.ball": first.id});
+    if (!placed && !first) return state.say("No ball is left on the table.");
+    if (placed) said = "The cue ball comes in hand: drag it to where you want it.";
+    after = placed || after.with({"cue.ball": first.id});
   }
   state.announced = {...NOTHING, ball: state.announced.ball};
-  enter(state, after, {game});
+  // A raised cue was for one shot of a game.
+  if (enter(state, after, {game, set}) && !state.level && (game || state.raised !== raised))
+    change(state, {"cue.elevation_deg": game ? 0 : raised}, {remember: false});
+  if (said) state.say(said);
 }

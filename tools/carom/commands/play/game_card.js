@@ -1,14 +1,20 @@
 // The game on the page: what the player may do and announces, the verdict, and the options after it.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
+import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
+import {dialog} from "./extras.js";
 import {judge, legal, newGame, nextShot, sentence} from "./game.js";
+import {LEVELS, PLAYED, take} from "./opponent.js";
+import {withNames} from "./players.js";
 import {GAMES} from "./tables.js";
 import {verdictWords} from "./words.js";
 
 /** What the player calls before the shot. */
 function announcements(state) {
+  let chosen = false;
   const announce = (what) => (value) => {
     state.announced[what] = value;
+    chosen = true;
     judge(state);
   };
   const box = (what) => make("input", {type: "checkbox", onchange: (e) => announce(what)(e.target.checked)});
@@ -17,79 +23,146 @@ function announcements(state) {
   const safety = box("safety"), pushOut = box("pushOut");
   const callRow = make("div", {class: "bar"}, ball, pocket, make("label", {}, safety, " safety"));
   const pushRow = make("div", {class: "bar"}, make("label", {}, pushOut, " push out"));
-  state.on("table", () => {
-    const pockets = state.scene.table.pockets.map(({id, name}) => [id, name || id]);
-    pocket.replaceChildren(...optionsOf([["", "and a pocket"], ...pockets]));
-    pocket.value = state.announced.pocket = "";
+  const tell = () => {
+    pocket.value = state.announced.pocket;
     safety.checked = state.announced.safety;
     pushOut.checked = state.announced.pushOut;
+  };
+  state.on("table", () => {
+    const pockets = state.scene.table.pockets.map(({id, name}) => [id, name || id]);
+    pocket.replaceChildren(...optionsOf([["", "pocket …"], ...pockets]));
+    state.announced.pocket = "";
+    chosen = false;
+    tell();
   });
-  const show = ({callable, mayPushOut}) => {
-    const {announced} = state;
-    callRow.hidden = callable.length === 0;
-    pushRow.hidden = !mayPushOut;
-    ball.replaceChildren(...optionsOf([["", "call a ball"], ...callable.map((id) => [id, id])]));
+  let callable = [];
+  // What is obvious is called by itself, until the player calls something.
+  const obvious = () => {
+    const {announced, scene, shot, clock} = state;
+    if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;
+    const call = obviousCall(firstContact(shot, scene.cue.ball), scene.table.pockets);
+    const right = call && callable.includes(call.ball) ? call : {ball: "", pocket: ""};
+    Object.assign(announced, right);
+    ball.value = right.ball;
+    tell();
+  };
+  state.on("starts", obvious);
+  state.on("announced", () => { chosen = true; });
+  const show = ({callable: now, mayPushOut}) => {
+    const {announced} = state, person = !state.level && state.aiming;
+    callable = now;
+    callRow.hidden = callable.length === 0 || !person;
+    pushRow.hidden = !mayPushOut || !person;
+    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, id])]));
     if (!callable.includes(announced.ball)) announced.ball = "";
     ball.value = announced.ball;
+    tell();
+    obvious();
   };
   return {rows: [callRow, pushRow], show};
 }
 
-/** The verdict, and a button for each option. */
+/** The verdict, and a button for each option of a person. */
 function verdictParts(state) {
-  const {verdict, clock} = state;
+  const {verdict, clock, match, mode} = state;
   if (verdict === null || clock.now === 0) return [];
-  const chooser = verdict.chooser >= 0 ? `Player ${verdict.chooser + 1} chooses:` : "";
-  const several = verdict.options.length > 1;
-  return [make("p", {}, verdictWords(verdict), " ", chooser), ...verdict.options.map((option, i) => {
-    const label = sentence(several ? `${option.decision}: ${option.text}` : option.text);
-    return option.state.over ? make("p", {}, `${label}.`) : button(label, () => nextShot(state, i));
+  const {chooser, options} = verdict, several = options.length > 1;
+  const who = chooser >= 0 ? withNames(state, `Player ${chooser + 1} chooses:`) : "";
+  const mine = (mode === "practise" || several) && !match?.players[chooser];
+  return [make("p", {}, verdictWords(verdict), " ", who), ...options.map((option, i) => {
+    const then = withNames(state, sentence(option.text));
+    const label = several ? `${sentence(option.decision)}: ${then}` : then;
+    if (option.state.over || !mine) return make("p", {class: "over"}, `${label}.`);
+    return button(label, () => nextShot(state, i));
   })];
 }
 
-/** A choice for each option of the game's rules; another choice begins anew. */
-function ruleChoices(state) {
-  const row = make("div", {class: "bar"});
-  let game = "", rules = {};
-  const start = (name) => newGame(state, name, name === game ? rules : {});
-  const show = (name) => {
-    if (name === game) return;
-    [game, rules] = [name, {}];
-    row.replaceChildren(...(name === "" ? [] : state.carom.games.options(name)).map(({key, values, what}) => {
-      const title = key.replaceAll("_", " ");
-      const box = select(title, values.map((value) => [value, `${title}: ${value.replaceAll("_", " ")}`]), "",
-        (value) => {
-          rules[key] = value;
-          start(game);
-        });
-      box.title = what;
-      box.disabled = state.fixed || state.locked("table");
-      return box;
-    }));
+/** A choice for each option of a game's rules, kept in `rules`. */
+function ruleChoices(state, game, rules) {
+  return state.carom.games.options(game).map(({key, values, what}) => {
+    const title = key.replaceAll("_", " ");
+    const named = values.map((value) => [value, `${title}: ${value.replaceAll("_", " ")}`]);
+    const box = select(title, named, values[0], (value) => { rules[key] = value; });
+    box.title = what;
+    return box;
+  });
+}
+
+/** The dialog that begins a game. @returns a function that opens it */
+export function gameDialog(state) {
+  let rules = {};
+  const row = make("div", {class: "bar"}), note = make("p", {class: "note"});
+  const levels = [["", "a person"], ...LEVELS.map((level) => [level, `carom: ${level}`])];
+  const players = [["First player", ""], ["Second player", "club"]].map(([name, level]) =>
+    select(name, levels, level, () => {}));
+  const hints = make("input", {type: "checkbox", checked: ""});
+  const choose = (name) => {
+    rules = {};
+    row.replaceChildren(...(name === "" ? [] : ruleChoices(state, name, rules)));
+    const plays = PLAYED.includes(name);
+    players.forEach((box) => {
+      box.disabled = !plays;
+      if (!plays) box.value = "";
+    });
+    if (plays && players.every(({value}) => value === "")) players[1].value = "club";
+    note.textContent = plays || name === "" ? ""
+      : "carom judges this game, but does not play it: it is for two people at this page.";
   };
-  return {row, show, start};
+  const game = select("Game", GAMES, "eight_ball", choose);
+  const start = () => {
+    const name = game.value, levelsOf = players.map(({value}) => value);
+    element.close();
+    state.mode = name === "" ? state.mode : "play";
+    newGame(state, name, rules, name === "" ? null : {players: levelsOf, hints: hints.checked, rules});
+    state.tell("mode");
+  };
+  const labelled = (text, input) => make("label", {class: "field"}, make("span", {}, text), input);
+  const element = dialog("New game", [labelled("Game", game), row, note, labelled("First", players[0]),
+    labelled("Second", players[1]), make("label", {}, hints, " hints may be asked for")],
+  button("Start", start, {class: "shoot"}));
+  return () => {
+    choose(game.value);
+    element.showModal();
+  };
+}
+
+/** The shots of a hint, the best first. */
+function hintList(state) {
+  const list = make("ol", {class: "hint-list"});
+  state.on("hints", () => list.replaceChildren(...state.hints.map((hint, i) => {
+    const share = (100 * hint.makes[0]).toFixed(0), mark = make("b", {}, String(i + 1));
+    mark.style.setProperty("--hint", HINT_COLOURS[i]);
+    return make("li", {}, button([mark, ` ${hint.words}: ${share} %`], () => take(state, hint)));
+  })));
+  state.on("table", () => list.replaceChildren());
+  state.on("starts", () => list.replaceChildren());
+  return list;
 }
 
 export function gameCard(state) {
-  const rules = ruleChoices(state);
-  const box = select("Game", GAMES, "", rules.start);
-  box.disabled = state.fixed || state.locked("table");
   const text = make("p", {class: "game-text", role: "status", "aria-live": "polite"});
-  const {rows, show} = announcements(state), options = make("div", {class: "bar"});
+  const {rows, show} = announcements(state), options = make("div", {class: "bar verdict"});
+  const card = make("section", {class: "card game", "aria-label": "Game"}, text, ...rows, options,
+    hintList(state));
+  const hide = () => {
+    const told = text.textContent || options.hasChildNodes() || state.hints.length > 0;
+    card.hidden = !told || Boolean(state.level) && state.aiming;
+  };
   const tell = () => {
+    if (!state.shot) return;
     const may = legal(state);
-    text.textContent = may.text;
+    text.textContent = state.aiming ? withNames(state, may.text) : "";
     show(may);
+    hide();
   };
   state.on("table", () => {
-    box.value = state.game ? state.game.state.game : "";
-    rules.show(box.value);
     options.replaceChildren();
     tell();
   });
-  state.on("lists", tell);
-  state.on("judged", () => options.replaceChildren(...verdictParts(state)));
-  return make("section", {class: "card"}, make("h2", {}, "Game"), make("div", {class: "bar"}, box,
-    button("Start again", () => rules.start(box.value), {disabled: state.fixed ? "" : null})),
-  rules.row, text, ...rows, options);
+  for (const what of ["lists", "busy", "mode", "label", "hints", "announced"]) state.on(what, tell);
+  state.on("judged", () => {
+    options.replaceChildren(...verdictParts(state));
+    hide();
+  });
+  return card;
 }

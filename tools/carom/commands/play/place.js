@@ -1,13 +1,50 @@
 // Where balls may be put.
 
-import {make, optionsOf, select} from "../../page/dom.js";
-import {change} from "./shots.js";
+import {button, make, optionsOf, select} from "../../page/dom.js";
+import {withBall, withoutBall} from "./scene_text.js";
+import {begin, change} from "./shots.js";
 import {UNITS} from "./words.js";
+
+/** The free place nearest to a place, for a ball with the radius R; null if there is none near it. */
+function freePlace({balls}, [x, y], R) {
+  const free = ([u, v]) => balls.every((b) => Math.hypot(b.x - u, b.y - v) > R + b.radius + 1e-4);
+  const spiral = (k) => [x + R * Math.sqrt(k) * Math.cos(2.4 * k), y + R * Math.sqrt(k) * Math.sin(2.4 * k)];
+  return Array.from({length: 80}, (_, k) => spiral(k)).find(free) ?? null;
+}
+const headSpot = ({corner: [x, y], width, length}) => [x + width / 2, y + length / 4];
+
+/** The scene with a ball that has left it, near the head spot, and its cue; null if it has no room. `before`:
+ * a scene with that ball. */
+export function inHand(carom, after, before, id) {
+  const {radius} = before.balls.find((ball) => ball.id === id), {speed, aim_deg: aim} = before.cue;
+  const place = freePlace(after, headSpot(after.table), radius);
+  return place && carom.Scene.parse(`${withBall(after.toml, id, place)}[cue]\nball = "${id}"\n` +
+    `speed = ${speed}\naim_deg = ${aim}\n`);
+}
+
+/** Puts a ball with the first free name onto the table. */
+export function addBall(state) {
+  const {scene, set} = state, radius = scene.balls[0]?.radius ?? 0.0286;
+  const names = ["cue", ...Array.from({length: 99}, (_, k) => String(k + 1))];
+  const id = [...set.map((ball) => ball.id), ...names].find((name) => !state.ball(name));
+  const {corner: [x, y], width, length} = scene.table;
+  const place = freePlace(scene, [x + width / 2, y + length / 2], radius);
+  if (place) begin(state, withBall(scene.everything, id, place), {set});
+  state.placed = id;
+  state.tell("placed");
+}
+
+/** Takes a ball off the table. */
+export function removeBall(state, id) {
+  if (id === state.scene.cue?.ball) return state.say("The cue strikes this ball; remove another one.", true);
+  begin(state, withoutBall(state.scene.everything, id), {set: state.set});
+}
 
 /** Why a ball may not be moved there, or null. */
 export function refusal(state, id, x, y) {
   const {game, scene} = state;
   if (state.locked("ball")) return "The balls of this scene are fixed.";
+  if (state.level) return "It is carom's turn.";
   if (!game) return null;
   const inHand = game.state.in_hand;
   if (inHand === "no" || id !== scene.cue?.ball)
@@ -51,5 +88,8 @@ export function placeFields(state) {
     show();
   });
   for (const what of ["placed", "lists"]) state.on(what, show);
-  return make("fieldset", {}, make("legend", {}, "Place a ball ", unit), which, ...places);
+  const more = [button("Add a ball", () => addBall(state)),
+    button("Remove it", () => removeBall(state, which.value))];
+  state.on("table", () => more.forEach((one) => { one.disabled = state.fixed || state.game !== null; }));
+  return make("fieldset", {}, make("legend", {}, "Place a ball ", unit), which, ...places, ...more);
 }

@@ -1,38 +1,46 @@
-// The page of `carom play`: a table to play on. Every change is a whole shot, simulated here; its paths are
-// what the player sees while aiming. At time 0 the player aims; later the shot is being watched.
+// The page of `carom play`: a table to play on. Every change is a whole shot, simulated here; what the player
+// sees of it while aiming is the mode's. At time 0 the player aims; later the shot is being watched.
 
 import * as carom from "../../../../web/npm/core.js";
-import {make, pageData, prefers} from "../../page/dom.js";
+import {button, make, pageData, prefers} from "../../page/dom.js";
 import {eventsCard} from "./events_card.js";
+import {openScene} from "./extras.js";
 import {judge, newGame} from "./game.js";
-import {gameCard} from "./game_card.js";
+import {gameCard, gameDialog} from "./game_card.js";
+import {keepMatch, resumeMatch} from "./match.js";
+import {goOn, hint, newTable} from "./opponent.js";
 import {followKeys} from "./pointer.js";
+import {scoreBar} from "./score.js";
 import {setupCard} from "./setup_card.js";
 import {wasmOfPage} from "./share.js";
 import {openAddress, share, shareCard} from "./share_card.js";
 import {begin, change, keep} from "./shots.js";
+import {followSounds} from "./sound.js";
 import {State} from "./state.js";
 import {strokeCard} from "./stroke.js";
 import {tableCard} from "./table_card.js";
 import {startOf} from "./tables.js";
+import {Thinker} from "./thinker.js";
 import {verdictWords} from "./words.js";
 
-const KEYS = "Drag a ball to move it, drag elsewhere to aim. " +
-  "Keys on the table: ← → aim (shift: 1°, alt: 0.01°), ↑ ↓ speed, W A S D tip, space shoot, Esc back, " +
-  "Ctrl+Z undo.";
+const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
+  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers look closer; Shift and the wheel aim finely.";
+/** The page as it came, to send it on with another scene. */
+const WHOLE = location.protocol === "file:" ? document.documentElement.outerHTML : "";
 
-/** Loads carom. @returns whether this browser can run it */
+/** Loads carom. @returns the bytes of carom.wasm, or null if this browser cannot run it */
 async function load() {
   const loading = make("p", {class: "loading", role: "status"}, "Loading carom …");
   document.body.append(loading);
   try {
-    await carom.start(await wasmOfPage(pageData("wasm")));
+    const wasm = await wasmOfPage(pageData("wasm"));
+    await carom.start(wasm);
+    loading.remove();
+    return wasm;
   } catch (error) {
     loading.textContent = `This browser cannot run carom: ${error.message}`;
-    return false;
+    return null;
   }
-  loading.remove();
-  return true;
 }
 
 /** Judges a shot that has ended, and says what happened. */
@@ -41,44 +49,101 @@ function conclude(state) {
   const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
   const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => b.id);
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
-  state.say(
-    `At rest after ${shot.duration.toFixed(2)} s.${gone}${verdict ? ` ${verdictWords(verdict)}` : ""}`);
+  const judged = verdict ? ` ${verdictWords(verdict)}` : "";
+  const warned = shot.warnings.map((text) => ` Warning: ${text}.`).join("");
+  state.say(`At rest after ${shot.duration.toFixed(2)} s.${gone}${judged}${warned}`);
 }
 
-/** Makes the parts of the page. @returns the input that shows its address */
+/** A button that is on or off. */
+function toggle(text, name, change) {
+  const box = button(text, () => {
+    const on = box.getAttribute("aria-pressed") !== "true";
+    box.setAttribute("aria-pressed", String(on));
+    change(on);
+  }, {"aria-pressed": "false", "aria-label": name, title: name});
+  return box;
+}
+
+/** The two ways to use the page. */
+function modes(state) {
+  const names = [["practise", "Practise"], ["play", "Play"]];
+  const boxes = names.map(([mode, text]) => button(text, () => {
+    state.mode = mode;
+    state.tell("mode");
+    state.clock.refresh();
+  }, {disabled: state.fixed ? "" : null}));
+  const show = () =>
+    boxes.forEach((box, k) => box.setAttribute("aria-pressed", String(names[k][0] === state.mode)));
+  state.on("mode", show);
+  show();
+  return make("div", {class: "modes", role: "group", "aria-label": "Mode"}, ...boxes);
+}
+
+function topBar(state, sound) {
+  const {page} = state, full = () => document.fullscreenElement ? document.exitFullscreen()
+    : document.documentElement.requestFullscreen?.();
+  const word = (text) => make("span", {class: "word"}, text);
+  const held = state.fixed || state.locked("table") ? "" : null;
+  const more = toggle("☰", "More", (on) => document.body.classList.toggle("more", on));
+  more.classList.add("more-button");
+  return make("header", {class: "top"}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead),
+    make("span", {class: "room"}), modes(state),
+    button(["New", word(" game …")], gameDialog(state), {disabled: held, "aria-label": "New game"}),
+    toggle(["♪", word(" Sound")], "Sound", (on) => sound.turn(on)),
+    button("Full screen", full, {class: "full"}), more);
+}
+
+/** Makes the parts of the page. @returns what its tests ask for */
 function build(state) {
-  const {page} = state, table = tableCard(state), stroke = strokeCard(state), shared = shareCard(state);
-  document.body.prepend(
-    make("header", {}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead)),
-    make("main", {class: "play"}, table.card, make("div", {class: "side"}, stroke.card, gameCard(state),
-      eventsCard(state), setupCard(state), shared.card, make("p", {class: "keys"}, KEYS))),
-    make("footer", {},
-      make("p", {}, "Made by ", make("code", {}, page.command), `, carom ${carom.version()}`)));
-  followKeys(state, table.box, stroke.tip);
+  const sound = followSounds(state), table = tableCard(state), shared = shareCard(state, WHOLE);
+  const made = ["Made by ", make("code", {}, state.page.command), `, carom ${carom.version()}`];
+  const side = make("div", {class: "side"}, strokeCard(state), eventsCard(state), setupCard(state),
+    shared.card, make("p", {class: "keys"}, KEYS), make("footer", {}, ...made));
+  document.body.prepend(make("main", {class: "play"}, topBar(state, sound), scoreBar(state), ...table.parts,
+    make("div", {class: "right"}, gameCard(state), side)));
+  followKeys(state, table.tip);
+  state.on("table", () => newTable(state));
   state.on("starts", () => {
     if (state.clock.now > 0) return;
     keep(state);
     judge(state);
   });
-  state.on("ended", () => conclude(state));
-  return shared.address;
+  state.on("ended", () => {
+    conclude(state);
+    goOn(state);
+  });
+  keepMatch(state);
+  return {sound, shared};
+}
+
+/** Begins with what the address, the page or the match before says. */
+async function open(state) {
+  const said = await openAddress(state);
+  if (state.shot) return said;
+  const resumed = !said && state.page.scene === "" && resumeMatch(state);
+  if (!state.shot) openScene(state, state.page.scene || startOf(carom, "", "nine_foot"), {remember: false});
+  state.tell("mode");
+  return said ?? (resumed ? "The match goes on." : null);
 }
 
 async function main() {
-  if (!await load()) return;
-  const state = new State(pageData("page"), carom, prefers("reduced-motion: reduce"));
-  const address = build(state), {clock} = state;
+  const wasm = await load();
+  if (wasm === null) return;
+  const state = new State(pageData("page"), carom, prefers("reduced-motion: reduce")), {clock} = state;
+  state.thinker = new Thinker(wasm);
+  const {sound, shared} = build(state);
   window.addEventListener("hashchange", async () => {
     const said = await openAddress(state);
     if (said) state.say(said);
   });
-  const opened = await openAddress(state);
-  if (!state.shot) begin(state, state.page.scene || startOf(carom, "", "nine_foot"), {remember: false});
-  if (opened) state.say(opened);
-  globalThis.caromPlay = {scene: () => state.scene, shot: () => state.shot, show: (t) => clock.show(t),
-    run: (on) => clock.run(on), change: (changes, how) => change(state, changes, how),
-    begin: (toml) => begin(state, toml), newGame: (name) => newGame(state, name),
-    share: () => share(state, address)};
+  const said = await open(state);
+  if (said) state.say(said);
+  globalThis.caromPlay = {state, sound, scene: () => state.scene, shot: () => state.shot,
+    show: (t) => clock.show(t), run: (on) => clock.run(on),
+    change: (changes, how) => change(state, changes, how),
+    begin: (toml, how) => begin(state, toml, how), newGame: (name, match) => newGame(state, name, {}, match),
+    hint: () => hint(state), share: () => share(state, shared.address), download: shared.download};
+  performance.mark("usable");
   document.body.dataset.ready = "true";
 }
 

@@ -1,93 +1,166 @@
-// The pointer on the table: it moves balls, and aims. Keys on the table do the same.
+// Pointers on the table: they move balls, aim, pull the cue and look closer. Keys do the same.
 
-import {put} from "./place.js";
+import {onCue, pulledBack, speedOf} from "./aids.js";
+import {put, refusal} from "./place.js";
+import {letGo, setSpeed} from "./pull.js";
 import {change, takeBack} from "./shots.js";
-import {aimAt, nudge} from "./stroke.js";
+import {aimAt, nudge, wrapped} from "./stroke.js";
 
-/** Moves the held ball to the pointer, or aims there. Undo takes back a whole drag. */
+const FINE = 0.1;  // of the way that the pointer turns
+const HELD_FIRST = 250;  // [ms] A second finger that comes later makes the first one finer.
+
+/** What a press at this event would hold: {id}, a ball; {cue: true}; or {id: null}, the aim. */
+export function heldAt(state, event) {
+  const {view, shot, scene} = state, index = view.ballAt(event), {cue} = scene, struck = state.struck();
+  const id = index < 0 ? null : shot.balls[index], ball = id === null ? undefined : state.ball(id);
+  const inPlay = state.mode === "play" && id !== cue?.ball;
+  if (ball && !inPlay && refusal(state, id, ball.x, ball.y) === null) return {id};
+  const slop = Math.max(0.03, 16 * view.dense / view.projection.scale);
+  if (cue && onCue(cue, struck, view.placeAt(event), slop) && !state.locked("cue.speed"))
+    return {id: null, cue: true};
+  return {id: null};
+}
+
+/** How far a place is behind the ball along the cue [m]. */
+function behind({scene: {cue}}, ball, [x, y]) {
+  const angle = cue.aim_deg * Math.PI / 180;
+  return (ball.x - x) * Math.cos(angle) + (ball.y - y) * Math.sin(angle);
+}
+
+/** Moves the held ball to the pointer, pulls the cue there, or aims there; finely, by a part of the way. Undo
+ * takes back a whole drag. */
 function follow(state) {
   const {held, pointed, scene} = state;
   state.asked = false;
-  if (held === null || pointed === null) return;
-  const how = {remember: !held.kept}, [x, y] = pointed;
-  if (held.id !== null) held.kept = put(state, held.id, x + held.dx, y + held.dy, how) || held.kept;
-  else if (scene.cue && !state.locked("cue.aim_deg"))
-    held.kept = change(state, {"cue.aim_deg": aimAt(state.struck(), x, y)}, how) || held.kept;
+  if (held === null || pointed === null || !scene.cue && held.id === null) return;
+  const how = {remember: !held.kept}, [x, y] = pointed, ball = state.struck();
+  const made = (done) => { held.kept = done || held.kept; };
+  if (held.id !== null) return made(put(state, held.id, x + held.dx, y + held.dy, how));
+  const pulled = () => speedOf(held.pulled + behind(state, ball, pointed) - held.at);
+  if (held.cue) return made(setSpeed(state, pulled(), how));
+  if (state.locked("cue.aim_deg")) return;
+  const aim = aimAt(ball, x, y), turned = wrapped(aim - (held.aim ?? aim));
+  held.aim = aim;
+  made(change(state, {"cue.aim_deg": held.fine ? wrapped(scene.cue.aim_deg + FINE * turned) : aim}, how));
 }
 
 function press(state, event) {
-  const {view, shot} = state;
-  if (!state.aiming || event.button !== 0) return;
-  view.over.setPointerCapture(event.pointerId);
-  const at = view.ballAt(event), ball = at >= 0 ? state.ball(shot.balls[at]) : undefined;
-  const [x, y] = view.placeAt(event);
-  state.held = ball ? {id: ball.id, dx: ball.x - x, dy: ball.y - y, kept: false} : {id: null, kept: false};
-  if (ball) {
-    state.placed = ball.id;
+  const {view} = state;
+  if (!state.free || event.button !== 0) return;
+  const [x, y] = view.placeAt(event), struck = state.struck();
+  const held = {...heldAt(state, event), kept: false, fine: event.shiftKey, since: event.timeStamp};
+  state.held = held;
+  if (held.id !== null) {
+    const ball = state.ball(held.id);
+    Object.assign(held, {dx: ball.x - x, dy: ball.y - y});
+    state.placed = held.id;
     state.tell("placed");
+  } else if (held.cue) {
+    const {speed} = state.scene.cue;
+    Object.assign(held, {before: speed, pulled: pulledBack(speed), at: behind(state, struck, [x, y])});
   } else {
     state.pointed = [x, y];
-    follow(state);
+    if (held.fine && struck) held.aim = aimAt(struck, x, y);
+    // A finger that is the first of two must not aim at once.
+    else if (event.pointerType !== "touch") follow(state);
   }
 }
 
 function move(state, event) {
-  const {view, held, clock} = state;
-  if (held === null) {
-    view.over.style.cursor = clock.now > 0 ? "default" : view.ballAt(event) >= 0 ? "grab" : "crosshair";
-    return;
-  }
+  const {view, held} = state;
+  if (held === null) return;
+  if (event.shiftKey && !held.fine && held.id === null) held.fine = true;
   state.pointed = view.placeAt(event);
   if (state.asked) return;
   state.asked = true;
   requestAnimationFrame(() => follow(state));
 }
 
-/** Lets the pointer move balls and aim on a new table. */
-export function followPointer(state) {
-  const {over} = state.view;
-  over.onpointerdown = (event) => press(state, event);
-  over.onpointermove = (event) => move(state, event);
-  over.onpointerup = over.onpointercancel = () => {
-    state.held = state.pointed = null;
-    state.later();
-  };
-  over.addEventListener("wheel", (event) => {
-    if (state.clock.now > 0 || !state.scene.cue || state.locked("cue.aim_deg")) return;
-    event.preventDefault();
-    nudge(state, "aim_deg", Math.sign(event.deltaY) * (event.shiftKey ? 0.01 : 0.1));
-  }, {passive: false});
+function release(state, event) {
+  const {held} = state;
+  if (held && state.asked) follow(state);
+  if (held && event.type === "pointerup" && event.pointerType === "touch" && !held.kept) follow(state);
+  state.held = state.pointed = null;
+  state.later();
+  if (held?.cue && held.kept && event.type === "pointerup") letGo(state, held.before);
 }
 
-/** The keys on the table `box`, and those of the whole page. */
-export function followKeys(state, box, tip) {
+/** Two fingers: the distance between them, and their middle [canvas px]. */
+function pinchOf(view, fingers) {
+  const [a, b] = [...fingers.values()].map((event) => view.pixelAt(event));
+  return {apart: Math.hypot(a[0] - b[0], a[1] - b[1]), middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]};
+}
+
+/** Lets pointers work on a new table. */
+export function followPointer(state) {
+  const {view} = state, {over} = view, fingers = new Map();
+  let pinch = null;
+  over.onpointerdown = (event) => {
+    over.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, event);
+    const {held} = state;
+    if (fingers.size === 1) return press(state, event);
+    if (held?.kept || held && event.timeStamp - held.since > HELD_FIRST) held.fine = true;
+    else if (fingers.size === 2) {
+      state.held = state.pointed = null;
+      pinch = pinchOf(view, fingers);
+    }
+  };
+  over.onpointermove = (event) => {
+    const first = fingers.keys().next().value;
+    if (fingers.has(event.pointerId)) fingers.set(event.pointerId, event);
+    if (pinch && fingers.size === 2) {
+      const {apart, middle} = pinchOf(view, fingers);
+      view.look(apart / Math.max(pinch.apart, 1), pinch.middle, middle);
+      pinch = {apart, middle};
+      state.clock.refresh();
+    } else if (state.held && event.pointerId === first) move(state, event);
+    else if (fingers.size === 0) over.style.cursor = !state.free ? "default" : cursorOf(heldAt(state, event));
+  };
+  over.onpointerup = over.onpointercancel = (event) => {
+    const first = fingers.keys().next().value;
+    fingers.delete(event.pointerId);
+    if (pinch && fingers.size < 2) pinch = null;
+    else if (state.held && event.pointerId === first) release(state, event);
+  };
+  over.onwheel = (event) => {
+    event.preventDefault();
+    if (event.shiftKey && state.free && state.scene.cue && !state.locked("cue.aim_deg"))
+      return nudge(state, "aim_deg", -Math.sign(event.deltaY || event.deltaX) * 0.02);
+    const at = view.pixelAt(event);
+    view.look(1.2 ** -Math.sign(event.deltaY), at, at);
+    state.clock.refresh();
+  };
+}
+const cursorOf = ({id, cue}) => id !== null || cue ? "grab" : "crosshair";
+
+/** The keys of the page, wherever they are not needed for something else. */
+export function followKeys(state, tip) {
   const {clock} = state, turn = (by) => () => nudge(state, "aim_deg", by);
   const push = (by) => () => nudge(state, "speed", by), moveTip = (x, y) => () => tip.step(x, y);
-  box.addEventListener("keydown", (event) => {
-    const step = event.altKey ? 0.01 : event.shiftKey ? 1 : 0.1;
-    if (event.ctrlKey || event.metaKey) return;
-    const aiming = {arrowleft: turn(step), arrowright: turn(-step),
-      arrowup: push(step), arrowdown: push(-step), a: moveTip(0.02, 0), d: moveTip(-0.02, 0),
-      w: moveTip(0, 0.02), s: moveTip(0, -0.02)};
-    const watching = {arrowleft: () => clock.show(clock.now - 1 / 60),
-      arrowright: () => clock.show(clock.now + 1 / 60), arrowup: () => clock.jump(-1),
-      arrowdown: () => clock.jump(1)};
-    const action = (clock.now > 0 ? watching : aiming)[event.key.toLowerCase()];
+  const whole = () => {
+    state.view.look(0);
+    clock.refresh();
+  };
+  const frame = (by) => () => clock.show(clock.now + by / 60), jump = (way) => () => clock.jump(way);
+  const watching = {arrowleft: frame(-1), arrowright: frame(1), arrowup: jump(-1), arrowdown: jump(1)};
+  document.addEventListener("keydown", (event) => {
+    const {tagName, role} = event.target, open = document.querySelector("dialog[open]") !== null;
+    const typing = ["INPUT", "TEXTAREA", "SELECT"].includes(tagName) || role === "slider" || open;
+    const key = event.key.toLowerCase(), {shiftKey, altKey} = event, control = event.ctrlKey || event.metaKey;
+    const step = altKey ? 0.01 : shiftKey ? 1 : 0.1;
+    const aiming = {arrowleft: turn(step), arrowright: turn(-step), arrowup: push(step),
+      arrowdown: push(-step), a: moveTip(0.02, 0), d: moveTip(-0.02, 0), w: moveTip(0, 0.02),
+      s: moveTip(0, -0.02)};
+    let action = null;
+    if (key === "escape" && !open) action = () => { if (!state.counts || state.aiming) clock.go(0); };
+    else if (key === "z" && control && !typing) action = () => { if (!state.counts) takeBack(state); };
+    else if (key === " " && (!typing || role === "slider") && tagName !== "BUTTON" && tagName !== "SUMMARY")
+      action = () => { if (!state.aiming || state.free) clock.run(!clock.playing); };
+    else if (key === "0" && !typing) action = whole;
+    else if (!typing && !control) action = (clock.now > 0 ? watching : state.free ? aiming : {})[key];
     if (!action) return;
     event.preventDefault();
     action();
-  });
-  document.addEventListener("keydown", (event) => {
-    const {tagName} = event.target, open = document.querySelector("dialog[open]") !== null;
-    const typing = ["INPUT", "TEXTAREA", "SELECT"].includes(tagName) || open;
-    if (event.key === " " && !typing && tagName !== "BUTTON") {
-      event.preventDefault();
-      clock.run(!clock.playing);
-    } else if (event.key === "Escape" && !open) {
-      clock.go(0);
-    } else if (event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !typing) {
-      event.preventDefault();
-      takeBack(state);
-    }
   });
 }

@@ -27,3 +27,18 @@ export function rangeOf(text, n) {
   const start = lines.slice(0, n - 1).reduce((sum, line) => sum + line.length + 1, 0);
   return [start, start + lines[n - 1].length];
 }
+
+/** The file with another ball; one that carom wrote has every ball on its own. */
+export const withBall = (toml, id, [x, y]) =>
+  `${toml.replace(/\n*$/, "\n")}[[ball]]\nid = ${JSON.stringify(id)}\nposition = [${x}, ${y}]\n`;
+
+/** The file without a ball. */
+export const withoutBall = (toml, id) => toml.split(/^(?=\[)/m)
+  .filter((part) => !part.startsWith("[[ball]]") || !part.includes(`id = ${JSON.stringify(id)}`)).join("");
+
+/** The title of a scene file: its first comment, up to its first sentence's end or a colon. */
+export const titleOf = (toml) => /^#\s*(.*?)(?:[.:](?=\s)|[.:]?$)/m.exec(toml)?.[1] ?? "";
+
+/** What a scene file says to look for, in one line; "" if nothing. */
+export const lookFor = (toml) =>
+  (/^#.*Look for: ((?:.*\n#)*.*)/m.exec(toml)?.[1] ?? "").replace(/\s*\n#\s*/g, " ").trim();

@@ -3,7 +3,7 @@
 import {make, select} from "../../page/dom.js";
 import {placeFields} from "./place.js";
 import {begin, change, setOrDrop} from "./shots.js";
-import {CLOTHS, startOf} from "./tables.js";
+import {CLOTHS, GAMES, startOf, tableOf} from "./tables.js";
 
 const MATERIAL = [["mu_s", "sliding friction", 0.01], ["mu_r", "rolling friction", 0.001],
   ["mu_b", "ball-ball friction", 0.01], ["e_b", "ball-ball restitution", 0.01],
@@ -30,6 +30,10 @@ export function setupCard(state) {
   const tables = page.tables.map((name) => [name, name.replaceAll("_", " ")]);
   const table = select("Table", tables, "nine_foot", (name) => begin(state, startOf(carom, "", name)));
   const cloth = select("Cloth", CLOTHS, "", (name) => setOrDrop(state, "table.cloth", name));
+  const rack = select("Rack", [["", "choose …"], ...GAMES.slice(1)], "", (name) => {
+    rack.value = "";
+    if (name) begin(state, startOf(carom, name, tableOf(name, state.scene.table.preset || "nine_foot")));
+  });
   const models = page.keys.physics.cushion.enum.map((name) => [name, name]);
   const cushions = select("Cushion model", [["", "as the balls"], ...models], "",
     (name) => setOrDrop(state, "physics.cushion", name));
@@ -42,14 +46,15 @@ export function setupCard(state) {
     state.numbered = state.view.numbered = numbers.checked;
     state.clock.refresh();
   }});
-  table.disabled = state.fixed || state.locked("table");
+  table.disabled = rack.disabled = state.fixed || state.locked("table");
   cloth.disabled = cushions.disabled = state.locked("table");
   state.on("table", () => {
     table.value = state.scene.table.preset;
     cloth.value = state.scene.table.cloth;
   });
   return make("details", {class: "card setup"}, make("summary", {}, "Table, balls, units"),
-    field("Table", table), field("Cloth", cloth), field("Cushions", cushions), field("Units", units),
+    field("Table", table), field("Rack", rack), field("Cloth", cloth), field("Cushions", cushions),
+    field("Units", units),
     make("label", {}, numbers, " number the diamonds"), placeFields(state),
     make("fieldset", {class: "materials"}, make("legend", {}, "Balls"), ...materialFields(state)));
 }

@@ -49,6 +49,18 @@ export async function openAddress(state) {
     : `Other bits than where this address was made (${found.hash}): another version of carom made it.`;
 }
 
+/** A copy of the page that begins with this shot, to send to somebody. `whole`: the page before it ran. */
+function download(state, whole) {
+  const page = {...state.page, scene: state.scene.toml, lead: "a shot to look at"};
+  const json = JSON.stringify(page).replaceAll("<", "\\u003c");
+  const html = whole.replace(/(<script [^>]*id="page">)[^<]*/, (_, head) => head + json);
+  const url = URL.createObjectURL(new Blob(["<!doctype html>\n", html], {type: "text/html"}));
+  make("a", {href: url, download: "shot.html"}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+  state.say("shot.html is this page with this shot; send it to somebody.");
+  return html;
+}
+
 /** Selects the line with a mistake. */
 function showLine(area, line) {
   area.focus();
@@ -89,13 +101,16 @@ function fileDialog(state) {
   };
 }
 
-export function shareCard(state) {
+/** `whole`: the page as a text if it was opened from a file, which no address leads to; else "". */
+export function shareCard(state, whole) {
   const address =
     make("input", {readonly: "", "aria-label": "Address of this shot", class: "address", hidden: ""});
   const hash = make("code", {title: "Hash of all bits of this shot"});
   state.on("stroke", () => { document.body.dataset.hash = hash.textContent = state.shot.hash; });
   const card = make("section", {class: "card"}, make("div", {class: "bar"},
-    button("Share by address", () => share(state, address)), button("Scene file …", fileDialog(state)),
-    ...extras(state)), address, make("p", {class: "hash"}, "Hash ", hash));
-  return {card, address};
+    whole ? button("Download this shot", () => download(state, whole))
+      : button("Share by address", () => share(state, address)),
+    button("Scene file …", fileDialog(state)), ...extras(state)), address,
+  make("p", {class: "hash"}, "Hash ", hash));
+  return {card, address, download: () => download(state, whole)};
 }

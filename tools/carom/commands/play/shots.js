@@ -19,7 +19,7 @@ function use(state, candidate, fresh) {
   }
   // A game still asks about the shot that it judged.
   if (state.shot && state.game?.shot !== state.shot) state.shot.free();
-  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null});
+  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: []});
   state.clock.now = 0;
   if (fresh) state.tell("table");
   state.clock.show(0);
@@ -28,30 +28,51 @@ function use(state, candidate, fresh) {
 }
 
 /** Remembers the scene for takeBack(). */
-export function keep({scene, game, past}) {
+export function keep({scene, game, set, past}) {
   const {toml} = scene, last = past.at(-1);
   if (last && last.toml === toml && last.game === game) return;
-  past.push({toml, game});
+  past.push({toml, game, set});
   if (past.length > UNDO_LIMIT) past.shift();
 }
 
-/** Puts other balls or another table onto the page, in a game or without one. @returns whether it can */
-export function enter(state, candidate, {game = null, remember = true} = {}) {
-  const before = state.game, kept = state.past.length;
+/** The balls of a set and those of a scene that are not in it. */
+function joined(set, scene) {
+  const styles = scene.look?.().styles ?? [], known = new Set(set.map(({id}) => id));
+  const more = scene.balls.map(({id}, i) => ({id, style: styles[i]})).filter(({id}) => !known.has(id));
+  return [...set, ...more];
+}
+
+/** Puts other balls or another table onto the page, in a game or without one. `set`: balls that belong to it,
+ * too. @returns whether it can */
+export function enter(state, candidate, {game = null, remember = true, set = []} = {}) {
+  const before = {game: state.game, set: state.set, raised: state.raised}, kept = state.past.length;
   if (remember && state.scene) keep(state);
-  state.game = game;
+  Object.assign(state, {game, set: joined(set, candidate), raised: candidate.cue?.elevation_deg ?? 0});
   state.clock.run(false);
+  state.say("");
   if (use(state, candidate, true)) return true;
-  state.game = before;
+  Object.assign(state, before);
   state.past.length = kept;
   return false;
 }
 
 /** Begins with a scene file. @throws CaromError if it is no scene */
 export function begin(state, toml, how = {}) {
-  const candidate = state.carom.Scene.parse(toml);
-  state.say("");
-  return enter(state, candidate, how);
+  return enter(state, state.carom.Scene.parse(toml), how);
+}
+
+/** The scene with its changes, and the cue raised over a ball that it would be in; where the shot counts,
+ * over the cushions, too. */
+function changed(state, changes) {
+  const wanted = changes["cue.elevation_deg"] ?? state.raised, {cue} = state.scene;
+  const other = cue && cue.elevation_deg !== wanted ? {"cue.elevation_deg": wanted} : {};
+  const level = state.scene.with({...other, ...changes}), stroke = level.cue;
+  const met = stroke?.in && (state.counts || stroke.in.startsWith("ball"));
+  if (!met || stroke.clears_deg === null || state.locked("cue.elevation_deg"))
+    return level;
+  const raised = level.with({"cue.elevation_deg": stroke.clears_deg});
+  level.free();
+  return raised;
 }
 
 /** Tries a change of the scene. @returns whether it was made */
@@ -59,7 +80,7 @@ export function change(state, changes, {remember = true} = {}) {
   const before = state.scene;
   let candidate;
   try {
-    candidate = before.with(changes);
+    candidate = changed(state, changes);
   } catch (error) {
     state.refuse(error);
     state.tell("stroke");
@@ -72,6 +93,7 @@ export function change(state, changes, {remember = true} = {}) {
     state.tell("stroke");
     return false;
   }
+  state.raised = changes["cue.elevation_deg"] ?? state.raised;
   before.free();
   state.say("");
   return true;
@@ -80,12 +102,12 @@ export function change(state, changes, {remember = true} = {}) {
 /** Sets a text, or removes its line from the file. */
 export function setOrDrop(state, key, text) {
   if (text !== "") return change(state, {[key]: text});
-  return begin(state, without(state.scene.toml, key), {game: state.game});
+  return begin(state, without(state.scene.toml, key), {game: state.game, set: state.set});
 }
 
 export function takeBack(state) {
   const before = state.past.pop();
   if (before === undefined) return state.say("There is nothing to undo.");
-  begin(state, before.toml, {game: before.game, remember: false});
+  begin(state, before.toml, {game: before.game, set: before.set, remember: false});
   state.say("Undone.");
 }

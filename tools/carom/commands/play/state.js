@@ -6,17 +6,24 @@ import {isContact} from "./words.js";
 export class State {
   /** `page`: what play.cpp wrote. `carom`: the module core.js. `calm`: the user prefers less motion. */
   constructor(page, carom, calm = false) {
-    Object.assign(this, {page, carom, followers: {}, waiting: 0,
-      // The table: a scene, its shot, how it is drawn; earlier ones as {toml, game}.
-      scene: null, shot: null, view: null, rotations: null, past: [],
-      // What the player chose.
+    // A page that holds something fast shows its own scene only, and not what would come of it.
+    const fixed = page.lock.length > 0;
+    Object.assign(this, {page, carom, calm, fixed, followers: {}, waiting: 0,
+      // The table: a scene, its shot, how it is drawn; earlier ones as {toml, game, set}. `set`: all balls
+      // that have been on it, as {id, style}. `raised`: the elevation that the player wants [degrees].
+      scene: null, shot: null, view: null, rotations: null, past: [], set: [], raised: 0,
+      // What the player chose. In the mode "play" a shot counts; in "practise" all its paths are seen before.
+      mode: fixed ? "play" : "practise",
       units: "metric", paths: "all", numbered: false, contactsOnly: true, placed: "", said: "",
-      // A game is {state, option, judged, shot}: the state before this shot, and what led to it.
-      game: null, verdict: null, announced: {ball: "", pocket: "", safety: false, pushOut: false},
+      // A game is {state, option, judged, shot, from}: the state before this shot, and what led to it. A
+      // match is {players, hints, rules}: a level for each player, "" for a person; whether hints are
+      // allowed.
+      game: null, match: null, verdict: null,
+      announced: {ball: "", pocket: "", safety: false, pushOut: false},
+      // Who thinks now: {level, hint}, or null; whether a person shoots for carom. Advice on the table.
+      busy: null, yielded: false, hints: [],
       // The pointer on the table: what it holds, where it points, and whether a picture has been asked for.
       held: null, pointed: null, asked: false});
-    // A page that holds something fast shows its own scene only.
-    this.fixed = page.lock.length > 0;
     this.clock = new Playback({end: () => this.shot.duration, events: () => this.events(),
       show: () => this.tell("time"), label: () => this.tell("label"), starts: () => this.tell("starts"),
       ended: () => this.tell("ended"), still: calm ? () => this.shot.duration : null});
@@ -24,7 +31,7 @@ export class State {
 
   /** Follows what happens: "table" (another one, or other balls), "time", "label" (of the button to play),
    * "starts", "ended", "stroke" (any value that is shown while aiming), "lists" (which need not follow a
-   * pointer at once), "placed" (another ball is to be placed), "judged", "says". */
+   * pointer at once), "placed" (another ball is to be placed), "judged", "says", "mode", "busy", "hints". */
   on(what, follow) { (this.followers[what] ||= []).push(follow); }
   tell(what, ...about) { for (const follow of this.followers[what] || []) follow(...about); }
 
@@ -42,6 +49,15 @@ export class State {
 
   /** Whether nothing has moved yet. */
   get aiming() { return this.clock.now === 0 && !this.clock.playing; }
+  /** Whether a person may aim now. */
+  get free() { return this.aiming && (this.busy === null || this.busy.hint) && !this.level; }
+  /** Whether what is struck counts: in a game that is played, nothing is taken back. */
+  get counts() { return this.mode === "play" && this.game !== null; }
+  /** The level of the player whose turn it is, or "" for a person. */
+  get level() {
+    const now = this.game?.state;
+    return now && !now.over && !this.yielded ? this.match?.players[now.turn] ?? "" : "";
+  }
   locked(key) { return this.page.lock.some((name) => key === name || key.startsWith(`${name}.`)); }
   /** The events in the list. */
   events() { return this.shot.events.filter((e) => !this.contactsOnly || isContact(e)); }

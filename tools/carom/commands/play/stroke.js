@@ -1,9 +1,11 @@
-// The stroke: speed, aim, tip and elevation of the cue.
+// The stroke: power, tip and what they mean in words; and all of it in numbers.
 
 import {make} from "../../page/dom.js";
+import {HARDEST, firstContact} from "./aids.js";
+import {pullStrip} from "./pull.js";
 import {change} from "./shots.js";
 import {TipPicture} from "./tip.js";
-import {UNITS} from "./words.js";
+import {UNITS, aimWords} from "./words.js";
 
 /** An angle from -180 to 180 degrees. */
 export const wrapped = (angle) => angle - 360 * Math.round(angle / 360);
@@ -16,13 +18,15 @@ export function nudge(state, key, by) {
   const {scene: {cue}} = state;
   if (state.clock.now > 0 || !cue || state.locked(`cue.${key}`)) return;
   const value = rounded(cue[key] + by);
-  change(state, {[`cue.${key}`]: key === "speed" ? Math.max(0, value) : wrapped(value)});
+  change(state, {[`cue.${key}`]: key === "speed" ? Math.min(Math.max(0, value), HARDEST) : wrapped(value)});
 }
 
 /** A number of the cue, to type and to slide. `unit()`: [SI units in one of these, name]. */
 function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, digits) {
   const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
-  const write = (input) => change(state, {[`cue.${key}`]: Number(input.value) / unit()[0]});
+  const write = (input) => {
+    if (state.free) change(state, {[`cue.${key}`]: Number(input.value) / unit()[0]});
+  };
   const slide = make("input", {type: "range", ...attributes, "aria-label": `${label}, ${unit()[1]}`,
     oninput: () => write(slide)});
   const type =
@@ -38,26 +42,33 @@ function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, dig
   return make("label", {class: "field"}, name, type, slide);
 }
 
+/** The stroke in numbers. */
 export function strokeCard(state) {
   const degrees = () => [1, "°"], speed = () => UNITS[state.units].speed;
+  const card = make("section", {class: "card stroke"}, make("h2", {}, "Stroke"),
+    numberField(state, "Speed", "speed", {min: 0, max: HARDEST, step: 0.01, unit: speed}, 2),
+    numberField(state, "Aim", "aim_deg", {min: -180, max: 180, step: 0.01, unit: degrees, shown: wrapped}, 2),
+    numberField(state, "Cue raised", "elevation_deg", {min: 0, max: 85, step: 0.5, unit: degrees}, 1));
+  state.on("stroke", () => { card.hidden = state.scene.cue === null; });
+  return card;
+}
+
+/** What a player holds in the hand: {tip, parts}: the cue ball to strike, and the cue to pull back. */
+export function strokeParts(state) {
   const tip = new TipPicture((side, height) => {
-    if (!state.locked("cue.offset"))
+    if (state.free && !state.locked("cue.offset"))
       change(state, {"cue.offset.side": side, "cue.offset.height": height});
   });
-  const words = make("span", {class: "tip-words"});
-  const card = make("section", {class: "card stroke"}, make("h2", {}, "Stroke"),
-    make("div", {class: "stroke-parts"}, make("div", {class: "tip-side"}, tip.element, words),
-      make("div", {},
-        numberField(state, "Speed", "speed", {min: 0, max: 30, step: 0.01, unit: speed}, 2),
-        numberField(state, "Aim", "aim_deg",
-          {min: -180, max: 180, step: 0.01, unit: degrees, shown: wrapped}, 2),
-        numberField(state, "Cue raised", "elevation_deg", {min: 0, max: 85, step: 0.5, unit: degrees}, 1))));
+  const words = make("p", {class: "stroke-words"}), pull = pullStrip(state);
+  const hand = make("div", {class: "hand"}, pull, words);
   state.on("stroke", () => {
     const {cue} = state.scene;
-    card.hidden = cue === null;
+    hand.hidden = tip.element.hidden = cue === null;
     if (!cue) return;
     tip.show(cue.side, cue.height);
-    words.textContent = `Tip: ${tip.words}`;
+    const raised = cue.elevation_deg >= 0.5 ? [`cue raised ${cue.elevation_deg.toFixed(0)}°`] : [];
+    const aim = aimWords(firstContact(state.shot, cue.ball)?.met);
+    words.textContent = [aim.charAt(0).toUpperCase() + aim.slice(1), tip.words, ...raised].join(" · ");
   });
-  return {card, tip};
+  return {tip, parts: [tip.element, hand]};
 }

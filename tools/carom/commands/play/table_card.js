@@ -1,114 +1,142 @@
-// The table on the page, its controls, and the cue.
+// The table on the page, what is drawn on it, and the controls below it.
 
-import {button, make, onWidth, select} from "../../page/dom.js";
+import {ICONS, button, icon, make, select} from "../../page/dom.js";
 import {orientations} from "../../page/motion.js";
 import {PlaybackBar} from "../../page/playback.js";
 import {TableView} from "../../page/stage.js";
+import {drawContact, drawCue, drawHints, firstContact} from "./aids.js";
 import {nextShot} from "./game.js";
+import {hint, mayHint, stopThinking, takeTurn} from "./opponent.js";
 import {followPointer} from "./pointer.js";
 import {takeBack} from "./shots.js";
+import {strokeParts} from "./stroke.js";
 
-/** The cue behind its ball, and the line of aim. */
-function drawCue({scene: {cue}, view}, from) {
-  const angle = cue.aim_deg * Math.PI / 180, along = [Math.cos(angle), Math.sin(angle)];
-  const at = (d, side = 0) => view.projection.at(from.x + d * along[0] - side * along[1],
-    from.y + d * along[1] + side * along[0]);
-  const context = view.over.getContext("2d"), R = from.radius, width = view.dense;
-  context.save();
-  const line = (a, b, colour, thick, dash = []) => {
-    context.beginPath();
-    context.moveTo(...a);
-    context.lineTo(...b);
-    context.setLineDash(dash);
-    context.lineWidth = thick;
-    context.strokeStyle = colour;
-    context.stroke();
-  };
-  line(at(R), at(12 * R), "rgba(255, 255, 255, 0.75)", 1.2 * width, [5 * width, 4 * width]);
-  const side = cue.side * R, gap = 1.25 * R + 0.02 * cue.speed, {scale} = view.projection;
-  context.lineCap = "round";
-  line(at(-gap - 0.012, side), at(-gap - 1.1, side), "#3a2414", 0.024 * scale);
-  line(at(-gap - 0.012, side), at(-gap - 0.75, side), "#d9b06c", 0.014 * scale);
-  line(at(-gap, side), at(-gap - 0.014, side), "#3f7fbf", 0.013 * scale);
-  context.restore();
-}
-
-/** The balls at this time; while aiming, the paths of the whole shot and the cue, too. */
+/** The balls at this time; while aiming, what the mode shows of the shot, and the cue. */
 function draw(state) {
-  const {view, shot, scene, paths, clock: {now}} = state, {record} = shot;
+  const {view, shot, scene, paths, mode, clock: {now}} = state, record = shot.motion;
   view.record = record;
   if (!state.aiming) {
     view.orientation = state.rotations ??= orientations(record);
-    view.draw(now, {trails: "ball"});
+    view.draw(now, {trails: mode === "play" ? "off" : "ball"});
     return;
   }
   view.orientation = () => [1, 0, 0, 0];
-  const only = paths === "cue" && scene.cue ? shot.balls.indexOf(scene.cue.ball) : -1;
-  const ahead = paths !== "off", from = state.struck();
-  view.draw(0, {trails: ahead ? "ball" : "off", until: record.duration, only, ends: ahead});
+  const from = state.struck(), only = scene.cue ? shot.balls.indexOf(scene.cue.ball) : -1;
+  if (mode === "play") {
+    const contact = from && !state.level ? firstContact(shot, scene.cue.ball) : null;
+    view.draw(0, {trails: contact ? "ball" : "off", until: contact?.time, only});
+    if (contact) drawContact(view, contact, "rgba(255, 255, 255, 0.85)");
+  } else {
+    const ahead = paths !== "off";
+    view.draw(0, {trails: ahead ? "ball" : "off", until: record.duration, only: paths === "cue" ? only : -1,
+      ends: ahead});
+  }
   if (from) drawCue(state, from);
+  drawHints(state);
 }
 
-/** Fits the table into the window. */
-function lay(state, box) {
-  if (!state.view) return;
-  const beside = matchMedia("(max-height: 520px) and (orientation: landscape)").matches;
-  const rest = beside ? 92 : window.innerWidth > 900 ? 240 : 200;
-  state.view.fit(Math.max(box.clientWidth, 200), Math.max(window.innerHeight - rest, beside ? 180 : 260));
-  state.clock.refresh();
+/** What a drag on the table does now. */
+function helpOf(state) {
+  const {game, mode, scene, clock} = state;
+  if (state.busy) return "";
+  if (clock.playing) return state.counts ? "Space stops the balls." : "Space stops the balls, Esc goes back.";
+  if (!state.aiming) return mode === "play" ? "" : "← → one frame, ↑ ↓ one event, Esc back to aiming.";
+  if (!scene.cue) return "Drag a ball to move it.";
+  const placed = game ? game.state.in_hand !== "no" : true;
+  const ball = mode === "practise" && !game ? "a ball: move it"
+    : placed && !state.locked("ball") ? "the cue ball: move it" : "";
+  const fine = matchMedia("(pointer: coarse)").matches ? "a second finger" : "Shift";
+  return [`Drag the cloth: aim (${fine}: finely)`, ball, "the cue: pull back and let go"]
+    .filter((x) => x).join(" · ") + ".";
 }
 
-/** The bar below the table. */
-function playbackBar(state) {
-  const {clock} = state;
-  const bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
-  bar.play.className = "shoot";
+/** The controls while the shot is watched. */
+function watchBar(state) {
+  const {clock} = state, bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
   const back = button("Back to aiming", () => clock.go(0)), next = button("Next shot", () => nextShot(state));
-  const undo = button("Undo", () => takeBack(state));
-  bar.element.append(back, next, undo, bar.speeds, select("Predicted paths",
-    [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths,
-    (x) => { state.paths = x; clock.refresh(); }));
-  const label = () => {
-    const name = clock.playing ? "Pause" : clock.now === 0 ? "Shoot" : "Play";
-    bar.label(name, name === "Shoot" ? name : "");
-  };
-  state.on("label", label);
-  state.on("time", () => {
-    if (state.aiming !== document.body.classList.contains("aiming")) {
-      document.body.classList.toggle("aiming", state.aiming);
-      label();
-    }
+  bar.element.append(back, next, bar.speeds);
+  const show = () => {
     bar.show();
-    back.hidden = next.hidden = clock.now === 0;
+    back.hidden = state.counts;
+    next.hidden = state.game !== null && state.mode === "play";
+    bar.scrub.disabled = state.counts && clock.playing;
+  };
+  state.on("label", () => bar.label(clock.playing ? "Pause" : "Play"));
+  state.on("time", show);
+  state.on("mode", () => { if (state.shot) show(); });
+  return make("div", {class: "watching"}, make("div", {class: "scrubbing"}, bar.scrub), bar.element);
+}
+
+/** The controls while aiming: tip, power, and buttons. @returns {element, tip} */
+function aimBar(state) {
+  const {tip, parts} = strokeParts(state), {clock} = state;
+  const shoot = button([icon(ICONS.play), "Shoot"], () => clock.run(true),
+    {class: "shoot", title: "Shoot (space)"});
+  const stop = button("Stop", () => stopThinking(state), {class: "shoot"});
+  const lets = button("Let carom shoot", () => {
+    state.yielded = false;
+    takeTurn(state);
   });
-  state.on("stroke", () => { undo.disabled = state.past.length === 0; });
-  return bar;
+  const asks = button("Hint", () => hint(state)), undo = button("Undo", () => takeBack(state));
+  const paths = select("Predicted paths",
+    [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths,
+    (x) => { state.paths = x; clock.refresh(); });
+  const show = () => {
+    shoot.hidden = state.busy !== null;
+    shoot.disabled = !state.free || !state.scene?.cue;
+    stop.hidden = state.busy === null;
+    lets.hidden = !state.yielded;
+    asks.hidden = !mayHint(state);
+    asks.disabled = state.busy !== null;
+    undo.hidden = state.counts;
+    undo.disabled = state.past.length === 0;
+    paths.hidden = state.mode === "play";
+  };
+  for (const what of ["stroke", "mode", "busy", "label"]) state.on(what, show);
+  const element = make("div", {class: "hands"}, ...parts,
+    make("div", {class: "doing"}, shoot, stop, lets, asks, undo, paths));
+  return {element, tip};
 }
 
 export function tableCard(state) {
-  const box = make("div", {class: "tables", tabindex: "0", role: "application",
-    "aria-label":
-      "Table. Left and right: aim. Up and down: speed. W A S D: tip. Space: shoot. Escape: back."});
-  const bar = playbackBar(state), says = make("p", {class: "says", role: "status", "aria-live": "polite"});
+  const box = make("div", {class: "tables", tabindex: "0", role: "application", "aria-label":
+    "Table. Left and right: aim. Up and down: power. W A S D: tip. Space: shoot. Escape: back."});
+  const says = make("p", {class: "says", role: "status", "aria-live": "polite"});
+  const help = make("p", {class: "help"});
+  const aims = aimBar(state), watch = watchBar(state);
   state.on("says", (text, bad) => {
     says.textContent = text;
     says.classList.toggle("error", bad);
   });
+  const lay = () => {
+    if (!state.view) return;
+    const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
+    if (state.view.fit(...room)) state.clock.refresh();
+  };
   state.on("table", () => {
     const {shape, styles} = state.scene.look();
-    state.view = new TableView(state.shot.record, shape, styles, "The table from above");
+    state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);
     box.replaceChildren(state.view.element);
-    lay(state, box);
+    lay();
   });
+  const helps = () => { help.textContent = state.shot ? helpOf(state) : ""; };
+  const now = () => {
+    document.body.classList.toggle("aiming", state.aiming);
+    document.body.classList.toggle("thinking", state.busy !== null);
+    document.body.classList.toggle("in-game", state.game !== null);
+    helps();
+  };
+  for (const what of ["label", "mode", "busy", "stroke"]) state.on(what, now);
   state.on("time", () => {
     draw(state);
     if (state.aiming) state.tell("stroke");
+    else if (document.body.classList.contains("aiming")) now();
   });
-  window.addEventListener("resize", () => requestAnimationFrame(() => lay(state, box)));
-  onWidth(box, () => lay(state, box));
-  const card = make("section", {class: "stage card", "aria-label": "The table"}, box,
-    make("div", {class: "scrubbing"}, bar.scrub), bar.element, says);
-  return {card, box, says};
+  new ResizeObserver(() => requestAnimationFrame(lay)).observe(box);
+  // The lists may take room from the table, and give it back before the browser looks.
+  state.on("lists", lay);
+  const strip = make("section", {class: "strip card", "aria-label": "Stroke"}, aims.element, watch);
+  return {parts: [box, make("div", {class: "telling"}, says, help), strip], tip: aims.tip};
 }

@@ -1,6 +1,7 @@
 // The cue ball as the player sees it: where the tip strikes, set by pointer or keys.
 
 import {make} from "../../page/dom.js";
+import {tipWords} from "./words.js";
 
 const MOST_OFFSET = 0.5;  // [ball radii] farther out the tip slips off
 
@@ -47,10 +48,7 @@ export class TipPicture {
     Object.assign(this, {side, height});
     this.mark.setAttribute("cx", -side);
     this.mark.setAttribute("cy", -height);
-    const part = (x, more, less) =>
-      Math.abs(x) < 5e-4 ? "" : `${Math.round(100 * Math.abs(x))} % of the radius ${x > 0 ? more : less}`;
-    const words = [part(height, "above", "below"), part(side, "left", "right")].filter((x) => x).join(", ");
-    this.words = words || "centre";
+    this.words = tipWords(side, height);
     this.element.setAttribute("aria-valuenow", Math.round(100 * side));
     this.element.setAttribute("aria-valuetext", this.words);
   }

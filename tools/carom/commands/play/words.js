@@ -5,18 +5,48 @@ export const UNITS = {
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
 };
 
+const named = (id) => (id === "cue" ? "the cue ball" : /^\d/.test(id) ? `the ${id}` : id);
+
 /** A number of SI units for people. `kind`: speed or length. */
 export function withUnit(units, kind, x) {
   const [factor, name, digits] = UNITS[units][kind];
   return `${(factor * x).toFixed(digits)} ${name}`;
 }
 
+const SPEEDS = [[1, "soft"], [1.6, "slow"], [2.4, "medium"], [3.6, "hard"], [7, "very hard"]];
+/** A speed as players say it, as the engine's advice does. */
+export const speedWord = (speed) => SPEEDS.find(([most]) => speed < most)?.[1] ?? "break";
+
+const SPINS = [[0.05, ""], [0.15, "a little "], [0.35, "half "], [1, "full "]];
+/** Where the tip strikes, as players say it: "half draw, a little left English". */
+export function tipWords(side, height) {
+  const part = (x, more, less) => {
+    const share = SPINS.find(([most]) => Math.abs(x) < most)[1];
+    return share && `${share}${x > 0 ? more : less}`;
+  };
+  const parts = [part(height, "follow", "draw"), part(side, "left English", "right English")];
+  return parts.filter((x) => x).join(", ") || "centre";
+}
+
+/** How the ball aimed at is met: the part of it that is covered, and the cut. */
+export function aimWords(met) {
+  if (!met) return "no ball";
+  const quarters = Math.round(4 * (1 - Math.sin(Math.min(met.cut, Math.PI / 2))));
+  const part = ["thin", "quarter ball", "half ball", "three-quarter ball", "full"][quarters];
+  const cut = (met.cut * 180 / Math.PI).toFixed(0);
+  return `${named(met.id)} ${part}${cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`}`;
+}
+
+/** The engine's words for a shot, with the names of pockets only. */
+export const adviceWords = (words) =>
+  words.replace(/(\w+) into \w+ \(([^)]+)\)/, (_, ball, pocket) => `${named(ball)} into the ${pocket}`)
+    .replace(/(\d) degrees/, "$1°");
+
 /** What happened, for the list of events. */
 export function eventWords(e, units) {
   const text = ballWords(e, units);
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
-const named = (id) => (id === "cue" ? "the cue ball" : id);
 function ballWords(e, units) {
   const ball = named(e.ball), other = named(e.other);
   const speed = (x) => (x === null ? "" : withUnit(units, "speed", x));
