@@ -11,14 +11,18 @@
 
 #if _LIBCPP_VERSION < 14000
 namespace std {
-/// The shortest text that reads back to the same bits.
+/// The shortest text that reads back to the same bits; of two equally long ones the one without an exponent.
 inline to_chars_result to_chars(char* first, char* last, double value) {
-    constexpr int kMostDigits = 17;
-    char text[32];
-    int size = 0;
-    for (int digits = 1; digits <= kMostDigits; ++digits) {
-        size = snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, nullptr) == value) break;
+    constexpr int kMostDecimals = 16;
+    char text[32], plain[32];
+    int size = 0, decimals = -1;
+    do {
+        size = snprintf(text, sizeof text, "%.*e", ++decimals, value);
+    } while (decimals < kMostDecimals && strtod(text, nullptr) != value);
+    if (const char* exponent = strchr(text, 'e')) {
+        const int left = decimals - atoi(exponent + 1);
+        const int plain_size = snprintf(plain, sizeof plain, "%.*f", left > 0 ? left : 0, value);
+        if (plain_size <= size) memcpy(text, plain, static_cast<size_t>(size = plain_size));
     }
     if (last - first < size) return {last, errc::value_too_large};
     memcpy(first, text, static_cast<size_t>(size));

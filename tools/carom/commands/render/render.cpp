@@ -245,6 +245,7 @@ std::vector<render::FrameTiming> rendered(const Record& record, const render::Se
 }
 
 int run(const RenderArgs& args) {
+    render::backend_from_name(args.gl);  // refuses in a build without OpenGL
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";
