@@ -9,6 +9,22 @@
 #include <cstdlib>
 #include <cstring>
 
+#ifdef __EMSCRIPTEN_PTHREADS__
+// Where a landing pad and the library's search for a handler meet. clang 14 believes that all threads share it, but
+// the library has one for each thread: without this no exception is caught.
+extern "C" {
+struct carom_landing_pad {
+    int index;
+    const void* table;
+    int selector;
+};
+extern __thread carom_landing_pad __wasm_lpad_context __attribute__((tls_model("local-exec")));
+}
+__attribute__((used)) static carom_landing_pad* carom_landing_pad_of_thread() {
+    return &__wasm_lpad_context;
+}
+#endif
+
 #if _LIBCPP_VERSION < 14000
 namespace std {
 /// The shortest text that reads back to the same bits; of two equally long ones the one without an exponent.
