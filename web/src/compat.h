@@ -10,8 +10,8 @@
 #include <cstring>
 
 #ifdef __EMSCRIPTEN_PTHREADS__
-// Where a landing pad and the library's search for a handler meet. clang 14 believes that all threads share it, but
-// the library has one for each thread: without this no exception is caught.
+// Where a landing pad and the library's search for a handler meet. clang 14 believes that all threads share
+// it, but the library has one for each thread: without this no exception is caught.
 extern "C" {
 struct carom_landing_pad {
     int index;

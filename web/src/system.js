@@ -149,6 +149,11 @@ const calls = {
     if (command === {{{ cDefine('F_DUPFD') }}} || command === 1030 /* F_DUPFD_CLOEXEC */) return system.duplicate(fd);
     if (!system.own.has(fd)) system.fs.fstatSync(fd);
   },
+  fd_fdstat_get: (fd, out) => {
+    const terminal = require("tty").isatty(system.real(fd));
+    const type = terminal ? {{{ cDefine('__WASI_FILETYPE_CHARACTER_DEVICE') }}} : {{{ cDefine('__WASI_FILETYPE_REGULAR_FILE') }}};
+    {{{ makeSetValue('out', C_STRUCTS.__wasi_fdstat_t.fs_filetype, 'type', 'i8') }}};
+  },
   __syscall_ioctl: (fd, command, varargs) => {
     if (command !== {{{ cDefine('TIOCGWINSZ') }}} || !require("tty").isatty(system.real(fd))) system.fail("ENOTTY");
     const out = {{{ makeGetValue('varargs', 0, 'i32') }}};
@@ -181,7 +186,7 @@ const calls = {
   __syscall_poll: () => system.fail("ENOSYS"),
   carom_getpid: () => process.pid,
   carom_page_wasm: () => {
-    const wasm = system.fs.readFileSync(require("path").join(__dirname, "..", "carom.wasm"));
+    const wasm = system.fs.readFileSync(require("path").join(location.href, "../../carom.wasm"));
     return allocateUTF8(require("zlib").gzipSync(wasm, {level: 9}).toString("base64"));
   },
   /** Node cannot lock files. The name of a temporary file has the number of the process that writes it, and any

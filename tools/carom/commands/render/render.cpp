@@ -29,7 +29,7 @@ struct RenderArgs {
     std::string size;  ///< "1280x720"; empty: the scene's
     double from = 0.0;
     std::optional<double> to;
-    std::optional<long> frame;
+    std::optional<std::int64_t> frame;
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
     std::string gl = "auto";
