@@ -1,5 +1,5 @@
-// The program in node is the native one: same texts, statuses, files and bits. Tested as npm installs it, by the
-// node that runs this test, or by the words of CAROM_NODE (tools/slow: other versions, and Windows' under wine).
+// The program in node is the native one: same texts, statuses, files and bits. Tested as npm installs it, by
+// the node that runs this test, or by the words of CAROM_NODE (tools/slow: other versions, and Windows').
 import assert from "node:assert/strict";
 import {execFileSync, spawn, spawnSync} from "node:child_process";
 import {existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from "node:fs";
@@ -14,7 +14,7 @@ const skip = withoutProgram || (existsSync(path.join(PACKAGE, "bin/program.js"))
 const NODE = (process.env.CAROM_NODE || process.execPath).split(" ");
 const onWindows = NODE.at(-1).endsWith(".exe");
 const folder = mkdtempSync(path.join(tmpdir(), "carom-npx-"));
-const installed = path.join(folder, "node_modules/carom/bin/carom.js");
+const installed = path.join(folder, "node_modules/carom/bin/carom.mjs");
 
 /** Each program has its own folder, so that both write the same names. */
 function inFolder(which, command, args, options) {
@@ -32,6 +32,11 @@ const put = (name, text) => {
   }
 };
 const written = (which, name) => readFileSync(path.join(folder, which, name));
+
+const started = (args, stdio) =>
+  spawn(NODE[0], [...NODE.slice(1), installed, ...args], {cwd: path.join(folder, "node"), stdio});
+const aMoment = () => new Promise((resolve) => setTimeout(resolve, 50));
+const ended = (child) => new Promise((resolve) => child.once("exit", resolve));
 
 /** Both print the same, end with the same status, and write the same files. */
 function same(args, files = [], options = {}) {
@@ -98,8 +103,8 @@ test("the page to play on is the same but for the compression of carom.wasm", {s
 });
 
 test("sweeps, breaks and solutions", {skip}, () => {
-  const sweep = ["sweep", "draw.toml", "--vary", "cue.aim_deg=normal(0.5)", "--vary", "cue.speed=uniform(1,4)",
-    "--measure", "1000*cushions_before_first", "--count", "1000", "-o"];
+  const sweep = ["sweep", "draw.toml", "--vary", "cue.aim_deg=normal(0.5)",
+    "--vary", "cue.speed=uniform(1,4)", "--measure", "1000*cushions_before_first", "--count", "1000", "-o"];
   const timeless = ({status, out, err}) => [status, out.replace(/[\d.]+ (shots|ms|s|us)\b.*/g, ""), err];
   for (const jobs of ["1", "2", "0"]) {
     const file = `jobs${jobs}.csv`, args = [...sweep, file, "--jobs", jobs];
@@ -118,14 +123,15 @@ test("impacts, line by line", {skip}, () => {
 test("bad usage and bad scenes", {skip}, () => {
   put("bad.toml", '[table]\r\npreset = "nine_fot"\r\n');
   for (const args of [[], ["simulat"], ["simulate"], ["simulate", "none.toml"], ["simulate", "bad.toml"],
-    ["simulate", "draw.toml", "--untl", "3"], ["sweep", "draw.toml", "--vary", "cue.sped=normal(1)", "-o", "x.csv"],
-    ["simulate", "."], ["view", "draw.toml", "-o", "none/x.html"], ["view", "draw.toml", "-o", "x.pdf"]])
+    ["sweep", "draw.toml", "--vary", "cue.sped=normal(1)", "-o", "x.csv"],
+    ["simulate", "draw.toml", "--untl", "3"], ["simulate", "."],
+    ["view", "draw.toml", "-o", "none/x.html"], ["view", "draw.toml", "-o", "x.pdf"]])
     assert.notEqual(same(args).status, 0);
 });
 
 test("what needs OpenGL or cairo says so in one sentence", {skip}, () => {
-  for (const args of [["render", "draw.toml"], ["render", "draw.toml", "-o", "x.mp4"], ["margin", "draw.toml"],
-    ["diagram", "draw.toml", "-o", "x.svg"]]) {
+  for (const args of [["render", "draw.toml"], ["render", "draw.toml", "-o", "x.mp4"],
+    ["margin", "draw.toml"], ["diagram", "draw.toml", "-o", "x.svg"]]) {
     const {status, out, err} = inNode(args);
     assert.ok(status === 1 || status === 2, args.join(" "));
     assert.equal(out, "");
@@ -150,55 +156,55 @@ test("names with spaces, other letters and backslashes, and lines that end with 
 });
 
 test("the output may go to a pipe that closes", {skip: skip || onWindows}, () => {
-  const shell = `"$@" | head -c 1; exit "\${PIPESTATUS[0]}"`, args = ["simulate", "snooker_break.toml", "-o", "/dev/stdout"];
+  const shell = `"$@" | head -c 1; exit "\${PIPESTATUS[0]}"`;
+  const args = ["simulate", "snooker_break.toml", "-o", "/dev/stdout"];
   assert.equal(inFolder("node", "bash", ["-c", shell, "bash", ...NODE, installed, ...args]).status,
     inFolder("native", "bash", ["-c", shell, "bash", PROGRAM, ...args]).status);
 });
 
 test("Ctrl-C keeps the rows of a sweep that are finished", {skip: skip || onWindows}, async () => {
-  const args = ["sweep", "eight_ball_break.toml", "--vary", "cue.aim_deg=normal(0.5)", "--count", "20000", "-o",
-    "stopped.csv"];
+  const args = ["sweep", "eight_ball_break.toml", "--vary", "cue.aim_deg=normal(0.5)",
+    "--count", "10000", "-o", "stopped.csv"];
   const cwd = path.join(folder, "node");
-  const child = spawn(NODE[0], [...NODE.slice(1), installed, ...args], {cwd, stdio: ["ignore", "ignore", "pipe"]});
+  const child = started(args, ["ignore", "ignore", "pipe"]);
   let said = "";
   child.stderr.on("data", (text) => { said += text; });
   const parts = () => readdirSync(cwd).filter((name) => name.endsWith(".parts"))
     .flatMap((name) => readdirSync(path.join(cwd, name))).filter((name) => name.endsWith(".csv"));
-  while (parts().length < 2 && child.exitCode === null) await new Promise((resolve) => setTimeout(resolve, 50));
+  while (parts().length < 2 && child.exitCode === null) await aMoment();
   child.kill("SIGINT");
-  const status = await new Promise((resolve) => child.once("exit", resolve));
+  const status = await ended(child);
   assert.equal(status, 130, said);
   assert.match(said, /stopped; run the same command to continue with .*stopped\.csv\.[0-9a-f]{16}\.parts/);
-  const again = inNode([...args.slice(0, -4), "--count", "20000", "-o", "stopped.csv", "--jobs", "0"]);
-  assert.match(again.err, /continuing with .*: \d+ of 20000 shots are done/);
+  const again = inNode(args);
+  assert.match(again.err, /continuing with .*: \d+ of 10000 shots are done/);
   native(args);
   assert.ok(written("node", "stopped.csv").equals(written("native", "stopped.csv")));
 });
 
 test("a signal ends a program that waits for its input", {skip: skip || onWindows}, async () => {
-  const child = spawn(NODE[0], [...NODE.slice(1), installed, "impact"], {stdio: ["pipe", "pipe", "inherit"]});
+  const child = started(["impact"], ["pipe", "pipe", "inherit"]);
   child.stdin.write("{}\n");
   await new Promise((resolve) => child.stdout.once("data", resolve));
   child.kill("SIGINT");
-  assert.equal(await new Promise((resolve) => child.once("exit", resolve)), 130);
+  assert.equal(await ended(child), 130);
 });
 
 test("one lock, one process", {skip: skip || onWindows}, async () => {
-  const args = ["sweep", "eight_ball_break.toml", "--vary", "cue.aim_deg=normal(1)", "--count", "100000", "-o",
-    "locked.csv"];
+  const args = ["sweep", "eight_ball_break.toml", "--vary", "cue.aim_deg=normal(1)",
+    "--count", "100000", "-o", "locked.csv"];
   const cwd = path.join(folder, "node");
-  const child = spawn(NODE[0], [...NODE.slice(1), installed, ...args], {cwd, stdio: "ignore"});
-  while (!readdirSync(cwd).some((name) => name.startsWith("locked.csv.")))
-    await new Promise((resolve) => setTimeout(resolve, 50));
+  const child = started(args, "ignore");
+  while (!readdirSync(cwd).some((name) => name.startsWith("locked.csv."))) await aMoment();
   const second = inNode(args);
   assert.match(second.err, /lock: another program is writing the files that this lock protects/);
   assert.equal(second.status, 1);
   // A killed one leaves its lock, which holds nobody.
   child.kill("SIGKILL");
-  await new Promise((resolve) => child.once("exit", resolve));
-  const third = spawn(NODE[0], [...NODE.slice(1), installed, ...args], {cwd, stdio: ["ignore", "ignore", "pipe"]});
+  await ended(child);
+  const third = started(args, ["ignore", "ignore", "pipe"]);
   const said = await new Promise((resolve) => third.stderr.once("data", (text) => resolve(String(text))));
   third.kill("SIGTERM");
-  assert.equal(await new Promise((resolve) => third.once("exit", resolve)), 143);
+  assert.equal(await ended(third), 143);
   assert.match(said, /continuing with|stopped/);
 });

@@ -1,4 +1,4 @@
-// What the program for node has instead of main.cpp's surroundings; see system.js.
+// What the program for node has instead of main.cpp's surroundings; see system.jslib.
 #include <sys/file.h>
 #include <unistd.h>
 

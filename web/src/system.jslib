@@ -1,14 +1,16 @@
-// The system of the program in node: what musl asks for, answered by node's fs. It runs in the thread of main(),
-// the only one that opens files. Descriptors are node's, except those of folders and duplicates.
+// The system of the program in node, for emscripten's --js-library: node's fs answers the calls of musl. It
+// runs in the thread of main(), the only one that opens files. Descriptors are node's, except those of
+// folders and duplicates.
 const library = {
   $system__deps: ["$ERRNO_CODES"],
-  // own: our descriptors, {of} a duplicate, {path, entries} a folder; copies: how many duplicates a descriptor of
-  // node has; names: its path.
-  $system__postset: `Object.assign(system, {fs: require("fs"), own: new Map(), next: 1 << 20, copies: new Map(),
-    names: new Map(), never: new Int32Array(new SharedArrayBuffer(4))});`,
+  // own: our descriptors, {of} a duplicate, {path, entries} a folder; copies: how many duplicates a
+  // descriptor of node has; names: its path.
+  $system__postset: `Object.assign(system, {
+    fs: require("fs"), own: new Map(), next: 1 << 20, copies: new Map(), names: new Map(),
+    never: new Int32Array(new SharedArrayBuffer(4))});`,
   $system: {
-    /** A path of the program for node. Windows accepts "/" in it; a path with a drive stays as it is when the C++
-     * library, for which it is relative, puts a folder in front of it. */
+    /** A path of the program for node. The C++ library takes a path with a drive for a relative one, and puts
+     * a folder in front of it. */
     path: (at) => {
       const path = UTF8ToString(at);
       return process.platform === "win32" ? path.replace(/^.*[/](?=[A-Za-z]:([/]|$))/, "") : path;
@@ -37,6 +39,7 @@ const library = {
       }
     },
     real: (fd) => system.own.has(fd) ? system.own.get(fd).of : fd,
+    is_terminal: (fd) => require("tty").isatty(system.real(fd)),
     duplicate: (fd) => {
       const of = system.real(fd);
       system.fs.fstatSync(of);
@@ -54,7 +57,8 @@ const library = {
     pieces: (list, count, sum, transfer) => {
       let total = 0;
       for (let i = 0; i < count; ++i) {
-        const at = {{{ makeGetValue('list', 'i * 8', 'i32') }}}, size = {{{ makeGetValue('list', 'i * 8 + 4', 'i32') }}};
+        const at = {{{ makeGetValue('list', 'i * 8', 'i32') }}};
+        const size = {{{ makeGetValue('list', 'i * 8 + 4', 'i32') }}};
         const moved = size > 0 ? system.patiently(() => transfer(HEAPU8.subarray(at, at + size))) : 0;
         total += moved;
         if (moved < size) break;
@@ -108,11 +112,12 @@ const calls = {
     system.names.set(fd, path);
     return fd;
   },
-  __syscall_stat64: (path, out) => system.stat(system.fs.statSync(system.path(path)), out),
-  __syscall_lstat64: (path, out) => system.stat(system.fs.lstatSync(system.path(path)), out),
+  __syscall_stat64: (at, out) => system.stat(system.fs.statSync(system.path(at)), out),
+  __syscall_lstat64: (at, out) => system.stat(system.fs.lstatSync(system.path(at)), out),
   __syscall_fstat64: (fd, out) => {
     const own = system.own.get(fd);
-    system.stat(own && own.entries ? system.fs.statSync(own.path) : system.fs.fstatSync(system.real(fd)), out);
+    const of = own && own.entries ? system.fs.statSync(own.path) : system.fs.fstatSync(system.real(fd));
+    system.stat(of, out);
   },
   __syscall_access: (path, mode) => system.fs.accessSync(system.path(path), mode),
   __syscall_unlink: (at) => {
@@ -125,7 +130,8 @@ const calls = {
   __syscall_rename: (from, to) => system.fs.renameSync(system.path(from), system.path(to)),
   __syscall_fchmod: (fd, mode) => system.fs.fchmodSync(system.real(fd), mode),
   __syscall_readlink: (path, out, size) => {
-    const bytes = Buffer.from(system.seen(system.fs.readlinkSync(system.path(path))), "utf8").subarray(0, size);
+    const to = system.seen(system.fs.readlinkSync(system.path(path)));
+    const bytes = Buffer.from(to, "utf8").subarray(0, size);
     HEAPU8.set(bytes, out);
     return bytes.length;
   },
@@ -136,7 +142,8 @@ const calls = {
   __syscall_getdents64: (fd, out, size) => {
     const {entries} = system.own.get(fd);
     let filled = 0;
-    for (; entries.length > 0 && filled + {{{ C_STRUCTS.dirent.__size__ }}} <= size; filled += {{{ C_STRUCTS.dirent.__size__ }}}) {
+    const each = {{{ C_STRUCTS.dirent.__size__ }}};
+    for (; entries.length > 0 && filled + each <= size; filled += each) {
       const at = out + filled;
       HEAPU8.fill(0, at, at + {{{ C_STRUCTS.dirent.d_name }}});
       {{{ makeSetValue('at', C_STRUCTS.dirent.d_ino, '1', 'i32') }}};
@@ -146,16 +153,17 @@ const calls = {
     return filled;
   },
   __syscall_fcntl64: (fd, command) => {
-    if (command === {{{ cDefine('F_DUPFD') }}} || command === 1030 /* F_DUPFD_CLOEXEC */) return system.duplicate(fd);
+    const DUPFD_CLOEXEC = 1030;
+    if (command === {{{ cDefine('F_DUPFD') }}} || command === DUPFD_CLOEXEC) return system.duplicate(fd);
     if (!system.own.has(fd)) system.fs.fstatSync(fd);
   },
   fd_fdstat_get: (fd, out) => {
-    const terminal = require("tty").isatty(system.real(fd));
-    const type = terminal ? {{{ cDefine('__WASI_FILETYPE_CHARACTER_DEVICE') }}} : {{{ cDefine('__WASI_FILETYPE_REGULAR_FILE') }}};
+    let type = {{{ cDefine('__WASI_FILETYPE_REGULAR_FILE') }}};
+    if (system.is_terminal(fd)) type = {{{ cDefine('__WASI_FILETYPE_CHARACTER_DEVICE') }}};
     {{{ makeSetValue('out', C_STRUCTS.__wasi_fdstat_t.fs_filetype, 'type', 'i8') }}};
   },
   __syscall_ioctl: (fd, command, varargs) => {
-    if (command !== {{{ cDefine('TIOCGWINSZ') }}} || !require("tty").isatty(system.real(fd))) system.fail("ENOTTY");
+    if (command !== {{{ cDefine('TIOCGWINSZ') }}} || !system.is_terminal(fd)) system.fail("ENOTTY");
     const out = {{{ makeGetValue('varargs', 0, 'i32') }}};
     {{{ makeSetValue('out', 2, '+process.env.COLUMNS || 0', 'i16') }}};
   },
@@ -163,7 +171,8 @@ const calls = {
     const input = fd === 0, flag = _carom_reads_input() >> 2;
     if (input) Atomics.store(HEAP32, flag, 1);
     try {
-      return system.pieces(list, count, sum, (memory) => system.fs.readSync(system.real(fd), memory, 0, memory.length, null));
+      const read = (memory) => system.fs.readSync(system.real(fd), memory, 0, memory.length, null);
+      return system.pieces(list, count, sum, read);
     } finally {
       if (input) Atomics.store(HEAP32, flag, 0);
     }
@@ -189,22 +198,25 @@ const calls = {
     const wasm = system.fs.readFileSync(require("path").join(location.href, "../../carom.wasm"));
     return allocateUTF8(require("zlib").gzipSync(wasm, {level: 9}).toString("base64"));
   },
-  /** Node cannot lock files. The name of a temporary file has the number of the process that writes it, and any
-   * other file that is locked gets it as its text: a lock holds while that process runs. */
+  /** Node cannot lock files. The name of a temporary file has the number of the process that writes it, and
+   * another file that is locked gets it as its text: the lock holds while that process runs. */
   carom_flock: (fd) => {
-    const path = system.names.get(system.real(fd)) || "", temporary = /[.]carom[.](\d+)[.]\d+[.]tmp$/.exec(path);
+    const path = system.names.get(system.real(fd)) || "";
+    const temporary = /[.]carom[.](\d+)[.]\d+[.]tmp$/.exec(path);
     const holder = Number(temporary ? temporary[1] : system.fs.readFileSync(path, "utf8"));
     if (holder > 0 && holder !== process.pid && system.runs(holder)) system.fail("EAGAIN");
     if (!temporary) system.fs.writeFileSync(path, String(process.pid));
   },
 };
 
-// Each becomes a function of the library, in place of emscripten's and its properties. Its result is the number of
-// an error that it throws, negative except from the calls of WASI.
+// Each becomes a function of the library, in place of emscripten's and its properties. If it throws, its
+// result is the number of the error, negative except from the calls of WASI.
 for (const name in calls) {
   const [, words, body] = /^\((.*?)\) =>([^]*)$/.exec(String(calls[name]));
   const sign = name.startsWith("fd_") ? "-" : "", made = () => {};
   made.toString = () => `function(${words}) { return ${sign}system.result(() =>${body}); }`;
-  Object.assign(library, {[name]: made, [name + "__deps"]: ["$system"], [name + "__proxy"]: "", [name + "__postset"]: ""});
+  Object.assign(library, {
+    [name]: made, [name + "__deps"]: ["$system"], [name + "__proxy"]: "", [name + "__postset"]: "",
+  });
 }
 mergeInto(LibraryManager.library, library);
