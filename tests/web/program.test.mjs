@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {execFileSync, spawn, spawnSync} from "node:child_process";
 import {existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync} from "node:fs";
-import {tmpdir} from "node:os";
+import {constants, tmpdir} from "node:os";
 import * as path from "node:path";
 import {after, before, test} from "node:test";
 import {gunzipSync} from "node:zlib";
@@ -36,7 +36,9 @@ const written = (which, name) => readFileSync(path.join(folder, which, name));
 const started = (args, stdio) =>
   spawn(NODE[0], [...NODE.slice(1), installed, ...args], {cwd: path.join(folder, "node"), stdio});
 const aMoment = () => new Promise((resolve) => setTimeout(resolve, 50));
-const ended = (child) => new Promise((resolve) => child.once("exit", resolve));
+/** The status as a shell sees it. */
+const ended = (child) => new Promise((resolve) =>
+  child.once("exit", (status, signal) => resolve(signal ? 128 + constants.signals[signal] : status)));
 
 /** Both print the same, end with the same status, and write the same files. */
 function same(args, files = [], options = {}) {
