@@ -48,6 +48,21 @@ TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) 
     EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
 }
 
+TEST_F(CliSimulate, LinesMayEndAsInWindows) {
+    const auto as_in_windows = [](const std::string& text) {
+        std::string out;
+        for (const std::string& line : lines_of(text)) out += line + "\r\n";
+        return out;
+    };
+    const std::string hash = run({"--hash", "-o", folder_.file("r.json")}).out;
+    EXPECT_EQ(read_file(folder_.file("r.json")).find('\r'), std::string::npos);
+    scene_ = folder_.write("windows.toml", as_in_windows(kSmallScene));
+    EXPECT_EQ(run({"--hash"}).out, hash);
+    const std::string record =
+        folder_.write("windows.json", as_in_windows(read_file(folder_.file("r.json"))));
+    EXPECT_EQ(read_record(record).hash() + "\n", hash);
+}
+
 TEST_F(CliSimulate, WithoutARecordTheFinalStateIsTheSame) {
     const Json all = Json::parse(run({"--json"}).out), end = Json::parse(run({"--json", "--no-record"}).out);
     EXPECT_EQ(end["duration"], all["duration"]);

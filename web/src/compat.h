@@ -9,16 +9,36 @@
 #include <cstdlib>
 #include <cstring>
 
+#ifdef __EMSCRIPTEN_PTHREADS__
+// Where a landing pad and the library's search for a handler meet. clang 14 believes that all threads share
+// it, but the library has one for each thread: without this no exception is caught.
+extern "C" {
+struct carom_landing_pad {
+    int index;
+    const void* table;
+    int selector;
+};
+extern __thread carom_landing_pad __wasm_lpad_context __attribute__((tls_model("local-exec")));
+}
+__attribute__((used)) static carom_landing_pad* carom_landing_pad_of_thread() {
+    return &__wasm_lpad_context;
+}
+#endif
+
 #if _LIBCPP_VERSION < 14000
 namespace std {
-/// The shortest text that reads back to the same bits.
+/// The shortest text that reads back to the same bits; of two equally long ones the one without an exponent.
 inline to_chars_result to_chars(char* first, char* last, double value) {
-    constexpr int kMostDigits = 17;
-    char text[32];
-    int size = 0;
-    for (int digits = 1; digits <= kMostDigits; ++digits) {
-        size = snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, nullptr) == value) break;
+    constexpr int kMostDecimals = 16;
+    char text[32], plain[32];
+    int size = 0, decimals = -1;
+    do {
+        size = snprintf(text, sizeof text, "%.*e", ++decimals, value);
+    } while (decimals < kMostDecimals && strtod(text, nullptr) != value);
+    if (const char* exponent = strchr(text, 'e')) {
+        const int left = decimals - atoi(exponent + 1);
+        const int plain_size = snprintf(plain, sizeof plain, "%.*f", left > 0 ? left : 0, value);
+        if (plain_size <= size) memcpy(text, plain, static_cast<size_t>(size = plain_size));
     }
     if (last - first < size) return {last, errc::value_too_large};
     memcpy(first, text, static_cast<size_t>(size));

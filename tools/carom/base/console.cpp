@@ -13,6 +13,7 @@
 #include <cctype>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 
@@ -191,7 +192,7 @@ void ProgressLine::show_text(std::string_view text) {
     g_line_stands = true;
 }
 
-void ProgressLine::show_bar(long done, long total) {
+void ProgressLine::show_bar(std::int64_t done, std::int64_t total) {
     if (!due()) return;
     constexpr std::size_t kWidest = 40, kNarrowest = 5;
     const double part =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -72,7 +73,7 @@ class ProgressLine {
     bool due();
     void show_text(std::string_view text);
 
-    void show_bar(long done, long total);  ///< calls due() itself
+    void show_bar(std::int64_t done, std::int64_t total);  ///< calls due() itself
 
   private:
     std::string title_;

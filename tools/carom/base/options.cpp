@@ -85,7 +85,7 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
         if constexpr (kReal)
             option->check(CLI::Range(least, most));
         else
-            option->check(CLI::Range(static_cast<long>(least), static_cast<long>(most)));
+            option->check(CLI::Range(static_cast<std::int64_t>(least), static_cast<std::int64_t>(most)));
     }
     restrict(*option, app, row);
 }

@@ -17,9 +17,10 @@ namespace carom::tools {
 
 /// The variable that an option sets; nothing for --help and --version. A list of strings comes from a
 /// repeated option; a list of numbers is separated by commas.
-using OptionTarget = std::variant<std::monostate, bool*, int*, long*, std::uint64_t*, double*, std::string*,
-                                  std::optional<int>*, std::optional<long>*, std::optional<double>*,
-                                  std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
+using OptionTarget =
+    std::variant<std::monostate, bool*, int*, std::int64_t*, std::uint64_t*, double*, std::string*,
+                 std::optional<int>*, std::optional<std::int64_t>*, std::optional<double>*, std::vector<int>*,
+                 std::vector<double>*, std::vector<std::string>*>;
 
 /// One row of the table: an option, a flag, or a positional argument.
 struct Option {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numeric>
 #include <string>
@@ -28,8 +29,8 @@ inline std::vector<std::vector<double>> interleaved(const std::string& title, st
         for (std::size_t k = 0; k < count; ++k) {
             throw_if_interrupted();
             samples[order[k]].push_back(measure(order[k]));
-            progress.show_bar(round * static_cast<long>(count) + static_cast<long>(k) + 1,
-                              rounds * static_cast<long>(count));
+            progress.show_bar(round * static_cast<std::int64_t>(count) + static_cast<std::int64_t>(k) + 1,
+                              rounds * static_cast<std::int64_t>(count));
         }
     }
     return samples;

@@ -11,7 +11,7 @@ namespace carom::tools {
 
 std::string diagram_format(const std::string&) {
     throw UsageError(
-        "this build of carom has no diagrams: pip's leaves cairo out, and others were built without "
+        "this build of carom has no diagrams: npm's and pip's leave cairo out, and others were built without "
         "libcairo2-dev; build carom from its sources, with libcairo2-dev");
 }
 

@@ -1,6 +1,7 @@
 #include "report/table.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 
 #include <fmt/compile.h>
@@ -18,7 +19,7 @@ using Json = nlohmann::ordered_json;
 /// The value as text; "" if there is none.
 std::string plain(const Cell& cell) {
     if (const auto* words = std::get_if<std::string>(&cell.value)) return *words;
-    if (const auto* count = std::get_if<long>(&cell.value)) return fmt::format("{}", *count);
+    if (const auto* count = std::get_if<std::int64_t>(&cell.value)) return fmt::format("{}", *count);
     if (const auto* x = std::get_if<double>(&cell.value)) return fmt::format("{}", *x);
     if (const auto* truth = std::get_if<bool>(&cell.value)) return *truth ? "1" : "0";
     return "";

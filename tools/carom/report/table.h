@@ -20,14 +20,14 @@ struct Cell {
     Cell(const T& of, std::string shown = "")
         : text(std::move(shown)) {  // NOLINT(google-explicit-constructor)
         if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
-            value = static_cast<long>(of);
+            value = static_cast<std::int64_t>(of);
         else if constexpr (std::is_arithmetic_v<T>)
             value = of;
         else
             value = std::string(of);
     }
 
-    std::variant<std::monostate, bool, long, double, std::string> value;
+    std::variant<std::monostate, bool, std::int64_t, double, std::string> value;
     std::string text;
 };
 

@@ -13,25 +13,19 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/printable.h"
 #include "carom/engine/table.h"
+#include "commands/play/play_files.h"
 #include "page/page.h"
 #include "report/table.h"
 
 namespace carom::tools {
 
-/// Made by the build: scripts and styles in this folder, core.js of the npm package, the schema of scene
-/// files, the scenes that come with carom, and carom.wasm if tools/web has built it.
-const std::vector<PageFile>& play_files();
+/// carom.wasm, compressed by gzip, as base64. The npm package has its own page_wasm.cpp.
+/// @throws UsageError if carom was built without it
+std::string page_wasm();
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The text of one of them, or "" if there is none.
-std::string embedded(std::string_view name) {
-    for (const PageFile& file : play_files())
-        if (file.name == name) return file.text;
-    return "";
-}
 
 struct PlayArgs {
     std::string scene, output = "play.html", lock;
@@ -65,7 +59,7 @@ Json shipped_scenes() {
 
 /// The keys that a page can set, by section: numbers, names and lists of numbers.
 Json keys_to_set() {
-    const Json sections = Json::parse(embedded("scene.schema.json")).at("properties");
+    const Json sections = Json::parse(play_file("scene.schema.json")).at("properties");
     Json keys;
     for (const char* section : {"table", "balls", "physics"}) {
         for (const auto& [key, about] : sections.at(section).at("properties").items()) {
@@ -102,9 +96,7 @@ Json start_of(const PlayArgs& args) {
 int run(const PlayArgs& args) {
     check_page_path("-o", args.output);
     const Json page = start_of(args);
-    const std::string wasm = embedded("carom.wasm.gz.b64");
-    if (wasm.empty())
-        throw UsageError("this carom was built without WebAssembly; run tools/web, then build carom again");
+    const std::string wasm = page_wasm();
     add_page_files(play_files());
     const std::vector<PageData> data = {{"wasm", '"' + wasm + '"'},
                                         {"page", page.dump(-1, ' ', false, Json::error_handler_t::replace)}};

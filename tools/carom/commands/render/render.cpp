@@ -29,7 +29,7 @@ struct RenderArgs {
     std::string size;  ///< "1280x720"; empty: the scene's
     double from = 0.0;
     std::optional<double> to;
-    std::optional<long> frame;
+    std::optional<std::int64_t> frame;
     std::optional<double> at;
     std::string camera;  ///< empty: the scene's
     std::string gl = "auto";
@@ -245,6 +245,7 @@ std::vector<render::FrameTiming> rendered(const Record& record, const render::Se
 }
 
 int run(const RenderArgs& args) {
+    render::backend_from_name(args.gl);  // refuses in a build without OpenGL
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -85,7 +86,7 @@ auto played(const Search& what, const SearchArgs& args, const char* title, Play&
     options.best = static_cast<std::size_t>(args.best);
     ProgressLine line(title);
     options.progress = [&](std::size_t done) {
-        line.show_bar(static_cast<long>(done), static_cast<long>(options.shots));
+        line.show_bar(static_cast<std::int64_t>(done), static_cast<std::int64_t>(options.shots));
     };
     options.stop = [] { return interrupted(); };
     try {

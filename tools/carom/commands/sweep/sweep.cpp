@@ -37,8 +37,8 @@ namespace {
 
 struct SweepArgs {
     std::string scene;
-    std::vector<std::string> vary;  ///< "KEY=DISTRIBUTION"
-    std::optional<long> count;      ///< nothing: every point of the grids once
+    std::vector<std::string> vary;      ///< "KEY=DISTRIBUTION"
+    std::optional<std::int64_t> count;  ///< nothing: every point of the grids once
     std::uint64_t seed = 1;
     int jobs = 0;
     std::string shard;  ///< "2/4"; empty: all
@@ -129,8 +129,8 @@ void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa,
         for (const std::string& row : block.rows) rows += row;
         table.add(rows, block.shots.count, totals.add(block.shots));
         status.show(table.next(), totals.outcomes);
-        line.show_bar(static_cast<long>(table.next() - range.first),
-                      static_cast<long>(range.last - range.first));
+        line.show_bar(static_cast<std::int64_t>(table.next() - range.first),
+                      static_cast<std::int64_t>(range.last - range.first));
     }
 }
 
@@ -182,7 +182,7 @@ std::uint64_t id_of(const games::Sweep& sweep, const SweepArgs& args, const Shot
 }
 
 int run(const SweepArgs& args) {
-    if (args.count && (*args.count < 1 || *args.count > static_cast<long>(kMostShots)))
+    if (args.count && (*args.count < 1 || *args.count > static_cast<std::int64_t>(kMostShots)))
         throw UsageError(fmt::format("--count: expected 1 to {} shots", kMostShots));
     const kernel::Isa isa = chosen_isa();
     const games::Sweep sweep = read_sweep(args);
