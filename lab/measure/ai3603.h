@@ -17,7 +17,7 @@
 
 namespace carom::lab {
 
-/// What a strike did by these rules.
+/// The result of a strike by these rules.
 struct Ai3603Shot {
     std::optional<bool> wins;  ///< if it ends the game: whether the player who struck wins
     bool foul = false, keeps_turn = false;

@@ -20,7 +20,7 @@
 
 namespace carom::lab {
 
-/// What a shot is worth to it, from -500 to 150.
+/// The worth of a shot to it, from -500 to 150.
 inline double basic_pro_reward(const games::State& state, const Record& record, games::detail::Numbers own) {
     using games::Foul;
     const games::Shot shot = games::shot_of(record);

@@ -64,7 +64,7 @@ Skill skill_of(const std::string& text) {
     return skill;
 }
 
-/// What is printed of every shot.
+/// The printed row of a shot.
 enum class Tell { kNothing, kFeatures, kWins };
 
 /// The chance to win is told from this many fresh ones.

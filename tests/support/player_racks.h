@@ -41,7 +41,7 @@ inline Scene nine_foot_rack(games::Game game, std::uint64_t seed) {
     return pool_rack("nine_foot", game, seed);
 }
 
-/// What advises a player: games::advise(), or another player.
+/// The adviser of a player: games::advise(), or another player.
 using Adviser = std::function<games::Advice(const games::State&, const Scene&, std::uint64_t seed)>;
 
 inline Adviser adviser(const games::Skill& skill, kernel::Isa isa = kernel::best_isa()) {

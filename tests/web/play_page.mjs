@@ -1,4 +1,4 @@
-// What the tests of the page of `carom play` share. CAROM_PLAY_PAGE names an existing page;
+// Shared by the tests of the page of `carom play`. CAROM_PLAY_PAGE names an existing page;
 // CAROM_VIEW_PICTURES names a folder for screenshots.
 import {execFileSync} from "node:child_process";
 import {existsSync, mkdtempSync, rmSync} from "node:fs";

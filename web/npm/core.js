@@ -1,7 +1,7 @@
 // carom in WebAssembly: the classes of the package, for a module that is loaded already. index.js loads it.
 // Units are SI; keys of scenes are those of scene files, with their units (docs/reference/scene_format.md).
 
-/** What can go wrong: `kind` is "scene", "simulation", "argument", "limit" or "memory". A mistake in a scene
+/** An error: `kind` is "scene", "simulation", "argument", "limit" or "memory". A mistake in a scene
  * has a place: file, line and column, which also begin the message. */
 export class CaromError extends Error {
   constructor({kind, message, file, line, column}) {

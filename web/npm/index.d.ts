@@ -54,7 +54,7 @@ export interface Cue {
   /** Offset of the tip [ball radii]: left and up positive. */
   side: number;
   height: number;
-  /** What the cue itself would be in: "cushion c3", "ball 7"; "" if it has room. */
+  /** The obstacle that the cue itself would be in: "cushion c3", "ball 7"; "" if it has room. */
   in: string;
   /** The least elevation that clears it; null if none does. */
   clears_deg: number | null;
@@ -148,7 +148,7 @@ export class Shot {
   /** [s] */
   readonly duration: number;
   readonly eventCount: number;
-  /** What may be wrong with the shot, a sentence each. */
+  /** Warnings about the shot, a sentence each. */
   readonly warnings: string[];
   /** Ids. */
   readonly balls: string[];
@@ -223,7 +223,7 @@ export interface RuleOption {
   what: string;
 }
 
-/** What a game remembers between two shots, as `carom judge --state-out` writes it. Players are 0 and 1. */
+/** The state of a game between two shots, as `carom judge --state-out` writes it. Players are 0 and 1. */
 export interface GameState {
   game: Game;
   turn: number;
@@ -254,7 +254,7 @@ export interface Strike {
 export interface Advice {
   words: string;
   kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
-  /** What it pots, and where; "" for other kinds. */
+  /** The ball to pot, and the pocket; "" for other kinds. */
   ball: string;
   pocket: string;
   cut_deg: number;
@@ -305,7 +305,7 @@ export const games: {
     options?: {first?: 0 | 1; target?: number; rules?: {[key: string]: string | boolean}}): GameState;
   /** The options of a game. */
   options(game: Game): RuleOption[];
-  /** What the next shot may do. */
+  /** The rules of the next shot. */
   legal(state: GameState, scene: Scene): {
     cueBalls: string[];
     first: string[];

@@ -1,5 +1,5 @@
-// What the C++ library of emscripten 3.1.6 (libc++ 13) lacks of C++20. The preset wasm includes this header
-// before everything else.
+// Parts of C++20 that the C++ library of emscripten 3.1.6 (libc++ 13) lacks. The preset wasm includes this
+// header before everything else.
 #pragma once
 
 #if defined(__cplusplus) && defined(__EMSCRIPTEN__)

@@ -1,4 +1,4 @@
-// What the program for node has instead of main.cpp's surroundings; see system.jslib.
+// The surroundings of main.cpp in the program for node; see system.jslib.
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -12,7 +12,7 @@ char* carom_page_wasm();
 pid_t carom_getpid();
 int carom_flock(int fd);
 
-// Those of emscripten only pretend.
+// The functions of emscripten only pretend.
 pid_t getpid() {
     return carom_getpid();
 }

@@ -125,7 +125,7 @@ Json described(const Scene& scene) {
             {"material", material}};
 }
 
-/// What a page needs to draw the scene: the shape of the table, and the look of each ball.
+/// Data to draw the scene: the shape of the table, and the look of each ball.
 Json look(const Scene& scene) {
     std::vector<Vec2> places;
     for (const BallStart& ball : scene.ball) places.push_back(ball.position.head<2>());

@@ -152,7 +152,7 @@ CAROM_WEB void carom_free_shot(WebShot* shot) {
 CAROM_WEB int carom_shot_record(const WebShot* shot) {
     return guarded([&] { give(nullptr, record_json(shot->record)); });
 }
-/// What drawing needs, as the bytes of numbers: duration, gravity, and for each ball its pocket, radius,
+/// Data for drawing, as the bytes of numbers: duration, gravity, and for each ball its pocket, radius,
 /// mass, number of segments, and 18 numbers for each of them. Texts of numbers take longer than a break.
 CAROM_WEB int carom_shot_motion(const WebShot* shot) {
     return guarded([&] {

@@ -1,4 +1,4 @@
-// What JavaScript calls (web/npm/core.js). Functions return 0, or 1 after an error. Their results are a
+// Functions that JavaScript calls (web/npm/core.js). They return 0, or 1 after an error. Their results are a
 // handle and a text, which stay valid until the next call: carom_handle(), carom_text(), carom_text_size().
 // After an error the text is JSON: {kind, message, file, line, column}.
 //

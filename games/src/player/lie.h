@@ -32,7 +32,7 @@ Lie lie_of(const Scene& scene);
 /// After a shot, with what an option of its verdict respots.
 Lie lie_of(const Record& record, const Option& option);
 
-/// What the player to shoot may hit first and pot.
+/// The balls that the player to shoot may hit first and pot.
 Numbers targets(const State& state, const Lie& lie);
 
 /// A direct pot: the cue ball goes straight to the ghost ball, and the object ball straight into a pocket.
@@ -58,7 +58,7 @@ class Potting {
     };
     /// By number. @param now  the balls whose Chance::now is wanted
     std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now) const;
-    /// What a value is made of, for the player whose turn it is.
+    /// The parts of a value, for the player whose turn it is.
     static constexpr std::size_t kFeatures = 12;
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
     /// [-] The chance to win for the player whose turn it is: a logistic function of the features.

@@ -21,7 +21,7 @@
 namespace carom::games::detail {
 namespace {
 
-/// What is tried, and how often. Speeds are those of the cue [m/s], heights and sides in ball radii.
+/// The attempts, and how often each is made. Speeds of the cue [m/s], heights and sides in ball radii.
 struct Grid {
     std::array<double, 5> speeds;
     int speed_count;

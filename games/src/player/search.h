@@ -14,7 +14,7 @@
 
 namespace carom::games::detail {
 
-/// What a candidate's shots did, so far.
+/// The results of a candidate's shots so far.
 struct Tally {
     std::size_t shots = 0, made = 0, fouls = 0;
     double worth = 0.0;                  ///< sum
@@ -48,7 +48,7 @@ class Search {
     static constexpr std::size_t kFresh = 1000;
 
   private:
-    /// What one shot was worth to the player.
+    /// The worth of one shot to the player.
     struct Result {
         double worth = 0.0;
         bool made = false, foul = true;

@@ -66,7 +66,7 @@ def advise(
 
 
 class PlayerShot(NamedTuple):
-    """What a player does, with its errors."""
+    """A player's shot, with its errors."""
 
     words: str  # what it means to do
     scene: Scene  # the shot

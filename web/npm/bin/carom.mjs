@@ -17,7 +17,8 @@ const program = await createRequire(import.meta.url)("./program.js")({
 for (const [name, number] of Object.entries(SIGNALS)) {
   process.on(name, () => {
     program._raise(number);
-    // Nothing else ends a thread that waits for its input. It looks for a signal before, so it may miss this one.
+    // Nothing else ends a thread that waits for its input. It looks for a signal before, so it may miss this
+    // one.
     setInterval(() => {
       if (Atomics.load(program.HEAP32, program._carom_reads_input() >> 2) !== 1) return;
       process.removeAllListeners(name);

@@ -20,7 +20,7 @@
 
 namespace carom::games {
 
-/// What a player looks at before a shot.
+/// The options of a player before a shot.
 enum class Look : std::uint8_t {
     kPot,    ///< the surest pot, and not what it leaves
     kQuick,  ///< also what it leaves, in about 1700 simulated shots

@@ -4,7 +4,8 @@
 // so that candidates differ by what they are and not by luck. Most are dropped after a few shots and the rest
 // get more (successive halving: Jamieson and Talwalkar, "Non-stochastic best arm identification and
 // hyperparameter optimization", AISTATS 2016). The best then have descendants nearby, in several generations,
-// and more shots decide among the last one. The reported figures come from shots that the search has not seen.
+// and more shots decide among the last one. The reported figures come from shots that the search has not
+// seen.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What a player sees while aiming: the cue, the line to the first ball, and the shots of a hint.
+// The aids while aiming: the cue, the line to the first ball, and the shots of a hint.
 
 import {radiusOf, stateAt} from "../../page/motion.js";
 
@@ -13,7 +13,7 @@ export const HINT_COLOURS = ["#ffd84d", "#7fd4ff", "#ffb0e0"];
 export const pulledBack = (speed) => PULL * Math.sqrt(Math.min(speed / HARDEST, 1));
 export const speedOf = (way) => HARDEST * Math.min(Math.max(way / PULL, 0), 1) ** 2;
 
-/** What the struck ball meets first: {ball, at, time, R, lines, met}: where it is then, the short lines of
+/** The first contact of the struck ball: {ball, at, time, R, lines, met}: its place then, the short lines of
  * both balls, and {id, cut, left} of the ball that it meets, or null; `cut` in radians, and its side. */
 export function firstContact({motion: record, events}, id) {
   const indexOf = (name) => record.tracks.findIndex((track) => track.id === name), ball = indexOf(id);

@@ -1,4 +1,4 @@
-// What happened in the shot, event by event. Where it is played, the list fills while the balls move.
+// The events of the shot. Where it is played, the list fills while the balls move.
 
 import {make} from "../../page/dom.js";
 import {EventList, eventBefore} from "../../page/playback.js";

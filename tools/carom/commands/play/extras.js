@@ -1,4 +1,4 @@
-// What the page offers beside the table: scenes to open, every value of table, balls and physics, printing.
+// The cards beside the table: scenes to open, every value of table, balls and physics, printing.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {printShots} from "./paper.js";

@@ -19,7 +19,7 @@ export function newGame(state, name, rules = {}, match = null) {
   begin(state, startOf(carom, name, table, randomSeed()), {game});
 }
 
-/** What the player may do: {callable, mayPushOut}, and all of it in words. */
+/** The player's rights: {callable, mayPushOut}, and all of it in words. */
 export function legal({carom, game, scene}) {
   if (!game) return {text: "", callable: [], mayPushOut: false};
   const now = game.state;

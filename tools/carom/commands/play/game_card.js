@@ -9,7 +9,7 @@ import {withNames} from "./players.js";
 import {GAMES} from "./tables.js";
 import {verdictWords} from "./words.js";
 
-/** What the player calls before the shot. */
+/** The calls before the shot. */
 function announcements(state) {
   let chosen = false;
   const announce = (what) => (value) => {
@@ -36,7 +36,7 @@ function announcements(state) {
     tell();
   });
   let callable = [];
-  // What is obvious is called by itself, until the player calls something.
+  // An obvious call is made by itself, until the player calls something.
   const obvious = () => {
     const {announced, scene, shot, clock} = state;
     if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;

@@ -73,7 +73,7 @@ Json keys_to_set() {
     return keys;
 }
 
-/// What the page's script reads: the scene, what is locked, and what there is to choose from. @throws
+/// Data for the page's script: the scene, the locked keys, and the choices. @throws
 /// UsageError
 Json start_of(const PlayArgs& args) {
     Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());

@@ -9,7 +9,7 @@ import {aimAt, nudge, wrapped} from "./stroke.js";
 const FINE = 0.1;  // of the way that the pointer turns
 const HELD_FIRST = 250;  // [ms] A second finger that comes later makes the first one finer.
 
-/** What a press at this event would hold: {id}, a ball; {cue: true}; or {id: null}, the aim. */
+/** The target of a press at this event: {id}, a ball; {cue: true}; or {id: null}, the aim. */
 export function heldAt(state, event) {
   const {view, shot, scene} = state, index = view.ballAt(event), {cue} = scene, struck = state.struck();
   const id = index < 0 ? null : shot.balls[index], ball = id === null ? undefined : state.ball(id);

@@ -39,6 +39,6 @@ export const withoutBall = (toml, id) => toml.split(/^(?=\[)/m)
 /** The title of a scene file: its first comment, up to its first sentence's end or a colon. */
 export const titleOf = (toml) => /^#\s*(.*?)(?:[.:](?=\s)|[.:]?$)/m.exec(toml)?.[1] ?? "";
 
-/** What a scene file says to look for, in one line; "" if nothing. */
+/** The "Look for" of a scene file, in one line; "" if it has none. */
 export const lookFor = (toml) =>
   (/^#.*Look for: ((?:.*\n#)*.*)/m.exec(toml)?.[1] ?? "").replace(/\s*\n#\s*/g, " ").trim();

@@ -17,7 +17,7 @@ function chip({id, style: {color, pattern, number}}) {
 
 const groupOf = (id) => (Number(id) < 8 ? "solids" : Number(id) > 8 ? "stripes" : "");
 
-/** What stands beside a player's name. */
+/** The text beside a player's name. */
 function standing({game: {state: now}}, player) {
   if (now.game === "eight_ball") return now.group[player] === "open" ? "" : now.group[player];
   const counts = CAROM.includes(now.game) || ["snooker", "straight_pool", "free_pyramid"].includes(now.game);

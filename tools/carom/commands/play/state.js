@@ -1,4 +1,4 @@
-// What the page to play on remembers, in one object, and which parts of the page follow it.
+// The state of the page to play on, in one object, and the parts of the page that follow it.
 
 import {Playback} from "../../page/playback.js";
 import {isContact} from "./words.js";
@@ -12,7 +12,7 @@ export class State {
       // The table: a scene, its shot, how it is drawn; earlier ones as {toml, game, set}. `set`: all balls
       // that have been on it, as {id, style}. `raised`: the elevation that the player wants [degrees].
       scene: null, shot: null, view: null, rotations: null, past: [], set: [], raised: 0,
-      // What the player chose. In the mode "play" a shot counts; in "practise" all its paths are seen before.
+      // The player's choices. In the mode "play" a shot counts; in "practise" all its paths are seen before.
       mode: fixed ? "play" : "practise",
       units: "metric", paths: "all", numbered: false, contactsOnly: true, placed: "", said: "",
       // A game is {state, option, judged, shot, from}: the state before this shot, and what led to it. A

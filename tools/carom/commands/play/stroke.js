@@ -53,7 +53,7 @@ export function strokeCard(state) {
   return card;
 }
 
-/** What a player holds in the hand: {tip, parts}: the cue ball to strike, and the cue to pull back. */
+/** The player's tools: {tip, parts}: the cue ball to strike, and the cue to pull back. */
 export function strokeParts(state) {
   const tip = new TipPicture((side, height) => {
     if (state.free && !state.locked("cue.offset"))

@@ -35,7 +35,7 @@ function draw(state) {
   drawHints(state);
 }
 
-/** What a drag on the table does now. */
+/** The effect of a drag on the table now. */
 function helpOf(state) {
   const {game, mode, scene, clock} = state;
   if (state.busy) return "";

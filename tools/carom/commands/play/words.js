@@ -42,7 +42,7 @@ export const adviceWords = (words) =>
   words.replace(/(\w+) into \w+ \(([^)]+)\)/, (_, ball, pocket) => `${named(ball)} into the ${pocket}`)
     .replace(/(\d) degrees/, "$1°");
 
-/** What happened, for the list of events. */
+/** The text of an event in the list. */
 export function eventWords(e, units) {
   const text = ballWords(e, units);
   return text.charAt(0).toUpperCase() + text.slice(1);
