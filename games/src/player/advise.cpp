@@ -63,12 +63,11 @@ void check_game(Game game) {
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game
 void check_balls(const State& state, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
-        if (detail::number_of(ball.id) == 0 && ball.id != cue_ball(state))
-            throw std::invalid_argument(
-                fmt::format("ball {} is not one of {}", in_quotes(ball.id), name(state.game)));
-        if (detail::number_of(ball.id) >= detail::kNumbers)
-            throw std::invalid_argument(
-                fmt::format("ball {} is not one of {}", in_quotes(ball.id), name(state.game)));
+        const int number = detail::number_of(ball.id);
+        if ((number == 0 && ball.id != cue_ball(state)) || number >= detail::kNumbers)
+            throw std::invalid_argument(fmt::format("ball {} is not one of {}; name its game: {}",
+                                                    in_quotes(ball.id), name(state.game),
+                                                    fmt::join(player_games(), ", ")));
         if (ball.velocity != Vec3::Zero() || ball.spin != Vec3::Zero() || ball.height > 0.0)
             throw std::invalid_argument(
                 fmt::format("ball {} moves; give a table at rest", in_quotes(ball.id)));
