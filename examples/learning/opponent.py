@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Learns seven numbers of a simple player of eight-ball from games against a level of `carom advise`.
+"""Learns eight numbers of a simple player of eight-ball from games against a level of `carom advise`.
 
-    python examples/learning/opponent.py [--level beginner] [--rounds 6] [--seed 1]
+    python examples/learning/opponent.py [--level beginner] [--rounds 4] [--seed 1]
 
 The learner aims at a ghost ball. The numbers say which pot it prefers, how hard it strikes, and where it
 places a cue ball in hand. They come from the cross-entropy method: draw them, keep the best, draw anew around
@@ -27,19 +27,32 @@ DIAMETER = 0.05715
 CANDIDATES, BEST = 40, 10
 
 
+def blocked(start: Array, ends: Array, others: Array) -> Array:
+    """How many of the other balls a ball would touch from `start` to each of the ends."""
+    ways = ends - start
+    to = others - start
+    share = np.clip(to @ ways.T / np.sum(ways**2, axis=1), 0, 1)
+    apart = np.linalg.norm(to[:, None] - share[:, :, None] * ways, axis=2)
+    return np.asarray(np.sum(apart < 0.95 * DIAMETER, axis=0))
+
+
 def act(seen: dict[str, Any], numbers: Array) -> NDArray[np.float32]:
     """The action of the learner: the easiest pot, as its numbers judge."""
     if seen["phase"] == 1:
-        return np.tanh([*numbers[5:7], 0, 0, 0]).astype(np.float32)
+        return np.tanh([*numbers[6:8], 0, 0, 0]).astype(np.float32)
     places, legal = seen["balls"][:, :2] * HALF, np.flatnonzero(seen["legal"])
+    there = np.flatnonzero(seen["balls"][1:, 2]) + 1
     best, easiest = np.zeros(5), -np.inf
     for k, ball in enumerate(legal):
         to_pocket = POCKETS - places[ball]
         far = np.linalg.norm(to_pocket, axis=1)
-        to_ghost = places[ball] - DIAMETER * to_pocket / far[:, None] - places[0]
+        ghosts = places[ball] - DIAMETER * to_pocket / far[:, None]
+        to_ghost = ghosts - places[0]
         near = np.linalg.norm(to_ghost, axis=1)
         straight = np.sum(to_pocket * to_ghost, axis=1) / (far * near)
-        ease = numbers[:3] @ [straight, -far, -near]
+        others = places[there[there != ball]]
+        ways = blocked(places[0], ghosts, others) + blocked(places[ball], POCKETS, others)
+        ease = numbers[:4] @ [straight, -far, -near, -ways]
         ease[straight < 0.2] = -np.inf
         pocket = int(np.argmax(ease))
         if ease[pocket] > easiest:
@@ -47,7 +60,7 @@ def act(seen: dict[str, Any], numbers: Array) -> NDArray[np.float32]:
             to_ball = places[ball] - places[0]
             cross = to_ball[0] * to_ghost[pocket, 1] - to_ball[1] * to_ghost[pocket, 0]
             aside = cross / (near[pocket] * DIAMETER)
-            speed = numbers[3] + numbers[4] * (far[pocket] + near[pocket])
+            speed = numbers[4] + numbers[5] * (far[pocket] + near[pocket])
             best = np.array([2 * (k + 0.5) / len(legal) - 1, aside, speed, 0, 0])
     return np.clip(best, -1, 1).astype(np.float32)
 
@@ -71,9 +84,9 @@ def won(level: str, numbers: Array, games: int, seed: int) -> float:
 
 def learn(level: str, rounds: int, seed: int) -> Array:
     random = np.random.default_rng(seed)
-    mean, spread = np.zeros(7), np.full(7, 0.7)
+    mean, spread = np.zeros(8), np.full(8, 0.7)
     for n in range(rounds):
-        drawn = mean + spread * random.standard_normal((CANDIDATES, 7))
+        drawn = mean + spread * random.standard_normal((CANDIDATES, 8))
         # One game says little of a candidate, but the mean of the best forgets most of the luck.
         scores = [play(level, numbers, seed + CANDIDATES * n + k)[1] for k, numbers in enumerate(drawn)]
         kept = drawn[np.argsort(scores)[-BEST:]]
@@ -86,12 +99,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--level", default="beginner", help="the opponent")
-    parser.add_argument("--rounds", type=int, default=6)
-    parser.add_argument("--test", type=int, default=60, help="games of the test, on racks not used to learn")
+    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--test", type=int, default=40, help="games of the test, on racks not used to learn")
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args(arguments)
     unseen = 2**31 + asked.seed
-    before = won(asked.level, np.zeros(7), asked.test, unseen)
+    before = won(asked.level, np.zeros(8), asked.test, unseen)
     numbers = learn(asked.level, asked.rounds, asked.seed)
     after = won(asked.level, numbers, asked.test, unseen)
     print(f"won against {asked.level}: {before:.2f} at first, {after:.2f} after {asked.rounds} rounds")

@@ -22,7 +22,7 @@ def test_the_learner_pots_a_ball_that_hangs(example):
     xy = np.array([[0.6, 0.8], [0.15, 0.14]])
     legal = np.array([0, 1])
     seen = {"phase": 0, "legal": legal, "balls": np.column_stack((xy / example["HALF"] - 1, [1, 1]))}
-    action = example["act"](seen, np.array([1.0, 1.0, 0.0, -0.6, 0.0, 0.0, 0.0]))
+    action = example["act"](seen, np.array([1.0, 1.0, 0.0, 0.0, -0.6, 0.0, 0.0, 0.0]))
     strikes = gym.Strikes("ball", (0.3, 8.0))
     speed, aim, *_ = strikes.cue(action[None], xy[None], 0, legal[None] > 0, np.full(2, 0.028575))[0]
     balls = [{"id": "cue", "position": xy[0].tolist()}, {"id": "3", "position": xy[1].tolist()}]
