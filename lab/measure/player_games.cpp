@@ -103,7 +103,7 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
             told.emplace_back(before.turn, fmt::format("{} {}", seed, shot.advice.worth));
         if (tell == Tell::kFeatures && !opening) {
             const Skill& skill = skills[static_cast<std::size_t>(before.turn)];
-            const auto features = games::detail::Potting(shot.table, skill.noise)
+            const auto features = games::detail::Potting(shot.table, skill.noise.aim_deg / kDegrees)
                                       .features(before, games::detail::lie_of(shot.table));
             told.emplace_back(before.turn, fmt::format("{} {}", seed, fmt::join(features, " ")));
         }

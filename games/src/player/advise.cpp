@@ -91,17 +91,26 @@ Scene completed(const State& state, Scene scene) {
     Cue cue = scene.cue.value_or(Cue{});
     cue.ball = cue_ball(state);
     scene.cue = cue;
-    const bool there = index_of(scene.ball, cue.ball) >= 0;
-    if (state.in_hand == InHand::kNo && there) return scene;
+    const int at = index_of(scene.ball, cue.ball);
+    if (state.in_hand == InHand::kNo && at >= 0) return scene;
     if (state.in_hand == InHand::kNo)
         throw std::invalid_argument("there is no cue ball, and it is not in hand");
+    const Table& table = scene.table;
     const double R = scene.balls.R, beside = R + kSpotGap;
     std::vector<Lying> others;
     for (const BallStart& ball : scene.ball)
-        if (ball.id != cue.ball) others.push_back({planar(ball.position), scene.size_of(ball).R, kSpotGap});
-    // Behind the head string, so that it may lie there in any game; where it lies now, it may not be allowed.
-    const Vec2 from = scene.table.corner + Vec2(beside, 0.2 * scene.table.length);
-    const auto place = nearest_free(from, {1.0, 0.0}, scene.table.width - 2.0 * beside, R, others);
+        if (ball.id != cue.ball) others.push_back({planar(ball.position), scene.size_of(ball).R, 0.0});
+    if (at >= 0) {
+        const Vec2 lies = planar(scene.ball[static_cast<std::size_t>(at)].position),
+                   from = lies - table.corner;
+        if (in_area(table, state.in_hand, lies) && from.x() >= R && from.y() >= R &&
+            from.x() <= table.width - R && from.y() <= table.length - R && is_free(lies, R, others))
+            return scene;
+    }
+    for (Lying& other : others) other.gap = kSpotGap;
+    // Behind the head string, so that it may lie there in any game.
+    const Vec2 from = table.corner + Vec2(beside, 0.2 * table.length);
+    const auto place = nearest_free(from, {1.0, 0.0}, table.width - 2.0 * beside, R, others);
     if (!place) throw std::invalid_argument("there is no room for the cue ball");
     return placed(std::move(scene), *place);
 }
@@ -194,7 +203,8 @@ Skill skill_by_name(std::string_view name, double R) {
 
 Noise Skill::noise_at(double speed) const {
     Noise at = noise;
-    at.speed = length(Vec2(noise.speed, of_speed * speed));
+    // Without it, no bit changes.
+    if (of_speed > 0.0) at.speed = length(Vec2(noise.speed, of_speed * speed));
     return at;
 }
 
@@ -246,7 +256,7 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
     Scene scene;
     scene.table = record.table;
     scene.balls = record.balls;
-    const detail::Potting potting(scene, skill.noise);
+    const detail::Potting potting(scene, skill.noise.aim_deg / kDegrees);
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
         const Option& option = verdict.options[i];
         check_game(option.state.game);

@@ -55,12 +55,6 @@ Numbers all_of(const Lie& lie) {
     return all;
 }
 
-double sd_of_aim(const Noise& noise) {
-    // A tip that is off to the side by a tenth of a radius turns the ball's path by some tenths of a degree.
-    constexpr double kTurnOfSide = 2.0;  // degrees a radius
-    return length(Vec2(noise.aim_deg, noise.side * kTurnOfSide)) / kDegrees;
-}
-
 State of_other(State state) {
     state.turn = 1 - state.turn;
     return state;
@@ -112,8 +106,8 @@ Numbers targets(const State& state, const Lie& lie) {
     return allowed.callable.empty() ? first : first & callable;
 }
 
-Potting::Potting(const Scene& scene, const Noise& noise)
-    : R_(scene.balls.R), both_(scene.balls.R), sd_aim_(std::max(sd_of_aim(noise), 1e-5)) {
+Potting::Potting(const Scene& scene, double sd_aim)
+    : R_(scene.balls.R), both_(scene.balls.R), sd_aim_(std::max(sd_aim, 1e-5)) {
     for (const BallStart& ball : scene.ball)
         if (number_of(ball.id) == 0) both_ = R_ + scene.size_of(ball).R;
     const Table& table = scene.table;

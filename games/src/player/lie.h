@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "carom/games/noise.h"
 #include "carom/games/rules.h"
 
 namespace carom::games::detail {
@@ -48,7 +47,8 @@ struct Pot {
 /// Geometry of one table for a player with given errors.
 class Potting {
   public:
-    Potting(const Scene& scene, const Noise& noise);
+    /// @param sd_aim standard deviation of the cue ball's direction [rad]
+    Potting(const Scene& scene, double sd_aim);
 
     /// Direct pots of these balls with at least this chance; nothing without a cue ball.
     std::vector<Pot> pots(const Lie& lie, Numbers balls, double least) const;
@@ -89,8 +89,7 @@ class Potting {
     };
     std::vector<Mouth> mouths_;
     Rectangle noses_;
-    double R_, both_;
-    double sd_aim_;  ///< standard deviation of the cue ball's direction [rad]
+    double R_, both_, sd_aim_;
 };
 
 }  // namespace carom::games::detail

@@ -79,6 +79,12 @@ double turn_deg(const Vec2& from, const Vec2& to) {
     return direction_deg({dot(from, to), cross(from, to)});
 }
 
+double sd_of_aim(const Noise& noise) {
+    // A tip that is off to the side by a tenth of a radius turns the ball's path by some tenths of a degree.
+    constexpr double kTurnOfSide = 2.0;  // degrees a radius
+    return length(Vec2(noise.aim_deg, noise.side * kTurnOfSide)) / kDegrees;
+}
+
 }  // namespace
 
 struct Search::Line {
@@ -95,7 +101,7 @@ Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa 
       skill_(skill),
       isa_(isa),
       options_(options),
-      potting_(scene_, skill.noise),
+      potting_(scene_, sd_of_aim(skill.noise)),
       lie_(lie_of(scene_)),
       targets_(targets(state, lie_)),
       first_(0),
