@@ -4,7 +4,7 @@ const globals = (names) => Object.fromEntries(names.split(/\s+/).map((name) => [
 
 const everywhere = globals(`Blob CompressionStream DecompressionStream FinalizationRegistry Response
   TextDecoder TextEncoder URL URLSearchParams WebAssembly atob btoa clearTimeout console fetch performance
-  process setTimeout`);
+  process setInterval setTimeout`);
 const page = globals(`Path2D ResizeObserver document history location matchMedia modules navigator print
   requestAnimationFrame window`);
 const test = globals("Buffer WebSocket");
