@@ -162,8 +162,8 @@ Verdict judge(const State& state, const Record& record, const Call& call) {
     const GameRules& rules = detail::rules_of(state.game);
     for (const std::string_view ball : rules.balls)
         if (index_of(record, ball) < 0)
-            throw std::invalid_argument("there is no ball \"" + std::string(ball) + "\"; " + name(state.game) +
-                                        " needs it: add it, or name another game");
+            throw std::invalid_argument("there is no ball \"" + std::string(ball) + "\"; " +
+                                        name(state.game) + " needs it: add it, or name another game");
     const detail::Facts facts(state, record, call);
     if (rules.struck == GameRules::Struck::kCueBall && !facts.struck("cue"))
         throw std::invalid_argument("the cue strikes ball \"" + facts.id(facts.shot.struck) +

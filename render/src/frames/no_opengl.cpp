@@ -1,4 +1,9 @@
 // Stands in for OpenGL, libpng and the sequence of frames in a build without them.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "carom/render/backend.h"
 #include "carom/render/png.h"
 #include "carom/render/sequence.h"
