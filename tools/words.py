@@ -14,7 +14,8 @@ import subprocess
 import sys
 
 WIDTH = 110
-CODE = {".h", ".cpp", ".c", ".py", ".pyi", ".js", ".mjs", ".ts", ".css", ".frag", ".vert", ".cmake", ".sh"}
+CODE = {".h", ".cpp", ".c", ".py", ".pyi", ".js", ".jslib", ".mjs", ".ts", ".css", ".frag", ".vert", ".cmake",
+        ".sh"}
 # Data, history, and the page that lists what not to write.
 LEFT_OUT = ("lab/notes/", "tests/data/", "tests/fuzz/corpus/", "lab/data/", "CHANGELOG.md", "CONTRIBUTING.md")
 PHRASES = {

@@ -247,20 +247,6 @@ test("every exported name has a type", () => {
     assert.match(types, new RegExp(`export (function|class|const) ${name}\\b`), name);
 });
 
-const withoutPlain = existsSync(path.join(PACKAGE, "carom-plain.wasm")) ? false
-  : "tools/web --test builds carom-plain.wasm";
-
-test("a machine without SIMD gets the plain module, and the same bits", {skip: withoutPlain}, () => {
-  const program = `
-    WebAssembly.validate = () => false;
-    const {init, Scene, simulate} = await import(${JSON.stringify(path.join(PACKAGE, "index.js"))});
-    await init();
-    console.log(simulate(Scene.parse(${JSON.stringify(sceneText("eight_ball_break.toml"))})).hash);`;
-  const traced = ["--input-type=module", "-e", program];
-  const plain = execFileSync(process.execPath, traced, {encoding: "utf8"}).trim();
-  assert.equal(plain, simulate(Scene.parse(sceneText("eight_ball_break.toml"))).hash);
-});
-
 test("motion has the tracks of the record, to the bit", () => {
   for (const name of ["eight_ball_break.toml", "jump_pot.toml", "bar_break.toml"]) {
     const {motion, record} = simulate(Scene.parse(sceneText(name)));
