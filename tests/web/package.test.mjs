@@ -1,6 +1,6 @@
 // The npm package: its functions, its errors, the example of its README, its types.
 import assert from "node:assert/strict";
-import {existsSync, readFileSync, writeFileSync, mkdtempSync, rmSync} from "node:fs";
+import {readFileSync, writeFileSync, mkdtempSync, rmSync} from "node:fs";
 import {execFileSync} from "node:child_process";
 import {tmpdir} from "node:os";
 import * as path from "node:path";
