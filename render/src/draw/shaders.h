@@ -10,7 +10,7 @@ namespace carom::render::shaders {
 extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 
-inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading around a ball ends
+inline constexpr double kShadowReach = 2.0;  ///< [radii] where the shading by the room ends
 inline constexpr int kMaxHoles = 128;  ///< [-] largest number of holes that a program accepts: MAX_HOLES
 inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: as many as fit around it
 

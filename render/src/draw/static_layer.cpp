@@ -102,9 +102,6 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
     const auto count = static_cast<GLsizei>(holes.size() / 4);
     if (count > 0) api_.Uniform4fv(at("u_holes"), count, holes.data());
     api_.Uniform1i(at("u_hole_count"), count);
-    const Vec2 low = table.inner_low - table.origin, high = table.inner_high - table.origin;
-    api_.Uniform4f(at("u_inner"), static_cast<float>(low.x()), static_cast<float>(low.y()),
-                   static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
 // @param depths initial contents of the depth buffer; null: the far plane
@@ -135,6 +132,9 @@ void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* dept
         if (part == Part::kChalk) api_.DepthMask(GL_FALSE);
         // The shading is blended over the cloth and keeps its alpha.
         if (part == Part::kShade) api_.Enable(GL_BLEND);
+        // The near walls of the room do not hide the table. Turns are reversed, because rows are.
+        api_.FrontFace(GL_CW);
+        (part == Part::kFloor ? api_.Enable : api_.Disable)(GL_CULL_FACE);
         api_.BindProgramPipeline(programs_[i].pipeline);
         api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
                         static_cast<GLsizei>(parts_.ends[i] - first));

@@ -78,6 +78,7 @@ class PartSorter {
             case Material::kWood:
                 return {Part::kWood, Part::kCutWood};
             case Material::kFloor:
+            case Material::kLamp:
                 return {Part::kFloor, Part::kFloor};
             case Material::kShade:
                 return {Part::kShade, Part::kCutShade};

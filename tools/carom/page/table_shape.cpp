@@ -177,17 +177,24 @@ std::array<double, 3> gradient(const Triangle& t, float MeshVertex::*value) {
 
 Json boards_json(const TableMesh& mesh) {
     struct Board {
-        std::vector<Triangle> triangles;
+        std::array<double, 3> key{};
+        std::vector<Triangle> triangles{};
         double largest = 0.0;
         std::array<double, 3> u{}, v{};
     };
-    // Triangles with the same grain form a board. Its bevels have that grain too; its largest triangle is its
-    // flat top.
-    std::map<std::array<std::int64_t, 3>, Board> boards;
+    // Triangles with nearly the same grain form a board. Its bevels have that grain too; its largest triangle
+    // is its flat top.
+    std::vector<Board> boards;
     for (const Triangle& t : seen_from_above(mesh.solid, Material::kWood)) {
         const std::array<double, 3> u = gradient(t, &MeshVertex::u);
-        Board& board =
-            boards[{std::llround(50.0 * u[0]), std::llround(50.0 * u[1]), std::llround(50.0 * u[2])}];
+        const auto same = [&u](const Board& board) {
+            constexpr double kRounding = 0.02;
+            return std::abs(board.key[0] - u[0]) < kRounding && std::abs(board.key[1] - u[1]) < kRounding &&
+                   std::abs(board.key[2] - u[2]) < kRounding;
+        };
+        auto found = std::find_if(boards.begin(), boards.end(), same);
+        if (found == boards.end()) found = boards.insert(boards.end(), Board{u});
+        Board& board = *found;
         board.triangles.push_back(t);
         const double area = area_from_above(t[0], t[1], t[2]);
         if (area <= board.largest) continue;
@@ -196,7 +203,7 @@ Json boards_json(const TableMesh& mesh) {
         board.v = gradient(t, &MeshVertex::v);
     }
     Json list = Json::array();
-    for (const auto& [key, board] : boards) {
+    for (const Board& board : boards) {
         Json grain = Json::array();
         for (const auto& g : {board.u, board.v})
             for (const double x : {g[0], g[1], g[2] - g[0] * mesh.origin.x() - g[1] * mesh.origin.y()})
@@ -230,6 +237,7 @@ Json table_shape(const carom::Table& table, const TableMesh& mesh) {
               {"half", place(mesh.lamp.half)},
               {"endless", mesh.lamp.endless}}},
             {"wood_top", metres(mesh.wood_top)},
+            {"felt", mesh.cloth},
             {"cloth", loops(Material::kCloth)},
             {"cushion", loops(Material::kCushion)},
             {"trim", loops(Material::kTrim)},

@@ -54,19 +54,13 @@ Json locked_keys(const std::string& list) {
     return keys;
 }
 
-/// The first comment of a scene file, up to its first full stop or colon.
-std::string title_of(std::string_view scene) {
-    scene.remove_prefix(std::min(scene.find_first_not_of("# "), scene.size()));
-    return std::string(scene.substr(0, scene.find_first_of(".:\n")));
-}
-
 /// The scenes that come with carom: a list of {name, title, text} by title.
 Json shipped_scenes() {
     Json scenes = Json::array();
     for (const PageFile& file : play_files()) {
         const std::string_view name = file.name;
         if (name.ends_with(".toml"))
-            scenes.push_back({{"name", name}, {"title", title_of(file.text)}, {"text", file.text}});
+            scenes.push_back({{"name", name}, {"title", scene_title(file.text)}, {"text", file.text}});
     }
     std::sort(scenes.begin(), scenes.end(),
               [](const Json& a, const Json& b) { return a.at("title") < b.at("title"); });
