@@ -64,7 +64,8 @@ std::vector<double> times_on(const BallWay& way) {
     return times;
 }
 
-void draw_ways(const Record& record, const std::vector<int>& colours, bool dashed, PaperPlane& paper, Plot& plot) {
+void draw_ways(const Record& record, const std::vector<int>& colours, bool dashed, PaperPlane& paper,
+               Plot& plot) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallWay way(record, static_cast<int>(i));
         Series line;

@@ -165,7 +165,7 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     // As lit() of the shaders divides the light between the lamp and the room.
     const float of_lamp = 1.05F * std::pow(1.0F + beyond_x * beyond_x + beyond_y * beyond_y, -1.5F);
     const float share = strength * of_lamp / (of_lamp + 0.16F) * lateral,
-                of_room = strength * 0.16F / (of_lamp + 0.16F) / (L * L) * 2.0F;
+                of_room = 0.35F * strength / (L * L);
     const float eye_z = view.eye[2], from_x = view.eye[0] - center[0], from_y = view.eye[1] - center[1];
     const float reach = 1.0F / (static_cast<float>(shaders::kShadowReach) * L);
     const bool plain = ball.plain;
@@ -185,9 +185,10 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
         if (over > 0.0F) high = min(high, (d * L + root) * (1.0F / over));
         const Floats part = clamp((high - max(low, a - half_a)) * (0.5F / half_a), 0.0F, 1.0F);
         const Floats near = max(1.0F - d2 * reach * reach, 0.0F);
-        Floats dark = share * part * part * (3.0F - 2.0F * part) + of_room * near * near * near;
-        if (!any(dark > 0.002F)) return;
-        dark = 1.0F - sqrt(max(1.0F - dark, 0.04F));  // of the screen value
+        const Floats keep =
+            (1.0F - share * part * part * (3.0F - 2.0F * part)) * (1.0F - of_room * near * near * near);
+        if (!any(keep < 0.998F)) return;
+        Floats dark = 1.0F - sqrt(keep);  // of the screen value
         dark = choose(way > 0.0F, dark, all(0.0F));
         if (!plain) dark *= background.cloth(first, count);
         brush.darken(first, count, dark);

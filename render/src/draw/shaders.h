@@ -20,9 +20,12 @@ inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: a
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";
+inline constexpr const char* kWallOnly = "#define WALL\n";
 inline constexpr const char* kChalkOnly = "#define CHALK\n";
 inline constexpr const char* kShadeOnly = "#define SHADE\n";
 inline constexpr const char* kTheRest = "#define REST\n";
+/// Added to one of these for a camera that moves: less detail, because every frame draws it.
+inline constexpr const char* kMoving = "#define MOVING\n";
 /// Added to one of these if there may be a hole: pixels in a hole are not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 

@@ -78,8 +78,10 @@ class PartSorter {
             case Material::kWood:
                 return {Part::kWood, Part::kCutWood};
             case Material::kFloor:
-            case Material::kLamp:
                 return {Part::kFloor, Part::kFloor};
+            case Material::kWall:
+            case Material::kLamp:
+                return {Part::kWall, Part::kWall};
             case Material::kShade:
                 return {Part::kShade, Part::kCutShade};
             case Material::kChalk:

@@ -55,13 +55,18 @@ std::optional<DrawCue> cue_at(const Record& record, const TableMesh& table, doub
     const double raised = std::max(std::atan(masse), std::atan2(2.0 * struck.velocity.z(), speed));
     const double elevation = std::clamp(
         std::max(raised, least_elevation(table, struck.position, forward.head<2>())), kLowest, kHighest);
+    // A raised cue is taken away at once, so that it does not meet the ball again.
+    constexpr double kRaised = 0.35, kSooner = 4.0;
+    const double after = t > 0.0 && elevation > kRaised ? kSooner * t : t;
+    if (after >= kGone) return std::nullopt;
     const double c = std::cos(elevation), s = std::sin(elevation);
     const Vec3 along(c * forward.x(), c * forward.y(), -s), up(s * forward.x(), s * forward.y(), c);
     const double deep = std::sqrt(std::max(1.0 - side * side - height * height, 0.0));
     DrawCue cue;
-    cue.tip = struck.position + R * (side * left + height * up - deep * along) - drawn_back(t, speed) * along;
+    cue.tip =
+        struck.position + R * (side * left + height * up - deep * along) - drawn_back(after, speed) * along;
     cue.butt = cue.tip - kLength * along;
-    cue.opacity = static_cast<float>(std::min(1.0, (kGone - t) / (kGone - kFades)));
+    cue.opacity = static_cast<float>(std::min(1.0, (kGone - after) / (kGone - kFades)));
     return cue;
 }
 

@@ -294,7 +294,8 @@ class TableMaker {
         builder_.quad(at(c[0], z), at(c[1], z), at(c[2], z), at(c[3], z), material);
         for (std::size_t i = 0; i < c.size(); ++i) {
             const Vec2 &a = c[i], &b = c[(i + 1) % c.size()];
-            builder_.quad(at(a, z), at(a, top), at(b, top), at(b, z), material);
+            builder_.quad(at(a, z), at(a, top), at(b, top), at(b, z),
+                          material == Material::kFloor ? Material::kWall : material);
         }
     }
 

@@ -18,7 +18,8 @@ enum class Material : std::uint8_t {
     kPocket,   ///< the wall of a hole; v is 0 at its mouth and 1 at its bottom, u is 1 on the bottom
     kTrim,     ///< the rim of a pocket
     kInlay,    ///< diamonds
-    kFloor,    ///< and walls; like the lamp, visible from one side only
+    kFloor,    ///< of the room; like its walls and the lamp, visible from one side only
+    kWall,
     kLamp,     ///< u is 1 where it shines
     kShade,    ///< black, blended over the cloth; u is the opacity
     /// white, blended over the cloth; u is the opacity, v the distance from the middle in half widths

@@ -22,6 +22,13 @@ float noise(vec2 p) {
                mix(lattice(i + ivec2(0, 1)), lattice(i + ivec2(1, 1)), f.x), f.y);
 }
 
+// Noise that frames of a moving camera do without.
+#ifdef MOVING
+float detail(vec2 p) { return 0.5; }
+#else
+float detail(vec2 p) { return noise(p); }
+#endif
+
 bool in_hole(vec2 p) {
     for (int i = 0; i < u_hole_count; ++i) {
         vec2 d = p - u_holes[i].xy;
@@ -37,9 +44,9 @@ vec3 cloth_albedo(vec2 p) {
     float pixel = length(fwidth(v_position));
     float fine = 1.0 - smoothstep(0.0004, 0.0009, pixel);
     vec2 thread = sin(vec2(p.x + p.y, p.x - p.y) * (6.2831853 / 0.0026));
-    float weave = thread.x * (0.6 + 0.4 * thread.y) * 0.10 + (noise(p * vec2(1500.0, 420.0)) - 0.5) * 0.22;
+    float weave = thread.x * (0.6 + 0.4 * thread.y) * 0.10 + (detail(p * vec2(1500.0, 420.0)) - 0.5) * 0.22;
     // The nap lies along the table and is brushed in strokes.
-    float nap = (noise(p * vec2(14.0, 5.0)) - 0.5) * 0.045 + (noise(p * vec2(75.0, 9.0)) - 0.5) * 0.04;
+    float nap = (noise(p * vec2(14.0, 5.0)) - 0.5) * 0.045 + (detail(p * vec2(75.0, 9.0)) - 0.5) * 0.04;
     return base * (1.0 + weave * fine + nap);
 }
 
@@ -68,6 +75,9 @@ vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
 
 // Wool looks lighter along its surface: the fibres that stand up are lit from behind.
 vec3 cloth(vec3 albedo, vec3 n) {
+#ifdef MOVING
+    return lit(albedo, n);
+#endif
     float along = 1.0 - abs(dot(normalize(u_eye - v_position), n));
     return lit(albedo, n) * (1.0 + 0.30 * along * along * along);
 }
@@ -80,28 +90,30 @@ float under_nose(vec3 n, float z) {
 vec3 pocket_wall(vec3 p, vec3 n, vec2 uv) {
     // Leather that is lit only through the mouth of the pocket: the light decreases with depth.
     float fade = exp(min(p.z, 0.0) / 0.045);
-    float grain = 0.9 + 0.2 * noise(vec2(uv.x > 0.5 ? p.x : atan(n.y, n.x) * 0.06, p.y + p.z) * 240.0);
+    float grain = 0.9 + 0.2 * detail(vec2(uv.x > 0.5 ? p.x : atan(n.y, n.x) * 0.06, p.y + p.z) * 240.0);
     float light = uv.x > 0.5 ? 0.17 * (1.0 - 0.75 * uv.y * uv.y) : mix(0.10, 0.9, fade) *
                   (0.45 + 0.55 * lamp_light(p, n));
     return from_screen(kLeather) * light * grain;
 }
 
-// A dim room: boards, walls with panels, and the lamp, of which a low camera sees the shining side.
-vec3 room_color(vec3 p, vec3 n) {
-    if (v_material == 7 && v_uv.x > 0.5) return vec3(6.0, 5.6, 4.9);
-    if (v_material == 7) return from_screen(kLampShade) * (0.7 - 0.4 * n.z);
+// The boards of a dim room.
+vec3 floor_color(vec3 p, vec3 n) {
     vec2 half_size = 0.5 * (u_inner.zw - u_inner.xy), middle = 0.5 * (u_inner.xy + u_inner.zw);
     vec2 e = abs(p.xy - middle) - half_size;
     float away = length(max(e, 0.0));
-    if (n.z > 0.5) {
-        float board = floor(p.x / 0.16), seam = abs(fract(p.x / 0.16) - 0.5) * 0.16;
-        float tone = 0.7 + 0.35 * lattice(ivec2(int(board), int(floor(p.y / 1.9 + 0.37 * board)))) +
-                     0.3 * (noise(vec2(p.x * 30.0, p.y * 1.5)) - 0.5);
-        float pixel = length(fwidth(p));
-        tone *= 1.0 - 0.5 * smoothstep(0.0774 - pixel, 0.08, seam) * (1.0 - smoothstep(0.006, 0.016, pixel));
-        float light = 0.07 + 0.55 * lamp_light(p, n);
-        return from_screen(kFloor) * tone * light * (0.10 + 0.9 * smoothstep(0.1, 0.9, away));
-    }
+    float board = floor(p.x / 0.16), seam = abs(fract(p.x / 0.16) - 0.5) * 0.16;
+    float tone = 0.7 + 0.35 * detail(vec2(board, floor(p.y / 1.9 + 0.37 * board))) +
+                 0.3 * (detail(vec2(p.x * 30.0, p.y * 1.5)) - 0.5);
+    float pixel = length(fwidth(p));
+    tone *= 1.0 - 0.5 * smoothstep(0.0774 - pixel, 0.08, seam) * (1.0 - smoothstep(0.006, 0.016, pixel));
+    float light = 0.07 + 0.55 * lamp_light(p, n);
+    return from_screen(kFloor) * tone * light * (0.10 + 0.9 * smoothstep(0.1, 0.9, away));
+}
+
+// Its panelled walls, and the lamp, of which a low camera sees the shining side.
+vec3 wall_color(vec3 p, vec3 n) {
+    if (v_material == 8 && v_uv.x > 0.5) return vec3(6.0, 5.6, 4.9);
+    if (v_material == 8) return from_screen(kLampShade) * (0.7 - 0.4 * n.z);
     // The lamp lights the lower part of a wall; its shade throws an edge of shadow.
     float along = abs(n.x) > 0.5 ? p.y : p.x, height = p.z + 0.75;
     float reached = smoothstep(u_lamp.z + 0.25, u_lamp.z - 0.7, p.z) / (1.0 + 0.15 * along * along);
@@ -112,7 +124,7 @@ vec3 room_color(vec3 p, vec3 n) {
         float line = min(rim, min(height - 0.12, 0.9 - height));
         paint = from_screen(kWoodLight) * (0.55 + 0.25 * smoothstep(-0.004, 0.004, line) -
                                            0.25 * (1.0 - smoothstep(0.0, 0.012, abs(line))));
-        paint *= 0.8 + 0.4 * noise(vec2(along * 25.0, height * 2.0));
+        paint *= 0.8 + 0.4 * detail(vec2(along * 25.0, height * 2.0));
         if (height > 0.95) paint *= 1.35;
     }
     return paint * light;
@@ -142,7 +154,9 @@ void main() {
 #elif defined(WOOD)
     color = written(glossy(lit(wood_albedo(v_uv), n), n, vec3(1.7, 1.0, 0.62), 0.5));
 #elif defined(FLOOR)
-    color = written(room_color(v_position, n));
+    color = written(floor_color(v_position, n));
+#elif defined(WALL)
+    color = written(wall_color(v_position, n));
 #else
     if (v_material == 3)
         color = written(pocket_wall(v_position, n, v_uv));
