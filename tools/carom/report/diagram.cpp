@@ -407,11 +407,13 @@ class Drawing {
             const Vec2 back = -v.normalized(), aside(-back.y(), back.x());
             Vec2 at;
             bool free = false;
-            for (int step = 0; step < 12 && !free; ++step) {
-                const Vec2 p = place + record_.size(struck_).R * ((1.5 + 0.8 * (step / 2)) * back +
-                                                                  (step % 2 == 0 ? 1.9 : -1.9) * aside);
-                at = Vec2(std::clamp(px(p), half, kDrawingWidth - half), py(p));
-                free = is_free(at.x(), at.y(), half);
+            for (const double away : {1.5, 2.3, 3.1, 3.9, 4.7, 5.5}) {
+                for (const double side : {1.9, -1.9}) {
+                    if (free) break;
+                    const Vec2 p = place + record_.size(struck_).R * (away * back + side * aside);
+                    at = Vec2(std::clamp(px(p), half, kDrawingWidth - half), py(p));
+                    free = is_free(at.x(), at.y(), half);
+                }
             }
             if (!free) continue;
             labels_.push_back(at);
