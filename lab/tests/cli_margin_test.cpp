@@ -18,9 +18,9 @@ class CliLabMargin : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-TEST_F(CliLabMargin, TraceAndPlot) {
-    const ProcessResult result = carom_lab({"margin", scene_, "--fps", "20", "--no-render", "--trace",
-                                            folder_.file("t.json"), "--plot", folder_.file("m.svg")});
+TEST_F(CliLabMargin, ATraceHasEveryFrameAndEvent) {
+    const ProcessResult result =
+        carom_lab({"margin", scene_, "--fps", "20", "--no-render", "--trace", folder_.file("t.json")});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json trace = Json::parse(read_file(folder_.file("t.json"))).at("traceEvents");
     int frames = 0, events = 0;
@@ -38,9 +38,6 @@ TEST_F(CliLabMargin, TraceAndPlot) {
     }
     EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
     EXPECT_GT(frames, 20);
-    const std::string svg = read_file(folder_.file("m.svg"));
-    for (const char* part : {"<svg", "simulate", "ball_ball", "ball_cushion", "1/20 s"})
-        EXPECT_NE(svg.find(part), std::string::npos) << part;
 }
 
 TEST_F(CliLabMargin, SweepGoesThroughAccuracyAndFrameRate) {

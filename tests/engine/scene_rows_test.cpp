@@ -34,7 +34,7 @@ constexpr bool has_members(std::index_sequence<kFirst...>, std::index_sequence<k
     };
 }
 
-/// Members of an aggregate. Optional Eigen vectors must come last, and their number must be given.
+/// Members of an aggregate. Optional Eigen vectors and texts must come last, and their number must be given.
 template <class T, std::size_t kOptional = 0, std::size_t kMost = 24>
 constexpr std::size_t members() {
     if constexpr (has_members<T>(std::make_index_sequence<kMost>(), std::make_index_sequence<kOptional>()))
@@ -57,7 +57,7 @@ static_assert(members<Rack, 2>() == in_rows(kRackFields) + in_rows(kRackedBallFi
 static_assert(members<Cue>() == in_rows(kCueFields) + 1);  // where
 static_assert(members<Physics>() == in_rows(kPhysicsFields));
 static_assert(members<Stop>() == in_rows(kStopFields));
-static_assert(members<RenderSettings, 2>() == in_rows(kRenderFields));
+static_assert(members<RenderSettings, 3>() == in_rows(kRenderFields));
 static_assert(members<Cushion>() == in_rows(kCushionFields));
 static_assert(members<Jaw>() == in_rows(kJawFields));
 static_assert(members<Pocket>() == in_rows(kPocketFields));
@@ -87,7 +87,7 @@ TEST(Rows, KeysOfASectionDiffer) {
 std::vector<FieldValue> values_for(const Key& row) {
     std::vector<FieldValue> values;
     for (const char* name : row.names()) values.emplace_back(std::string(name));
-    if (row.kind == Key::Kind::kText) values.emplace_back(std::string("1"));
+    if (row.kind == Key::Kind::kText) values.insert(values.end(), {std::string("1"), std::string("#1d6a54")});
     for (const double x : {0.3, 0.031, 0.9, 0.01, 1e-4, 1e-7, 0.11, 3.0, 30.0, 140.0, 640.0}) {
         std::vector<double> list(*row.options.shape != '\0' ? row.count() : 0);
         for (std::size_t k = 0; k < list.size(); ++k) list[k] = x * static_cast<double>(1 + k);

@@ -77,6 +77,8 @@ events = 55
 fps = 50
 size = [640, 360]
 camera = "rail"
+cloth = "#1d6a54"
+cue = false
 )";
 
 std::string with(std::string text, const std::string& from, const std::string& to) {

@@ -46,28 +46,55 @@ StageOptions view(const std::string& camera, FrameSize size = {640, 360}) {
     return options;
 }
 
-TEST(Cameras, RailShowsTheWholeTableAtEverySize) {
-    const Record record = shot();
-    for (FrameSize size :
-         {FrameSize{640, 360}, FrameSize{360, 640}, FrameSize{500, 500}, FrameSize{2000, 300}}) {
-        const Stage stage(record, view("rail", size));
-        const Camera camera = stage.at(0.0).camera;
-        const Bounds& bounds = stage.table()->bounds;
-        double widest = 0.0;
-        for (double x : {bounds.low.x(), bounds.high.x()}) {
-            for (double y : {bounds.low.y(), bounds.high.y()}) {
-                const std::optional<Vec2> pixel = camera.project({x, y, 0.0});
-                ASSERT_TRUE(pixel);
-                EXPECT_GT(pixel->minCoeff(), -0.5);
-                EXPECT_LT(pixel->x(), size.width + 0.5);
-                EXPECT_LT(pixel->y(), size.height + 0.5);
-                widest = std::max({widest, std::abs(pixel->x() / size.width - 0.5),
-                                   std::abs(pixel->y() / size.height - 0.5)});
-            }
+constexpr FrameSize kSizes[] = {{640, 360}, {360, 640}, {500, 500}, {2000, 300}};
+
+/// How far a ball that moves is from the middle of the image, at most: 1 is its edge.
+double farthest_out(const Record& record, const Camera& camera) {
+    double most = 0.0;
+    for (int k = 0; k <= 40; ++k) {
+        for (std::size_t i = 0; i < record.tracks.size(); ++i) {
+            if (record.tracks[i].segments[0].v.norm() == 0.0) continue;
+            const BallState state = record.state_at(static_cast<int>(i), 0.05 * k);
+            const std::optional<Vec2> pixel = camera.project(state.position);
+            if (!pixel) return 1e9;
+            most = std::max({most, std::abs(2.0 * pixel->x() / camera.size.width - 1.0),
+                             std::abs(2.0 * pixel->y() / camera.size.height - 1.0)});
         }
-        EXPECT_GT(widest, 0.44) << "the table fills the image";
+    }
+    return most;
+}
+
+/// A shot over all of the table: one ball from corner to corner, and one across, away from the first.
+Record long_shot() {
+    Record record = shot();
+    record.tracks.pop_back();
+    record.events.pop_back();
+    record.tracks[0].segments.resize(1);
+    Segment& along = record.tracks[0].segments[0];
+    along.r = Vec3(0.05, 0.3, kR);
+    along.v = Vec3(0.57, 1.1, 0.0);
+    along.a = Vec2::Zero();
+    along.duration = 2.0;
+    Segment across = along;
+    across.r = Vec3(0.05, 2.4, kR);
+    across.v = Vec3(0.57, -0.2, 0.0);
+    add_ball(record, "3", across);
+    return record;
+}
+
+TEST(Cameras, RailAndPlayerShowTheBallsThatMoveAtEverySize) {
+    const Record small = shot(), large = long_shot();
+    for (const FrameSize size : kSizes) {
+        for (const char* name : {"rail", "player"}) {
+            EXPECT_LT(farthest_out(small, Stage(small, view(name, size)).at(0.0).camera), 1.0)
+                << name << size.width;
+            const double out = farthest_out(large, Stage(large, view(name, size)).at(0.0).camera);
+            EXPECT_LT(out, 1.0) << name << size.width;
+            EXPECT_GT(out, 0.7) << name << size.width << ": the picture is full";
+        }
+        const Camera rail = Stage(large, view("rail", size)).at(0.0).camera;
         // The head rail is near: lower in the image than the foot rail.
-        EXPECT_GT(camera.project({0.6, 0.0, 0.0})->y(), camera.project({0.6, 2.5, 0.0})->y());
+        EXPECT_GT(rail.project({0.6, 0.0, 0.0})->y(), rail.project({0.6, 2.5, 0.0})->y());
     }
 }
 
@@ -138,6 +165,33 @@ TEST(Cameras, FreeViewAndBadOnes) {
         EXPECT_NE(what.find("expected one of cue, ?[2J, ?[2J"), std::string::npos) << what;
         EXPECT_NE(what.find(" and 12 more"), std::string::npos) << what;
     }
+}
+
+// The cue aims, draws back, meets the ball at 0, follows through, and is taken away.
+TEST(Cues, AreDrawnAroundTheStrike) {
+    Record record = shot();
+    const Stage stage(record, view("top"));
+    const auto gap = [&](double t) {
+        const std::optional<DrawCue> cue = stage.at(t).cue;
+        EXPECT_TRUE(cue) << t;
+        EXPECT_NEAR((cue->butt - cue->tip).norm(), 1.47, 1e-9);
+        EXPECT_LT(cue->butt.y(), cue->tip.y()) << "the ball goes along +y";
+        EXPECT_GT(cue->butt.z(), stage.table()->wood_top) << "it is above the rail";
+        return (cue->tip - Vec3(0.6, 0.5, kR)).norm();
+    };
+    EXPECT_NEAR(gap(0.0), kR, 1e-9);
+    EXPECT_GT(gap(-0.3), gap(-1.5) + 0.1);
+    EXPECT_LT(gap(-0.1), gap(-0.3));
+    EXPECT_LT(stage.at(0.1).cue->butt.y(), -0.8) << "it follows through by less than the ball goes";
+    EXPECT_GT(stage.at(0.1).cue->tip.y(), stage.at(0.0).cue->tip.y());
+    // Struck on its right, a ball turns counter-clockwise.
+    EXPECT_GT(stage.at(0.0).cue->tip.x(), 0.6);
+    EXPECT_FALSE(stage.at(1.0).cue);
+    record.render.hides_cue = true;
+    EXPECT_FALSE(Stage(record, view("top")).at(0.0).cue);
+    record = shot();
+    record.events.clear();
+    EXPECT_FALSE(Stage(record, view("top")).at(0.0).cue) << "nothing was struck";
 }
 
 TEST(Overlays, NamesAreReadAndUnknownOnesRefused) {

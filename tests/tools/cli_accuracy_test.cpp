@@ -26,6 +26,15 @@ class CliAccuracyScene : public ::testing::Test {
     }
 };
 
+TEST_F(CliAccuracyScene, ThePlotMarksTheRecommendedTolerance) {
+    const ProcessResult result = quick({"--plot", folder_.file("a.svg")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string svg = read_file(folder_.file("a.svg"));
+    for (const char* part : {"<svg", "recommended: 1e-0", "target 0.001 m", "march published"})
+        EXPECT_NE(svg.find(part), std::string::npos) << part;
+    EXPECT_EQ(quick({"--plot", folder_.file("a.txt")}).status, 2);
+}
+
 TEST_F(CliAccuracyScene, JsonHasGainErrorsAndARecommendation) {
     const ProcessResult result = quick({"--json"});
     ASSERT_EQ(result.status, 0) << result.err;

@@ -62,6 +62,32 @@ TEST_F(CliDiagram, BlackAndWhiteHasGraysOnly) {
     EXPECT_NE(svg, draw("color.svg"));
 }
 
+TEST_F(CliDiagram, TheGridHasLinesAtQuartersOfADiamond) {
+    const auto lines = [](const std::string& svg) {
+        std::size_t count = 0;
+        for (std::size_t at = svg.find("<path"); at != svg.npos; at = svg.find("<path", at + 1)) ++count;
+        return count;
+    };
+    EXPECT_EQ(lines(draw("grid.svg", {"--grid"})), lines(draw("plain.svg")) + 31u + 15u);
+    EXPECT_EQ(draw("bw.svg", {"--bw"}), draw("long.svg", {"--black-and-white"}));
+}
+
+// Without colour, balls without numbers have letters, so that white, yellow and red differ.
+TEST_F(CliDiagram, BlackAndWhiteBallsDiffer) {
+    const auto drawn = [&](const char* id) {
+        folder_.write("one.toml", std::string("[table]\npreset = \"carom\"\n[[ball]]\nid = \"") + id +
+                                      "\"\nposition = [0.5, 0.5]\n[[ball]]\nid = \"cue\"\nposition = [1, 1]\n"
+                                      "[cue]\nspeed = 0\n");
+        EXPECT_EQ(
+            carom({"diagram", folder_.file("one.toml"), "--bw", "--title", "t", "-o", folder_.file("o.svg")})
+                .status,
+            0);
+        return read_file(folder_.file("o.svg"));
+    };
+    EXPECT_NE(drawn("yellow"), drawn("red"));
+    EXPECT_NE(drawn("9"), drawn("1"));
+}
+
 TEST_F(CliDiagram, DrawsRecordsAndSeveralShotsOnAPage) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
     const std::string one = draw("one.svg"), two = draw("two.svg", {folder_.file("r.json")});

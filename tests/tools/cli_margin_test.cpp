@@ -19,6 +19,19 @@ class CliMargin : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
+TEST_F(CliMargin, ThePlotNamesTheWorstFrame) {
+    const ProcessResult result =
+        carom({"margin", scene_, "--fps", "20", "--no-render", "--plot", folder_.file("m.svg")});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string svg = read_file(folder_.file("m.svg"));
+    for (const char* part : {"<svg", "simulate", "ball_ball", "ball_cushion", "1/20 s", "worst frame: "})
+        EXPECT_NE(svg.find(part), std::string::npos) << part;
+    const ProcessResult png =
+        carom({"margin", scene_, "--fps", "20", "--no-render", "--plot", folder_.file("m.png")});
+    if (png.status != 0) GTEST_SKIP() << png.err;  // a build without cairo
+    EXPECT_TRUE(read_file(folder_.file("m.png")).starts_with("\x89PNG\r\n"));
+}
+
 void expect_margin_json(const Json& json, bool rendered) {
     EXPECT_EQ(json.at("fps"), 20.0);
     EXPECT_EQ(json.at("budget_ms"), 50.0);

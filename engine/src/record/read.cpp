@@ -101,6 +101,7 @@ RenderSettings read_render(const JsonValue& value) {
     RenderSettings render = read_object(value, kRenderFields);
     if (render.eye.has_value() != render.target.has_value())
         value.fail(std::string("the key \"") + (render.eye ? "target" : "eye") + "\" is missing");
+    if (render.cloth && !color_of(*render.cloth)) value.fail("cloth: expected a colour such as \"#1d6a54\"");
     return render;
 }
 

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -157,6 +161,18 @@ void use_cue(Cue& cue, std::string_view preset) {
 
 double cloth_mu_r(std::string_view cloth) {
     return named(kClothFriction, cloth, "cloth").mu_r;
+}
+
+std::optional<std::array<double, 3>> color_of(std::string_view text) {
+    if (text.size() != 7 || text[0] != '#') return std::nullopt;
+    std::array<double, 3> color{};
+    for (std::size_t k = 0; k < color.size(); ++k) {
+        int channel = 0;
+        const char *const first = text.data() + 1 + 2 * k, *const last = first + 2;
+        if (std::from_chars(first, last, channel, 16).ptr != last || channel < 0) return std::nullopt;
+        color[k] = channel / 255.0;
+    }
+    return color;
 }
 
 }  // namespace carom

@@ -25,8 +25,8 @@ namespace {
 
 struct LabAccuracyArgs : AccuracySceneArgs {
     bool box2d = false;
-    /// File names; empty: not written.
-    std::string plot, html;
+    /// A file name; empty: not written.
+    std::string html;
 };
 
 void measure_box2d(SceneAccuracy& result, const Scene& scene) {
@@ -58,26 +58,6 @@ void measure_box2d(SceneAccuracy& result, const Scene& scene) {
     }
 }
 
-Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene) {
-    Plot plot;
-    plot.title = "What accuracy costs: " + scene;
-    plot.notes = {result.converged ? fmt::format("gain {:.1e}; converged runs agree within {:.1e} m",
-                                                 result.gain, result.agreement)
-                                   : "the converged runs do not agree: distances, not errors"};
-    plot.x = {"ms for the shot", true, {}, {}};
-    plot.y = {"largest final distance from the converged run, m", true, {}, {}};
-    for (const char* method : {"march", "march published", "tolerance", "box2d"}) {
-        Series series;
-        series.name = method == std::string("box2d") ? "Box2D, 60 Hz to 10 kHz" : method;
-        for (const SceneAccuracyRow& r : result.rows)
-            if (r.method == method && r.failed.empty())
-                series.points.emplace_back(r.ns_min * 1e-6, std::max(r.error.largest, 1e-16));
-        if (!series.points.empty()) plot.series.push_back(series);
-    }
-    plot.levels = {{fmt::format("target {:g} m", result.target), result.target}};
-    return plot;
-}
-
 Report report_of(const SceneAccuracy& result, const std::string& scene) {
     std::vector<std::string> notes = scene_accuracy_notes(result, scene);
     notes.push_back(result.sentence);
@@ -89,7 +69,6 @@ Report report_of(const SceneAccuracy& result, const std::string& scene) {
 }
 
 int run(const LabAccuracyArgs& args) {
-    check_plot_path(args.plot);
     check_page_path("--html", args.html);
     const Plan plan = plan_for_accuracy(args);
     SceneAccuracy result = measure_scene_accuracy(plan.scene, args);
@@ -109,7 +88,6 @@ void add_lab_accuracy(Options& program) {
     add_accuracy_options(command, args);
     command.flag("--box2d", args.box2d,
                  "Also the same shot in a Box2D world stepped at 60 Hz to 10 kHz (default: off)");
-    add_plot(command, args.plot);
     add_html(command, args.html);
     add_accuracy_kernel(command);
 }

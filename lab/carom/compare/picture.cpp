@@ -20,9 +20,9 @@ constexpr int kGrey = 7, kBallColours = 7;  // of the palette of plots
 constexpr std::size_t kMostNames = 22;      // in the legend; the frame has no room for more
 
 /// Maps the cloth to the paper, and collects what the paper must hold.
-class Paper {
+class PaperPlane {
   public:
-    explicit Paper(bool turned) : turned_(turned) {}
+    explicit PaperPlane(bool turned) : turned_(turned) {}
 
     /// Turned by a right angle, not mirrored.
     std::pair<double, double> point(double x, double y) {
@@ -64,7 +64,8 @@ std::vector<double> times_on(const BallWay& way) {
     return times;
 }
 
-void draw_ways(const Record& record, const std::vector<int>& colours, bool dashed, Paper& paper, Plot& plot) {
+void draw_ways(const Record& record, const std::vector<int>& colours, bool dashed, PaperPlane& paper,
+               Plot& plot) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         const BallWay way(record, static_cast<int>(i));
         Series line;
@@ -87,7 +88,7 @@ void draw_ways(const Record& record, const std::vector<int>& colours, bool dashe
     }
 }
 
-void draw_noses(const carom::Table& table, Paper& paper, Plot& plot) {
+void draw_noses(const carom::Table& table, PaperPlane& paper, Plot& plot) {
     const carom::Table drawn = without_arcs(table);
     for (const Cushion& cushion : drawn.cushions) {
         Series nose;
@@ -102,7 +103,7 @@ void draw_noses(const carom::Table& table, Paper& paper, Plot& plot) {
 }  // namespace
 
 Plot ways_plot(const Record& a, const std::string& name_a, const Record& b, const std::string& name_b) {
-    Paper paper(a.table.length >= a.table.width);
+    PaperPlane paper(a.table.length >= a.table.width);
     Plot plot;
     plot.title = fmt::format("{} and {}", name_a, name_b);
     plot.notes = {"solid: A, dashed: B; a dot is the last place"};

@@ -13,7 +13,7 @@ struct LabMarginArgs : MarginArgs {
     /// Accuracy x frame rate.
     bool sweep = false;
     /// File names; empty: not written.
-    std::string plot, trace, html;
+    std::string trace, html;
 };
 
 /// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the previous one is done,

@@ -29,7 +29,6 @@ Report margin_report(const Margin& margin, const MarginRun& last, const std::str
 int run(const LabMarginArgs& asked) {
     LabMarginArgs args = asked;
     read_margin_args(args);
-    check_plot_path(args.plot);
     check_page_path("--html", args.html);
     if (args.sweep && !args.trace.empty())
         throw UsageError("--trace is of one setting: it cannot be combined with --sweep");
@@ -57,7 +56,6 @@ void add_lab_margin(Options& program) {
                  "(default: off)");
     command.option("--trace", &args.trace, "FILE.json",
                    "Write the frames as Chrome trace events (default: not written)");
-    add_plot(command, args.plot);
     add_html(command, args.html);
 }
 

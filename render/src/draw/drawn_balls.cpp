@@ -19,21 +19,32 @@ float linear(float srgb) {
     return srgb * srgb;  // the same conversion as from_screen() in shaders/common.glsl
 }
 
-// [radii] How far the shading around a ball reaches: farther if it is in the air.
-double shadow_reach(const DrawBall& ball) {
-    return shaders::kShadowReach * std::max(1.0, ball.center.z() / ball.radius);
+// [radii] Height of the centre above the cloth.
+double lift(const DrawBall& ball) {
+    return std::max(1.0, ball.center.z() / ball.radius);
+}
+
+// The light comes from around the middle of the lamp, as in lamp_light() of the shaders.
+LampSlopes lamp_slopes(const DrawBall& ball, const Lamp& lamp) {
+    constexpr double kMiddle = 0.6, kMost = 1.6;  // of the lamp; of a slope
+    const double height = lamp.center.z();
+    const Vec2 away = lamp.endless ? Vec2::Zero() : Vec2((lamp.center - ball.center).head<2>() / height);
+    const Vec2 half = lamp.endless ? Vec2(0.13, 0.3) : Vec2(kMiddle * lamp.half / height);
+    const double less = std::min(1.0, kMost / std::max(away.norm(), 1e-9));
+    const auto f = [](double value) { return static_cast<float>(value); };
+    return {f(less * away.x()), f(less * away.y()), f(half.x()), f(half.y())};
 }
 
 BallPlace place_of(const DrawBall& ball, const TableMesh& table) {
     if (ball.in_pocket) return BallPlace::kPocket;
     const bool near = std::any_of(table.noses.begin(), table.noses.end(), [&](const auto& nose) {
-        return distance_to_segment(ball.center.head<2>(), nose[0], nose[1]) <
-               shadow_reach(ball) * ball.radius;
+        return distance_to_segment(ball.center.head<2>(), nose[0], nose[1]) < 2.3 * lift(ball) * ball.radius;
     });
     return near ? BallPlace::kCushion : BallPlace::kCloth;
 }
 
-BallInstance make_instance(const DrawBall& ball, BallPlace place, const Vec3& origin, double distance) {
+BallInstance make_instance(const DrawBall& ball, BallPlace place, const TableMesh& table, double distance) {
+    const Vec3 origin(table.origin.x(), table.origin.y(), 0.0);
     const auto f = [](double value) { return static_cast<float>(value); };
     const Vec3 center = ball.center - origin;
     const Eigen::Quaterniond& q = ball.orientation;
@@ -43,6 +54,7 @@ BallInstance make_instance(const DrawBall& ball, BallPlace place, const Vec3& or
             {linear(style.color[0]), linear(style.color[1]), linear(style.color[2]),
              static_cast<float>(style.number)},
             {static_cast<float>(style.pattern), static_cast<float>(place), f(distance)},
+            lamp_slopes(ball, table.lamp),
             {}};
 }
 
@@ -75,22 +87,6 @@ PixelBox clipped(const Vec2& low, const Vec2& high, FrameSize size) {
     };
     return {inside(low.x() - 2.0, size.width), inside(low.y() - 2.0, size.height),
             inside(high.x() + 3.0, size.width), inside(high.y() + 3.0, size.height)};
-}
-
-// Pixels that may show points within `reach` of the centre to either side, `down` below it and a radius
-// above; the whole image if part of that is behind the eye.
-PixelBox box_around_ball(const DrawBall& ball, const Camera& camera, double reach, double down) {
-    const PixelBox all = whole(camera.size);
-    Vec2 low(1e9, 1e9), high(-1e9, -1e9);
-    for (int i = 0; i < 8; ++i) {
-        const Vec3 corner = ball.center + Vec3((i & 1) ? reach : -reach, (i & 2) ? reach : -reach,
-                                               (i & 4) ? ball.radius : -down);
-        const std::optional<Vec2> pixel = camera.project(corner);
-        if (!pixel) return all;
-        low = low.cwiseMin(*pixel);
-        high = high.cwiseMax(*pixel);
-    }
-    return clipped(low, high, camera.size);
 }
 
 // Pixels that a disc with these two radii may cover, where it is in front of the eye.
@@ -134,12 +130,16 @@ PixelBox box_of_sphere(const Vec3& center, double radius, const Camera& camera) 
     return box_of_disc(center, silhouette * right, silhouette * up, camera);
 }
 
-// Pixels that the ball and its shadow may cover.
-PixelBox box_of(const DrawBall& ball, const Camera& camera) {
-    if (ball.in_pocket) return box_around_ball(ball, camera, ball.radius, ball.radius);
-    // Down to the shadow, if the ball is in the air.
-    return box_around_ball(ball, camera, shadow_reach(ball) * ball.radius,
-                           std::max(ball.radius, ball.center.z()));
+// Pixels that the shadow on the cloth may cover: a disc from the side of the lamp to the end of the shadow.
+PixelBox box_of_shadow(const DrawBall& ball, const LampSlopes& lamp, const Camera& camera) {
+    const Vec2 slope(lamp.x, lamp.y);
+    // The lowest ray of the lamp that passes over a ball on the cloth.
+    const double lowest = slope.norm() + std::hypot(lamp.half_x, lamp.half_y);
+    const double unit = lift(ball) * ball.radius, near = shaders::kShadowReach * unit,
+                 far = std::max(near, (lowest + std::hypot(lowest, 1.0)) * unit), reach = 0.5 * (near + far);
+    const Vec2 away = slope.norm() > 0.0 ? Vec2(-slope.normalized()) : Vec2::Zero();
+    const Vec2 middle = ball.center.head<2>() + 0.5 * (far - near) * away;
+    return box_of_disc({middle.x(), middle.y(), 0.0}, Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), camera);
 }
 
 }  // namespace
@@ -167,21 +167,21 @@ bool ClothMap::all_cloth(const PixelBox& box) const {
 }
 
 std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth) {
-    const Vec3 origin(list.table->origin.x(), list.table->origin.y(), 0.0);
     std::vector<DrawnBall> balls;
     for (const DrawBall& ball : list.balls) {
         const double distance = (ball.center - list.camera.eye).norm();
         // A ball that contains the eye or lies behind it is not visible.
         if (distance <= 1.05 * ball.radius || list.camera.depth(ball.center) <= -ball.radius) continue;
-        const PixelBox box = box_of(ball, list.camera);
-        if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
-        BallInstance instance = make_instance(ball, place_of(ball, *list.table), origin, distance);
+        const BallPlace place = place_of(ball, *list.table);
+        BallInstance instance = make_instance(ball, place, *list.table, distance);
         add_neighbours(instance, ball, list.balls);
-        const double reach = shadow_reach(ball) * ball.radius;
-        const Vec3 below(ball.center.x(), ball.center.y(), 0.0);
         const PixelBox body = box_of_sphere(ball.center, ball.radius, list.camera),
-                       shadow = box_of_disc(below, Vec3(reach, 0.0, 0.0), Vec3(0.0, reach, 0.0), list.camera),
+                       shadow = box_of_shadow(ball, instance.lamp, list.camera),
                        beside = box_of_sphere(ball.center, 2.15 * ball.radius, list.camera);
+        PixelBox box = body;
+        if (place != BallPlace::kPocket) box = joined(box, shadow);
+        if (place == BallPlace::kCushion) box = joined(box, beside);
+        if (box.x1 <= box.x0 || box.y1 <= box.y0) continue;
         balls.push_back({instance, box, body, shadow, beside, !ball.in_pocket && cloth.all_cloth(box)});
     }
     // Balls are drawn from far to near, so that the soft edges of near balls blend over the far ones.

@@ -22,12 +22,20 @@ enum class BallPlace : std::uint8_t {
     kCushion,  ///< near a cushion, which also gets a shadow
 };
 
+/// The lamp as the cloth below a ball sees it: the slopes of the directions to its centre, and half their
+/// ranges.
+struct LampSlopes {
+    float x, y, half_x, half_y;
+    bool operator==(const LampSlopes&) const = default;
+};
+
 /// What a ball looks like, in single precision.
 struct BallInstance {
     float center_radius[4];
     float orientation[4];
     float color_number[4];
-    float pattern[3];                  ///< pattern, place (BallPlace), distance from the eye
+    float pattern[3];  ///< pattern, place (BallPlace), distance from the eye
+    LampSlopes lamp;
     float near[shaders::kMaxNear][4];  ///< the nearest other balls: offset of the centre [m], weight 0..1
 
     bool operator==(const BallInstance&) const = default;

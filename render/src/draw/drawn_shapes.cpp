@@ -23,19 +23,39 @@ DrawnShape everywhere(FrameSize size) {
     return {{}, {0, 0, size.width, size.height}, Vec2::Zero(), Vec2::Zero(), -1.0};
 }
 
-DrawnShape shape_of(const DrawLine& line, const Camera& camera) {
+// From one place to another. @param half_width [pixels]
+DrawnShape long_shape(const Vec3& from, const Vec3& to, double half_width, const Camera& camera) {
     DrawnShape shape = everywhere(camera.size);
-    shape.what = line;
-    const std::optional<Vec2> a = camera.project(line.a), b = camera.project(line.b);
-    // A line this near to the eye is cut off, and may cover anything.
-    constexpr double kNear = 0.02;  // m, twice what the shader cuts off at
+    const std::optional<Vec2> a = camera.project(from), b = camera.project(to);
+    // What is this near to the eye is cut off, and may cover anything.
+    constexpr double kNear = 0.02;  // m, twice what the painters cut off at
     if (!a || !b || !a->allFinite() || !b->allFinite()) return shape;
-    if (!(camera.depth(line.a) > kNear && camera.depth(line.b) > kNear)) return shape;
+    if (!(camera.depth(from) > kNear && camera.depth(to) > kNear)) return shape;
     shape.from = *a;
     shape.to = *b;
-    // For round ends, the soft edge, and the shader's single precision.
-    shape.reach = 0.5 * static_cast<double>(line.width) + 3.0;
+    // For round ends, the soft edge, and the painters' single precision.
+    shape.reach = half_width + 3.0;
     shape.box = box_around(*a, *b, shape.reach, camera.size);
+    return shape;
+}
+
+DrawnShape shape_of(const DrawLine& line, const Camera& camera) {
+    DrawnShape shape = long_shape(line.a, line.b, 0.5 * static_cast<double>(line.width), camera);
+    shape.what = line;
+    return shape;
+}
+
+// The cue and its shadow on the cloth.
+DrawnShape shape_of(const DrawCue& cue, const Camera& camera) {
+    DrawnShape shape = everywhere(camera.size);
+    shape.what = cue;
+    const auto below = [](const Vec3& p) { return Vec3(p.x(), p.y(), 0.0); };
+    const double nearest = std::min({camera.depth(cue.tip), camera.depth(cue.butt),
+                                     camera.depth(below(cue.tip)), camera.depth(below(cue.butt))});
+    if (!(nearest > 0.0)) return shape;
+    const double pixels = camera.scale(camera.eye + nearest * camera.forward());
+    shape.box = joined(long_shape(cue.tip, cue.butt, kCueReach * pixels, camera).box,
+                       long_shape(below(cue.tip), below(cue.butt), kCueShadowReach * pixels, camera).box);
     return shape;
 }
 
@@ -68,6 +88,7 @@ void add_boxes_of(const DrawnShape& shape, std::vector<PixelBox>& boxes) {
 std::vector<DrawnShape> drawn_shapes(const DrawList& list) {
     std::vector<DrawnShape> shapes;
     shapes.reserve(list.lines.size() + list.boxes.size());
+    if (list.cue) shapes.push_back(shape_of(*list.cue, list.camera));
     for (const DrawLine& line : list.lines) shapes.push_back(shape_of(line, list.camera));
     for (const DrawBox& box : list.boxes) shapes.push_back(shape_of(box, list.camera.size));
     return shapes;

@@ -110,6 +110,12 @@ inline Vec mix(const Vec& a, const Vec& b, Floats t) {
     return a + (b - a) * t;
 }
 
+/// Radiance to screen values, as in shaders/common.glsl.
+inline Floats to_screen(Floats c) {
+    const Floats over = 1.0F + max(c - 0.5F, all(0.0F));
+    return sqrt(clamp(c, 0.0F, 0.5F) + 0.5F - 0.5F / (over * over));
+}
+
 /// Values of four neighbours, four bytes each; fewer at the end of a row.
 template <class Four>
 Four load(const void* from, int count) {

@@ -14,14 +14,10 @@ namespace {
 
 using namespace lanes;
 
-// Screen values to radiance and back, as in shaders/common.glsl.
+// Screen values to radiance, as in shaders/common.glsl.
 Vec from_screen(const look::Color& screen) {
     const Vec c = vec(screen);
     return c * c;
-}
-Floats to_screen(Floats c) {
-    const Floats over = 1.0F + max(c - 0.5F, 0.0F);
-    return sqrt(clamp(c, 0.0F, 0.5F) + 0.5F - 0.5F / (over * over));
 }
 
 // The lamp, seen from a ball.
@@ -32,10 +28,22 @@ struct LampOnBalls {
         half_y = endless ? 0.5F * height : view.lamp_half[1];
     }
 
-    // Light on a ball: the centre of the lamp is accurate enough. The 0.6 accounts for its size, which lights
-    // a little beyond the terminator; the square lets the light end without an edge.
+    // Light on the cloth, as lamp_light() of the shaders, but from the centre of the lamp.
+    Floats light_on_cloth(Floats at_x, Floats at_y) const {
+        if (endless) return all(1.0F);
+        const Floats dx = at_x - x, dy = at_y - y, square = (dx * dx + dy * dy) * (1.0F / (height * height));
+        return 1.0F / ((1.0F + square) * sqrt(1.0F + square));
+    }
+
+    // Light on a ball, from the nearest point of the middle of the lamp, as lamp_light() of the shaders. The
+    // 0.6 accounts for its size, which lights a little beyond the terminator; the square lets the light end
+    // without an edge.
     Floats light(const Vec& p, const Vec& n) const {
-        const Vec to = endless ? Vec{all(0.0F), all(0.0F), all(height)} : Vec{x - p.x, y - p.y, height - p.z};
+        const auto toward = [](Floats away, float half) {
+            return clamp(away, -0.6F * half, 0.6F * half) - away;
+        };
+        const Vec to = endless ? Vec{all(0.0F), all(0.0F), all(height)}
+                               : Vec{toward(p.x - x, half_x), toward(p.y - y, half_y), height - p.z};
         const Floats inverse = inversesqrt(dot(to, to));
         const Floats facing = max((dot(n, to) * inverse + 0.6F) * (1.0F / 1.6F), 0.0F);
         return facing * facing * (height * height) * inverse * inverse;
@@ -46,15 +54,58 @@ struct LampOnBalls {
         const Floats up = max(r.z, 0.02F), way = (height - p.z) / up;
         const Floats at_x = r.x * way + (endless ? all(0.0F) : p.x - x),
                      at_y = r.y * way + (endless ? all(0.0F) : p.y - y);
-        const float blur = 0.1F * height;  // width of the edge of the lamp
-        const Floats shown = (1.0F - smoothstep(-blur, blur, abs(at_x) - half_x)) *
-                             (1.0F - smoothstep(-blur, blur, abs(at_y) - half_y));
+        const float blur = 0.06F * height;  // width of the edge of the lamp
+        const bool lengthwise = half_y > half_x;
+        const Floats along = abs(lengthwise ? at_y : at_x), across = abs(lengthwise ? at_x : at_y);
+        const float length = std::max(half_x, half_y), width = std::min(half_x, half_y);
+        // Three panes, with bars at a third.
+        const Floats bar = abs(along - length * (1.0F / 3.0F)) - 0.045F * length;
+        const Floats shown = (1.0F - smoothstep(-blur, blur, along - length)) *
+                             (1.0F - smoothstep(-blur, blur, across - width)) *
+                             (0.25F + 0.75F * smoothstep(-0.3F * blur, 0.3F * blur, bar));
         return choose(r.z < 0.02F, all(0.0F), shown);
     }
 
     float height;
     bool endless;
     float x, y, half_x = 0.0F, half_y = 0.0F;
+};
+
+// What a ball mirrors: the lamp, the cloth, the cushions around it, and the dim room above them.
+struct Surroundings {
+    explicit Surroundings(const View& view)
+        : lamp(view),
+          cloth(vec(view.cloth) * vec(view.cloth)),
+          x(0.5F * (view.inner[0] + view.inner[2])),
+          y(0.5F * (view.inner[1] + view.inner[3])),
+          half_x(view.inner[2] - x),
+          half_y(view.inner[3] - y) {}
+
+    // Radiance at p from direction r; R: radius of the ball.
+    Vec mirrored(const Vec& p, const Vec& r, Floats shine, float R) const {
+        constexpr float kRail = 0.045F;  // [m] height of the rails
+        // The ray passes over the edge of the table, at this height.
+        const Floats to_edge =
+            min(max(half_x - choose(r.x < 0.0F, x - p.x, p.x - x), 0.0F) / max(abs(r.x), 1e-4F),
+                max(half_y - choose(r.y < 0.0F, y - p.y, p.y - y), 0.0F) / max(abs(r.y), 1e-4F));
+        const Floats edge = p.z + r.z * to_edge, blur = 0.006F + 0.03F * to_edge;
+        const auto below = [&](float level) {
+            return clamp(0.5F + (level - edge) / (2.0F * blur), 0.0F, 1.0F);
+        };
+        // Near its contact, the cloth is in the shadow of the ball.
+        const Floats to_cloth = p.z / max(-r.z, 0.02F), away = to_cloth * (1.0F / R);
+        const Floats lit = lamp.light_on_cloth(p.x + r.x * to_cloth, p.y + r.y * to_cloth) *
+                           (away * away / (away * away + 1.3F));
+        const Floats dim = 0.035F + 0.05F * max(1.0F - r.z * 2.5F, 0.0F);
+        const Vec room{dim * 1.08F, dim, dim * 0.9F};
+        const Floats bright = 15.0F * shine * lamp.mirror(p, r);
+        return mix(mix(room + Vec{bright, bright, bright * 0.93F}, cloth * all(0.35F), below(kRail)),
+                   cloth * lit, below(0.0F));
+    }
+
+    LampOnBalls lamp;
+    Vec cloth;
+    float x, y, half_x, half_y;
 };
 
 // Share of the light at normal n that passes the ball's neighbours: each hides (r / d)^2 cos of the sky.
@@ -88,7 +139,7 @@ void paint_shadow_beside(const Canvas& canvas, const DrawnBall& ball, float stre
         const Vec way = ray * background.distance(first, count), away = (from_ball + way) * all(per_radius);
         const Floats near = clamp(1.0F - (dot(away, away) - 1.0F) * (1.0F / 3.4F), 0.0F, 1.0F);
         if (!any(near > 0.0F)) return;
-        const Floats dark = 0.6F * near * near * smoothstep(0.0F, 0.1F, (eye_z + way.z) * per_radius) *
+        const Floats dark = 0.45F * near * near * smoothstep(0.0F, 0.1F, (eye_z + way.z) * per_radius) *
                             (1.0F - background.cloth(first, count));
         brush.darken(first, count, dark * strength);
     });
@@ -100,37 +151,44 @@ void paint_shadow(const Canvas& canvas, const DrawnBall& ball) {
     const auto place = static_cast<BallPlace>(std::lround(ball.instance.pattern[1]));
     if (place == BallPlace::kPocket) return;
     const View& view = canvas.view();
-    const float *center = ball.instance.center_radius, R = center[3];
+    const float *center = ball.instance.center_radius, R = center[3], per_radius = 1.0F / R;
     const float strength = std::clamp(center[2] / R, 0.0F, 1.0F);  // a falling ball has no shadow left
-    // A ball in the air has a wider shadow, in proportion to the height of its centre, and farther away.
-    const float lift = std::max(center[2] / R, 1.0F), unit = 1.0F / (R * lift);
-    // Centre of the lamp's shadow relative to the point of contact, in radii: limited to 0.65, so that the
-    // whole shadow lies within the reach.
-    const bool endless = view.lamp_endless > 0.5F;
-    float away_x = endless ? 0.0F : (center[0] - view.lamp[0]) / (view.lamp[2] - center[2]);
-    float away_y = endless ? 0.0F : (center[1] - view.lamp[1]) / (view.lamp[2] - center[2]);
-    const float limit =
-        std::min(1.0F, 0.65F / std::sqrt(std::max(away_x * away_x + away_y * away_y, 1e-12F)));
-    away_x *= limit;
-    away_y *= limit;
-    constexpr auto kReach = static_cast<float>(shaders::kShadowReach);
+    // From a place d radii from the point below the centre, which is L radii above the cloth, the ball hides
+    // the slopes of directions a (towards it) and b (across) for which (a d + L)^2 >= (a^2 + b^2 + 1) K^2
+    // with K^2 = d^2 + L^2 - 1, and the lamp is a rectangle of slopes.
+    const float L = std::max(center[2] / R, 1.0F), over = L * L - 1.0F;
+    const LampSlopes lamp = ball.instance.lamp;
+    const float lateral =
+        std::min(1.0F, 1.0F / std::sqrt(std::max(over, 1e-9F)) / std::max(lamp.half_x, lamp.half_y));
+    const float beyond_x = std::max(std::abs(lamp.x) - lamp.half_x, 0.0F),
+                beyond_y = std::max(std::abs(lamp.y) - lamp.half_y, 0.0F);
+    // As lit() of the shaders divides the light between the lamp and the room.
+    const float of_lamp = 1.05F * std::pow(1.0F + beyond_x * beyond_x + beyond_y * beyond_y, -1.5F);
+    const float share = strength * of_lamp / (of_lamp + 0.16F) * lateral,
+                of_room = 0.35F * strength / (L * L);
     const float eye_z = view.eye[2], from_x = view.eye[0] - center[0], from_y = view.eye[1] - center[1];
-    const float of_sky = 0.55F / (lift * lift), of_lamp = 0.55F / lift;
+    const float reach = 1.0F / (static_cast<float>(shaders::kShadowReach) * L);
     const bool plain = ball.plain;
     canvas.each(ball.shadow, [=, background = canvas.background(), brush = canvas.brush()](
                                  std::size_t first, int count, const Vec& ray) {
         const Floats way = -eye_z / ray.z;  // to the plane of the cloth
-        const Floats px = (ray.x * way + from_x) * unit, py = (ray.y * way + from_y) * unit;
-        // Share of the sky hidden by a sphere resting on a plane: (1 + d^2)^(-3/2) at d radii from the
-        // contact. The polynomial differs by less than 0.03 up to 2 radii, and reaches 0.
-        const Floats near = max(1.0F - (px * px + py * py) * (1.0F / (kReach * kReach)), 0.0F);
-        if (!any(near > 0.0F)) return;
-        const Floats hidden = near * near * near;
-        // The lamp is wide, so its shadow has no sharp edge.
-        const Floats dx = px - away_x, dy = py - away_y;
-        const Floats inner = max(1.0F - (dx * dx + dy * dy) * (1.0F / 3.4F), 0.0F);
-        // A ball higher up hides less of the sky and of the wide lamp.
-        Floats dark = (1.0F - (1.0F - hidden * of_sky) * (1.0F - inner * inner * of_lamp)) * strength;
+        const Floats px = (ray.x * way + from_x) * per_radius, py = (ray.y * way + from_y) * per_radius;
+        const Floats d2 = px * px + py * py, inverse = inversesqrt(max(d2, 0.0025F)), d = d2 * inverse;
+        const Floats ux = -px * inverse, uy = -py * inverse;
+        const Floats a = ux * lamp.x + uy * lamp.y, b = uy * lamp.x - ux * lamp.y;
+        const Floats half_a = abs(ux) * lamp.half_x + abs(uy) * lamp.half_y,
+                     half_b = abs(uy) * lamp.half_x + abs(ux) * lamp.half_y;
+        const Floats root = sqrt(d2 + over);
+        const Floats low =
+            (d2 - 1.0F) / (d * L + root) + (b * b + half_b * half_b * (1.0F / 3.0F)) * d * (0.5F / L);
+        Floats high = a + half_a;
+        if (over > 0.0F) high = min(high, (d * L + root) * (1.0F / over));
+        const Floats part = clamp((high - max(low, a - half_a)) * (0.5F / half_a), 0.0F, 1.0F);
+        const Floats near = max(1.0F - d2 * reach * reach, 0.0F);
+        const Floats keep =
+            (1.0F - share * part * part * (3.0F - 2.0F * part)) * (1.0F - of_room * near * near * near);
+        if (!any(keep < 0.998F)) return;
+        Floats dark = 1.0F - sqrt(keep);  // of the screen value
         dark = choose(way > 0.0F, dark, all(0.0F));
         if (!plain) dark *= background.cloth(first, count);
         brush.darken(first, count, dark);
@@ -145,7 +203,7 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
     const Vec middle{all(center[0]), all(center[1]), all(center[2])}, oc = middle - vec(view.eye);
     const float* up = view.up_scaled;
     const float pixel_size = 2.0F * std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]) / view.size[1];
-    const LampOnBalls lamp(view);
+    const Surroundings around(view);
     const float* c = ball.instance.color_number;
     const Skin skin({{all(c[0]), all(c[1]), all(c[2])},
                      from_screen(look::is_bright(c[0], c[1], c[2]) ? look::kRedDot : look::kPaleDot),
@@ -153,7 +211,6 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
                      number(look::kInk)},
                     static_cast<BallPattern>(std::lround(ball.instance.pattern[0])),
                     static_cast<int>(std::lround(c[3])), ball.instance.orientation, glyphs);
-    const Vec cloth = from_screen(look::kCloth), dim{all(0.10F), all(0.10F), all(0.10F)};
     const bool sunk = center[2] < 0.999F * R;
     const bool plain = ball.plain;
     const BallInstance instance = ball.instance;
@@ -179,16 +236,14 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         const Vec base = skin.albedo(n, pixel / (R * (1.0F + (facing - 1.0F) * 0.6F)), shine);
         // Light: the lamp, the dim room above, and the reflection of the cloth from below.
         const Floats under = 0.5F - 0.5F * n.z;
-        const Floats above = lamp.light(p, n) + 0.20F * (1.0F - under), below = 0.75F * under * under;
+        const Floats above = around.lamp.light(p, n) + 0.20F * (1.0F - under), below = 0.75F * under * under;
         const Floats open = (1.0F - 0.45F * smoothstep(0.55F, 1.0F, under)) * past_neighbours(instance, n);
-        Vec shade = base * (Vec{above, above, above} + cloth * below) * open;
-        // Specular reflection: a mirror image of the lamp, and of the room at grazing angles.
-        const Vec r = dir + n * (2.0F * toward);
+        Vec shade = base * (Vec{above, above, above} + around.cloth * below) * open;
+        // Polish mirrors more at grazing angles.
         const Floats grazing = 1.0F - max(toward, 0.0F), grazing2 = grazing * grazing;
-        const Floats fresnel = 0.045F + 0.955F * grazing2 * grazing2;
-        const Vec room = mix(cloth * all(0.35F), dim, smoothstep(-0.25F, 0.25F, r.z));
-        const Floats bright = 11.0F * shine * lamp.mirror(p, r);
-        shade = shade + (room + Vec{bright, bright, bright}) * fresnel;
+        const Floats fresnel = 0.05F + 0.95F * grazing2 * grazing2 * grazing;
+        shade = shade +
+                around.mirrored(p, dir + n * (2.0F * toward), shine, R) * (fresnel * (0.4F + 0.6F * open));
         if (sunk) shade = shade * light_in_pocket(p.z);
         brush.blend(first, count, {to_screen(shade.x), to_screen(shade.y), to_screen(shade.z)}, cover);
     });

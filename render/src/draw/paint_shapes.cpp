@@ -103,10 +103,11 @@ void paint_box(const Canvas& canvas, const DrawBox& box, const PixelBox& pixels,
             Floats cover = clamp(min(at_x, wide - at_x) + 0.5F, 0.0F, 1.0F) * row;
             if (!any(cover > 0.0F)) continue;
             for (int i = 0; i < kLanes && box.glyph >= 0; ++i) {
-                const float near = glyph_nearness(glyphs, box.glyph, std::clamp(at_x[i] / wide, 0.02F, 0.98F),
-                                                  std::clamp(at_y / high, 0.02F, 0.98F));
-                // Distances are in units of the glyph; the height of the cell is 9 units.
-                cover[i] *= std::clamp(0.5F - ((1.0F - near) * 1.5F - 0.5F) * high / 9.0F, 0.0F, 1.0F);
+                const float outside =
+                    glyph_distance(glyphs, box.glyph, std::clamp(at_x[i] / wide, 0.02F, 0.98F),
+                                   std::clamp(at_y / high, 0.02F, 0.98F));
+                // The height of the cell is 9 units.
+                cover[i] *= std::clamp(0.5F - outside * high / 9.0F, 0.0F, 1.0F);
             }
             brush.blend(canvas.index(x, y), std::min(kLanes, pixels.x1 - x), color, cover * box.color[3]);
         }

@@ -1,4 +1,4 @@
-// Lines and boxes of an overlay, painted over a picture of the table.
+// The cue, and the lines and boxes of an overlay, painted over a picture of the table.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,20 @@
 
 #include "carom/render/draw_list.h"
 #include "draw/canvas.h"
+#include "draw/drawn_balls.h"
 
 namespace carom::render {
 
 /// Paints a line where the table does not hide it. @param box pixels that it may cover
 /// @param origin of the coordinates of the table mesh (TableMesh::origin)
 void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box, const Vec2& origin);
+
+/// The same for a cue, and for its shadow on the cloth.
+void paint_cue(const Canvas& canvas, const DrawCue& cue, const PixelBox& box, const Vec2& origin);
+void paint_cue_shadow(const Canvas& canvas, const DrawCue& cue, const PixelBox& box, const Vec2& origin);
+
+/// Whether a ball is nearer to the eye than the part of the cue that is nearest to it.
+bool is_before(const DrawnBall& ball, const DrawCue& cue, const View& view, const Vec2& origin);
 
 /// Paints a filled rectangle or a character. @param glyphs the atlas of glyph_atlas()
 void paint_box(const Canvas& canvas, const DrawBox& box, const PixelBox& pixels,

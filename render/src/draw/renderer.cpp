@@ -27,7 +27,7 @@ struct Renderer::Impl {
     std::unique_ptr<gl::Context> context;
     gl::Api api;
     std::unique_ptr<StaticLayer> table_layer;
-    std::vector<std::uint8_t> glyphs = glyph_atlas();
+    const std::vector<std::uint8_t>& glyphs = glyph_atlas();
     GLuint view_buffer = 0;
     Image image;                                                                   // the last draw()
     std::shared_ptr<const DrawnPicture> shows = std::make_shared<DrawnPicture>();  // what the image shows
@@ -124,9 +124,21 @@ struct Renderer::Impl {
                     paint_line(canvas, *line, picture.shapes[i].box, origin);
             }
         };
+        const DrawCue* const cue = picture.shapes.empty() || !redrawn.shapes[0]
+                                       ? nullptr
+                                       : std::get_if<DrawCue>(&picture.shapes[0].what);
+        const auto balls_before = [&](bool before) {
+            each_ball([&](const DrawnBall& ball) {
+                if (before == (cue != nullptr && is_before(ball, *cue, canvas.view(), origin)))
+                    paint_ball(canvas, ball, glyphs);
+            });
+        };
         each_ball([&](const DrawnBall& ball) { paint_shadow(canvas, ball); });
+        if (cue != nullptr) paint_cue_shadow(canvas, *cue, picture.shapes[0].box, origin);
         lines(LineLayer::kUnderBalls);
-        each_ball([&](const DrawnBall& ball) { paint_ball(canvas, ball, glyphs); });
+        balls_before(false);
+        if (cue != nullptr) paint_cue(canvas, *cue, picture.shapes[0].box, origin);
+        balls_before(true);
         lines(LineLayer::kOverBalls);
         for (std::size_t i = 0; i < picture.shapes.size(); ++i) {
             const auto* box = std::get_if<DrawBox>(&picture.shapes[i].what);

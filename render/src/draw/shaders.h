@@ -10,7 +10,7 @@ namespace carom::render::shaders {
 extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 
-inline constexpr double kShadowReach = 2.5;  ///< [radii] where the shading around a ball ends
+inline constexpr double kShadowReach = 2.0;  ///< [radii] where the shading by the room ends
 inline constexpr int kMaxHoles = 128;  ///< [-] largest number of holes that a program accepts: MAX_HOLES
 inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: as many as fit around it
 
@@ -20,9 +20,12 @@ inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: a
 inline constexpr const char* kClothOnly = "#define CLOTH\n";
 inline constexpr const char* kWoodOnly = "#define WOOD\n";
 inline constexpr const char* kFloorOnly = "#define FLOOR\n";
+inline constexpr const char* kWallOnly = "#define WALL\n";
 inline constexpr const char* kChalkOnly = "#define CHALK\n";
 inline constexpr const char* kShadeOnly = "#define SHADE\n";
 inline constexpr const char* kTheRest = "#define REST\n";
+/// Added to one of these for a camera that moves: less detail, because every frame draws it.
+inline constexpr const char* kMoving = "#define MOVING\n";
 /// Added to one of these if there may be a hole: pixels in a hole are not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 

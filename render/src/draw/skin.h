@@ -61,7 +61,7 @@ class Skin {
         if (!any(spot > 0.0F)) return base;
         base = mix(base, ivory, spot);
         const Floats ink = spot * number_ink(b.y, choose(b.z > 0.0F, -b.x, b.x), w);
-        shine = 1.0F - 0.85F * ink;
+        shine = 1.0F - 0.92F * ink;
         return mix(base, Vec{colors_.ink, colors_.ink, colors_.ink}, ink);
     }
 
@@ -81,17 +81,17 @@ class Skin {
     Floats number_ink(Floats x, Floats y, Floats w) const {
         const bool two = number_ > 9;
         const float box_x = two ? 0.215F : 0.33F, box_y = two ? 0.41F : 0.48F;  // half a cell of the atlas
-        Floats near{};
+        Floats outside = all(kGlyphReach);
         const Floats place_x = (two ? choose(x < 0.0F, x + 0.192F, x - 0.192F) : x) / box_x,
                      place_y = y / box_y;
         for (int i = 0; i < kLanes; ++i) {
             if (std::abs(place_x[i]) > 1.0F || std::abs(place_y[i]) > 1.0F) continue;
             const int digit = two && x[i] < 0.0F ? number_ / 10 : number_ % 10;
-            near[i] = glyph_nearness(glyphs_, digit, std::clamp(place_x[i] * 0.5F + 0.5F, 0.02F, 0.98F),
-                                     1.0F - std::clamp(place_y[i] * 0.5F + 0.5F, 0.02F, 0.98F));
+            outside[i] = glyph_distance(glyphs_, digit, std::clamp(place_x[i] * 0.5F + 0.5F, 0.02F, 0.98F),
+                                        1.0F - std::clamp(place_y[i] * 0.5F + 0.5F, 0.02F, 0.98F));
         }
-        // The strokes are 1.3 units thick; the height of a cell is 9 units.
-        Floats ink = inside((1.0F - near) * 1.5F - 0.62F, max(w * (4.5F / box_y), 0.05F));
+        // The height of a cell is 9 units.
+        Floats ink = inside(outside, max(w * (4.5F / box_y), 0.05F));
         ink = choose((abs(place_x) > 1.0F) | (abs(place_y) > 1.0F), all(0.0F), ink);
         if (number_ != 6 && number_ != 9) return ink;
         // A bar below the digit distinguishes 6 from 9 in every orientation.

@@ -33,28 +33,33 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
 
 StaticLayer::~StaticLayer() = default;
 
-void StaticLayer::make_programs() {
+StaticLayer::Programs& StaticLayer::programs_for(bool moving) {
     using namespace shaders;
-    vertex_program_ = make_stage(api_, GL_VERTEX_SHADER, kTableVertex);
+    Programs& programs = programs_[moving ? 1 : 0];
+    if (programs[0].fragment != 0) return programs;
+    if (vertex_program_ == 0) vertex_program_ = make_stage(api_, GL_VERTEX_SHADER, kTableVertex);
     jitter_ = api_.GetUniformLocation(vertex_program_, "u_jitter");
     const auto make = [&](Part part, const std::string& kind) {
-        Program& program = programs_[static_cast<std::size_t>(part)];
-        program.fragment = make_stage(api_, GL_FRAGMENT_SHADER, kTableFragment, kind);
+        Program& program = programs[static_cast<std::size_t>(part)];
+        program.fragment =
+            make_stage(api_, GL_FRAGMENT_SHADER, kTableFragment, moving ? kind + kMoving : kind);
         program.pipeline = gl::make_pipeline(api_, vertex_program_, program.fragment);
     };
     make(Part::kCloth, kClothOnly);
     make(Part::kWood, kWoodOnly);
     make(Part::kSmall, kTheRest);
     make(Part::kFloor, kFloorOnly);
+    make(Part::kWall, kWallOnly);
     make(Part::kCutCloth, std::string(kClothOnly) + kHoles);
     make(Part::kCutWood, std::string(kWoodOnly) + kHoles);
     make(Part::kChalk, kChalkOnly);
     make(Part::kShade, kShadeOnly);
     make(Part::kCutShade, std::string(kShadeOnly) + kHoles);
+    return programs;
 }
 
 void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
-    if (vertex_program_ == 0) make_programs();
+    const Programs& programs = programs_for(edges != nullptr);
     parts_ = sort_parts(table, edges == nullptr ? std::vector<std::uint8_t>{} : edges->faces);
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
@@ -70,7 +75,7 @@ void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
     attribute(1, 3, offsetof(MeshVertex, nx));
     attribute(2, 4, offsetof(MeshVertex, u));  // u, v, material, and the face behind the vertex
     static_assert(offsetof(PartVertex, face) == offsetof(MeshVertex, material) + sizeof(float));
-    for (const Program& program : programs_) set_table_uniforms(table, program.fragment);
+    for (const Program& program : programs) set_table_uniforms(table, program.fragment);
     uploaded_ = &table;
 }
 
@@ -102,9 +107,6 @@ void StaticLayer::set_table_uniforms(const TableMesh& table, GLuint program) con
     const auto count = static_cast<GLsizei>(holes.size() / 4);
     if (count > 0) api_.Uniform4fv(at("u_holes"), count, holes.data());
     api_.Uniform1i(at("u_hole_count"), count);
-    const Vec2 low = table.inner_low - table.origin, high = table.inner_high - table.origin;
-    api_.Uniform4f(at("u_inner"), static_cast<float>(low.x()), static_cast<float>(low.y()),
-                   static_cast<float>(high.x()), static_cast<float>(high.y()));
 }
 
 // @param depths initial contents of the depth buffer; null: the far plane
@@ -135,7 +137,10 @@ void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* dept
         if (part == Part::kChalk) api_.DepthMask(GL_FALSE);
         // The shading is blended over the cloth and keeps its alpha.
         if (part == Part::kShade) api_.Enable(GL_BLEND);
-        api_.BindProgramPipeline(programs_[i].pipeline);
+        // The near walls of the room do not hide the table. Turns are reversed, because rows are.
+        api_.FrontFace(GL_CW);
+        (part == Part::kFloor || part == Part::kWall ? api_.Enable : api_.Disable)(GL_CULL_FACE);
+        api_.BindProgramPipeline(programs_[edges_ ? 1 : 0][i].pipeline);
         api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
                         static_cast<GLsizei>(parts_.ends[i] - first));
         first = parts_.ends[i];

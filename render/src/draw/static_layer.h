@@ -43,7 +43,8 @@ class StaticLayer {
     struct Program {
         GLuint fragment = 0, pipeline = 0;
     };
-    void make_programs();
+    using Programs = std::array<Program, kPartCount>;
+    Programs& programs_for(bool moving);
     void upload(const TableMesh& table, const TableEdges* edges);
     void resize(FrameSize size);
     void set_table_uniforms(const TableMesh& table, GLuint program) const;
@@ -53,7 +54,7 @@ class StaticLayer {
 
     const gl::Api& api_;
     // Made when they are first needed, like the vertex program, which they share.
-    std::array<Program, kPartCount> programs_;
+    std::array<Programs, 2> programs_;  ///< for a still camera, and for a moving one, with less detail
     GLuint vertex_program_ = 0;
     GLint jitter_ = -1;  ///< location of its u_jitter
     TableParts parts_;   ///< without the vertices, which are in buffer_

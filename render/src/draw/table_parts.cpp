@@ -79,6 +79,9 @@ class PartSorter {
                 return {Part::kWood, Part::kCutWood};
             case Material::kFloor:
                 return {Part::kFloor, Part::kFloor};
+            case Material::kWall:
+            case Material::kLamp:
+                return {Part::kWall, Part::kWall};
             case Material::kShade:
                 return {Part::kShade, Part::kCutShade};
             case Material::kChalk:

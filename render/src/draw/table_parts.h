@@ -16,13 +16,14 @@ enum class Part : std::uint8_t {
     kWood,
     kSmall,
     kFloor,
+    kWall,
     kCutCloth,
     kCutWood,
     kChalk,
     kShade,
     kCutShade
 };
-inline constexpr std::size_t kPartCount = 9;
+inline constexpr std::size_t kPartCount = 10;
 
 struct PartVertex {
     MeshVertex vertex;

@@ -60,6 +60,9 @@ View make_view(const Camera& camera, const TableMesh& table) {
     view.lamp_endless = table.lamp.endless ? 1.0F : 0.0F;
     put(Vec2(camera.size.width, camera.size.height), view.size);
     put(Vec2(near, far), view.planes);
+    const Vec2 low = table.inner_low - table.origin, high = table.inner_high - table.origin;
+    put(std::array{low.x(), low.y(), high.x(), high.y()}, view.inner);
+    put(table.cloth, view.cloth);
     return view;
 }
 

@@ -18,6 +18,8 @@ struct View {
     alignas(8) float size[2] = {};
     float lamp_half[2] = {};
     float planes[2] = {};  ///< near and far
+    alignas(16) float inner[4] = {};
+    alignas(16) float cloth[3] = {};
 };
 
 View make_view(const Camera& camera, const TableMesh& table);

@@ -1,4 +1,4 @@
-// A small stroke font as an atlas of distances to the nearest stroke, which is sharp at every size.
+// A font as an atlas of distances to its outlines, which is sharp at every size.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,12 @@ inline constexpr std::string_view kGlyphs = "0123456789.:-%/+=()ABCDEFGHIJKLMNOP
 /// Cell of a character (a lower-case letter without a cell gets that of its capital), or -1 for a blank.
 int glyph_index(char c);
 
-/// One byte per texel, row 0 at the top: 255 on the centre line
-/// of a stroke, 0 at the distance kGlyphReach and beyond.
-std::vector<std::uint8_t> glyph_atlas();
+/// One byte per texel, row 0 at the top: from 255 at the distance kGlyphReach inside an outline to 0 at this
+/// distance outside.
+const std::vector<std::uint8_t>& glyph_atlas();
 
-/// The atlas between its texels, 0..1, at a place within a cell: x and y are 0..1 from its upper left corner.
-float glyph_nearness(const std::vector<std::uint8_t>& atlas, int cell, float x, float y);
+/// The distance from the outline [units], negative inside, at a place within a cell: x and y are 0..1 from
+/// its upper left corner.
+float glyph_distance(const std::vector<std::uint8_t>& atlas, int cell, float x, float y);
 
 }  // namespace carom::render

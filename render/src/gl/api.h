@@ -32,6 +32,7 @@ namespace carom::render::gl {
     X(PFNGLENABLEPROC, Enable) \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D) \
+    X(PFNGLFRONTFACEPROC, FrontFace) \
     X(PFNGLGENBUFFERSPROC, GenBuffers) \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers) \
     X(PFNGLGENPROGRAMPIPELINESPROC, GenProgramPipelines) \
@@ -47,7 +48,6 @@ namespace carom::render::gl {
     X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D) \
     X(PFNGLUNIFORM1IPROC, Uniform1i) \
     X(PFNGLUNIFORM2FPROC, Uniform2f) \
-    X(PFNGLUNIFORM4FPROC, Uniform4f) \
     X(PFNGLUNIFORM4FVPROC, Uniform4fv) \
     X(PFNGLUSEPROGRAMPROC, UseProgram) \
     X(PFNGLUSEPROGRAMSTAGESPROC, UseProgramStages) \

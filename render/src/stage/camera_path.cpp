@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/nearest.h"
 #include "carom/engine/printable.h"
@@ -32,16 +34,61 @@ Vec2 aim_of(const Record& record, int ball) {
     return Vec2::UnitY();
 }
 
+Vec3 downwards(const Vec2& direction, double degrees) {
+    const double pitch = degrees * std::numbers::pi / 180.0;
+    const Vec2 level = std::cos(pitch) * direction;
+    return {level.x(), level.y(), -std::sin(pitch)};
+}
+
+// The outer sides of balls at the outermost of these places.
+std::vector<Vec3> ends_of_balls(const std::vector<Vec2>& places, double R) {
+    constexpr int kDirections = 24;
+    std::vector<Vec3> ends;
+    for (int k = 0; k < kDirections; ++k) {
+        const double angle = 2.0 * std::numbers::pi * (k + 0.5) / kDirections;
+        const Vec2 direction(std::cos(angle), std::sin(angle));
+        const Vec2& p = *std::max_element(places.begin(), places.end(), [&](const Vec2& a, const Vec2& b) {
+            return a.dot(direction) < b.dot(direction);
+        });
+        const Vec2 side = p + R * direction;
+        for (const double z : {0.0, 2.0 * R}) ends.emplace_back(side.x(), side.y(), z);
+    }
+    return ends;
+}
+
+// Behind the head rail. The table fills the image if all of it is played on.
+Camera rail_camera(const Record& record, const TableMesh& table, FrameSize size) {
+    std::vector<Vec2> places = visited_places(record, true);
+    if (places.empty()) places = {table.bounds.low, table.bounds.high};
+    const Bounds& all = table.bounds;
+    Vec2 low = places[0], high = low;
+    for (const Vec2& p : places) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    // At least half of the table, and a little around the balls.
+    const Vec2 least = 0.25 * (all.high - all.low), middle = 0.5 * (low + high);
+    low = low.cwiseMin(middle - least).cwiseMax(all.low) - Vec2(0.1, 0.1);
+    high = high.cwiseMax(middle + least).cwiseMin(all.high) + Vec2(0.1, 0.1);
+    return fitting_camera(
+        ends_of_balls({low, {high.x(), low.y()}, high, {low.x(), high.y()}}, record.balls.R),
+        downwards(Vec2::UnitY(), 33.0), 40.0, size);
+}
+
 Camera player_camera(const Record& record, FrameSize size) {
+    constexpr double kNearest = 0.85, kFarthest = 2.4;  // [m] behind the ball
     const int ball = first_ball(record);
     const Vec3 place = record.tracks.empty() ? Vec3::Zero() : Vec3(record.state_at(ball, 0.0).position);
-    const Vec2 aim = aim_of(record, ball);
-    Camera camera;
-    camera.size = size;
-    camera.fov_y_deg = size.width >= size.height ? 40.0 : 62.0;
-    camera.up = Vec3::UnitZ();
-    camera.eye = place + Vec3(-0.75 * aim.x(), -0.75 * aim.y(), 0.42);
-    camera.target = place + Vec3(0.45 * aim.x(), 0.45 * aim.y(), -0.02);
+    const Vec2 aim = aim_of(record, ball), at = place.head<2>();
+    // The balls that move, as far as they are in front of this one, and a little of the table behind it.
+    std::vector<Vec2> places{at - 0.12 * aim, at + 0.5 * aim};
+    for (const Vec2& p : visited_places(record, true))
+        if ((p - at).dot(aim) > 0.0) places.push_back(p);
+    const double fov = size.width >= size.height ? 40.0 : 62.0;
+    Camera camera = fitting_camera(ends_of_balls(places, record.balls.R), downwards(aim, 23.0), fov, size);
+    const double behind = (at - camera.eye.head<2>()).dot(aim),
+                 back = behind - std::clamp(behind, kNearest, kFarthest);
+    camera.eye += back * camera.forward();
     return camera;
 }
 
@@ -81,26 +128,49 @@ int first_ball(const Record& record) {
     return 0;
 }
 
-Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_deg, FrameSize size) {
+std::vector<Vec2> visited_places(const Record& record, bool moving) {
+    constexpr int kPieces = 4;  // [-] per segment
+    std::vector<Vec2> places;
+    for (const BallTrack& track : record.tracks) {
+        const auto moves = [](const Segment& s) { return s.v.norm() > 0.0; };
+        if (moving && std::none_of(track.segments.begin(), track.segments.end(), moves)) continue;
+        for (std::size_t i = 0; i < track.segments.size(); ++i) {
+            const Segment& segment = track.segments[i];
+            if (is_gone(segment.state)) continue;
+            const double next = i + 1 < track.segments.size() ? track.segments[i + 1].start : record.duration;
+            const double lasts = std::min(std::max(0.0, next - segment.start), segment.duration);
+            for (int piece = 0; piece <= kPieces; ++piece) {
+                const Vec3 place = position_at(segment, lasts * piece / kPieces);
+                if (place.allFinite()) places.push_back(place.head<2>());
+                if (lasts == 0.0) break;
+            }
+        }
+    }
+    return places;
+}
+
+Camera fitting_camera(const std::vector<Vec3>& points, const Vec3& direction, double fov_y_deg,
+                      FrameSize size) {
     Camera camera;
     camera.size = size;
     camera.fov_y_deg = fov_y_deg;
     camera.up = Vec3::UnitZ();
     const Vec3 along = direction.normalized();
-    const Vec3 middle(0.5 * (bounds.low.x() + bounds.high.x()), 0.5 * (bounds.low.y() + bounds.high.y()),
-                      0.0);
-    const double extent = (bounds.high - bounds.low).norm();
-    Vec3 target = middle;
-    // Extent of the box in the image from distance d (1: it
-    // fills the image), and its centre in the image [pixels].
+    Vec3 lowest = points.at(0), highest = lowest;
+    for (const Vec3& p : points) {
+        lowest = lowest.cwiseMin(p);
+        highest = highest.cwiseMax(p);
+    }
+    const double extent = (highest - lowest).norm();
+    Vec3 target = 0.5 * (lowest + highest);
+    // Extent of the points in the image from distance d (1: they
+    // fill the image), and their centre in the image [pixels].
     const auto frame = [&](double d, Vec2& centre) {
         camera.target = target;
         camera.eye = target - d * along;
         Vec2 low(1e9, 1e9), high(-1e9, -1e9);
-        for (int i = 0; i < 8; ++i) {
-            const std::optional<Vec2> pixel =
-                camera.project({(i & 1) ? bounds.high.x() : bounds.low.x(),
-                                (i & 2) ? bounds.high.y() : bounds.low.y(), (i & 4) ? bounds.top : -0.1});
+        for (const Vec3& point : points) {
+            const std::optional<Vec2> pixel = camera.project(point);
             if (!pixel) return 1e9;
             low = low.cwiseMin(*pixel);
             high = high.cwiseMax(*pixel);
@@ -145,8 +215,7 @@ CameraPath::CameraPath(const Record& record, const TableMesh& table, const std::
     } else if (name == "top") {
         fixed_ = top_camera(table.bounds, size);
     } else if (name == "rail") {
-        const double pitch = 38.0 * std::numbers::pi / 180.0;
-        fixed_ = fitting_camera(table.bounds, {0.0, std::cos(pitch), -std::sin(pitch)}, 34.0, size);
+        fixed_ = rail_camera(record, table, size);
     } else if (name == "player") {
         fixed_ = player_camera(record, size);
     } else if (name == "follow") {

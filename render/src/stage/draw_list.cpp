@@ -2,31 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
+#include "stage/cue_stroke.h"
 #include "stage/overlay_lines.h"
 
 namespace carom::render {
 
 namespace {
 
-// Positions along the path of every ball: the ends of its segments and points between them.
-std::vector<Vec2> visited_places(const Record& record) {
-    constexpr int kPieces = 4;  // [-] per segment
-    std::vector<Vec2> places;
-    for (const BallTrack& track : record.tracks) {
-        for (std::size_t i = 0; i < track.segments.size(); ++i) {
-            const Segment& segment = track.segments[i];
-            if (is_gone(segment.state)) continue;
-            const double next = i + 1 < track.segments.size() ? track.segments[i + 1].start : record.duration;
-            const double lasts = std::min(std::max(0.0, next - segment.start), segment.duration);
-            for (int piece = 0; piece <= kPieces; ++piece) {
-                const Vec3 place = position_at(segment, lasts * piece / kPieces);
-                if (place.allFinite()) places.push_back(place.head<2>());
-                if (lasts == 0.0) break;
-            }
-        }
-    }
-    return places;
+std::shared_ptr<const TableMesh> mesh_of(const Record& record, Edges edges) {
+    TableMesh mesh = make_table_mesh(record.table, record.balls.R, visited_places(record), edges);
+    if (record.render.cloth) mesh.cloth = color_of(*record.render.cloth).value_or(mesh.cloth);
+    return std::make_shared<const TableMesh>(std::move(mesh));
 }
 
 // [s] How long a pocketed ball is shown sinking.
@@ -76,9 +65,8 @@ int samples_of(const StageOptions& options) {
 Stage::Stage(const Record& record, const StageOptions& options)
     : record_(record),
       options_(options),
-      table_(std::make_shared<const TableMesh>(make_table_mesh(
-          record.table, record.balls.R, visited_places(record),
-          CameraPath::moves(options.camera, options.view) ? Edges::kSharp : Edges::kRounded))),
+      table_(
+          mesh_of(record, CameraPath::moves(options.camera, options.view) ? Edges::kSharp : Edges::kRounded)),
       camera_(record, *table_, options.camera, options.view, options.size) {
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
         styles_.push_back(ball_style(record.tracks[i].id, record.table.preset, static_cast<int>(i)));
@@ -110,6 +98,7 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
         ball.style = styles_[i];
         list.balls.push_back(ball);
     }
+    if (!record_.render.hides_cue) list.cue = cue_at(record_, *table_, t);
     add_overlay(list, record_, options_.overlay, t, cost);
     return list;
 }

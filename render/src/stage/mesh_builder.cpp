@@ -1,7 +1,9 @@
 #include "stage/mesh_builder.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -48,7 +50,7 @@ void MeshBuilder::quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
                        double u) {
     const Vec3 normal = (c - a).cross(d - b).normalized();
     const double length = (b - a).norm(), width = (d - a).norm();
-    const bool blend = is_blended(material);
+    const bool blend = is_blended(material) || material == Material::kLamp;  // u is not a coordinate
     const MeshVertex va = vertex(a, normal, u, 0.0, material),
                      vb = vertex(b, normal, blend ? u : length, 0.0, material);
     const MeshVertex vc = vertex(c, normal, blend ? u : length, width, material);
@@ -57,12 +59,20 @@ void MeshBuilder::quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
     triangle(va, vc, vd);
 }
 
-void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material material) {
+void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material material, double slope) {
     const std::vector<int> corners = triangulate(outline);
+    // The longest side is the lower edge of a slope.
+    std::size_t low = 0;
+    const auto side = [&](std::size_t i) { return Vec2(outline[(i + 1) % outline.size()] - outline[i]); };
+    for (std::size_t i = 0; i + 1 < outline.size(); ++i)
+        if (side(i).norm() > side(low).norm()) low = i;
+    const Vec2 along = side(low).normalized(), up(-along.y(), along.x());
+    const Vec3 normal = lift(-slope * up, 1.0).normalized();
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         const auto at = [&](std::size_t k) {
             const Vec2& p = outline[corners[i + k]];
-            return vertex(lift(p, z), Vec3::UnitZ(), p.x(), p.y(), material);
+            return vertex(lift(p, z + slope * std::max(0.0, (p - outline[low]).dot(up))), normal, p.x(),
+                          p.y(), material);
         };
         triangle(at(0), at(1), at(2));
     }
@@ -151,8 +161,12 @@ void MeshBuilder::add_outside(Corners corners, const Bounds* outside) {
 void MeshBuilder::ring(const Vec2& center, double inner, double outer, double z, Material material, double u,
                        const Bounds* outside) {
     for (int i = 0; i < kCirclePieces; ++i) {
+        // The leather of a rim is rolled inwards.
         const auto corner = [&](double radius, int piece, double opacity) {
-            return vertex(lift(on_circle(center, radius, piece), z), Vec3::UnitZ(), opacity, 0.0, material);
+            const Vec2 p = on_circle(center, radius, piece);
+            const double roll = is_blended(material) ? 0.0 : (radius == inner ? -0.9 : 0.5);
+            return vertex(lift(p, z), lift((p - center) * (roll / radius), 1.0).normalized(), opacity, 0.0,
+                          material);
         };
         add_outside(
             {corner(inner, i, u), corner(outer, i, 0.0), corner(outer, i + 1, 0.0), corner(inner, i + 1, u)},
@@ -160,10 +174,11 @@ void MeshBuilder::ring(const Vec2& center, double inner, double outer, double z,
     }
 }
 
-void MeshBuilder::well(const Vec2& center, double radius, double top, double bottom, Material material,
-                       const Bounds* outside) {
+void MeshBuilder::well(const Vec2& center, double above, double below, double top, double bottom,
+                       Material material, const Bounds* outside) {
     for (int i = 0; i < kCirclePieces; ++i) {
         const auto corner = [&](double z, int piece) {
+            const double radius = z == top ? above : below;
             const Vec2 p = on_circle(center, radius, piece);
             return vertex(lift(p, z), lift((center - p) / radius, 0.0), 0.0, z == top ? 0.0 : 1.0, material);
         };

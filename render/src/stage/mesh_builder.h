@@ -23,8 +23,8 @@ class MeshBuilder {
 
     void quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Material material, double u = 0.0);
 
-    /// A horizontal polygon at height z [m], visible from above.
-    void polygon(const std::vector<Vec2>& outline, double z, Material material);
+    /// A polygon at height z [m], visible from above; with a slope [-], it rises from its longest side.
+    void polygon(const std::vector<Vec2>& outline, double z, Material material, double slope = 0.0);
 
     /// Sweeps a profile along an outline. If `smooth`, the normals are averaged between neighbouring strips.
     void sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth);
@@ -34,13 +34,14 @@ class MeshBuilder {
     void disc(const Vec2& center, double radius, double z, Material material, double u = 0.0,
               double edge = 0.0);
 
-    /// A horizontal ring; a blended material has the opacity u at its inner circle
+    /// A ring in a plane; a blended material has the opacity u at its inner circle
     /// and 0 at the outer one. With `outside`, only the part outside that box.
     void ring(const Vec2& center, double inner, double outer, double z, Material material, double u = 0.0,
               const Bounds* outside = nullptr);
 
-    /// The vertical wall of a cylinder, visible from inside. With `outside`, only the part outside that box.
-    void well(const Vec2& center, double radius, double top, double bottom, Material material,
+    /// The wall of a round hole, visible from inside, with its radii `above` and `below`. With `outside`,
+    /// only the part outside that box.
+    void well(const Vec2& center, double above, double below, double top, double bottom, Material material,
               const Bounds* outside = nullptr);
 
   private:

@@ -27,10 +27,15 @@ void spot(MeshBuilder& builder, const Vec2& center, double radius) {
 }
 
 void diamond(MeshBuilder& builder, const Vec2& center, double z, bool along_y) {
-    const double lengthwise = 0.012, across = 0.006;
-    const double dx = along_y ? across : lengthwise, dy = along_y ? lengthwise : across;
-    const auto at = [&](double x, double y) { return Vec3(center.x() + x, center.y() + y, z); };
-    builder.quad(at(-dx, 0.0), at(0.0, -dy), at(dx, 0.0), at(0.0, dy), Material::kInlay);
+    // Mother of pearl in a dark line.
+    for (const bool line : {true, false}) {
+        const double lengthwise = line ? 0.0165 : 0.014, across = line ? 0.0082 : 0.007;
+        const double dx = along_y ? across : lengthwise, dy = along_y ? lengthwise : across;
+        const double height = line ? z - 0.0004 : z;
+        const auto at = [&](double x, double y) { return Vec3(center.x() + x, center.y() + y, height); };
+        builder.quad(at(-dx, 0.0), at(0.0, -dy), at(dx, 0.0), at(0.0, dy),
+                     line ? Material::kTrim : Material::kInlay);
+    }
 }
 
 void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builder, double rail) {

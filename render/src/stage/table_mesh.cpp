@@ -1,7 +1,9 @@
 #include "carom/render/table_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "carom/engine/event_details.h"
 #include "stage/mesh_builder.h"
@@ -13,11 +15,18 @@ namespace {
 
 // [m] Dimensions that the engine does not define because they do not affect the balls.
 constexpr double kCushionWidth = 0.05;    // of a cushion without facings, which would show its depth
-constexpr double kRailWidth = 0.095;      // of the wooden rail outside the cushion
+constexpr double kRailWidth = 0.1;        // of the wooden rail outside the cushion
 constexpr double kWallHalfWidth = 0.005;  // of a cushion with balls on both sides
-constexpr double kShadeWidth = 0.045;     // of the dark shading along a cushion
-constexpr double kWoodRise = 0.008;       // of the wooden rail above the highest nose
-constexpr double kApron = 0.22;           // depth of the frame below the cloth
+constexpr double kShadeWidth = 0.055;     // of the dark shading along a cushion
+constexpr double kUndercut = 0.018;       // of a cushion: its foot is this far behind its nose
+constexpr double kFloorLevel = -0.75, kCeiling = 1.9,
+                 kAisle = 2.3;       // of the room; its walls are this far away
+constexpr double kWoodRise = 0.008;  // of the wooden rail above the highest nose
+constexpr double kApron = 0.22;      // depth of the frame below the cloth
+constexpr double kFoot = -0.08;      // of the base below it, from the inner edge of the rail
+constexpr double kSlope = 0.08;      // [-] of the top of a cushion, which rises towards the rail
+constexpr double kLeather = 0.016;   // width of the rim of a pocket
+constexpr double kBag = 0.8;         // [radii] of a pocket at its bottom
 
 struct Box {
     Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
@@ -47,6 +56,7 @@ class TableMaker {
         : table_(table), R_(R), visited_(visited), sharp_(edges == Edges::kSharp), builder_(mesh_) {}
 
     TableMesh make() {
+        mesh_.cloth = look::cloth_of(table_.preset);
         std::vector<Chain> chains = join_outline(table_);
         find_bounds();
         for (Chain& chain : chains) add_chain(chain);
@@ -141,13 +151,16 @@ class TableMaker {
         return largest;
     }
 
-    void shade_cloth(const Chain& chain) {
+    void shade_cloth(const Chain& chain, double foot) {
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0004);
-        builder_.sweep(
-            ground,
-            {{-kShadeWidth, 0.0, 0.0}, {-0.4 * kShadeWidth, 0.0, 0.10}, {0.0, 0.0, 0.42}, {0.012, 0.0, 0.6}},
-            Material::kShade, false);
+        builder_.sweep(ground,
+                       {{-kShadeWidth, 0.0, 0.0},
+                        {-0.5 * kShadeWidth, 0.0, 0.05},
+                        {-0.2 * kShadeWidth, 0.0, 0.16},
+                        {0.0, 0.0, 0.42},
+                        {foot + 0.003, 0.0, 0.75}},
+                       Material::kShade, false);
     }
 
     // The side towards the balls: from below the nose, over the nose, to the edge of the flat top.
@@ -157,20 +170,21 @@ class TableMaker {
             mesh_.noses.push_back({chain.points[i], chain.points[(i + 1) % n]});
         Chain ground = chain;
         std::fill(ground.heights.begin(), ground.heights.end(), 0.0);
-        const double height = chain.heights.front();
+        const double height = chain.heights.front(),
+                     foot = std::min({kUndercut, largest_inset(), 3.0 * inset});
         if (sharp_) {
-            builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height, 0.0}}, Material::kCushion, true);
-            shade_cloth(chain);
+            builder_.sweep(ground, {{foot, 0.0, 0.0}, {0.0, height, 0.0}}, Material::kCushion, true);
+            shade_cloth(chain, foot);
             return;
         }
-        builder_.sweep(ground, {{inset, 0.0, 0.0}, {0.0, height - 0.003, 0.0}}, Material::kCushion, true);
+        builder_.sweep(ground, {{foot, 0.0, 0.0}, {0.0, height - 0.003, 0.0}}, Material::kCushion, true);
         builder_.sweep(ground,
                        {{0.0, height - 0.003, 0.0},
                         {0.0003, height, 0.0},
                         {0.4 * inset, height + 0.0022, 0.0},
                         {inset, height + 0.003, 0.0}},
                        Material::kCushion, true);
-        shade_cloth(chain);
+        shade_cloth(chain, foot);
     }
 
     // A cushion whose back is known: its outline, closed by a straight line if it is open. For a body that
@@ -183,12 +197,12 @@ class TableMaker {
             builder_.polygon(chain.points, chain.heights.front(), top);
         else
             builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003,
-                             top);
+                             top, chain.closed ? 0.0 : kSlope);
     }
 
     void add_strip(const Chain& chain, double width, bool wall) {
         const double inset = std::min({0.006, 0.3 * width, largest_inset()});
-        const double rise = sharp_ ? 0.0 : (wall ? 0.003 : 0.006);
+        const double rise = sharp_ ? 0.0 : (wall ? 0.003 : 0.003 + kSlope * width);
         add_nose(chain, inset);
         const Material material = wall ? Material::kWood : Material::kCushion;
         const ProfileRow back{width, rise, 0.0};
@@ -198,7 +212,7 @@ class TableMaker {
 
     // A closed outline with the balls inside: cloth, cushion and wooden rail follow it.
     void add_surrounding(const Chain& chain) {
-        builder_.polygon(reversed(offset_left(chain.points, true, 0.02)), 0.0, Material::kCloth);
+        builder_.polygon(reversed(offset_left(chain.points, true, 0.025)), 0.0, Material::kCloth);
         add_strip(chain, kCushionWidth, false);
         Chain back = closed_chain(offset_left(chain.points, true, kCushionWidth), 0.0);
         add_wood(back);
@@ -217,11 +231,12 @@ class TableMaker {
         } else {
             rows.insert(rows.end(), {{0.0, top - 0.002, 0.0},
                                      {0.002, top, 0.0},
-                                     {kRailWidth - 0.010, top, 0.0},
-                                     {kRailWidth - 0.003, top - 0.003, 0.0},
-                                     {kRailWidth, top - 0.010, 0.0}});
+                                     {kRailWidth - 0.016, top, 0.0},
+                                     {kRailWidth - 0.005, top - 0.004, 0.0},
+                                     {kRailWidth, top - 0.014, 0.0}});
         }
-        rows.push_back({kRailWidth, -kApron, 0.0});
+        rows.insert(rows.end(),
+                    {{kRailWidth, -kApron, 0.0}, {kFoot, -kApron, 0.0}, {kFoot, kFloorLevel, 0.0}});
         builder_.sweep(inner, rows, Material::kWood, false);
         Box box, outer;
         for (const Vec2& p : inner.points) box.add(p);
@@ -229,7 +244,7 @@ class TableMaker {
         mesh_.inner_low = box.low;
         mesh_.inner_high = box.high;
         finish_bounds(outer, 0.02);
-        add_floor();
+        add_room();
         framed_ = true;
     }
 
@@ -259,18 +274,38 @@ class TableMaker {
         mesh_.inner_high = high;
     }
 
-    void add_floor() {
-        const double reach = 6.0 * (mesh_.bounds.high - mesh_.bounds.low).maxCoeff(), z = -0.75;
-        const Vec2 low = mesh_.origin - Vec2(reach, reach), high = mesh_.origin + Vec2(reach, reach);
-        builder_.quad({low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z},
-                      {low.x(), high.y(), z}, Material::kFloor);
+    // Floor and walls, visible from inside, and the lamp, which a camera above it does not see.
+    void add_room() {
+        const Vec2 aisle(kAisle, kAisle);
+        add_box(mesh_.bounds.low - aisle, mesh_.bounds.high + aisle, kFloorLevel, kCeiling, Material::kFloor);
+        const Vec3& lamp = mesh_.lamp.center;
+        const Vec2 low = lamp.head<2>() - mesh_.lamp.half, high = lamp.head<2>() + mesh_.lamp.half;
+        constexpr double kRim = 0.03;
+        add_box({high.x() + kRim, low.y() - kRim}, {low.x() - kRim, high.y() + kRim}, lamp.z() + 0.004,
+                lamp.z() + 0.12, Material::kLamp);
+        builder_.quad({low.x(), high.y(), lamp.z()}, {high.x(), high.y(), lamp.z()},
+                      {high.x(), low.y(), lamp.z()}, {low.x(), low.y(), lamp.z()}, Material::kLamp, 1.0);
+    }
+
+    // The bottom and the four sides of a box, visible from inside; from outside if low.x > high.x.
+    void add_box(const Vec2& low, const Vec2& high, double z, double top, Material material) {
+        const std::array<Vec2, 4> c{low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())};
+        const auto at = [](const Vec2& p, double height) { return Vec3(p.x(), p.y(), height); };
+        builder_.quad(at(c[0], z), at(c[1], z), at(c[2], z), at(c[3], z), material);
+        for (std::size_t i = 0; i < c.size(); ++i) {
+            const Vec2 &a = c[i], &b = c[(i + 1) % c.size()];
+            builder_.quad(at(a, z), at(a, top), at(b, top), at(b, z),
+                          material == Material::kFloor ? Material::kWall : material);
+        }
     }
 
     void finish_bounds(const Box& box, double room) {
         mesh_.bounds = {box.low - Vec2(room, room), box.high + Vec2(room, room), mesh_.wood_top};
         const Vec2 half = 0.5 * (box.high - box.low);
-        mesh_.lamp.center = Vec3(mesh_.origin.x(), mesh_.origin.y(), 0.85 + 0.25 * half.maxCoeff());
-        mesh_.lamp.half = 0.42 * half;
+        mesh_.lamp.center = Vec3(mesh_.origin.x(), mesh_.origin.y(), 0.72 + 0.18 * half.maxCoeff());
+        // Long and narrow, along the table.
+        mesh_.lamp.half = half.y() > half.x() ? Vec2(0.34 * half.x(), 0.55 * half.y())
+                                              : Vec2(0.55 * half.x(), 0.34 * half.y());
     }
 
     void add_jaw(const Jaw& jaw) {
@@ -295,10 +330,11 @@ class TableMaker {
         // Above the cloth, the wall of the hole and its rim exist only where the wooden frame is.
         const Bounds inner{mesh_.inner_low, mesh_.inner_high, 0.0};
         const double rim = mesh_.wood_top + 0.0015;
-        builder_.well(pocket.center, pocket.radius, rim, 0.0, Material::kPocket, &inner);
-        builder_.well(pocket.center, pocket.radius, 0.0, bottom, Material::kPocket);
-        builder_.disc(pocket.center, pocket.radius, bottom, Material::kPocket, 1.0);
-        builder_.ring(pocket.center, pocket.radius, pocket.radius + 0.011, rim, Material::kTrim, 0.0, &inner);
+        builder_.well(pocket.center, pocket.radius, pocket.radius, rim, 0.0, Material::kPocket, &inner);
+        builder_.well(pocket.center, pocket.radius, kBag * pocket.radius, 0.0, bottom, Material::kPocket);
+        builder_.disc(pocket.center, kBag * pocket.radius, bottom, Material::kPocket, 1.0, 1.0);
+        builder_.ring(pocket.center, pocket.radius, pocket.radius + kLeather, rim, Material::kTrim, 0.0,
+                      &inner);
         builder_.ring(pocket.center, pocket.radius, pocket.radius + 0.008, 0.0006, Material::kShade, 0.55);
     }
 

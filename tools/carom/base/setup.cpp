@@ -1,6 +1,7 @@
 #include "base/setup.h"
 
 #include <fmt/core.h>
+#include <algorithm>
 #include <exception>
 #include <new>
 
@@ -150,6 +151,15 @@ long checked_frame_count(double from, double to, double fps) {
             from, to, fps, kMostFrames));
     }
     return render::frame_count(from, to, fps);
+}
+
+std::string scene_title(std::string_view scene) {
+    if (!scene.starts_with('#')) return "";
+    scene.remove_prefix(std::min(scene.find_first_not_of("# "), scene.size()));
+    // A full stop ends a sentence, but "2.3 m" has none.
+    std::size_t end = scene.find_first_of(":\n");
+    end = std::min({end, scene.find(". "), scene.find(".\n"), scene.size()});
+    return std::string(scene.substr(0, end));
 }
 
 }  // namespace carom::tools

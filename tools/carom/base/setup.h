@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "base/options.h"
@@ -46,6 +47,9 @@ Record simulate_plan(const Plan& plan, SimulateOptions options);
 /// Reads a record from a file (.json), whose notes go to standard error, or simulates a scene.
 /// @throws SceneError, SimulationError, Interrupted
 Record read_shot(const std::string& path, SimulateOptions options);
+
+/// The first comment at the beginning of a scene file, up to its first full stop or colon.
+std::string scene_title(std::string_view scene);
 
 /// Whether a file name is that of a record.
 inline bool is_record(const std::string& path) {

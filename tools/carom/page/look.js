@@ -137,13 +137,14 @@ export function paintTable(canvas, projection, shape) {
     });
     line(board.loops, 0.003, "rgba(0,0,0,0.28)");
   }
-  layer(shape.cloth, (x, y, out) => lit(out, CLOTH, nap(x, y), x, y, 0));
+  const felt = fromScreen(shape.felt ?? look.kCloth);
+  layer(shape.cloth, (x, y, out) => lit(out, felt, nap(x, y), x, y, 0));
   shade(context, projection, shape);
   layer(shape.chalk, (x, y, out) => lit(out, [look.kChalk, look.kChalk, look.kChalk], 0.42, x, y, 0));
   plain();
   for (const hole of shape.holes) paintHole(context, projection, hole);
   layer(shape.trim, (x, y, out) => lit(out, TRIM, 1, x, y, top));
-  layer(shape.cushion, (x, y, out) => lit(out, CLOTH, look.kCushionGain * nap(x, y), x, y, 0.04));
+  layer(shape.cushion, (x, y, out) => lit(out, felt, look.kCushionGain * nap(x, y), x, y, 0.04));
   line(shape.cushion, 0.0025, "rgba(0,20,10,0.35)");
   layer(shape.inlay, (x, y, out) => lit(out, INLAY, 1, x, y, top));
   plain();

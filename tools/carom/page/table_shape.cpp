@@ -237,6 +237,7 @@ Json table_shape(const carom::Table& table, const TableMesh& mesh) {
               {"half", place(mesh.lamp.half)},
               {"endless", mesh.lamp.endless}}},
             {"wood_top", metres(mesh.wood_top)},
+            {"felt", mesh.cloth},
             {"cloth", loops(Material::kCloth)},
             {"cushion", loops(Material::kCushion)},
             {"trim", loops(Material::kTrim)},

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +23,7 @@
 #include "carom/render/table_mesh.h"
 #include "page/table_shape.h"
 #include "report/diagram_page.h"
+#include "report/diagram_words.h"
 
 namespace carom::tools {
 namespace {
@@ -30,7 +33,7 @@ using Json = nlohmann::ordered_json;
 using Color = look::Color;
 
 // All in points of the page.
-constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 74.0;
+constexpr double kDrawingWidth = 640.0, kMargin = 20.0, kTitleHeight = 26.0, kInsetHeight = 84.0;
 constexpr double kTitleSize = 15.0, kTextSize = 8.0;
 constexpr Color kBlack{0.0, 0.0, 0.0}, kWhite{1.0, 1.0, 1.0}, kGray{0.55, 0.55, 0.55};
 constexpr double kDot = 0.9;
@@ -70,9 +73,9 @@ class Drawing {
         draw_table();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_path(static_cast<int>(i));
         draw_ghost();
+        draw_cue();
         draw_spreads();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_ball(static_cast<int>(i));
-        draw_cue();
         if (style_.speeds) draw_speeds();
         cairo_translate(cr_, 0.0, scale_ * (high_.x() - low_.x()));
         draw_inset();
@@ -140,9 +143,10 @@ class Drawing {
             outlines(board.at("loops"), colored ? mixed(look::kPlainWood, kWhite, 0.35) : kWhite, false);
         frame(shape.at("wood"));
         outlines(shape.at("trim"), colored ? look::kPlainPocket : kWhite, true);
-        outlines(shape.at("cloth"), colored ? mixed(look::kCloth, kWhite, 0.62) : kWhite, !colored);
-        outlines(shape.at("cushion"), colored ? mixed(look::kCloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.25),
+        outlines(shape.at("cloth"), colored ? mixed(mesh_.cloth, kWhite, 0.62) : kWhite, !colored);
+        outlines(shape.at("cushion"), colored ? mixed(mesh_.cloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.25),
                  true);
+        if (style_.grid) draw_grid();
         outlines(shape.at("chalk"), colored ? kWhite : kGray, false);
         for (const Json& hole : shape.at("holes")) {
             const Json& center = hole.at("center");
@@ -154,6 +158,26 @@ class Drawing {
         }
         outlines(shape.at("inlay"), colored ? look::kInlay : kBlack, false);
         if (style_.diamond_numbers) draw_diamond_numbers();
+    }
+    /// A line for each quarter of a diamond, from rail to rail.
+    void draw_grid() {
+        constexpr int kQuarters = 32, kAcross = kQuarters / 2;
+        const carom::Table& t = record_.table;
+        if (!(t.width > 0.0 && t.length > 0.0)) return;
+        const auto line = [&](const Vec2& from, const Vec2& to, bool diamond) {
+            cairo_move_to(cr_, px(from), py(from));
+            cairo_line_to(cr_, px(to), py(to));
+            stroke(style_.color ? mixed(mesh_.cloth, kWhite, 0.3) : mixed(kWhite, kGray, 0.6),
+                   diamond ? 0.5 : 0.2);
+        };
+        for (int k = 1; k < kQuarters; ++k) {
+            const double y = t.corner.y() + t.length * k / kQuarters;
+            line({t.corner.x(), y}, {t.corner.x() + t.width, y}, k % 4 == 0);
+        }
+        for (int k = 1; k < kAcross; ++k) {
+            const double x = t.corner.x() + t.width * k / kAcross;
+            line({x, t.corner.y()}, {x, t.corner.y() + t.length}, k % 4 == 0);
+        }
     }
     /// On the cushions, beside the diamonds of the rail.
     void draw_diamond_numbers() {
@@ -167,13 +191,15 @@ class Drawing {
             render::ball_style(record_.tracks[ball].id, record_.table.preset, ball).color;
         return {c[0], c[1], c[2]};
     }
-    /// A path must be visible on the cloth: the white ball's is black.
-    Color path_color(int ball) const {
-        if (!style_.color) return kBlack;
-        const Color c = ball_color(ball);
-        return look::is_bright(float(c[0] * c[0]), float(c[1] * c[1]), float(c[2] * c[2])) && ball == struck_
-                   ? kBlack
-                   : mixed(c, kBlack, 0.25);
+    /// Dark enough to be visible on the cloth.
+    Color path_color(int ball) const { return style_.color ? mixed(ball_color(ball), kBlack, 0.25) : kBlack; }
+    /// The struck ball's path is white between black edges, so that no other ball's looks like it.
+    void stroke_path(int ball) {
+        if (ball != struck_) return stroke(path_color(ball), 1.1);
+        color(kBlack);
+        cairo_set_line_width(cr_, 2.6);
+        cairo_stroke_preserve(cr_);
+        stroke(kWhite, 1.3);
     }
 
     /// When the ball first meets another one, or the end of the shot.
@@ -213,11 +239,13 @@ class Drawing {
                 last = to;
             }
             if (!begun) continue;
-            const double dash[] = {4.0, 2.5};
+            const double dash[] = {ball == struck_ ? 9.0 : 3.5, 2.5};
             cairo_set_dash(cr_, dash, dashed ? 2 : 0, 0.0);
-            stroke(path_color(ball), ball == struck_ ? 1.5 : 1.1);
+            stroke_path(ball);
             cairo_set_dash(cr_, dash, 0, 0.0);
-            if (dashed || contact >= record_.duration) arrow(last, direction, path_color(ball), ball);
+            (dashed ? has_dashes_ : has_solid_) = true;
+            if (dashed || contact >= record_.duration)
+                arrow(last, direction, ball == struck_ ? kBlack : path_color(ball), ball);
         }
     }
     /// The ball at rest at the end of its path, as a ring with an arrow.
@@ -238,6 +266,7 @@ class Drawing {
         if (is_gone(end.state)) return;
         circle(planar(end.position), scale_ * record_.size(ball).R);
         stroke(c, 0.7);
+        has_rings_ = true;
     }
 
     /// The struck ball where it first meets another one.
@@ -246,7 +275,8 @@ class Drawing {
         const double time = first_contact(struck_);
         if (time >= record_.duration) return;
         const double R = scale_ * record_.size(struck_).R;
-        circle(planar(record_.state_at(struck_, time).position), R);
+        ghost_ = planar(record_.state_at(struck_, time).position);
+        circle(*ghost_, R);
         color(kWhite, 0.55);
         cairo_fill_preserve(cr_);
         const double dots[] = {1.4, 1.4};
@@ -303,13 +333,16 @@ class Drawing {
         cairo_restore(cr_);
         circle(center, R);
         stroke(kBlack, 0.7);
-        if (of.number == 0) return;
-        circle(center, look::kSpot * R);
-        color(look::kIvory);
-        if (style_.color) cairo_fill_preserve(cr_);
-        cairo_new_path(cr_);
+        // Without colour, a ball without a number has its first letter, and the struck one has nothing.
+        std::string sign = of.number > 0 ? fmt::format("{}", of.number) : "";
+        if (sign.empty() && !style_.color && ball != struck_)
+            sign = static_cast<char>(std::toupper(static_cast<unsigned char>(record_.tracks[ball].id[0])));
+        if (sign.empty()) return;
+        circle(center, (style_.color ? look::kSpot : 0.68) * R);
+        color(style_.color ? look::kIvory : kWhite);
+        cairo_fill(cr_);
         const double size = R * (of.number > 9 ? 0.85 : 1.0);
-        text(px(center), py(center) + 0.36 * size, fmt::format("{}", of.number), size, kBlack, 0.5);
+        text(px(center), py(center) + 0.36 * size, sign, size, kBlack, 0.5);
     }
 
     /// The stick behind the ball that it strikes.
@@ -335,6 +368,22 @@ class Drawing {
         cairo_restore(cr_);
     }
 
+    /// Whether a label around a place [points] leaves the balls, the ghost ball and other labels free.
+    bool is_free(double x, double y, double half_width) const {
+        const double R = scale_ * record_.size(struck_).R;
+        const auto clear = [&](const Vec2& ball) {
+            return std::hypot(std::max(std::abs(px(ball) - x) - half_width, 0.0),
+                              std::max(std::abs(py(ball) - y) - 0.6 * kTextSize, 0.0)) > R;
+        };
+        for (std::size_t i = 0; i < record_.tracks.size(); ++i)
+            if (!clear(planar(record_.state_at(static_cast<int>(i), 0.0).position))) return false;
+        return (!ghost_ || clear(*ghost_)) &&
+               std::none_of(labels_.begin(), labels_.end(), [&](const Vec2& other) {
+                   return std::abs(other.x() - x) < 2.0 * half_width &&
+                          std::abs(other.y() - y) < 1.3 * kTextSize;
+               });
+    }
+
     void draw_speeds() {
         int told = 0;
         for (std::size_t i = 0; i < record_.events.size() && told < 6; ++i) {
@@ -347,21 +396,31 @@ class Drawing {
             const EventDetails d = details_of(record_, i);
             const BallAtEvent& ball = d.balls[event.a == struck_ ? 0 : 1];
             const Vec2 place = planar(ball.after.position);
-            // Beside the path on the side that the ball comes from.
             const Vec2 v = planar(ball.before.velocity);
             if (v.norm() < kLeastSpeed) continue;
-            const Vec2 aside = v.norm() > 0.0 ? Vec2(v / v.norm()) : Vec2(0.0, 1.0);
-            const Vec2 at = place - 2.2 * record_.size(struck_).R * aside +
-                            1.1 * record_.size(struck_).R * Vec2(-aside.y(), aside.x());
             const std::string words = speed_text(v.norm(), style_.units);
             cairo_text_extents_t extents;
             cairo_set_font_size(cr_, kTextSize);
             cairo_text_extents(cr_, words.c_str(), &extents);
-            cairo_rectangle(cr_, px(at) - 0.5 * extents.x_advance - 1.5, py(at) - kTextSize + 1.0,
-                            extents.x_advance + 3.0, kTextSize + 2.0);
+            const double half = 0.5 * extents.x_advance + 1.5;
+            // Beside the path on the side that the ball comes from, as near as nothing is hidden.
+            const Vec2 back = -v.normalized(), aside(-back.y(), back.x());
+            Vec2 at;
+            bool free = false;
+            for (const double away : {1.5, 2.3, 3.1, 3.9, 4.7, 5.5}) {
+                for (const double side : {1.9, -1.9}) {
+                    if (free) break;
+                    const Vec2 p = place + record_.size(struck_).R * (away * back + side * aside);
+                    at = Vec2(std::clamp(px(p), half, kDrawingWidth - half), py(p));
+                    free = is_free(at.x(), at.y(), half);
+                }
+            }
+            if (!free) continue;
+            labels_.push_back(at);
+            cairo_rectangle(cr_, at.x() - half, at.y() - 0.5 * kTextSize - 1.0, 2.0 * half, kTextSize + 2.0);
             color(kWhite, 0.75);
             cairo_fill(cr_);
-            text(px(at), py(at), words, kTextSize, kBlack, 0.5);
+            text(at.x(), at.y() + 0.36 * kTextSize, words, kTextSize, kBlack, 0.5);
             ++told;
         }
     }
@@ -385,36 +444,30 @@ class Drawing {
             cairo_arc(cr_, x - r * cue.side, y - r * cue.height, 5.0, 0.0, 2.0 * std::numbers::pi);
             color(style_.color ? Color{0.13, 0.35, 0.62} : kBlack);
             cairo_fill(cr_);
-            words = fmt::format("cue {}, aim {:.2f} deg, elevation {:.0f} deg, tip {:.2f} {}, {:.2f} {}",
-                                speed_text(cue.speed, style_.units), cue.aim_deg, cue.elevation_deg,
-                                std::abs(cue.side), cue.side < 0.0 ? "right" : "left", std::abs(cue.height),
-                                cue.height < 0.0 ? "low" : "high");
+            words = stroke_words(cue, style_.units);
         }
         const double left = words.empty() ? 0.0 : 2.0 * r + 16.0;
         text(left, y - 8.0, words, 9.5, kBlack, 0.0);
-        text(left, y + 5.0, outcome(), 9.5, kBlack, 0.0);
-        text(left, y + 18.0,
-             "solid: before the ball meets another, dashed: after it; dotted ring: ghost ball", kTextSize,
-             kGray, 0.0);
+        text(left, y + 5.0, outcome_words(record_), 9.5, kBlack, 0.0);
+        text(left, y + 18.0, places_words(record_, style_.units), kTextSize, kBlack, 0.0);
+        text(left, y + 29.0, legend(), kTextSize, kGray, 0.0);
         if (!shot_.spreads.empty())
-            text(left, y + 29.0,
+            text(left, y + 40.0,
                  "ellipses: one and two standard deviations of the end, to first order; dots: where played "
                  "shots end",
                  kTextSize, kGray, 0.0);
     }
-    std::string outcome() const {
+    std::string legend() const {
         std::string words;
-        for (const Event& event : record_.events) {
-            if (event.type != EventType::kBallPocket && event.type != EventType::kBallOut) continue;
-            if (!words.empty()) words += ", ";
-            words += event.type == EventType::kBallOut
-                         ? fmt::format("{} leaves the table", record_.tracks[event.a].id)
-                         : fmt::format("{} falls into the {}", record_.tracks[event.a].id,
-                                       met_name(record_, event));
-        }
-        return fmt::format("{}; {:.1f} s", words.empty() ? "nothing falls" : words, record_.duration);
+        const auto add = [&words](bool there, const char* what) {
+            if (there) words += fmt::format("{}{}", words.empty() ? "" : "; ", what);
+        };
+        add(struck_ >= 0, "white line: the ball that is struck");
+        add(has_solid_ && has_dashes_, "dashed: after a ball met another");
+        add(ghost_.has_value(), "dotted ring: ghost ball");
+        add(has_rings_, "ring: where a ball stops");
+        return words;
     }
-
     cairo_t* cr_;
     const DiagramShot& shot_;
     const Record& record_;
@@ -423,6 +476,9 @@ class Drawing {
     Vec2 low_, high_;
     double scale_ = 1.0;  ///< [points/m]
     int struck_ = -1;
+    bool has_solid_ = false, has_dashes_ = false, has_rings_ = false;
+    std::optional<Vec2> ghost_;
+    std::vector<Vec2> labels_;  ///< middles [points]
 };
 
 }  // namespace

@@ -4,11 +4,19 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace carom::tools {
+namespace {
 
-Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
+std::string worst_frame(const Margin& margin) {
+    return fmt::format("worst frame: {}, {:.3f} ms", margin.worst, margin.total[margin.worst]);
+}
+
+// @param all  all stages, and the worst frame, which a page marks by itself
+Plot plot_of(const Margin& margin, const MarginRun& last, const std::string& scene, bool all) {
     Plot plot;
     plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
     plot.notes = {fmt::format("{}{} of {} frames missed; ticks mark contacts",
@@ -27,7 +35,13 @@ Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string&
         add("encode", margin.stage[kEncode], 7);
         add("draw", margin.stage[kDraw], 0);
     }
+    if (margin.rendered && all) {
+        add("write", margin.stage[kWrite], 4);
+        add("read back", margin.stage[kReadback], 5);
+    }
     add("simulate (where not 0)", margin.stage[kSimulate], 1, false);
+    const std::pair worst{margin.time(margin.worst), margin.total[margin.worst]};
+    if (all) plot.series.push_back({worst_frame(margin), {worst}, false, true, false, 3});
     plot.levels = {{fmt::format("1/{} s", margin.fps), margin.budget_ms}};
     constexpr std::array kKinds = {EventType::kBallBall, EventType::kBallCluster, EventType::kBallCushion,
                                    EventType::kBallPocket};
@@ -40,13 +54,17 @@ Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string&
     return plot;
 }
 
+}  // namespace
+
+Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene) {
+    return plot_of(margin, last, scene, true);
+}
+
 nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene) {
-    nlohmann::ordered_json chart = chart_json(margin_plot(margin, last, scene));
+    nlohmann::ordered_json chart = chart_json(plot_of(margin, last, scene, false));
     chart["x"]["unit"] = "s";
     chart["marks"] = {
-        {{"x", margin.time(margin.worst)},
-         {"y", margin.total[margin.worst]},
-         {"name", fmt::format("worst frame: {}, {:.3f} ms", margin.worst, margin.total[margin.worst])}}};
+        {{"x", margin.time(margin.worst)}, {"y", margin.total[margin.worst]}, {"name", worst_frame(margin)}}};
     return chart;
 }
 

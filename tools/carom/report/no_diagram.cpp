@@ -5,6 +5,7 @@
 
 #include "base/console.h"
 #include "report/diagram.h"
+#include "report/plot.h"
 #include "report/sweep_plot.h"
 
 namespace carom::tools {
@@ -17,6 +18,10 @@ std::string diagram_format(const std::string&) {
 
 std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {
     throw std::runtime_error("this build cannot draw diagrams");
+}
+
+std::string cairo_chart(const Plot&, const std::string&) {
+    throw std::runtime_error("this build draws only .svg");
 }
 
 std::string draw_plot(const SweepPlot&, const std::string&, const std::vector<DiagramShot>&,

@@ -117,7 +117,7 @@ struct BallParams {
     bool operator==(const BallParams&) const = default;
 };
 inline constexpr const char* kBallShapes[] = {"ball", "disc"};
-inline constexpr const char* kRolls[] = {"true", "false"};
+inline constexpr const char* kTrueOrFalse[] = {"true", "false"};
 inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::R>("radius", kBallRadius, "radius", {.record_key = "R"}),
     field<&BallParams::m>("mass", kMass, "mass", {.record_key = "m"}),
@@ -185,7 +185,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
                             {.later = true}),
     either<&BallParams::disc, kBallShapes>(
         "shape", "two discs touch at the sum of their radii, and two balls of unlike size a little nearer"),
-    either<&BallParams::slides, kRolls>(
+    either<&BallParams::slides, kTrueOrFalse>(
         "rolls", "`false`: pucks, which slide until they stop; `mu_s` slows them, and nothing turns them"),
 };
 
@@ -461,8 +461,10 @@ inline constexpr const char* kCameras[] = {"top", "rail", "player", "follow"};
 struct RenderSettings {
     double fps = 60.0;
     int width = FrameSize().width, height = FrameSize().height;
-    std::string camera = "top";                                     ///< ignored if eye and target are set
+    std::string camera = "top";  ///< ignored if eye and target are set
+    bool hides_cue = false;
     std::optional<Vec3> eye = std::nullopt, target = std::nullopt;  ///< both or neither
+    std::optional<std::string> cloth = std::nullopt;                ///< "#rrggbb"
     FrameSize size() const { return {width, height}; }
     bool operator==(const RenderSettings&) const = default;
 };
@@ -475,7 +477,13 @@ inline constexpr Field<RenderSettings> kRenderFields[] = {
                                 {.shape = "[x, y, z]", .instead_of = "camera"}),
     field<&RenderSettings::target>("target", kCoordinate, "point that a free camera looks at, with `eye`",
                                    {.shape = "[x, y, z]", .instead_of = "camera"}),
+    field<&RenderSettings::cloth>("cloth", "colour of the cloth, `\"#rrggbb\"`",
+                                  {.standard = "that of the game"}),
+    either<&RenderSettings::hides_cue, kTrueOrFalse>("cue", "the cue is drawn"),
 };
+
+/// The three channels, 0..1, of a colour such as "#1d6a54"; nothing if it is none.
+std::optional<std::array<double, 3>> color_of(std::string_view text);
 
 struct Scene {
     std::string file;  ///< the name in messages; free to choose for a scene built in code

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "carom/engine/record.h"
 #include "carom/render/camera.h"
@@ -18,9 +19,9 @@ struct FreeCamera {
     std::string ball;                 ///< id of the ball for "follow"; default: the ball that moves first
 };
 
-/// top: from above; the table fills the image. rail: from behind the head
-/// rail; shows the whole table. player: above the ball that moves first,
-/// looking along its path. follow: behind a ball, moving smoothly with it.
+/// top: from above; the table fills the image. rail: from behind the head rail; the balls that move fill the
+/// image. player: from behind the ball that moves first, looking along its path at those that move. follow:
+/// behind a ball, moving smoothly with it.
 class CameraPath {
   public:
     /// `record` must outlive the path. @throws RenderError for an unknown camera or ball, listing the known
@@ -43,8 +44,13 @@ class CameraPath {
     Vec3 follow_offset_{0.0, 0.0, 1.0};
 };
 
-/// A camera that looks along `direction` at the box, at the shortest distance that still shows all of it.
-Camera fitting_camera(const Bounds& bounds, const Vec3& direction, double fov_y_deg, FrameSize size);
+/// A camera that looks along `direction`, at the shortest distance that still shows all of the points.
+Camera fitting_camera(const std::vector<Vec3>& points, const Vec3& direction, double fov_y_deg,
+                      FrameSize size);
+
+/// Positions along the path of every ball, or of every one that moves: the ends of its segments and points
+/// between them.
+std::vector<Vec2> visited_places(const Record& record, bool moving = false);
 
 /// Index of the ball that moves first: the struck ball, else the first ball with a velocity; 0 if none moves.
 int first_ball(const Record& record);

@@ -66,10 +66,19 @@ struct DrawBox {
     bool operator==(const DrawBox&) const = default;
 };
 
+/// A cue: a cone from the middle of its tip to the end of its butt [m].
+struct DrawCue {
+    Vec3 tip{0.0, 0.0, 0.0}, butt{0.0, 0.0, 0.0};
+    float opacity = 1.0F;
+
+    bool operator==(const DrawCue&) const = default;
+};
+
 struct DrawList {
     std::shared_ptr<const TableMesh> table;
     Camera camera;
     std::vector<DrawBall> balls;
+    std::optional<DrawCue> cue;
     std::vector<DrawLine> lines;
     std::vector<DrawBox> boxes;
     /// Samples per pixel of the table, which is redrawn only when the camera or the table changes

@@ -1,6 +1,7 @@
 // Pixels in memory.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,6 +19,13 @@ struct PixelBox {
         return x0 < other.x1 && other.x0 < x1 && y0 < other.y1 && other.y0 < y1;
     }
 };
+
+/// The box around two boxes, either of which may be empty.
+inline PixelBox joined(const PixelBox& a, const PixelBox& b) {
+    if (a.x1 <= a.x0 || a.y1 <= a.y0) return b;
+    if (b.x1 <= b.x0 || b.y1 <= b.y0) return a;
+    return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
 
 /// Four channels of eight bits (the fourth is unused), sRGB, row 0 at the top.
 struct Image {

@@ -4,28 +4,37 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 namespace carom::render::look {
 
 using Color = std::array<double, 3>;
 
-inline constexpr Color kCloth{0.055, 0.50, 0.345};
-inline constexpr Color kWoodDark{0.23, 0.105, 0.055};
-inline constexpr Color kWoodLight{0.44, 0.225, 0.115};
-inline constexpr Color kLeather{0.17, 0.13, 0.11};
-inline constexpr Color kTrim{0.19, 0.175, 0.165};
+inline constexpr Color kCloth{0.03, 0.47, 0.32};
+inline constexpr Color kCaromCloth{0.06, 0.29, 0.58};
+inline constexpr Color kSnookerCloth{0.05, 0.45, 0.19};
+inline constexpr Color kWoodDark{0.21, 0.085, 0.045};
+inline constexpr Color kWoodLight{0.43, 0.205, 0.10};
+inline constexpr Color kLeather{0.29, 0.185, 0.12};
+inline constexpr Color kTrim{0.16, 0.125, 0.105};
 inline constexpr Color kInlay{0.88, 0.85, 0.76};
-inline constexpr Color kFloor{0.16, 0.145, 0.135};
+inline constexpr Color kFloor{0.30, 0.215, 0.155};
+inline constexpr Color kWall{0.27, 0.29, 0.31};
+inline constexpr Color kLampShade{0.05, 0.16, 0.12};
 /// [-] How much more light the cloth of a cushion reflects.
 inline constexpr double kCushionGain = 1.12;
 /// [-] What chalk reflects.
 inline constexpr double kChalk = 0.75;
 
 // Surfaces that others shade, in one colour each: the mean of what is painted here.
-inline constexpr Color kPlainCushion{0.058, 0.53, 0.365};
 inline constexpr Color kPlainWood{0.35, 0.176, 0.091};
 inline constexpr Color kPlainPocket{0.12, 0.092, 0.078};
 inline constexpr Color kPlainChalk{0.45, 0.62, 0.54};
+
+/// The cloth of a game, by the preset of its table.
+constexpr Color cloth_of(std::string_view preset) {
+    return preset.starts_with("carom") ? kCaromCloth : preset.starts_with("snooker") ? kSnookerCloth : kCloth;
+}
 
 // Balls; their own colours are those of ball_style().
 inline constexpr Color kIvory{0.95, 0.93, 0.86};

@@ -7,6 +7,7 @@
 
 #include "carom/engine/table.h"
 #include "carom/render/camera.h"
+#include "carom/render/look.h"
 
 namespace carom::render {
 
@@ -14,11 +15,13 @@ enum class Material : std::uint8_t {
     kCloth,    ///< the playing surface; only here do balls cast shadows
     kCushion,  ///< cloth over rubber
     kWood,     ///< texture coordinates [m]: u along the grain, v across it, other numbers on each board
-    kPocket,   ///< the wall of a hole
+    kPocket,   ///< the wall of a hole; v is 0 at its mouth and 1 at its bottom, u is 1 on the bottom
     kTrim,     ///< the rim of a pocket
     kInlay,    ///< diamonds
-    kFloor,
-    kShade,  ///< black, blended over the cloth; u is the opacity
+    kFloor,    ///< of the room; like its walls and the lamp, visible from one side only
+    kWall,
+    kLamp,     ///< u is 1 where it shines
+    kShade,    ///< black, blended over the cloth; u is the opacity
     /// white, blended over the cloth; u is the opacity, v the distance from the middle in half widths
     kChalk,
 };
@@ -50,6 +53,7 @@ struct TableMesh {
     std::vector<std::array<Vec2, 2>> noses;          ///< straight pieces of the cushions' edges
     double wood_top = 0.0;
     Bounds bounds;  ///< what a camera should show
+    look::Color cloth = look::kCloth;
     Lamp lamp;
 };
 

@@ -203,10 +203,12 @@ void add_accuracy_options(Options& command, AccuracySceneArgs& args) {
     command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
         .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
     add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
+    add_plot(command, args.plot);
     add_reports(command, args.csv, args.json);
 }
 
 Plan plan_for_accuracy(const AccuracySceneArgs& args) {
+    check_plot_path(args.plot);
     if (args.scene.empty()) throw UsageError("accuracy: no scene file given; see --help");
     if (!(args.target > 0.0 && std::isfinite(args.target)))
         throw UsageError(fmt::format("--target {}: expected a number of metres greater than 0", args.target));
@@ -224,6 +226,7 @@ namespace {
 int run(const AccuracySceneArgs& args) {
     const SceneAccuracy result = measure_scene_accuracy(plan_for_accuracy(args).scene, args);
     write_report(args.csv, table_csv(scene_accuracy_table(result)));
+    if (!args.plot.empty()) write_plot(scene_accuracy_plot(result, harmless(args.scene)), args.plot);
     print(args.json ? scene_accuracy_json(result) : scene_accuracy_text(result, harmless(args.scene)));
     return kOk;
 }

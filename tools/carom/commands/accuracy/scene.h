@@ -8,6 +8,7 @@
 #include "base/options.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/record.h"
+#include "report/plot.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -22,8 +23,8 @@ struct AccuracySceneArgs {
     /// Interleaved rounds.
     int repeat = 5;
     bool json = false;
-    /// A file name; empty: not written.
-    std::string csv;
+    /// File names; empty: not written.
+    std::string csv, plot;
 };
 
 /// What happened in a shot: all contacts in order, the first ball hit, and which pocket each ball fell into.
@@ -99,6 +100,8 @@ Plan plan_for_accuracy(const AccuracySceneArgs& args);
 
 /// One row per setting.
 Table scene_accuracy_table(const SceneAccuracy& result);
+/// Error against time, with the recommended tolerance.
+Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene);
 /// The lines above the table.
 std::vector<std::string> scene_accuracy_notes(const SceneAccuracy& result, const std::string& scene);
 std::string scene_accuracy_text(const SceneAccuracy& result, const std::string& scene);

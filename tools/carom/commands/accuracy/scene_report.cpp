@@ -60,6 +60,36 @@ Table scene_accuracy_table(const SceneAccuracy& result) {
     return table;
 }
 
+Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene) {
+    constexpr double kLeastError = 1e-16;  // [m] a logarithmic axis has no 0
+    Plot plot;
+    plot.title = "What accuracy costs: " + scene;
+    plot.notes = {result.converged ? fmt::format("gain {:.1e}; converged runs agree within {:.1e} m",
+                                                 result.gain, result.agreement)
+                                   : "the converged runs do not agree: distances, not errors"};
+    plot.x = {"ms for the shot", true, {}, {}};
+    plot.y = {"largest final distance from the converged run, m", true, {}, {}};
+    for (const char* method : {"march", "march published", "tolerance", "box2d"}) {
+        Series series;
+        series.name = method == std::string("box2d") ? "Box2D, 60 Hz to 10 kHz" : method;
+        for (const SceneAccuracyRow& r : result.rows)
+            if (r.method == method && r.failed.empty())
+                series.points.emplace_back(r.ns_min * 1e-6, std::max(r.error.largest, kLeastError));
+        if (!series.points.empty()) plot.series.push_back(series);
+    }
+    const auto recommended =
+        std::find_if(result.rows.begin(), result.rows.end(), [&](const SceneAccuracyRow& r) {
+            return r.method == "tolerance" && result.recommended == r.value && r.failed.empty();
+        });
+    if (recommended != result.rows.end())
+        plot.series.push_back(
+            {fmt::format("recommended: {:g}", recommended->value),
+             {{recommended->ns_min * 1e-6, std::max(recommended->error.largest, kLeastError)}},
+             false});
+    plot.levels = {{fmt::format("target {:g} m", result.target), result.target}};
+    return plot;
+}
+
 std::vector<std::string> scene_accuracy_notes(const SceneAccuracy& result, const std::string& scene) {
     return {scene + ": " + gain_sentence(result), converged_sentence(result)};
 }

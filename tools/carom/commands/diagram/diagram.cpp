@@ -1,6 +1,7 @@
 // carom diagram: shots drawn for a handout.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,8 +23,17 @@ struct DiagramArgs {
     std::string units = kUnits[0];
     bool black_and_white = false;
     bool diamonds = false;
+    bool grid = false;
     bool speeds = true;
 };
+
+/// The first comment of a scene, else the name of the file.
+std::string default_title(const std::string& path) {
+    std::string title = is_record(path) ? "" : harmless(scene_title(read_scene_text(path)));
+    if (title.empty()) title = std::filesystem::path(harmless(path)).stem().string();
+    std::replace(title.begin(), title.end(), '_', ' ');
+    return title;
+}
 
 int run(const DiagramArgs& args) {
     const std::string format = diagram_format(args.output);
@@ -34,9 +44,8 @@ int run(const DiagramArgs& args) {
     std::vector<DiagramShot> shots;
     for (const std::string& path : args.shots) {
         DiagramShot shot;
-        shot.title = shots.size() < args.titles.size()
-                         ? harmless(args.titles[shots.size()])
-                         : std::filesystem::path(harmless(path)).stem().string();
+        shot.title =
+            shots.size() < args.titles.size() ? harmless(args.titles[shots.size()]) : default_title(path);
         if (is_record(path)) {
             shot.record = read_shot(path, {});
         } else {
@@ -49,6 +58,7 @@ int run(const DiagramArgs& args) {
     DiagramStyle style;
     style.color = !args.black_and_white;
     style.diamond_numbers = args.diamonds;
+    style.grid = args.grid;
     style.speeds = args.speeds;
     style.units = units_of(args.units);
     write_report(args.output, draw_diagram(shots, style, format));
@@ -65,11 +75,14 @@ void add_diagram(Options& program) {
         .required = true;
     command.option("-o,--output", &args.output, "FILE", "The drawing: .svg, .pdf or .png");
     command.option("--title", &args.titles, "TEXT",
-                   "Title of a shot, once for each (default: the file's name)");
-    command.flag("--black-and-white", args.black_and_white, "For printers without colour (default: off)");
+                   "Title of a shot, once for each (default: from the scene's first comment)");
+    command.flag("--bw,--black-and-white", args.black_and_white,
+                 "For printers without colour (default: off)");
     command.flag("--diamonds", args.diamonds, "Number the diamonds (default: off)");
+    command.flag("--grid", args.grid, "Draw lines at each quarter of a diamond (default: off)");
     command.flag("--no-speeds", args.speeds, "Leave out the speeds beside contacts (default: off)");
-    command.option("--units", &args.units, "UNITS", "Units of the speeds").one_of({kUnits[0], kUnits[1]});
+    command.option("--units", &args.units, "UNITS", "Units of speeds, places and the radius")
+        .one_of({kUnits[0], kUnits[1]});
 }
 
 }  // namespace carom::tools

@@ -40,7 +40,7 @@ struct Surface {
 const Surface& surface_of(Material material) {
     static const std::map<Material, Surface> surfaces = {
         {Material::kCloth, {"cloth", look::kCloth, 1.0}},
-        {Material::kCushion, {"cushion", look::kPlainCushion, 1.0}},
+        {Material::kCushion, {"cushion", look::kCloth, 1.0}},
         {Material::kWood, {"wood", look::kPlainWood, 0.45}},
         {Material::kPocket, {"pocket", look::kPlainPocket, 0.9}},
         {Material::kTrim, {"trim", look::kTrim, 0.4}},
@@ -61,7 +61,9 @@ std::size_t add_table(Gltf& file, const render::TableMesh& table) {
     for (const auto& [material, part] : table_parts(table)) {
         const Surface& surface = surface_of(material);
         Json color = Json::array();
-        for (const double c : surface.color) color.push_back(c * c);
+        const double gain = material == Material::kCushion ? look::kCushionGain : 1.0;
+        const bool cloth = material == Material::kCloth || material == Material::kCushion;
+        for (const double c : cloth ? table.cloth : surface.color) color.push_back(gain * c * c);
         color.push_back(1.0);
         Json look = {
             {"name", surface.name},

@@ -178,7 +178,9 @@ std::map<Material, TablePart> table_parts(const render::TableMesh& mesh) {
     for (std::size_t i = 0; i + 2 < mesh.solid.size(); i += 3) {
         const auto material = static_cast<Material>(static_cast<int>(mesh.solid[i].material));
         const Corners triangle{mesh.solid[i], mesh.solid[i + 1], mesh.solid[i + 2]};
-        if (material == Material::kFloor || !has_area(triangle)) continue;
+        const bool room =
+            material == Material::kFloor || material == Material::kWall || material == Material::kLamp;
+        if (room || !has_area(triangle)) continue;
         const std::vector<Corners> pieces =
             has_holes(material) ? cutter.cut(triangle) : std::vector<Corners>{triangle};
         for (const Corners& piece : pieces) put(piece, material);

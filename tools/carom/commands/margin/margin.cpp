@@ -8,6 +8,8 @@
 #include "base/console.h"
 #include "base/setup.h"
 #include "carom/engine/printable.h"
+#include "report/margin_chart.h"
+#include "report/plot.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -34,6 +36,7 @@ int run(const MarginArgs& asked) {
     read_margin_args(args);
     const auto [margin, last] = measure_margin(plan_scene(args.scene), args);
     write_report(args.csv, table_csv(frames_table(margin, last)));
+    if (!args.plot.empty()) write_plot(margin_plot(margin, last, harmless(args.scene)), args.plot);
     print(args.json ? margin_json(margin, last) : margin_text(margin, last, harmless(args.scene)));
     return kOk;
 }
@@ -41,6 +44,7 @@ int run(const MarginArgs& asked) {
 }  // namespace
 
 void read_margin_args(MarginArgs& args) {
+    check_plot_path(args.plot);
     if (!args.size.empty()) args.drawn.size = parse_size(args.size);
 }
 
@@ -50,6 +54,7 @@ void add_margin_options(Options& command, MarginArgs& args) {
     add_repeat(command, args.repeat, "Number of runs; a frame's cost is its median over them");
     command.flag("--no-render", args.no_render, "Measure only the simulation (default: off)");
     add_gl(command, args.drawn.gl);
+    add_plot(command, args.plot);
     add_reports(command, args.csv, args.json);
     command.footer =
         "simulate = detect + resolve + kernel + cluster. A frame costs simulate + draw + readback + encode + "

@@ -19,8 +19,8 @@ struct MarginArgs {
     int repeat = 1;
     bool no_render = false;
     FrameSettings drawn;
-    /// A file name; empty: not written.
-    std::string csv;
+    /// File names; empty: not written.
+    std::string csv, plot;
     bool json = false;
 
     const FrameSettings* drawing() const { return no_render ? nullptr : &drawn; }

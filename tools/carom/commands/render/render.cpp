@@ -63,14 +63,15 @@ void check_input(const RenderArgs& args, bool replaces, const std::string& outpu
 }
 
 void check_args(const RenderArgs& args) {
-    const auto second = [](const char* option, std::optional<double> value) {
-        if (value && !(*value >= 0.0 && std::isfinite(*value))) {
-            throw UsageError(fmt::format("{}: expected a number of seconds of at least 0", option));
+    constexpr double kAiming = -2.0;  // [s] before the strike at 0, the cue aims
+    const auto second = [](const char* option, std::optional<double> value, double least) {
+        if (value && !(*value >= least && std::isfinite(*value))) {
+            throw UsageError(fmt::format("{}: expected a number of seconds of at least {:g}", option, least));
         }
     };
-    second("--from", args.from);
-    second("--to", args.to);
-    second("--at", args.at);
+    second("--from", args.from, kAiming);
+    second("--to", args.to, 0.0);
+    second("--at", args.at, kAiming);
     if (args.to && *args.to < args.from)
         throw UsageError("--to is before --from, so there are no frames; swap them");
     if (args.at && (args.from != 0.0 || args.to || args.frame)) {
@@ -310,7 +311,7 @@ void add_render(Options& program) {
         "-o,--output", &args.pattern, "PATTERN",
         "Frames, with one %d or %05d for the number; or a film (.mp4, .webm, .gif, .webp), made by ffmpeg");
     add_picture(command, args.fps, args.size);
-    command.option("--from", &args.from, "S", "Start time in s");
+    command.option("--from", &args.from, "S", "Start time in s, from -2; the cue strikes at 0");
     command.option("--to", &args.to, "S", "End time in s (default: the end of the shot)");
     command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
     command.option("--at", &args.at, "S", "Only this time in s, as frame 0 (default: all)");

@@ -1,4 +1,4 @@
-// Plots as SVG files.
+// Charts, and the paper that makes SVG files of them.
 #include "report/plot.h"
 
 #include <fmt/format.h>
@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 #include "base/console.h"
+#include "report/diagram.h"
 #include "report/table.h"
 
 namespace carom::tools {
@@ -18,8 +20,8 @@ namespace {
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#56b4e9", "#000000", "#999999"};
 constexpr int kColours = 8;
-constexpr double kWidth = 960, kLeft = 80, kRight = kLeft + kPlotWidth;
-constexpr double kTop = 60, kBottom = kTop + kPlotHeight, kHeight = 530;
+constexpr double kChartLeft = 80, kChartRight = kChartLeft + kPlotWidth;
+constexpr double kChartTop = 60, kChartBottom = kChartTop + kPlotHeight;
 constexpr double kLineHeight = 18;
 
 std::string escaped(const std::string& text) {
@@ -32,9 +34,9 @@ std::string escaped(const std::string& text) {
 }
 
 /// Turns values into pixels along one axis.
-class Scale {
+class AxisScale {
   public:
-    Scale(const Axis& axis, const std::vector<double>& values, double from, double to)
+    AxisScale(const Axis& axis, const std::vector<double>& values, double from, double to)
         : logarithmic_(axis.logarithmic), from_(from), to_(to), given_(axis.marks) {
         double low = INFINITY, high = -INFINITY;
         for (const double value : values) {
@@ -97,45 +99,27 @@ class Scale {
     std::vector<std::pair<double, std::string>> given_;
 };
 
-class Drawing {
+class ChartDrawing {
   public:
-    explicit Drawing(const Plot& plot)
-        : plot_(plot), x_(plot.x, values(true), kLeft, kRight), y_(plot.y, values(false), kBottom, kTop) {}
+    ChartDrawing(const Plot& plot, Paper& paper)
+        : plot_(plot),
+          paper_(paper),
+          x_(plot.x, values(true), kChartLeft, kChartRight),
+          y_(plot.y, values(false), kChartBottom, kChartTop) {}
 
-    std::string svg() {
-        add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-            "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
-            "fill=\"white\"/>\n",
-            kWidth, kHeight);
-        text(kLeft, 22, plot_.title, "start", "font-weight=\"bold\" font-size=\"15\"");
+    void draw() {
+        paper_.text(kChartLeft, 22, plot_.title, "start", {.size = 15, .bold = true});
         for (std::size_t i = 0; i < plot_.notes.size(); ++i)
-            text(kLeft, 40 + 14 * static_cast<double>(i), plot_.notes[i], "start",
-                 "font-size=\"11\" fill=\"#555\"");
+            paper_.text(kChartLeft, 40 + 14 * static_cast<double>(i), plot_.notes[i], "start",
+                        {.size = 11, .colour = "#555"});
         axes();
         int next = 0;
         for (const Series& series : plot_.series) draw(series, series.colour >= 0 ? series.colour : next++);
         for (std::size_t i = 0; i < plot_.ticks.size(); ++i) draw(plot_.ticks[i], static_cast<int>(i), next);
         for (const Level& level : plot_.levels) draw(level);
-        add("</svg>\n");
-        return fmt::to_string(out_);
     }
 
   private:
-    template <typename... Args>
-    void add(fmt::format_string<Args...> format, Args&&... args) {
-        fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
-    }
-
-    void text(double x, double y, const std::string& words, const char* anchor, const char* more = "") {
-        add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, more,
-            escaped(words));
-    }
-
-    void stroke(double x1, double y1, double x2, double y2, const char* colour, const char* more = "") {
-        add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" {}/>\n", x1, y1, x2,
-            y2, colour, more);
-    }
-
     std::vector<double> values(bool x) const {
         std::vector<double> all;
         for (const Series& series : plot_.series) {
@@ -153,94 +137,152 @@ class Drawing {
 
     void axes() {
         for (const auto& [value, label] : x_.marks()) {
-            stroke(x_.at(value), kTop, x_.at(value), kBottom, "#e4e4e4");
-            text(x_.at(value), kBottom + 24, label, "middle");
+            paper_.line(x_.at(value), kChartTop, x_.at(value), kChartBottom, kGridPen);
+            paper_.text(x_.at(value), kChartBottom + 24, label, "middle", {});
         }
         for (const auto& [value, label] : y_.marks()) {
-            stroke(kLeft, y_.at(value), kRight, y_.at(value), "#e4e4e4");
-            text(kLeft - 8, y_.at(value) + 4, label, "end");
+            paper_.line(kChartLeft, y_.at(value), kChartRight, y_.at(value), kGridPen);
+            paper_.text(kChartLeft - 8, y_.at(value) + 4, label, "end", {});
         }
-        add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#444\"/>\n", kLeft,
-            kTop, kRight - kLeft, kBottom - kTop);
-        text(0.5 * (kLeft + kRight), kBottom + 46, plot_.x.title, "middle");
-        const double middle = 0.5 * (kTop + kBottom);
-        text(18, middle, plot_.y.title, "middle",
-             fmt::format("transform=\"rotate(-90 18 {})\"", middle).c_str());
+        paper_.frame(kChartLeft, kChartTop, kChartRight - kChartLeft, kChartBottom - kChartTop, {"#444"});
+        paper_.text(0.5 * (kChartLeft + kChartRight), kChartBottom + 46, plot_.x.title, "middle", {});
+        paper_.text(18, 0.5 * (kChartTop + kChartBottom), plot_.y.title, "middle", {.upwards = true});
     }
 
     double legend_line(const std::string& name) {
-        const double y = kTop + 10 + kLineHeight * legend_++;
-        text(kRight + 42, y + 4, name, "start", "font-size=\"12\"");
+        const double y = kChartTop + 10 + kLineHeight * legend_++;
+        paper_.text(kChartRight + 42, y + 4, name, "start", {.size = 12});
         return y;
     }
 
     void draw(const Level& level) {
         if (!y_.inside(level.y)) return;
         const double y = y_.at(level.y);
-        stroke(kLeft, y, kRight, y, "#444", "stroke-dasharray=\"6 4\"");
-        text(kRight - 4, y - 4, level.name, "end",
-             "font-size=\"11\" fill=\"#444\" stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\"");
+        paper_.line(kChartLeft, y, kChartRight, y, {"#444", 1.0, "6 4"});
+        paper_.text(kChartRight - 4, y - 4, level.name, "end", {.size = 11, .colour = "#444", .halo = true});
     }
 
     void draw(const Series& series, int number) {
         const char* colour = kPalette[number % kColours];
-        const char* dash =
-            series.dashed ? "stroke-dasharray=\"5 4\" stroke-width=\"1.6\"" : "stroke-width=\"1.6\"";
-        std::string path;
+        const Pen pen{colour, 1.6, series.dashed ? "5 4" : ""};
+        std::vector<std::pair<double, double>> path;
         for (std::size_t i = 0; i < series.errors.size(); ++i) {
             const auto& [x, y] = series.points[i];
             const double low = y - series.errors[i], high = y + series.errors[i];
             if (x_.inside(x) && y_.inside(low) && y_.inside(high))
-                stroke(x_.at(x), y_.at(low), x_.at(x), y_.at(high), colour, "stroke-width=\"1.6\"");
+                paper_.line(x_.at(x), y_.at(low), x_.at(x), y_.at(high), {colour, 1.6});
         }
         for (const auto& [x, y] : series.points) {
             if (!x_.inside(x) || !y_.inside(y)) continue;
-            path += fmt::format("{:.1f},{:.1f} ", x_.at(x), y_.at(y));
-            if (series.dots)
-                add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x_.at(x), y_.at(y),
-                    series.line ? 3.2 : 2.2, colour);
+            path.emplace_back(x_.at(x), y_.at(y));
+            if (series.dots) paper_.dot(x_.at(x), y_.at(y), dot_of(series), colour);
         }
-        if (series.line && !path.empty())
-            add("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", path, colour, dash);
+        if (series.line && !path.empty()) paper_.path(path, pen);
         if (series.name.empty()) return;
         const double y = legend_line(series.name);
-        if (series.line) stroke(kRight + 12, y, kRight + 36, y, colour, dash);
-        if (series.dots) add("<circle cx=\"{}\" cy=\"{}\" r=\"3.2\" fill=\"{}\"/>\n", kRight + 24, y, colour);
+        if (series.line) paper_.line(kChartRight + 12, y, kChartRight + 36, y, pen);
+        if (series.dots) paper_.dot(kChartRight + 24, y, std::max(dot_of(series), 3.2), colour);
     }
 
     void draw(const Ticks& ticks, int row, int next) {
         const char* colour = kPalette[(next + row) % kColours];
-        const double low = kBottom - 10.0 * row;
+        const double low = kChartBottom - 10.0 * row;
         for (const double x : ticks.at)
-            if (x_.inside(x)) stroke(x_.at(x), low, x_.at(x), low - 9, colour, "stroke-width=\"1.5\"");
+            if (x_.inside(x)) paper_.line(x_.at(x), low, x_.at(x), low - 9, {colour, 1.5});
         if (ticks.name.empty()) return;
         const double y = legend_line(ticks.name);
-        stroke(kRight + 24, y + 5, kRight + 24, y - 5, colour, "stroke-width=\"2\"");
+        paper_.line(kChartRight + 24, y + 5, kChartRight + 24, y - 5, {colour, 2.0});
     }
 
+    static double dot_of(const Series& series) {
+        return series.points.size() == 1 && !series.line ? 6.0 : series.line ? 3.2 : 2.2;
+    }
+
+    static constexpr Pen kGridPen{"#e4e4e4"};
     const Plot& plot_;
-    fmt::memory_buffer out_;
-    Scale x_, y_;
+    Paper& paper_;
+    AxisScale x_, y_;
     int legend_ = 0;
+};
+
+class SvgPaper : public Paper {
+  public:
+    SvgPaper() {
+        add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+            "font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
+            "fill=\"white\"/>\n",
+            kChartWidth, kChartHeight);
+    }
+    std::string file() const { return fmt::to_string(out_) + "</svg>\n"; }
+
+    void text(double x, double y, const std::string& words, const char* anchor, const Font& font) override {
+        std::string more;
+        const auto say = [&more](const std::string& attribute) {
+            more += (more.empty() ? "" : " ") + attribute;
+        };
+        if (font.bold) say("font-weight=\"bold\"");
+        if (font.size != Font().size) say(fmt::format("font-size=\"{}\"", font.size));
+        if (font.colour != std::string_view(Font().colour)) say(fmt::format("fill=\"{}\"", font.colour));
+        if (font.halo) say("stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\"");
+        if (font.upwards) say(fmt::format("transform=\"rotate(-90 {} {})\"", x, y));
+        add("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, more,
+            escaped(words));
+    }
+    void line(double x1, double y1, double x2, double y2, const Pen& pen) override {
+        add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" {}/>\n", x1, y1, x2,
+            y2, pen.colour, more_of(pen));
+    }
+    void path(const std::vector<std::pair<double, double>>& points, const Pen& pen) override {
+        std::string list;
+        for (const auto& [x, y] : points) list += fmt::format("{:.1f},{:.1f} ", x, y);
+        add("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" {}/>\n", list, pen.colour, more_of(pen));
+    }
+    void dot(double x, double y, double radius, const char* colour) override {
+        add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x, y, radius, colour);
+    }
+    void frame(double x, double y, double width, double height, const Pen& pen) override {
+        add("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"{}\"/>\n", x, y, width,
+            height, pen.colour);
+    }
+
+  private:
+    template <typename... Args>
+    void add(fmt::format_string<Args...> format, Args&&... args) {
+        fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+    }
+    static std::string more_of(const Pen& pen) {
+        std::string more = *pen.dash ? fmt::format("stroke-dasharray=\"{}\"", pen.dash) : "";
+        if (pen.width != 1.0)
+            more += fmt::format("{}stroke-width=\"{}\"", more.empty() ? "" : " ", pen.width);
+        return more;
+    }
+
+    fmt::memory_buffer out_;
 };
 
 }  // namespace
 
+void draw_chart(const Plot& plot, Paper& paper) {
+    ChartDrawing(plot, paper).draw();
+}
+
 std::string plot_svg(const Plot& plot) {
-    return Drawing(plot).svg();
+    SvgPaper paper;
+    draw_chart(plot, paper);
+    return paper.file();
 }
 
 void write_plot(const Plot& plot, const std::string& path) {
-    write_report(path, plot_svg(plot));
+    write_report(path, path.ends_with(".svg") ? plot_svg(plot) : cairo_chart(plot, diagram_format(path)));
 }
 
 void add_plot(Options& command, std::string& plot) {
-    command.option("--plot", &plot, "FILE.svg", "Draw it (default: not drawn)");
+    command.option("--plot", &plot, "FILE", "Draw it: .svg, .pdf or .png (default: not drawn)");
 }
 
 void check_plot_path(const std::string& path) {
-    if (!path.empty() && (path.size() <= 4 || !path.ends_with(".svg")))
-        throw UsageError(fmt::format("--plot {}: plots are SVG; give a name that ends in .svg", path));
+    if (path == ".svg") throw UsageError("--plot .svg: give a name before the ending");
+    if (!path.empty() && !path.ends_with(".svg")) diagram_format(path);
 }
 
 }  // namespace carom::tools

@@ -86,10 +86,10 @@ TEST(Plot, NothingAndOnePointAreFine) {
     }
 }
 
-TEST(Plot, TheNameMustSaySvg) {
+TEST(Plot, TheNameMustSayTheFormat) {
     EXPECT_NO_THROW(check_plot_path(""));
     EXPECT_NO_THROW(check_plot_path("a/b.svg"));
-    EXPECT_THROW(check_plot_path("a.png"), UsageError);
+    EXPECT_THROW(check_plot_path("a.jpg"), UsageError);
     EXPECT_THROW(check_plot_path(".svg"), UsageError);
 }
 
