@@ -49,6 +49,7 @@ function conclude(state) {
   const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
   const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => b.id);
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
+  if (state.game && !verdict) return;
   const judged = verdict ? ` ${verdictWords(verdict)}` : "";
   const warned = shot.warnings.map((text) => ` Warning: ${text}.`).join("");
   state.say(`At rest after ${shot.duration.toFixed(2)} s.${gone}${judged}${warned}`);

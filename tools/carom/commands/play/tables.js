@@ -32,7 +32,7 @@ export function startOf(carom, game, table, seed = 1) {
   const at = (x, y) => [(x * w).toFixed(4), (y * l).toFixed(4)];
   if (game === "four_ball") return head + rack("four_ball") + cue("white", 3, 85);
   if (game === "sum_to_three")
-    return head + ball("white", ...at(0.6, 0.25)) + ball("red", ...at(0.5, 0.7)) + cue("white", 3, 98);
+    return head + ball("cue", ...at(0.6, 0.25)) + ball("red", ...at(0.5, 0.7)) + cue("cue", 3, 98);
   if (CAROM.includes(game) || (kind === "carom" && game === ""))
     return head + ball("white", ...at(0.6289, 0.25)) + ball("yellow", ...at(0.5, 0.25)) +
       ball("red", ...at(0.5, 0.75)) + cue("white", 4, 98.5);
