@@ -1,7 +1,8 @@
 // Types of carom for JavaScript. Units are SI: m, m/s, rad/s, s. Keys of scenes are those of scene files
 // (docs/reference/scene_format.md); angles there are degrees, and their names end in _deg.
 
-/** Loads carom.wasm, once. Without `source`, from the file beside the package. Needs WebAssembly with SIMD. */
+/** Loads carom.wasm, once. Without `source`, from the file beside the package. Needs WebAssembly with
+ * SIMD. */
 export function init(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module
   | Promise<Response>): Promise<void>;
 

@@ -15,7 +15,7 @@ const library = {
       const path = UTF8ToString(at);
       return process.platform === "win32" ? path.replace(/^.*[/](?=[A-Za-z]:([/]|$))/, "") : path;
     },
-    /** What the program sees of a path of node. */
+    /** The program's form of a path of node. */
     seen: (path) => process.platform === "win32" ? path.replace(/\\/g, "/") : path,
     /** The result of a call, or the negative number of its error. */
     result: (call) => {

@@ -1,4 +1,4 @@
-// What painters paint on: a picture of the table, and what hides and lights the things in front of it.
+// The canvas of the painters: a picture of the table, and what hides and lights the things in front of it.
 #pragma once
 
 #include <algorithm>

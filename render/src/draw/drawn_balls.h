@@ -1,4 +1,4 @@
-// What a picture shows over the table. Comparing two pictures gives the pixels that can differ, so that the
+// The balls of a picture, over the table. Comparing two pictures gives the pixels that can differ, so that the
 // time of a frame depends only on what moved.
 #pragma once
 
@@ -29,7 +29,7 @@ struct LampSlopes {
     bool operator==(const LampSlopes&) const = default;
 };
 
-/// What a ball looks like, in single precision.
+/// The look of a ball, in single precision.
 struct BallInstance {
     float center_radius[4];
     float orientation[4];
@@ -95,7 +95,7 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 /// Boxes outside which the two pictures are equal; the whole image if nothing better is known.
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size);
 
-/// What must be redrawn to refill some boxes: a flag for each ball, and for each line or box.
+/// The things to redraw in some boxes: a flag for each ball, and for each line or box.
 struct Inside {
     std::vector<bool> balls, shapes;
 };

@@ -27,7 +27,7 @@ DrawnShape everywhere(FrameSize size) {
 DrawnShape long_shape(const Vec3& from, const Vec3& to, double half_width, const Camera& camera) {
     DrawnShape shape = everywhere(camera.size);
     const std::optional<Vec2> a = camera.project(from), b = camera.project(to);
-    // What is this near to the eye is cut off, and may cover anything.
+    // A shape this near to the eye is cut off, and may cover anything.
     constexpr double kNear = 0.02;  // m, twice what the painters cut off at
     if (!a || !b || !a->allFinite() || !b->allFinite()) return shape;
     if (!(camera.depth(from) > kNear && camera.depth(to) > kNear)) return shape;

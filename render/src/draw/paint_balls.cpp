@@ -71,7 +71,7 @@ struct LampOnBalls {
     float x, y, half_x = 0.0F, half_y = 0.0F;
 };
 
-// What a ball mirrors: the lamp, the cloth, the cushions around it, and the dim room above them.
+// The reflections of a ball: the lamp, the cloth, the cushions around it, and the dim room above them.
 struct Surroundings {
     explicit Surroundings(const View& view)
         : lamp(view),

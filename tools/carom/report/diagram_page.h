@@ -18,7 +18,7 @@ using PaintPage = std::function<std::pair<double, double>(cairo_t* cr)>;
 /// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error
 std::string cairo_page(const std::string& format, const PaintPage& paint);
 
-/// What draw_diagram draws. @return its width and height [points]
+/// The drawing of draw_diagram. @return its width and height [points]
 std::pair<double, double> paint_diagram(cairo_t* cr, const std::vector<DiagramShot>& shots,
                                         const DiagramStyle& style);
 

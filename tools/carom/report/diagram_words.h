@@ -14,7 +14,7 @@ std::string stroke_words(const Cue& cue, Units units);
 /// Where a few balls begin, from the corner of the table, and their radius; "" for many balls.
 std::string places_words(const Record& record, Units units);
 
-/// What falls, or whether a carom shot makes a point, and how long the shot lasts.
+/// The balls that fall, or whether a carom shot makes a point, and how long the shot lasts.
 std::string outcome_words(const Record& record);
 
 }  // namespace carom::tools

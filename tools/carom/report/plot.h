@@ -26,7 +26,7 @@ struct Font {
     bool upwards = false;  ///< read from below to above
 };
 
-/// What a chart is drawn on. All in pixels; y points down.
+/// The paper of a chart. All in pixels; y points down.
 class Paper {
   public:
     virtual ~Paper() = default;

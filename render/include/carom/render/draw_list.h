@@ -1,4 +1,4 @@
-// What to draw, independent of OpenGL: a Stage turns a Record and a time into a DrawList.
+// The list of things to draw, independent of OpenGL: a Stage turns a Record and a time into a DrawList.
 #pragma once
 
 #include <Eigen/Geometry>

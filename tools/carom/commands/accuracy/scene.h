@@ -27,7 +27,7 @@ struct AccuracySceneArgs {
     std::string csv, plot;
 };
 
-/// What happened in a shot: all contacts in order, the first ball hit, and which pocket each ball fell into.
+/// The contacts of a shot: all of them in order, the first ball hit, and which pocket each ball fell into.
 struct ShotContacts {
     std::vector<std::string> contacts;
     std::string first_contact;  ///< the ball that the struck ball hits first, or ""
