@@ -1,4 +1,4 @@
-// The balls of a picture, over the table. Comparing two pictures gives the pixels that can differ, so that the
+// The balls of a picture. Comparing two pictures gives the pixels that can differ, so that the
 // time of a frame depends only on what moved.
 #pragma once
 

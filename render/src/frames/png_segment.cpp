@@ -56,7 +56,7 @@ std::uint8_t less(std::uint8_t a, std::uint8_t b) {
     return static_cast<std::uint8_t>(std::max(a, b) - b);  // a - b, or 0
 }
 
-// The residual of the filter: the difference from the one of three neighbours (left, above, left above) that is
+// The filter's residual: the difference from the one of three neighbours (left, above, left above) that is
 // nearest to left + above - corner (PNG specification, 9.4). Written with bytes and without branches: the
 // lower of left and above is nearest if the corner is nearer to the higher one by a factor of 2, and the
 // other way round.
