@@ -91,6 +91,8 @@ Json profiled_break() {
     use_cue(*scene.cue, "lossless");
     scene.render.eye = Vec3(1.0, 1.0, 1.0);
     scene.render.target = Vec3(0.0, 1.0, 0.0);
+    scene.render.cloth = "#1d6a54";
+    scene.render.hides_cue = true;
     Record record = record_of(scene, true);
     record.tracks.front().own = BallSize{0.03, 0.2};
     record.table.bed = Rectangle(0.0, 0.0, 1.27, 2.54);

@@ -76,8 +76,9 @@ TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
     EXPECT_TRUE(disc == 1.0 && slides == 1.0);
     expect_unusual({R, m, mu_s, mu_r, mu_sp, mu_b, e_b, e_c, f_c, mu_b_more, mu_b_fall, f_c_more, f_c_fall,
                     e_c_fall, e_c_above, e_t, e_t_more, e_t_fall, e_h});
-    const auto& [fps, pixels, lines, camera, eye, target] = record.render;
+    const auto& [fps, pixels, lines, camera, hides_cue, eye, target, color] = record.render;
     EXPECT_TRUE(fps != 60.0 && pixels != 1280 && lines != 720 && camera != "top" && eye && target);
+    EXPECT_TRUE(hides_cue && color);
     const auto& [id, segments, pocket, own] = record.tracks.at(1);
     EXPECT_TRUE(!id.empty() && pocket != -1 && record.tracks.at(2).own);
     const auto odd = std::find_if(segments.begin(), segments.end(), [](const Segment& s) {

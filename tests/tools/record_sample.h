@@ -63,7 +63,8 @@ inline Record sample_record() {
     record.balls = {0.028575, 0.170097, 0.21,  0.011, 0.0127, 0.05, 0.95, 0.85, 0.23, 0.108, 1.0 / 3.0,
                     0.07,     0.41,     0.031, 0.62,  0.51,   0.13, 0.8,  0.17, true, true};
     record.gravity = 9.80665;
-    record.render = {59.94, 1920, 1080, "follow", Vec3(0.1, -1.0 / 3.0, 2.0), Vec3(0.5, 1.0, 0.0)};
+    record.render = {59.94,    1920, 1080, "follow", true, Vec3(0.1, -1.0 / 3.0, 2.0), Vec3(0.5, 1.0, 0.0),
+                     "#1d6a54"};
     record.duration = 7.0 / 3.0;
     record.stopped = StopReason::kEvents;
     record.setup_detect_ns = 1234.5;
