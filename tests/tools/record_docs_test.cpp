@@ -129,7 +129,8 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
                                         "/balls/rolls",          "/table/size",
                                         "/table/cushion_height", "/table/rail_width",
                                         "/table/corner_pockets", "/table/corner_pockets/mouth",
-                                        "/table/side_pockets",   "/table/side_pockets/mouth"};
+                                        "/table/side_pockets",   "/table/side_pockets/mouth",
+                                        "/render/cloth",         "/render/cue"};
     for (const auto& [kind, at] : kinds) {
         const Json::json_pointer place(at);
         Json bad = good;
