@@ -35,7 +35,7 @@ struct Renderer::Impl {
     std::shared_ptr<const TableMesh> table;  // the mesh that the static layer shows
     Camera camera;
     int table_samples = 0;
-    bool camera_moves = false;
+    bool camera_moves = false, less_detail = false;
     std::function<void(int, int)> on_table;
     std::shared_ptr<const TableDrawing> drawn_table;  // identifies the drawing in the static layer
     ClothMap cloth;
@@ -57,7 +57,7 @@ struct Renderer::Impl {
 
     void draw_table(const DrawList& list, const View& view) {
         if (table == list.table && camera == list.camera && table_samples == list.table_samples &&
-            camera_moves == list.camera_moves) {
+            camera_moves == list.camera_moves && less_detail == list.less_detail) {
             return;
         }
         context->make_current();
@@ -65,13 +65,14 @@ struct Renderer::Impl {
         api.BufferData(GL_UNIFORM_BUFFER, sizeof view, &view, GL_STREAM_DRAW);
         table = nullptr;  // until the drawing is complete: on_table may throw
         if (list.camera_moves)
-            table_layer->draw_once(*list.table, size);
+            table_layer->draw_once(*list.table, size, list.less_detail);
         else
-            table_layer->draw(*list.table, view, size, list.table_samples, on_table);
+            table_layer->draw(*list.table, view, size, list.table_samples, list.less_detail, on_table);
         table = list.table;
         camera = list.camera;
         table_samples = list.table_samples;
         camera_moves = list.camera_moves;
+        less_detail = list.less_detail;
         drawn_table = std::make_shared<TableDrawing>();
         cloth = ClothMap();
         // With a moving camera, the cloth map would be valid for one frame only, so it is not made.

@@ -24,8 +24,8 @@ inline constexpr const char* kWallOnly = "#define WALL\n";
 inline constexpr const char* kChalkOnly = "#define CHALK\n";
 inline constexpr const char* kShadeOnly = "#define SHADE\n";
 inline constexpr const char* kTheRest = "#define REST\n";
-/// Added to one of these for a camera that moves: less detail, because every frame draws it.
-inline constexpr const char* kMoving = "#define MOVING\n";
+/// Added to one of these for DrawList::less_detail.
+inline constexpr const char* kLessDetail = "#define LESS_DETAIL\n";
 /// Added to one of these if there may be a hole: pixels in a hole are not drawn.
 inline constexpr const char* kHoles = "#define HOLES\n";
 

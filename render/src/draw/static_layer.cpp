@@ -33,16 +33,16 @@ StaticLayer::StaticLayer(const gl::Api& api) : api_(api) {
 
 StaticLayer::~StaticLayer() = default;
 
-StaticLayer::Programs& StaticLayer::programs_for(bool moving) {
+StaticLayer::Programs& StaticLayer::programs_for(bool less_detail) {
     using namespace shaders;
-    Programs& programs = programs_[moving ? 1 : 0];
+    Programs& programs = programs_[less_detail ? 1 : 0];
     if (programs[0].fragment != 0) return programs;
     if (vertex_program_ == 0) vertex_program_ = make_stage(api_, GL_VERTEX_SHADER, kTableVertex);
     jitter_ = api_.GetUniformLocation(vertex_program_, "u_jitter");
     const auto make = [&](Part part, const std::string& kind) {
         Program& program = programs[static_cast<std::size_t>(part)];
         program.fragment =
-            make_stage(api_, GL_FRAGMENT_SHADER, kTableFragment, moving ? kind + kMoving : kind);
+            make_stage(api_, GL_FRAGMENT_SHADER, kTableFragment, less_detail ? kind + kLessDetail : kind);
         program.pipeline = gl::make_pipeline(api_, vertex_program_, program.fragment);
     };
     make(Part::kCloth, kClothOnly);
@@ -58,8 +58,8 @@ StaticLayer::Programs& StaticLayer::programs_for(bool moving) {
     return programs;
 }
 
-void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
-    const Programs& programs = programs_for(edges != nullptr);
+void StaticLayer::upload(const TableMesh& table, const TableEdges* edges, bool less_detail) {
+    const Programs& programs = programs_for(less_detail);
     parts_ = sort_parts(table, edges == nullptr ? std::vector<std::uint8_t>{} : edges->faces);
     api_.BindVertexArray(vertex_array_);
     api_.BindBuffer(GL_ARRAY_BUFFER, buffer_);
@@ -77,6 +77,7 @@ void StaticLayer::upload(const TableMesh& table, const TableEdges* edges) {
     static_assert(offsetof(PartVertex, face) == offsetof(MeshVertex, material) + sizeof(float));
     for (const Program& program : programs) set_table_uniforms(table, program.fragment);
     uploaded_ = &table;
+    less_detail_ = less_detail;
 }
 
 void StaticLayer::resize(FrameSize size) {
@@ -140,7 +141,7 @@ void StaticLayer::draw_parts(double jitter_x, double jitter_y, const float* dept
         // The near walls of the room do not hide the table. Turns are reversed, because rows are.
         api_.FrontFace(GL_CW);
         (part == Part::kFloor || part == Part::kWall ? api_.Enable : api_.Disable)(GL_CULL_FACE);
-        api_.BindProgramPipeline(programs_[edges_ ? 1 : 0][i].pipeline);
+        api_.BindProgramPipeline(programs_[less_detail_ ? 1 : 0][i].pipeline);
         api_.DrawArrays(GL_TRIANGLES, static_cast<GLint>(first),
                         static_cast<GLsizei>(parts_.ends[i] - first));
         first = parts_.ends[i];
@@ -159,10 +160,10 @@ void StaticLayer::read_depths(std::vector<float>& depths) {
     api_.ReadPixels(0, 0, size_.width, size_.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
 }
 
-void StaticLayer::draw_once(const TableMesh& table, FrameSize size) {
-    if (uploaded_ != &table || !edges_) {
+void StaticLayer::draw_once(const TableMesh& table, FrameSize size, bool less_detail) {
+    if (uploaded_ != &table || !edges_ || less_detail_ != less_detail) {
         edges_ = std::make_shared<const TableEdges>(find_edges(table));
-        upload(table, edges_.get());
+        upload(table, edges_.get(), less_detail);
     }
     resize(size);
     draw_parts(0.0, 0.0, nullptr);
@@ -173,9 +174,9 @@ void StaticLayer::draw_once(const TableMesh& table, FrameSize size) {
 }
 
 void StaticLayer::draw(const TableMesh& table, const View& view, FrameSize size, int samples,
-                       const std::function<void(int, int)>& on_pass) {
+                       bool less_detail, const std::function<void(int, int)>& on_pass) {
     samples = std::max(samples, 1);
-    if (uploaded_ != &table || edges_) upload(table, nullptr);
+    if (uploaded_ != &table || edges_ || less_detail_ != less_detail) upload(table, nullptr, less_detail);
     edges_ = nullptr;
     resize(size);
     picture_.size = size;

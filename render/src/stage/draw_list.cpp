@@ -78,7 +78,7 @@ DrawList Stage::at(double t, std::optional<FrameBudget> cost) const {
     list.table = table_;
     list.camera = camera_.at(t);
     list.table_samples = samples_of(options_);
-    list.camera_moves = camera_.moves();
+    list.camera_moves = list.less_detail = camera_.moves();
     for (std::size_t i = 0; i < record_.tracks.size(); ++i) {
         const BallState state = record_.state_at(static_cast<int>(i), t);
         if (!state.position.allFinite()) continue;

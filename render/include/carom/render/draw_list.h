@@ -87,6 +87,8 @@ struct DrawList {
     /// its edges are smoothed by the share of each pixel that they cut off. The mesh should be made with
     /// Edges::kSharp.
     bool camera_moves = false;
+    /// Cloth, wood and walls are drawn with less detail, because every frame of a moving camera draws them.
+    bool less_detail = false;
 };
 
 /// Appends a line of text with its upper left corner at `at`. `height`: height of a capital letter [pixels].

@@ -23,7 +23,7 @@ float noise(vec2 p) {
 }
 
 // Noise that frames of a moving camera do without.
-#ifdef MOVING
+#ifdef LESS_DETAIL
 float detail(vec2 p) { return 0.5; }
 #else
 float detail(vec2 p) { return noise(p); }
@@ -75,7 +75,7 @@ vec3 glossy(vec3 base, vec3 n, vec3 tint, float blur) {
 
 // Wool looks lighter along its surface: the fibres that stand up are lit from behind.
 vec3 cloth(vec3 albedo, vec3 n) {
-#ifdef MOVING
+#ifdef LESS_DETAIL
     return lit(albedo, n);
 #endif
     float along = 1.0 - abs(dot(normalize(u_eye - v_position), n));
