@@ -54,8 +54,8 @@ class Solver {
              ++generation, nearby *= kShrink)
             best = breed(std::move(best), nearby);
         // After 120 shots the best is often only the luckiest.
-        trials_.play(best, static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) /
-                               best.size());
+        trials_.play(best,
+                     static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) / best.size());
         sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not seen.

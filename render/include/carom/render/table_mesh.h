@@ -20,8 +20,8 @@ enum class Material : std::uint8_t {
     kInlay,    ///< diamonds
     kFloor,    ///< of the room; like its walls and the lamp, visible from one side only
     kWall,
-    kLamp,     ///< u is 1 where it shines
-    kShade,    ///< black, blended over the cloth; u is the opacity
+    kLamp,   ///< u is 1 where it shines
+    kShade,  ///< black, blended over the cloth; u is the opacity
     /// white, blended over the cloth; u is the opacity, v the distance from the middle in half widths
     kChalk,
 };
