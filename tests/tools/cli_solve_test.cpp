@@ -84,6 +84,7 @@ TEST_F(CliSolve, RecommendsABreak) {
         const ProcessResult result =
             carom({"break", game, "--shots", "1000", "-o", scene, "--page", page, "--units", "inch"});
         ASSERT_EQ(result.status, 0) << result.err;
+        EXPECT_TRUE(contains(result.out, "any_pocketed and legal_break")) << result.out;
         EXPECT_TRUE(contains(result.out, "diamonds from the left rail")) << result.out;
         EXPECT_TRUE(contains(result.out, " mph)")) << result.out;
         EXPECT_EQ(carom({"check", scene}).status, 0);

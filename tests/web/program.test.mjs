@@ -98,7 +98,7 @@ test("reports and files of a shot", {skip}, () => {
   same(["describe", "man"]);
 });
 
-test("the page to play on is the same but for the compression of carom.wasm", {skip}, () => {
+test("the interactive page is the same but for the compression of carom.wasm", {skip}, () => {
   for (const {status, err} of [native(["play", "draw.toml"]), inNode(["play", "draw.toml"])])
     assert.equal(status, 0, err);
   const parts = (which) => {

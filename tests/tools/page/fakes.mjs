@@ -1,4 +1,4 @@
-// carom for the state of the page to play on: scenes whose shots last as many seconds as their speed.
+// carom for the state of the interactive page: scenes whose shots last as many seconds as their speed.
 import {State} from "../../../tools/carom/commands/play/state.js";
 
 /** The scene that a text of JSON describes: its cue, and balls by their names. */

@@ -1,4 +1,4 @@
-// The state of the page to play on: every change is a shot, what fails changes nothing, and all is undone.
+// The state of the interactive page: every change is a shot, what fails changes nothing, and all is undone.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {put, refusal} from "../../../tools/carom/commands/play/place.js";

@@ -21,7 +21,7 @@ std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, c
 }
 
 std::string cairo_chart(const Plot&, const std::string&) {
-    throw std::runtime_error("this build draws only .svg");
+    throw std::runtime_error("this build draws only .svg; name such a file");
 }
 
 std::string draw_plot(const SweepPlot&, const std::string&, const std::vector<DiagramShot>&,

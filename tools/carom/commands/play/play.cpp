@@ -1,4 +1,4 @@
-// carom play: a page to play on, with carom in it.
+// carom play: an interactive page, with carom in it.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
@@ -110,7 +110,7 @@ int run(const PlayArgs& args) {
 
 void add_play(Options& program) {
     auto [command, args] =
-        program.command<PlayArgs>("play", "Write a page to play on: aim, shoot, follow a game", run);
+        program.command<PlayArgs>("play", "Write an interactive page: aim, shoot, play against carom", run);
     command.argument("SCENE", args.scene, "Scene file (TOML) to begin with (default: a practice table)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write");
     command.option("--lock", &args.lock, "KEYS",

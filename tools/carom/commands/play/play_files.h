@@ -1,4 +1,4 @@
-// The files that the build puts into the program for the page to play on.
+// The files of the interactive page, which the build puts into the program.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The state of the page to play on, in one object, and the parts of the page that follow it.
+// The state of the interactive page, in one object, and the parts of the page that follow it.
 
 import {Playback} from "../../page/playback.js";
 import {isContact} from "./words.js";
