@@ -54,12 +54,13 @@ async function busy() {
 }
 async function inChromium(text, shots) {
   await browser.value(`(() => {
-    const scene = carom.Scene.parse(${JSON.stringify(text)}), shots = ${shots}, aim = scene.cue.aim_deg;
+    const {carom} = caromPlay.state, scene = carom.Scene.parse(${JSON.stringify(text)}), shots = ${shots};
+    const aim = scene.cue.aim_deg;
     window.batch = [scene, {"cue.aim_deg": Float64Array.from({length: shots},
       (_, i) => aim + (i / shots - 0.5))}];
   })()`);
   const before = await busy();
-  await browser.value("carom.simulateMany(...batch).shots");
+  await browser.value("caromPlay.state.carom.simulateMany(...batch).shots");
   return await busy() - before;
 }
 
