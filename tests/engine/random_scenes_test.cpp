@@ -132,6 +132,13 @@ TEST(FoundScenes, WhoLeavesAClusterEarlyMayOverlap) {
     EXPECT_EQ(what_breaks(*family_scene("tray", 920956)), "");
 }
 
+// An overlap of rounding asked for speeds that energy did not allow: balls with 1e-13 m/s, which no rounded
+// place notices, did not come to rest within a million rounds.
+TEST(FoundScenes, SpeedsThatMoveNothingEnd) {
+    for (const auto& [family, seed] : {std::pair{"gas_of_spins", 3007412}, {"rail_cluster", 3007166}})
+        EXPECT_EQ(what_breaks(*family_scene(family, seed)), "") << family;
+}
+
 /// The same scene with its balls listed in another order.
 Scene reordered(Scene scene, std::uint64_t seed) {
     reference::Generator random(seed);

@@ -71,7 +71,7 @@ void accept(Group& g) {
     const double gone = std::max(g.noise, 3.5 * g.motion.slide * kStopNoise);
     for (Body& b : g.bodies)
         if (b.impulses > 0.0 && !(length(b.slip_end()) > gone)) b.s_end = b.v_end;
-    const bool all = keep_energy(g);
+    const bool all = keep_energy(g, 0.0);
     for (std::size_t k = 0; k < g.bodies.size(); ++k) {
         const Body& b = g.bodies[k];
         RestingBall& ball = g.group.balls[k];
@@ -141,17 +141,22 @@ void solve(Group& g) {
 // Energy that does not exist comes from slips that count as zero, from gaps that open under an impulse within
 // their room, and in a flat wedge from the rounding of impulses a million times larger than the speeds.
 // Scales all motions alike, so that rates and slips of zero stay zero.
-bool keep_energy(Group& g) {
+bool keep_energy(Group& g, double h) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {
         before += kinetic_energy(b.v, b.s, 1.0) / b.ease;
         after += kinetic_energy(b.v_end, b.s_end, 1.0) / b.ease;
     }
     if (!(after > before)) return false;
-    const double share = std::sqrt(before / after);
+    // Speeds that move no ball within the interval would stay for ever, because places are rounded.
+    const bool rest = h > 0.0 && before > 0.0 && std::all_of(g.bodies.begin(), g.bodies.end(), [h](auto& b) {
+                          return h * length(b.v) <= kNoGap && !moves(b.u);
+                      });
+    const double share = rest ? 0.0 : std::sqrt(before / after);
     for (Body& b : g.bodies) {
         b.v_end *= share;
         b.s_end *= share;
+        if (rest) b.mode = Mode::kResting;
     }
     return true;
 }

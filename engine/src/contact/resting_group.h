@@ -104,8 +104,9 @@ struct Group {
     Complementarity problem{};
 };
 
-/// Removes energy at the end that is not there at the start. @return whether there was any
-bool keep_energy(Group& g);
+/// Removes energy at the end of an interval, or of an instant (h = 0), that is not there at the start.
+/// @return whether there was any
+bool keep_energy(Group& g, double h);
 /// [m/s] Velocity of the other ball, or of the table, relative to ball i: v or v_end.
 Vec2 relative(const Group& g, const Link& link, Vec2 Body::*velocity);
 

@@ -339,7 +339,7 @@ void solve_interval(Group& g) {
         }
     }
     run_along_walls(g);
-    keep_energy(g);
+    keep_energy(g, h);
     write_segments(g, h);
 }
 
