@@ -302,7 +302,7 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) co
 
 // In an instantaneous cluster, the solution moves the balls, but they stay in place. In the solution, a
 // glancing contact with a fast slip opens almost without force, because its normal turns while the balls pass
-// each other. In place they still approach, and the same cluster would recur ten thousand times. If so, solve
+// each other. In place they still approach, and the same cluster would recur ten thousand times. Then solve
 // again with fixed normals, as in an impact of two balls.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
