@@ -1,4 +1,4 @@
-// The contact phase in space, one contact at a time: clusters with a ball in the air are rare and small.
+// The contact phase in space, one contact at a time: clusters with a flying ball are rare and small.
 #include <cstdint>
 
 #include "carom/kernel/contact_phase.h"
@@ -120,7 +120,7 @@ class InSpace {
         }
     }
 
-    // [1/L] by which the normal of a contact turns, and its inverse, the distance of centres that touch.
+    // [1/L] Curvature by which a contact's normal turns, and its inverse, the distance of touching centres.
     double curvature(int c) const { return unlike_ == nullptr ? phase_.curvature : unlike_->curvature[c]; }
     bool turns(int c) const { return curvature(c) > 0.0; }
     double diameter(int c) const { return turns(c) ? 1.0 / curvature(c) : 0.0; }
@@ -180,7 +180,7 @@ class InSpace {
         down_[j] += force.z;
     }
 
-    // A ball that stays on the cloth does not move up or down. Where it is pressed, the cloth brakes its
+    // A ball that stays on the cloth does not move vertically. If it is pressed down, the cloth brakes its
     // slip.
     void hold(const double* y, int b, double* slope) {
         double* to = slope + kPerState * b;
@@ -299,8 +299,8 @@ class InSpace {
         return false;
     }
 
-    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without subtracting nearly equal
-    // numbers.
+    // Time at which the next contact closes, without forces: |z - v s| = 2 R, without subtracting nearly
+    // equal numbers.
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
@@ -326,11 +326,11 @@ class InSpace {
     const double cloth_sign_;
     const int size_;
     double *y_, *stage_, *slope_[kStages];
-    double next_;        // limit of the next step by the error of the last one
+    double next_;        // limit of the next step by the last error
     double* stiffness_;  // per ball: the sum of friction over slip
-    double* down_;       // per ball: what presses it on the cloth, where all are held
-    // Per contact: from one centre to the other at the start (3 numbers); the
-    // largest overlap since it opened; overlap and its slope before the step.
+    double* down_;       // per ball: load on the cloth, if all are held
+    // Per contact: the vector between the centres at the start (3 numbers); the largest overlap since it
+    // opened; overlap and its slope before the step.
     double *apart_, *memory_, *before_, *rate_;
 };
 

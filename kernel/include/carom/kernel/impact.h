@@ -48,7 +48,7 @@ enum class ImpactStatus : unsigned char {
 /// The fault, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
-/// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel and if nothing was
+/// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel, or if nothing was
 /// computed.
 enum class ToleranceMethod : unsigned char {
     kNone,
