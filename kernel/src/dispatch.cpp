@@ -25,8 +25,8 @@ const Entry kEntries[] = {{"scalar", &scalar::kKernels}, {"v3", nullptr}, {"v4",
 #endif
 
 #if defined(__x86_64__)
-// Tested by feature, because clang 14 does not know the names of the levels. Every processor with these
-// features also has the others.
+// Tested by feature, because clang 14 lacks the names of the levels. Every processor with these features also
+// has the others.
 bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");

@@ -17,7 +17,6 @@ const char* type_name(const toml::node& node);
 std::string objection(double x, const Interval& allowed);
 std::string objection(std::int64_t x, std::int64_t low, std::int64_t high);
 
-/// The range of any finite number.
 inline constexpr Interval kAnyNumber = {-0x1.fffffffffffffp1023, false, 0x1.fffffffffffffp1023, false, ""};
 
 /// @throws std::invalid_argument with the fault, to follow the value's name

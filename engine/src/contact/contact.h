@@ -19,7 +19,6 @@ struct Contact {
 
     /// The contact of another ball with the same part of the table.
     Contact of(int another) const { return {another, with, other}; }
-    /// The other ball, or -1.
     int partner() const { return with == With::kBall ? other : -1; }
     /// Whether both are the same contact; the order of two balls does not matter.
     bool same(const Contact& c) const {

@@ -217,12 +217,11 @@ double time_to_circle(const Path& ball, const Vec2& center, double reach) {
 
 namespace {
 
-// The motion from t on.
 Relative after(const Relative& m, double t) {
     return {at(m, t), rate(m, t), m.a, m.noise};
 }
 
-// First contact with a round wall on its own side, ignoring the ends of an arc.
+// First contact with a round wall on its own side. The caller excludes directions beyond the ends of an arc.
 double time_to_wall(Relative m, double radius, double reach, double horizon, bool straight) {
     const double d = length(m.r);
     double behind = 0.0;

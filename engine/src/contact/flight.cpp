@@ -37,7 +37,7 @@ Distance of_length(const Vector& x, const Vector& v, const Vector& a) {
 }
 
 /// @param at  time -> Distance
-/// @param curving  [m/s^2] known upper bound of -bend
+/// @param curving  [m/s^2] upper bound of -bend
 /// @param rounding  [m] of the distance
 /// @param from  [s] start of the search
 template <class At>

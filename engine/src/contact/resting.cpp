@@ -23,7 +23,7 @@ void read(Group& g, std::size_t k) {
     b.R = ball.motion->R;
     b.ease = 1.0 / ball.mass;
     ball.v = s.v;
-    ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
+    ball.w = s.w;  // exactly the spin of rolling
     b.v = planar(s.v);
     b.s = b.R * Vec2(s.w.y(), -s.w.x());
     b.u = s.state == MotionState::kSliding ? Vec2(b.v - b.s) : Vec2(Vec2::Zero());

@@ -13,12 +13,12 @@ namespace carom::resting {
 inline constexpr double kChatterSpan = 1e-5;
 // [-] Treat a contact as resting after the number of bounces that would leave this fraction of the speed,
 // within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
-// A hundredth of it: Jams.BallsWithoutFrictionAreSolvedWithoutIt. At least 50 bounces:
+// A hundredth: Jams.BallsWithoutFrictionAreSolvedWithoutIt. At least 50 bounces:
 // Jams.AnImpactDoesNotGoBackAndForthForLong.
 inline constexpr double kSpeedLeft = 1e-3;
 inline constexpr int kFewestBounces = 20, kMostBounces = 200;
-// [of the closing speed at the first of them] Elastic bounces leave more, however many there are: a grain
-// between walls, or pressed against one by a ball of a hundred million times its mass.
+// [of the closing speed at the first of them] Elastic bounces leave more, however quickly they follow each
+// other: a grain between walls, or pressed against one by a ball of a hundred million times its mass.
 inline constexpr double kNotFallen = 0.5;
 // [bounces] Capacity for the latest closing speeds, of all contacts.
 inline constexpr std::size_t kBouncesKept = 1024;
@@ -38,7 +38,7 @@ inline constexpr double kStopNoise = 1e-12;
 // [s] The same for speeds if there is only sliding friction: such a speed moves a ball by at most 1e-12 m an
 // hour.
 inline constexpr double kSlideNoise = 1e-16;
-// [of a closing speed] Impulses that leave less than this share of it count as progress.
+// [of a closing speed] Impulses that leave a smaller fraction count as progress.
 // Without it: Jams.ClosingSpeedsAreTakenOutAsFarAsRoundingLetsThem.
 inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: an invisible fifth of the wavelength of light.
@@ -60,7 +60,7 @@ inline constexpr double kClockTicks = 8.0;
 // [s] Longest interval, and the length of the first attempt if nothing moves.
 inline constexpr double kLongestInterval = 1e6;
 // [m] Position error of a ball in one interval: 1e-6 m after the hundred or so intervals of a long push.
-// A hundred times as much: RestingContacts.ObliqueSpinIntoACushion.
+// A hundred times larger: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kPlaceError = 2e-8;
 // [m] The same from the friction between balls, which is weaker: using its mean over the interval leaves a
 // tenth.
@@ -72,7 +72,7 @@ inline constexpr double kStopsWithin = 0.01;
 // soon after it, try a longer one.
 // Without it: Jams.GapsHaveRoomForARate.
 inline constexpr double kSoon = 1e-2;
-// [rad] A direction that turns by at most this angle is taken from the middle of the interval.
+// [rad] For a direction that turns by at most this angle, use the one at the middle of the interval.
 // Without such directions: RestingContacts.ObliqueSpinIntoACushion.
 inline constexpr double kTurnOfMiddle = 0.5;
 // [-] Interval lengths and directions (sine of the angle) that differ by less are equal.
@@ -116,7 +116,7 @@ inline constexpr double kNoGap = 4e-15;
 // [m] A deeper overlap is removed: otherwise the rounding errors of a long push would add up to nearly 1e-12
 // m.
 inline constexpr double kOverlapDepth = 2e-14;
-// [m] Overlap that may arise within an interval: a tenth of what U3 of --verify allows.
+// [m] Overlap that may arise within an interval: a tenth of the limit of U3 of --verify.
 inline constexpr double kOverlapGrowth = 1e-13;
 // [-] A gap whose normal turns further than this is not examined in detail, because the interval will be
 // shortened anyway.

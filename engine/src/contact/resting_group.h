@@ -31,7 +31,6 @@ namespace carom::resting {
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
-/// A symmetric matrix.
 struct Matrix {
     double xx = 0.0, xy = 0.0, yy = 0.0;
     Vec2 operator*(const Vec2& a) const { return {xx * a.x() + xy * a.y(), xy * a.x() + yy * a.y()}; }

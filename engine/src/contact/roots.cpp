@@ -95,7 +95,7 @@ class Descent {
   public:
     explicit Descent(const double (&b)[5]) : b_(b), above_(b[0] > 0.0) {}
 
-    // Advances to the next end of a monotone piece; true if the result is known.
+    // Advances to the next end of a monotone piece; true if the result has been found.
     bool piece(double end, bool is_maximum) {
         const double y = value(b_, end);
         if (above_ && !(y > 0.0)) {

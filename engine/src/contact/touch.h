@@ -144,7 +144,7 @@ double end_rounding(const Vec2& r, double line_length);
 
 /// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding the direction
 /// of motion decides, so that a leaving ball is not mistaken for an arriving one: a contact cannot begin
-/// under the condition that ends it. Beyond the end, the end point or the jaw takes over.
+/// under the condition that ends it. Beyond the end, the end point or the jaw applies.
 inline bool past_end(double left, double rate, double pull, double rounding) {
     if (std::abs(left) > rounding) return left < 0.0;
     return rate < 0.0 || (rate == 0.0 && pull < 0.0);

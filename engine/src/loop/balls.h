@@ -40,7 +40,6 @@ class Balls : private Borrowed<BallsMemory> {
     }
 
     int count() const { return static_cast<int>(segments_.size()); }
-    /// The present motion of the ball.
     const Segment& segment(int ball) const { return segments_[ball]; }
     void set(int ball, const Segment& segment) {
         const MotionState before = segments_[ball].state;

@@ -6,7 +6,6 @@
 
 namespace carom {
 
-/// A ball at a contact, with its closing speed and closing acceleration.
 struct ContactKinematics {
     Contact contact;
     Vec2 n;            ///< unit, from the ball to the other one or into the part
@@ -14,7 +13,6 @@ struct ContactKinematics {
     double a_c = 0.0;  ///< [m/s^2] closing acceleration
 };
 
-/// The kinematics of two touching balls.
 ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two);
 
 }  // namespace carom

@@ -45,7 +45,7 @@ struct alignas(64) Mover {
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
     bool straight = false;
-    bool asks_table = false;  ///< the table is not searched yet: no box so far has reached a part of it
+    bool asks_table = false;  ///< the table is not searched yet: no box so far has reached it
 };
 
 struct DetectorMemory {

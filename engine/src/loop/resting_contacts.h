@@ -14,7 +14,6 @@
 namespace carom {
 
 struct RestingMemory {
-    /// A ball and its motion after an impact.
     struct Struck {
         int ball;
         Segment segment;

@@ -14,7 +14,6 @@ Box around(const Vec2& center, double reach) {
     return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
 }
 
-/// Whether all parts are in the same positions.
 bool same_places(const Geometry& a, const Geometry& b) {
     const auto same = [](const auto& x, const auto& y, auto equal) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);

@@ -233,7 +233,7 @@ double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
 
 namespace {
 
-// [L] Overlap of two balls of this mass, at least that of balls with mass 1.
+// [L] Overlap of two balls of this mass, at least the overlap at mass 1.
 double overlap_of(double mass) {
     return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
 }

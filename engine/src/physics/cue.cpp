@@ -34,7 +34,6 @@ namespace effects {
 
 namespace {
 
-/// The axes of a cue: along it, to its left, and upwards.
 struct Axes {
     Vec3 along, left, up;
 };

@@ -1,4 +1,4 @@
-// read_record: reads the output of write_record and checks every item, because a file may come from anywhere.
+// read_record: reads the output of write_record and checks every item, because files may be untrusted.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>

@@ -261,7 +261,7 @@ class Checker {
             const double S = free || record_.balls.discs() ? 0.0 : (R2 - R1) / (R1 + R2),
                          C = std::sqrt(1.0 - S * S);
             const Vec3 line = S == 0.0 ? n3 : Vec3(C * n3.x(), C * n3.y(), S);
-            // A slow contact holds a ball that lies on the cloth, and below bounce_end() a ball stays there.
+            // A slow contact keeps a ball on the cloth, and a rise below bounce_end() leaves it there.
             const bool lies = !flies(after1->state) || !flies(after2->state);
             if (free && lies) continue;
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());

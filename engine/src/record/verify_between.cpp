@@ -214,7 +214,7 @@ class Between {
                 const double gap = gap_to(nose, there);
                 if (gap < -allowed_depth(there, nose.center))
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
-                // It would come down inside the jaw.
+                // It would land inside the jaw.
                 const double over = nose.radius - length(planar(there.r) - nose.center);
                 if (in_air && over > allowed_depth(there, nose.center))
                     report("U3", t, "ball {} flies on {:.3g} m behind the nose of a jaw", id(ball), over);

@@ -307,7 +307,7 @@ void check_bed(const Section& top, const Scene& scene) {
     }
 }
 
-/// Refuses balls in the air behind the cushions of a preset table: they would come down on its rail.
+/// Refuses balls in the air behind the cushions of a preset table: they would land on its rail.
 void check_rails(const Section& top, const Scene& scene) {
     const Table& table = scene.table;
     if (table.preset.empty() || table.bed) return;
@@ -330,7 +330,7 @@ void check_rails(const Section& top, const Scene& scene) {
     }
 }
 
-/// Whether impacts with the table can give a ball vertical spin.
+/// Whether impacts with the table can cause vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
         return model->reads_friction && scene.balls.cushion_friction().most() > 0.0;

@@ -20,7 +20,7 @@ struct RackedBall {
 /// Number of numbered balls in a rack.
 int balls_of(const Rack& rack);
 
-/// Places a rack, ordered by number; colours with spots come last.
+/// Places a rack, ordered by number, then colours with spots.
 ///
 /// @param R  ball radius [m]
 ///

@@ -32,7 +32,7 @@ void read_rack(const Section& top, Scene& scene);
 void read_cue(const Section& top, Scene& scene);
 /// Call after read_balls().
 void read_physics(const Section& top, Scene& scene);
-/// The plan checks these against what the scene needs.
+/// The plan checks these against the scene's needs.
 void read_effects(const Section& top, Scene& scene);
 void read_stop(const Section& top, Scene& scene);
 void read_render(const Section& top, Scene& scene);
@@ -43,7 +43,7 @@ void check_fits(const Section& section, const BallParams& balls);
 void check_cushion(const Section& section, const Cushion& cushion);
 /// Also checks that the ball exists and is at rest.
 void check_cue(const Section& section, const Scene& scene, const Cue& cue);
-/// Whether the kernel accepts the friction of the balls, and [physics] asks for only one kernel.
+/// Whether the kernel accepts the friction of the balls, and [physics] selects only one kernel.
 void check_kernel(const Section& top, const Scene& scene);
 void check_camera(const Section& section, const RenderSettings& render);
 

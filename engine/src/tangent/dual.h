@@ -55,7 +55,7 @@ inline Dual operator*(const Dual& a, const Dual& b) {
 inline Dual operator/(const Dual& a, const Dual& b) {
     return chain(a.x / b.x, a, 1.0 / b.x, b, -(a.x / b.x) / b.x);
 }
-/// The derivative of the root of 0 is set to 0, that of a length that stays 0.
+/// The derivative of the root of 0 is set to 0: it belongs to a length that stays 0.
 inline Dual sqrt(const Dual& a) {
     const double root = std::sqrt(a.x);
     return chain(root, a, root > 0.0 ? 0.5 / root : 0.0);

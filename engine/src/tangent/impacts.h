@@ -27,7 +27,7 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2);
 
-/// Balls on the cloth that collide at once, because two of them, `hit` and `met`, meet.
+/// Balls on the cloth that collide at once, because two of them, `hit` and `met`, do.
 /// @param duration  of the cluster [s]; the `states` are computed at its end; 0: instantaneous
 void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states);

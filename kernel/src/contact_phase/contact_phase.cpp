@@ -311,7 +311,7 @@ CAROM_INLINE void watch(Work& w, double h) {
     reorder<false>(w, w.d);
 }
 
-// The slopes of the stages of a step of length h, after that of the state.
+// The slopes of the stages of a step of length h, except the first.
 template <bool kFalls>
 CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& method, double h) {
     for (int n = 0; n < method.stages(); ++n) {

@@ -212,7 +212,7 @@ class InSpace {
         for (int b = 0; b < phase_.balls; ++b) hold(y, b, slope);
     }
 
-    // The slopes of the stages of a step of length h, after that of the state.
+    // The slopes of the stages of a step of length h, except the first.
     void stages(const RungeKutta& method, double h) {
         for (int n = 0; n < method.stages(); ++n) {
             const double time = h * method.node[n], *from = slope_[method.slope(n)];

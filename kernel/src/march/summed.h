@@ -57,7 +57,7 @@ class SummedMarch {
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
-            // Exact steps: more of them the longer no block is smooth.
+            // Exact steps, more of them the longer no block is smooth.
             if (level >= 0)
                 patience = 1;
             else
@@ -257,7 +257,7 @@ class SummedMarch {
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
-    // Advances by the block, or by as many of its steps as the impact needs.
+    // Advances by the block, or by the part of it that the impact needs.
     bool advance(const SumTable& table, const Rates& f, int pressed) {
         const double K = table.steps, h = k.h, v0 = r.v_n;
         const double Q = total(table.total, f.q_y), v_end = v0 + 2.0 * h * K - Q;

@@ -8,7 +8,7 @@
 namespace carom::kernel {
 namespace {
 
-// Most stretches of one impact; only degenerate input comes near this.
+// Most stretches of one impact; only degenerate input needs this many.
 constexpr int kMostStretches = 2000;
 
 // The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of

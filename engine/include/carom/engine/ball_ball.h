@@ -15,7 +15,7 @@ namespace carom {
 
 /// Settings of a run: how accurately a model is integrated, and by which kernel.
 struct BallBallSettings {
-    kernel::MarchFunction march = nullptr;             ///< set if the scene asks for substeps
+    kernel::MarchFunction march = nullptr;             ///< set if the scene has substeps
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     int substeps = 0;
     double tolerance = 0.0;  ///< relative to the approach speed

@@ -49,8 +49,8 @@ class Simulator {
     Scene& scene() { return planner_.scene(); }
 
     /// Checks, plans and plays the scene.
-    /// @param change  covers at least what changed since the last shot that had a result
-    /// @throws only std::bad_alloc and what options.progress throws
+    /// @param change  covers at least the changes since the last shot with a result
+    /// @throws only std::bad_alloc and exceptions of options.progress
     ShotStatus play(Change change, const SimulateOptions& options = {});
     /// The same for another scene, which must be valid (as from a reader).
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
@@ -144,10 +144,10 @@ struct Batch {
     /// n: the number of cushions that it hits before the second ball, or in all
     std::vector<std::int32_t> approach_cushions;
     std::vector<double> x, y;            ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
+    std::vector<std::int32_t> pocket;    ///< n x b: index of the ball's pocket, kOffTable, or -1
     std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
     std::vector<std::int32_t> cushions;  ///< n x b: number of cushion and jaw hits
-    std::vector<std::uint64_t> hash;     ///< n, if asked for: Outcome::hash
+    std::vector<std::uint64_t> hash;     ///< n, only with BatchOptions::hash: Outcome::hash
     struct Message {
         std::size_t shot;
         std::string text;  ///< why the shot has no result

@@ -67,7 +67,6 @@ struct Key {
 
     bool in(Files files) const { return options.files == Files::kBoth || options.files == files; }
     const char* record_key() const { return options.record_key ? options.record_key : key; }
-    /// The ends of the range of an integer.
     std::int64_t least() const { return static_cast<std::int64_t>(range.low); }
     std::int64_t most() const {
         return range.high < kAnyInteger ? static_cast<std::int64_t>(range.high) : INT64_MAX;

@@ -1,4 +1,4 @@
-// Plan: what to compute for a scene. Constant during a run, and the only input of the event loop.
+// Plan: the computations that a scene needs. Constant during a run, and the only input of the event loop.
 #pragma once
 
 #include <array>
@@ -86,13 +86,13 @@ struct Plan {
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 
-/// Decides once per run, by arguments that hold for the whole shot (docs/design/architecture.md).
+/// Decides once per run, by arguments valid for the whole shot (docs/design/architecture.md).
 /// @param isa must be available (kernel::isa_from_environment)
-/// @throws SceneError if [effects] excludes what the scene needs
+/// @throws SceneError if [effects] excludes a needed effect
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
-/// Whether the plan dissipates no energy: impacts return all of it, and there is no friction, no pocket and
-/// no flight. A nose above or below a ball's centre drives it into the cloth, which dissipates some.
+/// Whether the plan dissipates no energy: impacts return all of it, without friction, pockets and flight. A
+/// nose above or below a ball's centre drives it into the cloth, which dissipates some.
 bool loses_nothing(const Plan& plan);
 
 /// Plans for one scene with changing numbers: the same decisions as make_plan, in reused memory. The plans

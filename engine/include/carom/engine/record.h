@@ -202,7 +202,7 @@ constexpr auto names_of(StopReason) {
 struct BallState {
     MotionState state = MotionState::kStationary;
     Vec3 position, velocity, spin;
-    int pocket = -1;  ///< index of the pocket that holds it, or -1
+    int pocket = -1;  ///< index of its pocket, or -1
     bool operator==(const BallState&) const = default;
 };
 
@@ -228,7 +228,7 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the pair that met
+    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the first pair.
     std::vector<std::vector<int>> clusters;
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: the first detection, of all pairs
@@ -239,7 +239,6 @@ class Record {
     /// Removes the result, for another shot. Keeps the memory of segments and events.
     void clear();
 
-    /// Radius and mass of a ball.
     BallSize size(int ball) const { return tracks[ball].own.value_or(balls.size()); }
 
     /// State of a ball at time t, in closed form from the last segment that starts at or before t. Before 0
@@ -329,7 +328,7 @@ std::string record_json(const Record& record);
 /// @throws SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// The same from text; messages call the file `name`.
+/// The same from text; messages use `name` for the file.
 Record parse_record(std::string_view text, const std::string& name,
                     std::vector<std::string>* notes = nullptr);
 

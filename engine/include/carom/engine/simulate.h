@@ -77,7 +77,7 @@ struct Outcome {
     /// been frozen since the start (still_frozen).
     int approach_cushions = 0;
     std::vector<BallOutcome> balls;  ///< in the order of Scene::ball
-    std::uint64_t hash = 0;          ///< Record::hash() as a number, if SimulateOptions::hash asked for it
+    std::uint64_t hash = 0;          ///< Record::hash() as a number; only with SimulateOptions::hash
     bool operator==(const Outcome&) const = default;
 };
 

@@ -92,7 +92,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
 
-/// Measures of the corner or side pockets that replace those of a preset.
+/// Measures of the corner or side pockets that replace a preset's.
 struct PocketMeasures {
     std::optional<double> mouth = std::nullopt, throat = std::nullopt, angle_deg = std::nullopt,
                           shelf = std::nullopt, jaw_radius = std::nullopt, radius = std::nullopt;
@@ -121,7 +121,7 @@ inline constexpr Field<PocketMeasures> kPocketMeasureFields[] = {
                                    {.later = true, .standard = "preset's"}),
 };
 
-/// Measures that replace those of a preset, as a person would measure them.
+/// Measures that replace a preset's, as a person would measure them.
 struct Measures {
     std::optional<double> cushion_height = std::nullopt, rail_width = std::nullopt;
     PocketMeasures corner_pockets{}, side_pockets{};
@@ -170,7 +170,7 @@ inline constexpr const char* kTablePresets[] = {
     "seven_foot", "seven_foot_bar", "eight_foot",     "nine_foot",        "nine_foot_tight",
     "ten_foot",   "snooker",        "english_pool",   "snooker_ten_foot", "chinese_eight_ball",
     "pyramid",    "carom",          "carom_ten_foot", "carom_small"};
-/// The rows that stand beside the lists of cushions, jaws and pockets.
+/// The keys of [table] besides the lists of cushions, jaws and pockets.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
     field<&Table::cloth>(

@@ -32,7 +32,7 @@ inline constexpr int kEventCap = 10000;
 inline constexpr int kUsualEvents = 1000000;
 inline constexpr int kMostEvents = 10 * kUsualEvents;
 
-/// [m] Depth at which a pocketed ball comes to rest below the cloth; for drawing only. The value of pooltool
+/// [m] Depth below the cloth at which a pocketed ball comes to rest; for drawing only. The value of pooltool
 /// 0.6.0.
 inline constexpr double kPocketDepth = 0.08;
 

@@ -77,7 +77,7 @@ class Variation {
     /// kVariationTrials shots is a valid scene
     Variation(const std::string& path, const std::vector<std::string>& rules, std::uint64_t seed);
 
-    /// The same for a scene given as text; messages call the file `name`.
+    /// The same for a scene given as text; messages use `name` for the file.
     static Variation from_text(std::string_view text, const std::string& name,
                                const std::vector<std::string>& rules, std::uint64_t seed);
 
@@ -114,13 +114,13 @@ class Variation {
     std::shared_ptr<const Parts> parts_;
 };
 
+struct NewValue {
+    std::string key, value;
+};
 /// A scene file with changed values: KEY as in a rule above, VALUE as in the file ("3.5", "[0.1, 0.2]",
 /// "\"carom\"").
 /// @return the new file, without comments; perhaps not a valid scene (parse_scene checks)
 /// @throws SceneError for text that is not TOML, VariationError for an unreadable key or value
-struct NewValue {
-    std::string key, value;
-};
 std::string with_values(std::string_view text, const std::string& name, const std::vector<NewValue>& values);
 
 }  // namespace carom

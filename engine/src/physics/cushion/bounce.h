@@ -11,7 +11,6 @@
 
 namespace carom {
 
-/// A nose that a ball touches.
 struct NoseTouch {
     Vec2 normal;          ///< unit, from the part into the table
     double height = 0.0;  ///< [m] of the nose above the cloth

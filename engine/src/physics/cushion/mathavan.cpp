@@ -131,7 +131,7 @@ class Impact {
     // Decides for both contacts whether they stick, and in which direction a vanished slip continues. A stuck
     // contact breaks away slightly early, because the steps end just before that point.
     void update_stick_state() {
-        // A slip gives its own direction; a vanished one keeps its last (at first: none).
+        // A slip has its own direction; a vanished one keeps its last (at first: none).
         const Vec2 nose = laws_.nose_slip(y_), cloth = laws_.cloth_slip(y_);
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const bool nose_gone = is_zero_slip(nose_size), cloth_gone = no_cloth_slip(cloth_size);
@@ -166,8 +166,8 @@ class Impact {
         if (nose_stuck_ != was_stuck || cloth_stuck_ != cloth_was_stuck) step_ = kFirstStep;
     }
 
-    // Slip below which a nose that can stick does so. If that takes long, or switches the cloth's load on or
-    // off, end_slip() is of first order only, and the slip must be smaller.
+    // Slip below which a nose sticks if it can. If that takes long, or switches the cloth's load on or off,
+    // end_slip() is of first order only, and the slip must be smaller.
     double ends_below(double nose_y, double cloth, double strain) const {
         const bool clamped = !(laws_.s + laws_.c * laws_.f * nose_y > 0.0);
         const bool soon = strain < 0.9 && clamped == nose_hold_clamped();
@@ -323,7 +323,7 @@ class Impact {
     double noise_ = 0.0;
     double step_ = kFirstStep;
     int steps_ = 0;
-    State slope_{};  // at y_, if it is known
+    State slope_{};  // at y_, if computed
     bool known_ = false;
     bool restoring_ = false;
     bool nose_stuck_ = false, cloth_stuck_ = false, nose_creeps_ = false;
