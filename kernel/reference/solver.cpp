@@ -10,8 +10,8 @@
 // With masses m_1 and m_2 impulses are divided by twice the reduced mass m_r, and every effect on the pressed
 // ball a alone has the factor f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
 //
-// The friction impulses are separate integrals: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a, B' =
-// mu_s mu_b z b.
+// The friction impulses are separate integrals: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
+// B' = mu_s mu_b z b.
 #include "reference/solver.h"
 
 #include <algorithm>

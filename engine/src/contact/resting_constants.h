@@ -113,8 +113,8 @@ inline constexpr double kRestCompliance = 1e-4;
 // [m] Smaller changes of a gap are ignored, and so is an overlap that the turning of a normal may cause: a
 // few ulp of a coordinate of 5 m.
 inline constexpr double kNoGap = 4e-15;
-// [m] A deeper overlap is removed: otherwise the rounding errors of a long push would add up to nearly 1e-12
-// m.
+// [m] A deeper overlap is removed: otherwise the rounding errors of a long push would add up to nearly
+// 1e-12 m.
 inline constexpr double kOverlapDepth = 2e-14;
 // [m] Overlap that may arise within an interval: a tenth of the limit of U3 of --verify.
 inline constexpr double kOverlapGrowth = 1e-13;

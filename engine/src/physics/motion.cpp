@@ -45,8 +45,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R) {
 
 namespace effects {
 
-// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt =
-// -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
+// Friction of a slipping ball: a = -mu_s g u/|u|,
+// dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
 [[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
     if (p.slide == 0.0) return;
     const Vec2 direction = u / slip;

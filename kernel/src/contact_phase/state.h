@@ -179,8 +179,8 @@ CAROM_INLINE void rates(const Work& w, const double* y, double time, int first, 
     }
 }
 
-// The speed at which the normal n of a contact turns. z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' =
-// -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
+// The speed at which the normal n of a contact turns. z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j):
+// n' = -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
 CAROM_INLINE Four turning(const Work& w, int c, const Four (&dv)[4], const Four& nx, const Four& ny,
                           const Four& d) {
     return load<4>(w.bend + c) * (dv[0] * ny - dv[2] * nx) / (broadcast<4>(1.0) - w.curvature * d);

@@ -41,7 +41,7 @@ constexpr bool has_result(ShotStatus status) {
 /// has resting contacts. Not thread-safe.
 class Simulator {
   public:
-    /// @param scene  must remain valid only until the first shot has changed it
+    /// @param scene  may be invalid until the first shot has changed it
     /// @param isa    must be available
     Simulator(const Scene& scene, kernel::Isa isa);
 

@@ -1,6 +1,6 @@
 // Fields: the keys of a section as rows of a table. The readers and writers of scenes and records, the
-// schemas, the tables of docs/reference/scene_format.md and the C interface all use these rows, so a new key
-// needs no other change. The rows of each section follow its struct, in scene.h and table.h.
+// schemas, the tables of docs/reference/scene_format.md and the C interface all use these rows, so a new row
+// reaches all of them. The rows of each section follow its struct, in scene.h and table.h.
 #pragma once
 
 #include <algorithm>

@@ -55,8 +55,8 @@ constexpr bool is_off_cloth(MotionState state) {
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
     /// Centre, velocity and angular velocity at the start. For a ball that falls into a pocket, r_z remains
-    /// the height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z -
-    /// g tau)^2 / 2g below r_z. A flying ball is at the height r_z + v_z tau - g tau^2 / 2. For a colliding
+    /// the height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z
+    /// - g tau)^2 / 2g below r_z. A flying ball is at the height r_z + v_z tau - g tau^2 / 2. For a colliding
     /// ball, v is its mean velocity, and w that after the cluster.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
@@ -295,8 +295,8 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
-/// [m] Depth of the floor below the cloth, where a ball that left the table comes to rest. A table bed is 29
-/// 1/4 to 31 inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+/// [m] Depth of the floor below the cloth, where a ball that left the table comes to rest. A table bed is
+/// 29 1/4 to 31 inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
 inline constexpr double kFloorDepth = 0.76;
 
 /// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite if it has not

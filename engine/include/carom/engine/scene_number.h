@@ -29,7 +29,7 @@ class SceneNumber {
     SceneNumber(const Scene& scene, std::string_view key);
 
     /// Sets the number, even to a value outside its range. balls.radius also moves the centres of balls
-    /// without their own size.
+    /// without their own size, and nothing else.
     /// @return the checks that the change requires
     /// @throws SceneError if the value is of the wrong kind: a fraction for an integer
     Change put(Scene& scene, double value) const { return put_(scene, value); }
