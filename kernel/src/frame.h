@@ -9,8 +9,8 @@
 namespace carom::kernel {
 namespace {
 
-// Velocities in the contact frame of the 2014 paper: y points from centre 1 to centre 2, z points up, x = y x
-// z.
+// Velocities in the contact frame of the 2014 paper: y points from centre 1 to centre 2, z points up,
+// x = y x z.
 struct FrameState {
     double v1x, v1y, w1x, w1y, w1z;
     double v2x, v2y, w2x, w2y, w2z;

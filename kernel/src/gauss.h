@@ -5,8 +5,8 @@ namespace carom::kernel {
 namespace {
 
 // tau is the position in a stretch, 0 at its start and 1 at its end; l_j is the polynomial that is 1 at node
-// j and 0 at the other nodes; compression ends at tau_c, and the coefficients below multiply powers of t_c =
-// 2 tau_c - 1.
+// j and 0 at the other nodes; compression ends at tau_c, and the coefficients below multiply powers of
+// t_c = 2 tau_c - 1.
 //
 //   nodes[i], weights[i]   Gauss-Legendre nodes, of order 2 N, and their weights
 //   integral[j][i]         Int_0^{node i} l_j dtau

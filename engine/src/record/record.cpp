@@ -36,7 +36,7 @@ Eigen::Quaterniond rotation(const Vec3& turn) {
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
-// [rad] The largest angle of a step, and [-] the most steps for all balls of a record. A record with more
+// [rad] The largest angle of a step, and [-] the most steps for all balls together. A record with more
 // rotation, which no shot has, is integrated in larger steps, to limit the work.
 constexpr double kLargestStep = 0.2, kMostSteps = 1e6;
 

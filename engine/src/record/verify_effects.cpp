@@ -20,7 +20,7 @@ class Skipped {
 
     std::optional<Violation> run() {
         const Scene& scene = plan_.scene;
-        // If the run ended without further events, its last segments continue forever.
+        // If no event can follow the run, its last segments continue forever.
         const bool for_ever =
             record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
         last_ = for_ever ? kNever : record_.duration;

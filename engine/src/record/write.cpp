@@ -33,7 +33,7 @@ OrderedJson json_of(const Key& key, const FieldValue& value) {
     return std::get<double>(value);
 }
 
-/// Writes the set values under the keys of record files.
+/// Writes the values that are set, under the keys of record files.
 template <class T, std::size_t kRows>
 OrderedJson json_of(const Field<T> (&fields)[kRows], const T& object) {
     OrderedJson json;

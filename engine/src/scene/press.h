@@ -14,7 +14,7 @@ namespace carom {
 /// contacts than that: each such ball leaves one contact open. Slightly different forces draw neighbours
 /// together and decide which contact it is.
 ///
-/// @param fixed   the ball that stays in place; the balls do not rotate about it as a whole
+/// @param fixed   the ball that stays in place; the rack as a whole does not rotate
 /// @param random  determines the forces
 /// @throws std::invalid_argument if the balls do not come to rest (radii that differ by tens of percent)
 void press(std::vector<Vec2>& places, std::span<const double> radii, double R, double gap, std::size_t fixed,

@@ -109,8 +109,8 @@ PocketTable snooker_table() {
         .side_run = tan_deg(kSideAngle)};
 }
 
-/// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, with all
-/// dimensions scaled to the smaller balls.
+/// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, scaled to
+/// the smaller balls.
 PocketTable english_pool_table() {
     constexpr double kBalls = 0.0254 / 0.02625;
     PocketTable t = snooker_table();

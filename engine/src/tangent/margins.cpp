@@ -17,8 +17,7 @@
 namespace carom::tangent {
 namespace {
 
-// [-] Points of a leg at which a gap is evaluated; then the smallest is refined by up to that many
-// bisections.
+// [-] Points of a leg at which a gap is evaluated, and bisections that then refine the smallest.
 constexpr int kPlaces = 12, kHalvings = 40;
 // [m] A gap below this is a contact; the record has its event.
 constexpr double kTouching = 1e-9;

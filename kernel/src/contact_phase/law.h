@@ -106,8 +106,8 @@ CAROM_INLINE T fill(double x) {
         return broadcast<4>(x);
 }
 
-// e^-x for x >= 0, as the 64th power of a Taylor series: relative error 4e-8 up to x = 10. Constant from x =
-// 64 on.
+// e^-x for x >= 0, as the 64th power of a Taylor series: relative error 4e-8 up to x = 10. Constant above
+// x = 64.
 template <class T>
 CAROM_INLINE T falling_exponential(T x) {
     const T part = (1.0 / 64.0) * x, one = fill<T>(1.0), t = select(part < one, part, one);

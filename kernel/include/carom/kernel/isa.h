@@ -13,7 +13,7 @@ enum class Isa : unsigned char {
 /// "scalar", "v3" or "v4", as in CAROM_ISA, or "fastest".
 const char* name(Isa isa) noexcept;
 
-/// Parses one of these names. Returns false and leaves `isa` unchanged for any other text.
+/// Parses "scalar", "v3" or "v4". Returns false and leaves `isa` unchanged for any other text.
 bool parse_isa(const char* text, Isa& isa) noexcept;
 
 /// Whether this processor and operating system can run the instruction set.
