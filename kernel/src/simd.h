@@ -119,7 +119,6 @@ CAROM_INLINE Halves<Half> operator~(Halves<Half> a) {
 template <int N>
 using Mask = decltype(Pack<N>{} < Pack<N>{});
 
-// The same number in all lanes.
 template <int N>
 CAROM_INLINE Pack<N> broadcast(double x) {
     // not a sum, which would turn -0 into +0

@@ -111,7 +111,6 @@ struct Player {
 };
 using PlayShot = std::function<ShotStatus(Player&, std::size_t shot, const SimulateOptions&)>;
 
-/// Shots that differ in the numbers of columns.
 struct ColumnShots {
     const Scene& scene;
     std::span<const BatchColumn> columns;
@@ -151,7 +150,6 @@ struct ColumnShots {
     }
 };
 
-/// State shared by the threads.
 struct Work {
     Work(const Scene& base, std::size_t count, PlayShot how_to_play, kernel::Isa set, const BatchOptions& how,
          const BatchArrays& arrays)

@@ -17,7 +17,6 @@ constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
 // The functions below find when a distance decreases to `reach` (kSide = 1), or increases to it inside a
 // round wall (kSide = -1).
 
-// Relative motion of two centres.
 struct Relative {
     Vec2 r, v, a;
     double noise;  // [m/s] closing speeds up to this are rounding

@@ -8,11 +8,11 @@
 // the velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
 // P = sum of +-J n are the pushes, C = -sum of Z n the couples of the vertical friction Z between two balls,
-// f is the friction of the cloth, and d the rolling resistance. The friction opposes the slip at the end: f =
-// -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the velocity at the end. So
-// a ball stops, rolls, or slides by the effect of the whole interval, and the step remains valid if a
-// direction reverses, for any h. The impulses of the contacts satisfy J >= 0, gap rate at the end >= 0, J x
-// rate = 0.
+// f is the friction of the cloth, and d the rolling resistance. The friction opposes the slip at the end:
+// f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the velocity at the
+// end. So a ball stops, rolls, or slides by the effect of the whole interval, and the step remains valid if a
+// direction reverses, for any h. The impulses of the contacts satisfy J >= 0, gap rate at the end >= 0,
+// J x rate = 0.
 //
 // Z opposes the slip between the balls at the end, and loads the cloth. It lags by one Newton step: for given
 // Z the rates are the gradient of a convex function of J, so that J exists and is found. Balls that lock each

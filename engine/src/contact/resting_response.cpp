@@ -57,7 +57,6 @@ void respond(const Group& g, Body& b, double h) {
     const bool slips = moves(b.u);
     // A ball that slips at the start rolls from the end of its slip on.
     const double drag = (slips ? 1.0 - b.slid : 1.0) * std::min(g.motion.roll * h, grip);
-    // At an instant there is no friction.
     if (h == 0.0) {
         slide(b, Vec2::Zero());
         b.by_push = identity(1.0);

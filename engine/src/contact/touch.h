@@ -23,7 +23,6 @@ using Number = std::remove_cvref_t<decltype(std::declval<const Space&>()[0])>;
 template <class Space>
 using Plane = decltype(planar(std::declval<const Space&>()));
 
-/// The centre of a ball at an instant.
 template <class Space>
 struct BallAt {
     Space r, v;

@@ -17,7 +17,6 @@
 
 namespace carom {
 
-/// A cushion or a nose that a ball touches.
 struct TableTouch : NoseTouch {
     ContactKinematics approach;  ///< a_c is the acceleration before the impact
     double bend = 0.0;           ///< [m/s^2] Touch::bend
@@ -28,7 +27,6 @@ struct TableTouch : NoseTouch {
     }
 };
 
-/// All parts that a ball touches at one instant.
 class TableTouches {
   public:
     explicit TableTouches(const TableTouch& first) : count_(1) { list_[0] = first; }

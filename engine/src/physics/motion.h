@@ -84,7 +84,6 @@ Segment after_transition(const Segment& segment, const MotionParams& params);
 /// The type of that transition; the segment must have a finite duration.
 EventType transition_type(const Segment& segment, const Segment& next);
 
-/// Whether the centre moves in this state.
 inline bool translates(MotionState state) {
     return state == MotionState::kSliding || state == MotionState::kRolling ||
            state == MotionState::kFalling || state == MotionState::kAirborne ||

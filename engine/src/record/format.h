@@ -7,7 +7,6 @@ inline constexpr char kRecordFormat[] = "carom-record";
 /// The written version. It may gain keys, as long as a reader that ignores them still draws the same shot
 /// (docs/reference/record_format.md, "Versions").
 inline constexpr int kRecordVersion = 3;
-/// The oldest readable version.
 inline constexpr int kOldestVersion = 2;
 
 }  // namespace carom

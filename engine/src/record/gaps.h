@@ -11,7 +11,6 @@
 
 namespace carom {
 
-/// A ball at its position, with its height.
 struct SeenBall {
     Vec3 r;
     double R;

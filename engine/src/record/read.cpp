@@ -243,7 +243,6 @@ void check_version(const JsonValue& version) {
                  "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
 }
 
-/// Warnings about a file that was nevertheless read.
 void add_notes(const JsonText& source, std::vector<std::string>& notes) {
     if (source.unknown_keys == 0) return;
     notes.push_back(source.unknown_keys == 1

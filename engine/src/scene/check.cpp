@@ -339,7 +339,6 @@ bool cushions_twist(const Scene& scene) {
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }
 
-/// The motions that can occur in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
     bool slip = false;    ///< some ball can slide on the cloth

@@ -71,14 +71,12 @@ struct List {
     std::vector<ListItem> items;
 };
 
-/// The values of grid(list(v,...)).
 Distribution grid_of_list(std::string_view text) {
     const auto list = std::make_shared<const List>(arguments("list", text));
     if (list->items.empty()) fail("list has 0 values; write list(v,...)");
     return {{}, list->kind(), list->items.size(), [list](std::uint64_t step) { return &list->items[step]; }};
 }
 
-/// The values of grid(a,b,n).
 Distribution grid_of_numbers(std::string_view text) {
     const toml::array values = arguments("grid", text);
     if (values.size() != 3) fail("grid has {} values; write grid(a,b,n) or grid(list(v,...))", values.size());

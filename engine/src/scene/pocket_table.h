@@ -17,7 +17,6 @@ struct PocketShape {
     double jaw_radius;  ///< of the point between nose and facing
 };
 
-/// A table with six pockets.
 struct PocketTable {
     double length, width;  ///< between nose lines
     double rail_width;     ///< how far the facings extend behind the nose line
@@ -31,10 +30,8 @@ struct PocketTable {
 /// bit.
 PocketTable with_measures(PocketTable table, const Measures& changed);
 
-/// All measures of a table.
 Measures measures_of(const PocketTable& table);
 
-/// A measure that does not fit the others.
 struct Misfit {
     const char* section;  ///< "corner_pockets", or "" for [table] itself
     const char* key;

@@ -17,7 +17,6 @@ struct RackedBall {
     void put(BallStart& ball, const BallSize& common) const;
 };
 
-/// Number of numbered balls in a rack.
 int balls_of(const Rack& rack);
 
 /// Places a rack, ordered by number, then colours with spots.

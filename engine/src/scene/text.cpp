@@ -19,7 +19,6 @@ namespace {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-/// A TOML string.
 std::string quote(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {

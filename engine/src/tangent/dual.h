@@ -36,7 +36,6 @@ inline Dual chain(double x, const Dual& a, double by_a) {
     for (int i = 0; i < kLanes; ++i) r.d[i] = by_a * a.d[i];
     return r;
 }
-/// Compares the values.
 inline bool operator<(const Dual& a, const Dual& b) {
     return a.x < b.x;
 }

@@ -123,7 +123,6 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map)
     return out;
 }
 
-/// Reads the contents of Arguments.
 struct Reader {
     Reader(const Laws& laws, const double* list)
         : next(list + kParams), balls(with_numbers(laws.plan.scene.balls, list)), gravity(*next++) {}

@@ -10,7 +10,6 @@
 
 namespace carom::tangent {
 
-/// Shared by all impacts of a replay.
 struct Laws {
     const Plan& plan;
     const Numbers& numbers;

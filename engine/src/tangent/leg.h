@@ -12,7 +12,6 @@ struct State {
     Dual3 r, v, w;
 };
 
-/// The slip at the cloth.
 Dual2 slip_of(const State& s, const Dual& R);
 /// Gives a ball the spin of rolling.
 void roll(State& s, const Dual& R);

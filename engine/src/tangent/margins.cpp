@@ -25,7 +25,6 @@ constexpr double kTouching = 1e-9;
 // [s] Around an event: the gap is smallest at the event only if it is larger before and after it.
 constexpr double kAround = 1e-6;
 
-/// The time of the smallest gap.
 template <class GapAt>
 double nearest_time(const GapAt& gap, double from, double to) {
     double best = from, least = std::numeric_limits<double>::infinity();
@@ -48,7 +47,6 @@ double nearest_time(const GapAt& gap, double from, double to) {
     return gap(t).x < least ? t : best;
 }
 
-/// The ball without the derivatives.
 BallAt<Vec3> numbers_at(const State& s, const Dual& R) {
     return {{s.r[0].x, s.r[1].x, s.r[2].x}, {s.v[0].x, s.v[1].x, s.v[2].x}, R.x};
 }

@@ -40,7 +40,6 @@ void add(double* to, const Vector& a) {
     to[2] += a.z;
 }
 
-// A contact at one instant.
 struct Now {
     Vector n;              // from i to j
     double overlap, rate;  // and its rate
@@ -275,7 +274,6 @@ class InSpace {
         return h / 6.0 * most;
     }
 
-    // Updates the largest overlap of a contact.
     void remember(int c, double h) {
         const Now now = contact_at(y_, c);
         memory_[c] = now.overlap > 0.0 ? largest(memory_[c], now.overlap) : 0.0;

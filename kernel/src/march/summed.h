@@ -1,9 +1,10 @@
-// The result of the explicit Euler integration without its steps. The integration is the sequence y(m+1) =
-// y(m) + h f(y(m)). Over a block of K steps the rates are smooth functions of m: a polynomial through eight
-// nodes represents them, and its sums over consecutive m are exact (sum_tables.h). Fixed-point sweeps find
-// the values at the nodes, eight lanes at once. They sum the Euler sequence, not the continuous impulse, so
-// step count, last step and discretisation error are those of the published integration. If the rates are not
-// smooth (a change of the pressed side, a slip near zero, a ball that starts rolling), exact steps are made.
+// The result of the explicit Euler integration without its steps. The integration is the sequence
+// y(m+1) = y(m) + h f(y(m)). Over a block of K steps the rates are smooth functions of m: a polynomial
+// through eight nodes represents them, and its sums over consecutive m are exact (sum_tables.h). Fixed-point
+// sweeps find the values at the nodes, eight lanes at once. They sum the Euler sequence, not the continuous
+// impulse, so step count, last step and discretisation error are those of the published integration. If the
+// rates are not smooth (a change of the pressed side, a slip near zero, a ball that starts rolling), exact
+// steps are made.
 //
 // If rounding decides the published integration, no other order of summation can reproduce it, and this one
 // gives up: if many exact steps chatter near stick, or if the step that ends compression or the impact is a

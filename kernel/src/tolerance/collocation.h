@@ -43,7 +43,6 @@ constexpr double kShareOfFriction = 0.03;
 // The error of the rows (EndRows), relative to the tolerance, above which they are recomputed.
 constexpr double kRowsGoal = 0.1;
 
-// The constants of one impact.
 struct Model {
     double mu_b, mu_s, sigma, kappa;
     double e_b;

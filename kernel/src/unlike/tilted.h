@@ -13,7 +13,6 @@
 namespace carom::kernel {
 namespace {
 
-// The constants of one impact.
 struct Tilt {
     double S, C;      // sine and cosine of the tilt
     double share[2];  // reduced mass over that of a ball; together 1

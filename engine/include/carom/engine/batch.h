@@ -132,7 +132,6 @@ struct Batch {
     Batch() = default;
     /// Arrays for n shots of b balls, to be filled. @param hash  whether to allocate `hash`
     Batch(std::size_t n, std::size_t b, bool hash = false);
-    /// The destination for simulate_many.
     BatchArrays arrays();
 
     std::size_t shots = 0, balls = 0;

@@ -81,7 +81,6 @@ struct Key {
     }
 };
 
-/// A row of the struct T.
 template <class T>
 struct Field : Key {
     FieldValue (*get)(const T&);

@@ -176,7 +176,6 @@ struct EventCost {
 /// event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
 
-/// The words for a StopReason.
 struct StopWords {
     const char* word;       ///< in tables, Python and C
     const char* in_record;  ///< in record files
@@ -198,7 +197,6 @@ constexpr auto names_of(StopReason) {
     return names;
 }
 
-/// State of one ball at a time.
 struct BallState {
     MotionState state = MotionState::kStationary;
     Vec3 position, velocity, spin;

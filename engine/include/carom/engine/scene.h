@@ -187,7 +187,6 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "rolls", "`false`: pucks, which slide until they stop; `mu_s` slows them, and nothing turns them"),
 };
 
-/// A ball at the start.
 struct BallStart {
     std::string id = "cue";
     Vec3 position = {0.635, 0.5, 0.0};           ///< centre [m], z = its radius + its height

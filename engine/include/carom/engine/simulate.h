@@ -51,7 +51,6 @@ Record simulate(const Plan& plan, const SimulateOptions& options = {});
 /// Replaces the index of a pocket if the ball has left the table (ball_out).
 inline constexpr int kOffTable = -2;
 
-/// The result of a shot for one ball.
 struct BallOutcome {
     Vec3 position = Vec3::Zero();  ///< at the end [m]; for a pocketed ball, the bottom of the pocket
     int pocket = -1;               ///< index of its pocket, kOffTable, or -1

@@ -46,7 +46,6 @@ std::int64_t integer_of(const DrawnValue& value);
 /// As written in tables; numbers read back to the same bits.
 std::string text_of(const DrawnValue& value);
 
-/// One shot: the drawn values and their scene.
 struct VariedShot {
     std::vector<DrawnValue> values;  ///< one per key
     std::optional<Scene> scene;      ///< nothing if the values make no valid scene

@@ -25,7 +25,6 @@ double closing(const NoseTouch& touch, const Velocities& m) {
     return -dot(touch.normal, planar(m.v));
 }
 
-/// A ball and everything that it touches.
 class Bounce {
   public:
     Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches)

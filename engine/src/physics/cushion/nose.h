@@ -7,7 +7,6 @@
 
 namespace carom::detail {
 
-/// Speed of the ball towards the cushion.
 inline double approach_speed(const Vec2& normal, const Vec3& v) {
     return -(v.x() * normal.x() + v.y() * normal.y());
 }

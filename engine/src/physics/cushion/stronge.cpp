@@ -57,9 +57,9 @@ struct Swing {
 };
 
 // Time at which the spring's force reaches f times the normal force. In compression, h = f F - |s| / eta
-// obeys h'' + omega^2 h = f F (omega^2 - 1) > 0 and starts from h = h' = 0 (or h' > 0); since omega (t_c -
-// t0) < pi, h > 0, so the nose breaks away only in restitution. There the first sign change is bracketed on a
-// grid and bisected.
+// obeys h'' + omega^2 h = f F (omega^2 - 1) > 0 and starts from h = h' = 0 (or h' > 0);
+// since omega (t_c - t0) < pi, h > 0, so the nose breaks away only in restitution. There the first sign
+// change is bracketed on a grid and bisected.
 double release_time(const Swing& swing, const NormalForce& normal, double f) {
     const auto margin = [&](double t) { return f * normal.force(t) - std::abs(swing.deflection(t)) / kEta; };
     const double from = std::max(swing.t0, kCompression), end = normal.end();

@@ -38,7 +38,6 @@ struct VelocityLanes {
     double* w[3];
 };
 
-/// The impacts of one call.
 struct ImpactBatch {
     std::int64_t count;  ///< lanes; <= 0: none
     BallLanes ball1, ball2;

@@ -21,7 +21,6 @@ enum class ClothSlip : unsigned char {
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; adds energy; for parity only
 };
 
-/// Parameters of one impact.
 struct ImpactParams {
     double R;      ///< radius of ball 1 [m], > 0
     double m;      ///< mass of ball 1 [kg], > 0
