@@ -1,4 +1,4 @@
-// Converts impacts into the structure of arrays that the batch kernels take, and their results back.
+// Converts impacts into the structure of arrays of the batch kernels, and their results back.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Seeded random impacts between equal balls, for the tests, the benchmark and the accuracy report.
 //
-// The impacts are a mixture of six kinds: ball 1 slides into a resting ball, it rolls into a resting ball,
-// both balls roll, both have strong spin (up to 200 rad/s), ball 1 only glances a resting ball, both slide.
-// The ranges are 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b, and about 0.05..8 m/s
-// for the approach speed.
+// A mixture of six kinds: ball 1 slides into a resting ball, it rolls into a resting ball, both balls roll,
+// both have strong spin (up to 200 rad/s), ball 1 only glances a resting ball, both slide. The ranges are
+// 0.01..0.12 for mu_b, 0.1..0.4 for mu_s of each ball, 0.8..1 for e_b, and about 0.05..8 m/s for the approach
+// speed.
 #pragma once
 
 #include <cmath>

@@ -7,10 +7,10 @@
 //     z' = -5 mu_b z |u| + 5/2 mu_s mu_b z b         b' = |s| |u| - 5/2 sigma mu_b z |u| - kappa mu_s mu_b z
 //     b p' = |s| |u|    v' = 2 p' - mu_s mu_b z b      W' = v p'    D' = mu_b |s| p' + mu_s mu_b z |u|^2
 //
-// With masses m_1 and m_2 impulses are over twice the reduced mass m_r, and what acts on the pressed ball a
-// alone has the factor f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
+// With masses m_1 and m_2 impulses are divided by twice the reduced mass m_r, and every effect on the pressed
+// ball a alone has the factor f = 2 m_r/m_a: all of a' and b', and the terms with mu_s in x', z' and v'.
 //
-// and the friction impulses are integrals of their own: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
+// The friction impulses are separate integrals: X' = mu_b x |u|, Z' = mu_b z |u|, A' = mu_s mu_b z a,
 // B' = mu_s mu_b z b.
 #include "reference/solver.h"
 
@@ -95,7 +95,7 @@ Real step_length(const Expansion& e, Real tolerance) {
     return Real(0.8) * shortest;
 }
 
-// Where a variable that rises over [0, q] takes the value `target`, by bisection.
+// The q at which a variable that rises over [0, q] reaches `target`, by bisection.
 Real crossing(const Expansion& e, int variable, Real target, Real q) {
     Real lo = 0, hi = q;
     for (int i = 0; i < 70; ++i) {
@@ -109,7 +109,7 @@ void advance(const Expansion& e, Real q, Real (&state)[kVariables]) {
     for (int i = 0; i < kVariables; ++i) state[i] = value(e, i, q);
 }
 
-// A cloth slip of zero has no direction: it gets the direction of the force that will move it.
+// A cloth slip of zero gets the direction of the force that will move it.
 void leave_zero_slip(const Constants& m, Real (&state)[kVariables], Real size) {
     const Real s = std::hypot(state[kX], state[kZ]);
     const Real fx = m.mu_b * state[kX] / s, fz = 1 - Real(2.5) * m.sigma * m.mu_b * state[kZ] / s;

@@ -1,5 +1,5 @@
-// The reference solution with which the ball-ball kernels are compared: the impact of the 2014 model
-// (physics.md section 3) by power series in extended precision. It shares no code with the kernels.
+// The reference solution for the ball-ball kernels: the impact of the 2014 model (physics.md section 3) by
+// power series in extended precision. Shares no code with the kernels.
 #pragma once
 
 #include "carom/kernel/impact.h"
@@ -15,7 +15,7 @@ struct TruthSettings {
 inline constexpr int kTruthMaxOrder = 30;
 
 struct ImpactTruth {
-    bool ok = false;           ///< false: no impact (bad or separating input), or the step bound was met
+    bool ok = false;           ///< false: no impact (bad or separating input), or the step limit was reached
     bool stuck = false;        ///< the slip between the balls ended during the impact
     long double v1[3], w1[3];  ///< after the impact
     long double v2[3], w2[3];

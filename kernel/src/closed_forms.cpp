@@ -24,8 +24,8 @@ void collide_inelastic(const Ball& ball1, const Ball& ball2, const ImpactParams&
     const double R = params.R;
     // Normal impulse per unit mass: equal balls, kinematic restitution.
     const double J_n = 0.5 * (1.0 + params.e_b) * (s.v1y - s.v2y);
-    // The tangential impulse acts against the slip at the contact. A unit of it changes the horizontal slip
-    // by 7 (equal balls), and the vertical slip by 7 as well, because in this model both balls turn freely.
+    // The tangential impulse acts against the slip at the contact. A unit of it changes both the horizontal
+    // and the vertical slip by 7 (equal balls), because in this model both balls turn freely.
     const double c_x = s.v1x - s.v2x - R * (s.w1z + s.w2z);
     const double c_z = R * (s.w1x + s.w2x);
     const double c = square_root(c_x * c_x + c_z * c_z);

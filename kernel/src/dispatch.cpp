@@ -1,4 +1,4 @@
-// The choice of the instruction set at run time, and the texts for the results of kernels.
+// The choice of the instruction set at run time, and texts for the results of kernels.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,8 +25,8 @@ const Entry kEntries[] = {{"scalar", &scalar::kKernels}, {"v3", nullptr}, {"v4",
 #endif
 
 #if defined(__x86_64__)
-// Tested by feature, because clang 14 does not know the names of the levels. Every processor with these
-// features has the others too.
+// Tested by feature, because clang 14 lacks the names of the levels. Every processor with these features also
+// has the others.
 bool has_v3() {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
            __builtin_cpu_supports("bmi2");

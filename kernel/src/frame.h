@@ -9,8 +9,8 @@
 namespace carom::kernel {
 namespace {
 
-// Velocities in the contact frame of the 2014 paper: y
-// points from centre 1 to centre 2, z points up, x = y x z.
+// Velocities in the contact frame of the 2014 paper: y points from centre 1 to centre 2, z points up,
+// x = y x z.
 struct FrameState {
     double v1x, v1y, w1x, w1y, w1z;
     double v2x, v2y, w2x, w2y, w2z;
@@ -20,11 +20,11 @@ struct Frame {
     double yx, yy;  // the horizontal unit vector y in table coordinates; x is (yy, -yx)
 };
 
-// Largest difference in height of the centres, as a share of their distance: the impact is planar. It leaves
-// room for the rounding of heights that are meant to be equal.
+// Largest height difference of the centres, relative to their distance: the impact is planar. It allows for
+// rounding of heights that should be equal.
 constexpr double kHeightTolerance = 1e-9;
-// Smallest approach speed [m/s], and smallest share of the sum of all speeds. Below it the square of the
-// approach speed underflows in the work integral, and the balls count as not approaching (hard case H30).
+// Smallest approach speed [m/s], and smallest fraction of the sum of all speeds. Below it the square of the
+// approach speed underflows in the work integral, and the balls do not count as approaching (hard case H30).
 constexpr double kSlowestApproach = 1e-150;
 
 inline bool finite(const double (&a)[3]) {
@@ -41,9 +41,9 @@ inline bool finite(const Ball& a, const Ball& b) {
 }
 
 // A cloth slip [m/s] up to this floor is rounding of the v and R w of a rolling ball. It has no direction,
-// and the step has no cloth friction, as for a slip of exactly zero. The floor is used for the consistent
-// sign only: there rolling balls usually have u = 0, and two correct integrations would otherwise differ by
-// the friction of a whole step. The published code has no such floor.
+// and the step has no cloth friction, as for a slip of exactly zero. Used for the consistent sign only: there
+// rolling balls usually have u = 0, and two correct integrations would otherwise differ by the friction of a
+// whole step. The published code has no such floor.
 inline double cloth_slip_floor(const FrameState& s, double R, int sign) {
     if (sign > 0) return 0.0;
     const double v = absolute(s.v1x) + absolute(s.v1y) + absolute(s.v2x) + absolute(s.v2y);
@@ -79,8 +79,8 @@ inline bool in_range(const ImpactParams& p) {
            p.e_b <= 1.0 && (kAnyMasses || (p.mass_ratio == 1.0 && p.radius_ratio == 1.0));
 }
 
-// Checks the input and projects it into the contact frame. Any status except kOk means that there is nothing
-// to compute; `out` then has the input.
+// Checks the input and projects it into the contact frame. For any status except kOk there is nothing to
+// compute, and `out` contains the input.
 template <bool kAnyMasses = false>
 inline ImpactStatus enter_frame(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f,
                                 FrameState& s, ImpactResult& out) {

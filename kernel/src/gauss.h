@@ -5,7 +5,7 @@ namespace carom::kernel {
 namespace {
 
 // tau is the position in a stretch, 0 at its start and 1 at its end; l_j is the polynomial that is 1 at node
-// j and 0 at the other nodes; compression ends at tau_c, and the coefficients below are those of powers of
+// j and 0 at the other nodes; compression ends at tau_c, and the coefficients below multiply powers of
 // t_c = 2 tau_c - 1.
 //
 //   nodes[i], weights[i]   Gauss-Legendre nodes, of order 2 N, and their weights
@@ -141,7 +141,7 @@ struct Finer {
          -0.010595393202796548, -0.005674930542182799, 0.058050354169755555, 0.14526036856414956}};
 };
 
-// Whether the table integrates the powers of tau that are exact with 4 nodes, to every node.
+// Whether the table integrates, to every node, the powers of tau that are exact with 4 nodes.
 constexpr bool integrates_cubics(const double (&table)[4][8]) {
     for (int power = 0; power < 4; ++power) {
         for (int i = 0; i < 8; ++i) {

@@ -2,7 +2,7 @@
 
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 
-// Nothing in carom.wasm solves batches of impacts, and their solver is an eighth of the file.
+// carom.wasm solves no batches of impacts, and their solver is an eighth of the file.
 #ifdef CAROM_NO_IMPACT_BATCHES
 constexpr ToleranceBatchFunction kToleranceBatch = nullptr;
 #else

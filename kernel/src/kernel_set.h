@@ -1,7 +1,7 @@
 // One kernel of every kind, built for one instruction set.
 //
 // The sources in march/, tolerance/ and contact_phase/ are compiled once per instruction set. The build
-// defines CAROM_ISA_NAMESPACE as scalar, v3 or v4, the namespace of what a source exports.
+// defines CAROM_ISA_NAMESPACE as scalar, v3 or v4: the namespace of a source's exports.
 #pragma once
 
 #include <cstdint>

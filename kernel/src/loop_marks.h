@@ -1,5 +1,5 @@
-// Comments in the assembly around the body of a loop, for lab/measure/mca_kernel.py. A normal build does not
-// define CAROM_LOOP_MARKS, and the marks are empty.
+// Comments in the assembly around the body of a loop, for lab/measure/mca_kernel.py. Empty in a normal build,
+// which does not define CAROM_LOOP_MARKS.
 #pragma once
 
 #ifdef CAROM_LOOP_MARKS

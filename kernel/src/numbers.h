@@ -1,5 +1,5 @@
-// The few functions of one number that the kernels need. Files built for one instruction set include no std
-// templates (simd.h says why), so everything here is inline and in an anonymous namespace.
+// The few functions of one number that the kernels need, all inline and in an anonymous namespace: files
+// built for one instruction set include no std templates (reason: simd.h).
 #pragma once
 
 namespace carom::kernel {

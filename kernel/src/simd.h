@@ -1,17 +1,17 @@
 // Vectors of doubles: Pack<N> has N of them, Mask<N> one truth value for each (all bits or none).
 //
-// Every operation acts on each lane separately and is + - * / or a square root, each correctly rounded; a sum
-// over lanes has one fixed order. Therefore all instruction sets, compilers and optimisation levels give the
-// same bits. There is no fused multiply-add: plain x86-64 would have to emulate it in software, and it would
-// save little, because square roots and divisions dominate.
+// Every operation acts on each lane separately and is + - * / or a square root, correctly rounded; a sum over
+// lanes has a fixed order. Therefore all instruction sets, compilers and optimisation levels give the same
+// bits. Fused multiply-add is not used: plain x86-64 would have to emulate it in software, and it would save
+// little, because square roots and divisions dominate.
 //
 // A pack that fits into a register of the instruction set is the compiler's own vector type. A wider one is
 // two halves, because gcc 12 moves its own wide vectors through memory and splits them lane by lane in
 // shuffles and comparisons.
 //
 // This header is included by files that are built once per instruction set: everything is inline and in an
-// anonymous namespace, and there are no std templates, because a weak symbol built for a higher instruction
-// set could win at link time and crash the program on an older processor.
+// anonymous namespace, without std templates, because a weak symbol built for a higher instruction set could
+// win at link time and crash the program on an older processor.
 #pragma once
 
 #if defined(__x86_64__)
@@ -66,7 +66,7 @@ struct PackType<8> {
 template <int N>
 using Pack = typename PackType<N>::Type;
 
-// Operators of halves. The compiler has operators for packs that fit into a register.
+// Operators of halves; the compiler provides those of packs that fit into a register.
 #define CAROM_BINARY(op)                                                   \
     template <class Half>                                                  \
     CAROM_INLINE auto operator op(Halves<Half> a, Halves<Half> b) {        \
@@ -119,7 +119,6 @@ CAROM_INLINE Halves<Half> operator~(Halves<Half> a) {
 template <int N>
 using Mask = decltype(Pack<N>{} < Pack<N>{});
 
-// The same number in all lanes.
 template <int N>
 CAROM_INLINE Pack<N> broadcast(double x) {
     // not a sum, which would turn -0 into +0
@@ -309,7 +308,7 @@ CAROM_INLINE bool all_below(P v, double bound) {
     return bits_less(v, broadcast<kLanes>(bound)) == (1 << kLanes) - 1;
 }
 
-// Adds the two halves of a pack until one number is left: of four lanes (v0 + v2) + (v1 + v3).
+// Adds the two halves of a pack until one number is left: for four lanes (v0 + v2) + (v1 + v3).
 CAROM_INLINE double sum(Pack<2> v) {
     return v[0] + v[1];
 }

@@ -1,4 +1,4 @@
-// A text that is a number.
+// Text to number.
 #pragma once
 
 #include <charconv>
@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// The number that the whole text is, however the locale writes numbers; nothing if it is none, or too large.
+/// The number that the whole text represents, in any locale; nothing if it is no number, or too large.
 template <class Number>
 std::optional<Number> as_number(std::string_view text) {
     Number number{};

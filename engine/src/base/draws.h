@@ -1,4 +1,4 @@
-// Random draws by name: the draws for one thing do not depend on other draws, nor on their order.
+// Random draws by name: draws for one key do not depend on other draws or their order.
 #pragma once
 
 #include <cstdint>

@@ -1,16 +1,16 @@
-// Keeps two programs from writing the same files.
+// Prevents two programs from writing the same files.
 #pragma once
 
 #include <string>
 
 namespace carom {
 
-/// Locks files that a program works on, for its own lifetime, by an empty file next to them. The lock file is
-/// removed at the end; one that a killed program left behind is reused.
+/// Locks files for its own lifetime, by means of an empty file next to them. The lock file is removed at the
+/// end; one left by a killed program is reused.
 class FileLock {
   public:
-    /// @param alone  false: other users with `alone` false may work on the files too
-    /// @throws std::runtime_error that names the file, including when another program has the lock
+    /// @param alone  false: other users with `alone` false may also use the files
+    /// @throws std::runtime_error naming the file, also if another program has the lock
     FileLock(std::string name, bool alone);
     ~FileLock();
     FileLock(const FileLock&) = delete;

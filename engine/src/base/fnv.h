@@ -13,7 +13,7 @@ class Fnv {
     void add(double x) { add_bytes(&x, sizeof x); }
     void add(std::uint64_t x) { add_bytes(&x, sizeof x); }
     void add(std::string_view text) { add_bytes(text.data(), text.size()); }
-    /// A long text, eight bytes at a time: another hash than add(), five times as fast.
+    /// A long text, eight bytes at a time: a different hash from add(), five times as fast.
     void add_long(std::string_view text) {
         for (; text.size() >= sizeof hash_; text.remove_prefix(sizeof hash_)) {
             std::uint64_t word = 0;

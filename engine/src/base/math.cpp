@@ -91,7 +91,7 @@ SinCos in_quadrant(Sum r, int quadrant) {
 constexpr SinCos kUndefined{std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::quiet_NaN()};
 
-/// Remainder of x >= 0 by 360. It is exact because each subtraction is exact (Sterbenz). Angles in files are
+/// Remainder of x >= 0 by 360, exact because each subtraction is exact (Sterbenz). Angles in files are
 /// usually small; the loops handle all others.
 double remainder_360(double x) {
     while (x >= 360.0) {
@@ -144,8 +144,8 @@ double arc_cos(double x) {
     constexpr double kPi = 3.141592653589793;
     if (!(x >= -1.0 && x <= 1.0)) return std::numeric_limits<double>::quiet_NaN();
     if (x < 0.0) return kPi - arc_cos(-x);
-    // Half the angle, y in [0, pi/4], from sin y = sqrt((1 - x) / 2) by Newton's method. The series of the
-    // arc sine gives a first value with an error below 6e-3, and every step squares the error.
+    // Half the angle, y in [0, pi/4], from sin y = sqrt((1 - x) / 2) by Newton's method. The arc sine series
+    // gives a start value with an error below 6e-3, and every step squares the error.
     const double s = __builtin_sqrt(0.5 * (1.0 - x));
     const double z = s * s;
     double y = s * (1.0 + z * (1.0 / 6.0 + z * (3.0 / 40.0)));
@@ -159,7 +159,7 @@ double arc_cos(double x) {
 double direction_deg(double x, double y) {
     const double size = __builtin_sqrt(x * x + y * y);
     if (!(size > 0.0)) return size;
-    // The smaller one of cosine and sine determines the angle: there the arc cosine is as exact as its
+    // The smaller of cosine and sine determines the angle: there the arc cosine is as accurate as its
     // argument. Below 1e-154 squares lose digits, and a quotient may exceed 1.
     const double cosine = std::clamp(x / size, -1.0, 1.0), sine = std::clamp(y / size, -1.0, 1.0);
     if (std::abs(x) <= std::abs(y)) return std::copysign(arc_cos(cosine) * kDegrees, y);
@@ -171,8 +171,8 @@ double exponential(double x) {
     if (x != x) return x;
     if (x > 709.8) return std::numeric_limits<double>::infinity();
     if (x < -745.2) return 0.0;
-    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 is in two parts, so that k ln 2 is exact except for the last
-    // bits.
+    // e^x = 2^k e^r with |r| <= ln 2 / 2. ln 2 is split in two parts, so that k ln 2 is exact except for the
+    // last bits.
     constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
     const double k = nearest(x * 1.4426950408889634);
     const double high = x - k * kLn2High, low = k * kLn2Low;
@@ -192,7 +192,7 @@ double exponential(double x) {
     p = p * r + 0.5;
     const double tail = (high - r) - low;  // the rounding error of r
     const double value = 1.0 + (r + (r * r * p + tail));
-    // 2^k as two factors: the result may be representable (perhaps as a subnormal number) even if 2^k is not.
+    // 2^k as two factors: the result may be representable (perhaps as subnormal) even if 2^k is not.
     const auto power = [](int n) {
         const std::uint64_t bits = static_cast<std::uint64_t>(n + 1023) << 52;
         double out;

@@ -8,7 +8,7 @@
 namespace carom {
 namespace {
 
-// [bytes] No name is longer; the limit keeps the work small whatever a file contains.
+// [bytes] No name is longer; the limit bounds the work for any file.
 constexpr std::size_t kLongestWord = 40;
 constexpr std::size_t kTooFar = 1000;  // [edits]
 

@@ -27,7 +27,7 @@ constexpr int kMostLinks = 40;    // as in the Linux kernel
 constexpr int kMostNames = 1000;  // temporary files of one process in one folder
 constexpr std::string_view kTemporary = ".carom.", kTemporaryEnd = ".tmp";
 
-/// The number of a file descriptor, -1 if it is none.
+/// The number of a file descriptor; -1 if the path is none.
 int descriptor(std::string_view path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
@@ -36,8 +36,8 @@ int descriptor(std::string_view path) {
     return as_number<int>(path.substr(kFolder.size())).value_or(-1);
 }
 
-/// Removes what killed programs left in a folder: temporary files that nobody has locked. Once per folder,
-/// because a run may write many files.
+/// Removes from a folder what killed programs left: unlocked temporary files. Once per folder, because a run
+/// may write many files.
 void remove_left(const std::filesystem::path& folder) {
     static std::mutex mutex;
     static std::set<std::filesystem::path> seen;
@@ -64,7 +64,7 @@ std::FILE* own_stream(const std::string& path) {
     errno = 0;
     const int number = descriptor(path);
     if (number < 0) return nullptr;
-    if (number == STDOUT_FILENO) std::fflush(stdout);  // keep the order with what was printed before
+    if (number == STDOUT_FILENO) std::fflush(stdout);  // keeps the order with earlier output
     const int fd = ::fcntl(number, F_DUPFD_CLOEXEC, 0);
     return fd < 0 ? nullptr : ::fdopen(fd, "wb");
 }
@@ -97,21 +97,21 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_
     open_temporary();
 }
 
-// Others may be able to create files in the folder, so the temporary file must be new and not a link. It gets
-// the permissions of the file that it will replace.
+// Other users may be able to create files in the folder, so the temporary file must be new and not a link. It
+// gets the permissions of the file that it replaces.
 void OutputFile::open_temporary() {
     struct stat there {};
     const bool replaces = ::stat(target_.c_str(), &there) == 0;
     const std::filesystem::path folder = std::filesystem::path(target_).parent_path();
     remove_left(folder.empty() ? "." : folder);
     for (int k = 0; k < kMostNames; ++k) {
-        // Short, because the name of the file may already have the maximum length. It contains the process
-        // id, because other programs write here too.
+        // Short, because the file's name may already have the maximum length. Contains the process id,
+        // because other programs write here too.
         temporary_ = (folder / fmt::format("{}{}.{}{}", kTemporary, ::getpid(), k, kTemporaryEnd)).string();
         const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (fd < 0 && errno == EEXIST) continue;
-        // Locked while it is written, so that others see that it is in use. If another program saw it before
-        // that and removed it, try again.
+        // Locked while it is written, so that other programs see that it is in use. If one of them saw it
+        // earlier and removed it, try again.
         struct stat opened {};
         if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0 && ::fstat(fd, &opened) == 0 &&
             opened.st_nlink == 0) {
@@ -145,13 +145,13 @@ void OutputFile::write(std::string_view text) {
 
 void OutputFile::commit(bool durable) {
     durable = durable && !is_direct();
-    // Some file systems cannot; they promise nothing.
+    // Unsupported by some file systems, which then guarantee nothing.
     if (durable &&
         (std::fflush(file_) != 0 || (::fsync(::fileno(file_)) != 0 && errno != EINVAL && errno != EROFS)))
         fail("cannot write");
     std::FILE* file = file_;
     file_ = nullptr;
-    // fclose reports errors that buffering has hidden until now, such as a full disk.
+    // fclose reports errors that buffering has delayed, such as a full disk.
     if (std::fclose(file) != 0) fail("cannot write");
     if (temporary_.empty()) return;
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot rename to this name");

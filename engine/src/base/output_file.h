@@ -8,19 +8,20 @@
 namespace carom {
 
 /// A new stream for the process's own stream that /dev/stdout, /dev/stderr or /dev/fd/N names, continuing at
-/// its position. Null for every other path, and with errno set if the process has no such stream. Opening it
-/// by name would open a file that the shell has redirected to a second time: it would be emptied, replaced,
-/// or overwritten by what is printed.
+/// its position. Null for every other path, and with errno set if the process has no such stream. Opening the
+/// name would open a file to which the shell has redirected it a second time: the file would be emptied,
+/// replaced, or overwritten by printed output.
 std::FILE* own_stream(const std::string& path);
 
-/// The file that a path refers to, whether it exists or not: all links are followed, and the folder has no
-/// links. Returns the path itself if there is no such folder.
+/// The file to which a path refers, whether it exists or not: follows all links, and the resulting folder
+/// contains no links. Returns the path itself if the folder does not exist.
 std::string file_of(const std::string& path);
 
 /// All errors are std::runtime_error and name the file and the reason.
 ///
-/// A path that is not a regular file (/dev/null, a named pipe) is written to directly: renaming would replace
-/// the device itself. So is the process's own stream (own_stream), wherever the shell has redirected it.
+/// A path that is not a regular file (/dev/null, a named pipe) is written directly: renaming would replace
+/// the device itself. The same applies to the process's own streams (own_stream), wherever the shell has
+/// redirected them.
 class OutputFile {
   public:
     explicit OutputFile(std::string path);
@@ -30,14 +31,14 @@ class OutputFile {
 
     void write(std::string_view text);
 
-    /// The name that is written to until commit(), for another program that writes the file instead.
+    /// The name that is written until commit(), for another program that writes the file instead.
     const std::string& written() const { return temporary_.empty() ? target_ : temporary_; }
 
-    /// Whether there is no temporary file.
+    /// Whether the target is written without a temporary file.
     bool is_direct() const { return temporary_.empty(); }
 
     /// Closes and renames; before this call no file has the requested name.
-    /// @param durable  the file survives a power cut from here on, which takes milliseconds and more
+    /// @param durable  the file survives a power cut from here on, at a cost of milliseconds or more
     void commit(bool durable = false);
 
   private:
@@ -46,9 +47,9 @@ class OutputFile {
 
     std::string path_;       ///< as requested, for messages
     std::string target_;     ///< after following symbolic links
-    std::string temporary_;  ///< empty if the target is written to directly
+    std::string temporary_;  ///< empty if the target is written directly
     std::FILE* file_ = nullptr;
-    /// of the temporary file, until it is renamed: a temporary file that nobody has locked may be removed
+    /// of the temporary file, until it is renamed: unlocked temporary files may be removed
     int lock_ = -1;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kLongest = 60;  // [bytes] longer texts are cut
 
-/// Number of bytes of the UTF-8 character at the start of `text`, and its code point in `code`; 0 if invalid.
+/// Length in bytes of the UTF-8 character at the start of `text`, and its code point in `code`; 0 if invalid.
 std::size_t character(std::string_view text, std::uint32_t& code) {
     const auto byte = [&](std::size_t i) {
         return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));

@@ -11,7 +11,7 @@ namespace carom {
 
 class TemporaryFolder {
   public:
-    /// @throws std::runtime_error that names the folder
+    /// @throws std::runtime_error naming the folder
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "carom_XXXXXX").string();
         if (::mkdtemp(name.data()) == nullptr)

@@ -14,7 +14,7 @@ std::string describe(const Interval& i) {
                        i.high_open ? "less than" : "at most", i.high, *i.unit ? " " : "", i.unit);
 }
 
-/// `written` is the number with all its digits.
+/// @param written  the number with all its digits
 template <class Number>
 std::string objection(double x, Number written, const Interval& allowed) {
     if (x - x != 0.0) return "must be a finite number";
@@ -63,7 +63,7 @@ double number_in(const toml::node& node, const Interval& allowed) {
     const std::int64_t whole = written->get();
     const double x = static_cast<double>(whole);
     refuse(objection(x, whole, allowed));
-    // Do not convert back to an integer: 2^63 is not one.
+    // Do not convert back: 2^63 is not a valid integer.
     if (!node.value<double>())
         refuse(fmt::format("= {} has more digits than a number holds; write {:.1f} for the nearest one",
                            whole, x));

@@ -1,5 +1,5 @@
-// The only way to read a number from a TOML file or flag: `value<double>()` of toml++ is empty for an integer
-// that no double can hold, and an empty value must not be read.
+// The only way to read numbers from a TOML file or flag: `value<double>()` of toml++ is empty for an integer
+// that no double can represent, and an empty value must not be read.
 #pragma once
 
 #include <toml++/toml.h>
@@ -13,14 +13,13 @@ namespace carom::detail {
 /// The type of a value, for messages: "an integer", "a table".
 const char* type_name(const toml::node& node);
 
-/// The fault of a number, to follow the name of the value in a message; "" if nothing is.
+/// The fault of a number, to follow the value's name in a message; "" if there is none.
 std::string objection(double x, const Interval& allowed);
 std::string objection(std::int64_t x, std::int64_t low, std::int64_t high);
 
-/// The range of any finite number.
 inline constexpr Interval kAnyNumber = {-0x1.fffffffffffffp1023, false, 0x1.fffffffffffffp1023, false, ""};
 
-/// @throws std::invalid_argument that says what is wrong, to follow the name of the value
+/// @throws std::invalid_argument with the fault, to follow the value's name
 double number_in(const toml::node& node, const Interval& allowed = kAnyNumber);
 std::int64_t integer_in(const toml::node& node, std::int64_t low = INT64_MIN, std::int64_t high = INT64_MAX);
 

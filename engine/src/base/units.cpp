@@ -11,7 +11,7 @@
 namespace carom::detail {
 namespace {
 
-/// A unit of the quantity that keys have in `of`: `factor` or, exactly, ten to the power of `ten`.
+/// A unit of the quantity measured in `of`: `factor` or, exactly, ten to the power of `ten`.
 struct Unit {
     std::string_view name, of;
     int ten;
@@ -38,7 +38,7 @@ constexpr Unit kUnits[] = {
     {"deg", "degrees", 0, 0.0},
     {"rad", "degrees", 0, 57.29577951308232},
 };
-// [bytes] A number with more digits is a mistake.
+// [bytes] A longer number is a mistake.
 constexpr std::size_t kLongest = 64;
 
 [[noreturn]] void refuse(std::string_view text, std::string_view wanted) {

@@ -1,4 +1,4 @@
-// A batch: threads that take blocks of shots, each with its own simulator.
+// A batch: threads process blocks of shots, each with its own simulator.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -21,9 +21,9 @@ namespace carom {
 
 namespace {
 
-// [-] Most shots that a thread takes at once. Each needs at least a few microseconds, so that taking them
-// costs nothing. Towards the end blocks become smaller, to this share of the shots that are left for each
-// thread, so that all threads end at about the same time.
+// [-] Largest block of shots. Each shot needs at least a few microseconds, so fetching blocks costs nothing.
+// Towards the end blocks shrink to 1 / kShareLeft of the remaining shots per thread, so that all threads end
+// at about the same time.
 constexpr std::size_t kBlock = 16, kShareLeft = 4;
 
 std::vector<SceneNumber> numbers_of(const Scene& scene, std::size_t shots,
@@ -47,7 +47,7 @@ void fill(T* array, std::size_t count, T value, std::size_t stride = 1) {
     for (std::size_t i = 0; array != nullptr && i < count; ++i) array[i * stride] = value;
 }
 
-/// The values of a shot without a result, and of a ball that is left out.
+/// The values of a shot without a result, or of a removed ball.
 void clear(const BatchArrays& out, std::size_t shot, std::size_t balls, double place) {
     const std::size_t at = shot * balls;
     const auto from = [](auto* array, std::size_t first) { return array ? array + first : nullptr; };
@@ -88,13 +88,13 @@ void keep(const BatchArrays& out, std::size_t shot, const Outcome& outcome, std:
     }
 }
 
-/// A thread of a batch: its simulators, and the balls of its last shot if some are left out.
+/// A thread of a batch: its simulators, and the balls of its last shot if some were removed.
 struct Player {
     Player(const Scene& scene, kernel::Isa isa, bool keeps_records)
         : whole(scene, isa), records(keeps_records) {
         if (records) whole.keep_records();
     }
-    /// The simulator for shots without some of the balls.
+    /// The simulator for shots with removed balls.
     Simulator& partial(const Scene& scene, kernel::Isa isa) {
         if (!part) {
             part.emplace(scene, isa);
@@ -105,13 +105,12 @@ struct Player {
 
     Simulator whole;
     bool records;
-    std::optional<Simulator> part;  // for shots without some of the balls
+    std::optional<Simulator> part;  // for shots with removed balls
     Simulator* last = &whole;
     std::vector<int> present;
 };
 using PlayShot = std::function<ShotStatus(Player&, std::size_t shot, const SimulateOptions&)>;
 
-/// Shots that differ in the numbers of columns.
 struct ColumnShots {
     const Scene& scene;
     std::span<const BatchColumn> columns;
@@ -151,7 +150,6 @@ struct ColumnShots {
     }
 };
 
-/// State shared by the threads.
 struct Work {
     Work(const Scene& base, std::size_t count, PlayShot how_to_play, kernel::Isa set, const BatchOptions& how,
          const BatchArrays& arrays)

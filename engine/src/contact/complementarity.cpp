@@ -18,8 +18,8 @@ void Complementarity::multiply_add(double factor, const std::vector<double>& x,
     }
 }
 
-// LU factorisation with partial pivoting of the basic rows and columns. Contacts ordered by position fill a
-// band; all outside it stays zero.
+// LU factorisation with partial pivoting of the basic rows and columns. Contacts ordered by position form a
+// band; everything outside it stays zero.
 bool Complementarity::factor() {
     index_.clear();
     place_.assign(size, size);
@@ -107,9 +107,9 @@ double Complementarity::worst_residual(const std::vector<double>& w) {
     return worst;
 }
 
-// The refinements remove the effect of the compliance down to rounding, as long as each at least halves the
-// residual; if contacts contradict each other, it does not. In a wedge whose smallest eigenvalue is 1e-11,
-// two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
+// Refinements remove the effect of the compliance down to rounding, as long as each at least halves the
+// residual, which it does unless contacts contradict each other. In a wedge whose smallest eigenvalue is
+// 1e-11, two refinements left 1e-9 m/s^2: 1e-12 m after some tenths of a second.
 void Complementarity::polish(std::vector<double>& w) {
     refine(w);
     refine(w);
@@ -136,7 +136,7 @@ void Complementarity::refine(std::vector<double>& w) {
     residual(w);
 }
 
-// Rows that no solution can have: a pull, or a negative w.
+// Rows that violate a solution: a pull, or a negative w.
 void Complementarity::find_wrong(const std::vector<double>& w) {
     double largest = 0.0;
     for (const double x : z) largest = std::max(largest, std::abs(x));
@@ -155,10 +155,9 @@ bool Complementarity::solve() {
     return false;
 }
 
-// Pivoting can cycle if only the regularisation separates two contacts. A stronger one prevents that, and if
-// each solution is the centre of the next one, its effect decays (the proximal point method of Martinet and
-// Rockafellar). It decays faster the weaker the regularisation is, so each round uses a tenth of it, as long
-// as the pivoting ends.
+// Pivoting can cycle if only the regularisation separates two contacts. A stronger one prevents that. Its
+// effect decays if each solution is the centre of the next one (the proximal point method of Martinet and
+// Rockafellar), and faster the weaker it is, so each round uses a tenth of it while the pivoting ends.
 bool Complementarity::approach() {
     const std::vector<double> wanted = q;
     std::vector<double> own(size, 0.0), before;
@@ -179,7 +178,7 @@ bool Complementarity::approach() {
             q[c] = wanted[c] - soft * before[c];
         }
         if (!exchange(found ? resting::kFewExchanges : 200 + 20 * size)) {
-            z = before;  // as near as rounding allows
+            z = before;  // as close as rounding allows
             if (least || !found) break;
             least = true;
             softness *= 10.0;

@@ -1,5 +1,5 @@
-// Linear complementarity problems of a few dozen unknowns: the steps
-// of Newton's method for the impulses in a group of resting contacts.
+// Linear complementarity problems of a few dozen unknowns: one Newton step for the impulses in a group of
+// resting contacts.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace carom {
 
 /// z >= 0, w = A z + q >= 0, z . w = 0.
 struct Complementarity {
-    /// n unknowns and no columns, in the memory that it has.
+    /// Sets n unknowns and no columns, in existing memory.
     void resize(std::size_t n) {
         q.assign(n, 0.0);
         z.assign(n, 0.0);
@@ -22,7 +22,7 @@ struct Complementarity {
         first.clear();
     }
     /// Adds the next column of A: begin_column(), then its entries, each row once, including the diagonal.
-    /// Entries that are left out are zero, as between contacts without a common ball.
+    /// Omitted entries are zero (contacts without a common ball).
     void begin_column() { first.push_back(entries.size()); }
     void add(std::size_t row, double value) { entries.push_back({row, value}); }
     /// result += A x, column by column.
@@ -31,10 +31,10 @@ struct Complementarity {
     /// Block principal pivoting: exchanges all infeasible rows while their number decreases, otherwise one
     /// row (Murty's rule), which terminates for every P-matrix (Judice and Pires, "A block principal pivoting
     /// algorithm for large-scale strictly monotone linear complementarity problems", 1994). The diagonal is
-    /// increased by kContactSoftness of itself, so that redundant contacts (a ball in three of them) share
-    /// their load evenly and the solution is unique; iterative refinement removes this effect again, down to
+    /// increased by kContactSoftness of itself, so that the solution is unique and redundant contacts (a ball
+    /// in three of them) share their load evenly; iterative refinement then removes this effect down to
     /// rounding. Starts with the rows in which z is positive or A z + q negative.
-    /// @return false if no solution was found (there may be none); z is then 0
+    /// @return false if no solution was found (none may exist); z is then 0
     bool solve();
 
     struct Entry {
@@ -44,7 +44,7 @@ struct Complementarity {
     std::vector<Entry> entries;      ///< of A, by columns
     std::vector<std::size_t> first;  ///< of each column
     std::vector<double> q;
-    std::vector<double> z;  ///< guess and result
+    std::vector<double> z;  ///< initial guess, then result
     std::size_t size = 0;
 
   private:

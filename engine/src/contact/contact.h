@@ -1,4 +1,4 @@
-// A contact: a ball, and the ball or part of the table that it touches or will touch.
+// A contact: a ball and the ball or part of the table that it touches or will touch.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace carom {
 
-/// The partners that a ball touches, in the order of simultaneous events. A nose (a jaw or a cushion's end)
-/// counts as a cushion. kOut: the border of the table, over which a ball flies.
+/// Kinds of partners, in the order of simultaneous events. A nose (a jaw or a cushion's end) counts as a
+/// cushion. kOut: the border of the table that a ball flies over.
 enum class With : std::uint8_t { kPocket, kNothing, kBall, kCushion, kNose, kOut };
 
 struct Contact {
@@ -19,7 +19,6 @@ struct Contact {
 
     /// The contact of another ball with the same part of the table.
     Contact of(int another) const { return {another, with, other}; }
-    /// The other ball, or -1.
     int partner() const { return with == With::kBall ? other : -1; }
     /// Whether both are the same contact; the order of two balls does not matter.
     bool same(const Contact& c) const {
@@ -28,7 +27,7 @@ struct Contact {
     }
 };
 
-/// Whether the part of the table is a jaw, rather than a cushion or the end of one.
+/// Whether the part of the table is a jaw, not a cushion or its end.
 inline bool is_jaw(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
 }

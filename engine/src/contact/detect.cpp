@@ -14,10 +14,9 @@ namespace {
 
 constexpr double kNoise = kClosingUlp * kEpsilon;  // [of the speeds]
 
-// The functions below find when a distance falls to `reach`, with kSide = 1, or, inside a round wall, when it
-// rises to that, with kSide = -1.
+// The functions below find when a distance decreases to `reach` (kSide = 1), or increases to it inside a
+// round wall (kSide = -1).
 
-// Relative motion of two centres.
 struct Relative {
     Vec2 r, v, a;
     double noise;  // [m/s] closing speeds up to this are rounding
@@ -38,7 +37,7 @@ double closing_speed(const Relative& m, double t) {
     return d > 0.0 ? kSide * (-dot(r, rate(m, t)) / d) : length(rate(m, t));
 }
 
-// At most one small step back, from a time at which balls overlap to one without penetration.
+// At most one small step back, from a time with overlap to one without.
 template <int kSide>
 double outside(const Relative& m, double reach, double t, double gap, double closing) {
     if (!(gap < 0.0)) return t;
@@ -49,8 +48,8 @@ double outside(const Relative& m, double reach, double t, double gap, double clo
     return earlier_gap >= 0.0 && earlier_gap <= -2.0 * gap ? earlier : t;
 }
 
-// Refines a root of the polynomial with the distance itself, by Newton steps on |r(t)| - reach. A step is
-// accepted only while the gap decreases (at a graze they would diverge).
+// Refines a root of the polynomial by Newton steps on the distance itself, |r(t)| - reach. Steps end when the
+// gap no longer decreases (at a graze they would diverge).
 template <int kSide>
 double refine(const Relative& m, double reach, double t, double horizon) {
     double gap = kSide * (length(at(m, t)) - reach);
@@ -66,16 +65,16 @@ double refine(const Relative& m, double reach, double t, double horizon) {
     return gap < 0.0 ? outside<kSide>(m, reach, t, gap, closing_speed<kSide>(m, t)) : t;
 }
 
-// A contact that is pressed together counts as an impact once its closing speed is above the rounding and
-// above this share [-] of the speed that the closing acceleration reaches within the horizon (at most 1 s).
+// A contact that is pressed together becomes an impact once its closing speed exceeds the rounding and this
+// fraction [-] of the speed that the closing acceleration reaches within the horizon (at most 1 s).
 constexpr double kPressShare = 1e-12;
 
 double press_delay(double closing_acceleration, double noise, double horizon) {
     return 2.0 * noise / closing_acceleration + kPressShare * std::min(horizon, 1.0);
 }
 
-// [-] Steps towards contact before the quartic is solved; and the share of the reach that the last step may
-// leave as a gap.
+// [-] Steps towards contact before the quartic is solved; and the largest gap left by the last step, over the
+// reach.
 constexpr int kApproaches = 16;
 constexpr double kArrived = 1e-16;
 
@@ -88,11 +87,11 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     if (kSide > 0 && !(along > 0.0)) return kNever;
     const double miss = std::abs(cross(m.r, e));
     if (kSide > 0 && !(miss < reach)) return kNever;
-    // From inside every path meets the wall, also one along it that misses the circle by rounding.
+    // From inside every path meets the wall, even one along it that misses the circle by rounding.
     const double half_chord = std::sqrt(std::max(0.0, (reach - miss) * (reach + miss)));
-    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product, which avoids cancellation near contact.
+    // c / (b + sqrt(b^2 - c)) with c = |r|^2 - reach^2 as a product avoids cancellation near contact.
     const double d = length(m.r);
-    // The other end of the chord, from inside; at once, if the ball is outside by rounding and leaves.
+    // From inside, the other end of the chord; at once, if the ball is outside by rounding and leaves.
     double s = kSide < 0 && (along > 0.0 || half_chord == 0.0)
                    ? along + half_chord
                    : (d - reach) * (d + reach) / (along + kSide * half_chord);
@@ -104,13 +103,12 @@ double along_line(const Relative& m, double reach, double speed, double alpha, d
     return t <= horizon ? refine<kSide>(m, reach, t, horizon) : kNever;
 }
 
-// Advances from t, before which the gap cannot close, to contact. Returns true once it is reached or cannot
-// be within the horizon (t is then kNever). The distance curves by -|a| at least, so no contact is possible
-// before a parabola of that curvature, with the present closing speed, would close the gap; near the root
+// Advances from t, before which the gap cannot close, to contact. Returns true if contact is reached or is
+// impossible within the horizon (t is then kNever). The distance curves by at least -|a|, so no contact is
+// possible before a parabola of that curvature, with the present closing speed, closes the gap; near the root
 // this is Newton's step. Returns false if progress is slow, near a graze: from there the quartic is accurate.
-// From farther away it is not, because the coefficients of |r|^2 - reach^2 are as large as the squares of the
-// distances travelled, and at a graze their rounding (1e-11 m over 100 m) would decide instead of the
-// distance.
+// From farther away it is not: the coefficients of |r|^2 - reach^2 are as large as the squares of the
+// distances travelled, and at a graze their rounding (1e-11 m over 100 m) would decide.
 bool approach(const Relative& m, double reach, double pull, double horizon, double& t) {
     for (int i = 0;; ++i) {
         const Vec2 r = at(m, t), v = rate(m, t);
@@ -127,7 +125,7 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
             t = kNever;
             return true;
         }
-        // The curvature of the distance, at most |v|^2 / d + |a|, leaves no more than this of the gap.
+        // The curvature of the distance, at most |v|^2 / d + |a|, leaves at most this gap.
         if ((dot(v, v) + pull * d) * (step * step) <= kArrived * reach * d) {
             t = outside<1>(m, reach, t, length(at(m, t)) - reach, closing);
             return closing > m.noise;
@@ -135,7 +133,7 @@ bool approach(const Relative& m, double reach, double pull, double horizon, doub
     }
 }
 
-// First time within the horizon at which |r| comes to reach, closing or only touching; c0 = |r|^2 - reach^2
+// First time within the horizon at which |r| reaches `reach`, closing or only touching; c0 = |r|^2 - reach^2
 // now, or its negative inside.
 template <int kSide>
 double first_touch(const Relative& m, double reach, double c0, double horizon, bool straight) {
@@ -152,7 +150,7 @@ double first_touch(const Relative& m, double reach, double c0, double horizon, b
                 return along_line<kSide>(m, reach, speed, alpha, horizon);
         }
     } else if (pull == 0.0) {
-        // Touching, not closing, no acceleration: never again, or on the other side of a round wall.
+        // Touching, not closing, no acceleration: never, or on the other side of a round wall.
         return kSide > 0 ? kNever : along_line<kSide>(m, reach, speed, 0.0, horizon);
     }
     double near = 0.0;
@@ -218,16 +216,15 @@ double time_to_circle(const Path& ball, const Vec2& center, double reach) {
 
 namespace {
 
-// The motion from t on.
 Relative after(const Relative& m, double t) {
     return {at(m, t), rate(m, t), m.a, m.noise};
 }
 
-// First contact with a round wall on its own side, while the ball is in front of the wall in every direction.
+// First contact with a round wall on its own side. The caller excludes directions beyond the ends of an arc.
 double time_to_wall(Relative m, double radius, double reach, double horizon, bool straight) {
     const double d = length(m.r);
     double behind = 0.0;
-    // A ball behind the wall passes through it, and can touch it from then on.
+    // A ball behind the wall passes through it, and can touch it only afterwards.
     if (radius < 0.0 && d > -radius)
         behind = time_to_reach<1>(m, -reach, horizon, straight);
     else if (radius > 0.0 && d < radius)
@@ -250,7 +247,7 @@ int add_roots(double x, double v, double a, double horizon, double* times) {
     return found;
 }
 
-// First time at which a foot point outside [0, end] enters this interval.
+// First time at which a foot point outside [0, end] enters it.
 double time_to_enter(double foot, double rate, double pull, double end, double horizon) {
     if (foot < 0.0) return first_descent_quadratic(-foot, -rate, -pull, horizon);
     if (foot > end) return first_descent_quadratic(foot - end, rate, pull, horizon);
@@ -280,13 +277,13 @@ double time_to_line(const Path& ball, const CushionLine& line, double R) {
             t = std::max(0.0, -h1 / h2) + press_delay(-h2, noise, ball.horizon);
         else {
             t = first_descent_quadratic(h0, h1, h2, ball.horizon);
-            // It touches more slowly than rounding can resolve, and the acceleration presses it into the
-            // nose.
+            // Touches more slowly than rounding can resolve, and is pressed into the nose by its
+            // acceleration.
             if (t < kNever && h2 < 0.0 && !(h1 + t * h2 < -noise))
                 t += press_delay(-h2, noise, ball.horizon - t);
         }
         if (t < best && t <= ball.horizon && h1 + t * h2 < -noise && foot_inside(t)) best = t;
-        // A ball that touches the nose at its end can move around it onto the cushion: it closes once the
+        // A ball that touches the nose at its end can roll around it onto the cushion: it closes once the
         // foot enters.
         const double enter = time_to_enter(r.x(), v.x(), a.x(), line.length, ball.horizon);
         if (enter == kNever) continue;
@@ -314,8 +311,8 @@ double time_to_nose(const Path& ball, const Nose& nose, double R) {
     if (!nose.is_arc()) return time_to_circle(ball, nose.center, reach);
     if (!ball.moves) return kNever;
     const Relative m{ball.r - nose.center, ball.v, ball.a, kNoise * (length(ball.v) + ball.surface)};
-    // The times at which the ball may come in front of the wall, or leave it.
-    // At most five. gcc 12 warns of std::sort in an array of fewer than its 16.
+    // The times at which the ball may come in front of the wall, or leave it: at most five. The size 16 is
+    // for gcc 12, which warns if std::sort has fewer elements.
     double cuts[16] = {0.0};
     int count = 1;
     if (!nose.span.whole)

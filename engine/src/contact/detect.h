@@ -26,15 +26,15 @@ struct Path {
     double surface = 0.0;  ///< R |w| [m/s]; its rounding also limits the accuracy of the centre's speed
 };
 
-/// Time until the distance between two centres decreases to `reach` (R1 + R2) while closing; kNever if not
-/// within both horizons.
+/// Time until the distance between two closing centres decreases to `reach` (R1 + R2); kNever if not within
+/// both horizons.
 double time_to_ball(const Path& ball1, const Path& ball2, double reach);
 
 /// Time until the distance of the centre from a fixed point decreases to `reach` while closing.
 double time_to_circle(const Path& ball, const Vec2& center, double reach);
 
-/// Time until a ball of radius R touches a round nose. An arc acts on its own side only; a ball that comes
-/// from behind passes through it.
+/// Time until a ball of radius R touches a round nose. An arc acts on its own side only; from behind, a ball
+/// passes through it.
 double time_to_nose(const Path& ball, const Nose& nose, double R);
 
 /// Time until a ball of radius R touches a straight nose, from either side, with the foot point between the
@@ -42,7 +42,7 @@ double time_to_nose(const Path& ball, const Nose& nose, double R);
 double time_to_line(const Path& ball, const CushionLine& line, double R);
 
 /// Time until a ball that moves along a cushion or around an arc passes an end of it; 0 if it passes it now,
-/// kNever if the part of this contact has no ends.
+/// kNever if the part has no ends.
 double time_past_end(const Geometry& geometry, const Contact& contact, const Path& ball);
 
 /// Time until the centre enters the circle of a pocket; 0 if it is inside.
@@ -63,9 +63,9 @@ inline double least(double c, double b, double a, double T) {
 }
 
 /// Quick rejection: whether a relative motion stays out of reach on [0, window] by a margin far above
-/// rounding, so that the functions above would find nothing. It needs no root and no division by a length;
-/// false means that they must be called. Two projections give lower bounds of the distance: on the present
-/// direction to the other centre, and on the normal of the relative velocity.
+/// rounding, so that the functions above would find nothing; false: call them. It needs no root and no
+/// division by a length. Two projections give lower bounds of the distance: on the present direction to the
+/// other centre, and on the normal of the relative velocity.
 inline bool stays_apart_plain(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare);
@@ -78,8 +78,8 @@ inline bool stays_apart_plain(const Vec2& r, const Vec2& v, const Vec2& a, doubl
 }
 
 #if defined(__SSE2__)
-/// The same with both projections at once and without branches on them: which case of least() applies cannot
-/// be predicted.
+/// The same with both projections at once and without branches, because the case of least() that applies is
+/// unpredictable.
 inline bool stays_apart(const Vec2& r, const Vec2& v, const Vec2& a, double reach, double window) {
     if (!(window >= 0.0)) return true;
     const double far = reach * (1.0 + kApartShare), d2 = dot(r, r), side = cross(r, v),

@@ -10,9 +10,9 @@ namespace carom {
 
 namespace {
 
-// [-] Steps of the search: 3 in the median, 12 at most in 4000 random cases.
+// [-] Steps of the search: the median was 3, the maximum 12 in 4000 random cases.
 constexpr int kMostMarchSteps = 200;
-// [-] Grazes that are skipped before the search ends.
+// [-] Grazes skipped before the search ends.
 constexpr int kMostGrazes = 4;
 
 /// A distance and its first two time derivatives.
@@ -37,7 +37,7 @@ Distance of_length(const Vector& x, const Vector& v, const Vector& a) {
 }
 
 /// @param at  time -> Distance
-/// @param curving  [m/s^2] known upper bound of -bend
+/// @param curving  [m/s^2] upper bound of -bend
 /// @param rounding  [m] of the distance
 /// @param from  [s] start of the search
 template <class At>
@@ -51,8 +51,8 @@ double first_contact(const At& at, double reach, double curving, double rounding
         if (gap <= rounding) {
             if (now.rate < -noise) return t;
             if (now.rate <= noise) {
-                // It only touches. If it is pressed on, the contact begins once its speed can be
-                // distinguished from 0.
+                // Only touches. If it is pressed on, the contact begins once its speed can be distinguished
+                // from 0.
                 if (now.bend < 0.0) {
                     const double pressed = t + 2.0 * noise / -now.bend;
                     return pressed <= horizon ? pressed : kNever;
@@ -71,7 +71,7 @@ double first_contact(const At& at, double reach, double curving, double rounding
             if (!(curving > 0.0)) return kNever;
             next = (now.rate + root) / curving;
         }
-        // No later time is closer to the contact.
+        // The time resolution is reached.
         if (!(t + next > t)) return now.rate < -noise ? t : kNever;
         t += next;
     }
@@ -100,7 +100,7 @@ Window over(double foot, double rate, double line_length, double horizon) {
     return {std::max(0.0, std::min(one, two)), std::min(horizon, std::max(one, two))};
 }
 
-/// Time until a centre on a straight path is over a disc at the origin; negative if it is over it already.
+/// Time until a centre on a straight path is over a disc at the origin; negative if it already is.
 double time_over_disc(const Vec2& r, const Vec2& v, double radius) {
     const double out = (length(r) - radius) * (length(r) + radius), along = dot(r, v);
     if (radius == 0.0) return kNever;

@@ -9,8 +9,8 @@
 
 namespace carom {
 
-/// An order of positions that reflections in the axes and quarter turns
-/// preserve, except for the order of mirror images among themselves.
+/// An order that reflections in the axes and quarter turns preserve, except for the order of mirror images
+/// among themselves.
 inline bool before_place(const Vec2& p, const Vec2& q) {
     const auto key = [](const Vec2& a) {
         const double x = std::abs(a.x()), y = std::abs(a.y());

@@ -24,8 +24,8 @@ double time_to_edge(const Vec2& r, const Vec2& v, const Vec2& center, double rad
     const Vec2 out = r - center;
     const double speed2 = dot(v, v), along = dot(out, v);
     if (!(speed2 > 0.0)) return kNever;
-    // The later root of |out + v t| = radius. It is real inside the circle; on it, rounding may make it
-    // complex.
+    // The later root of |out + v t| = radius. It is real inside the circle; on the circle, rounding may make
+    // it complex.
     const double inside = (radius - length(out)) * (radius + length(out));
     const double root = std::sqrt(std::max(0.0, along * along + speed2 * inside));
     return std::max(0.0, along > 0.0 ? inside / (along + root) : (root - along) / speed2);

@@ -23,7 +23,7 @@ void read(Group& g, std::size_t k) {
     b.R = ball.motion->R;
     b.ease = 1.0 / ball.mass;
     ball.v = s.v;
-    ball.w = s.w;  // the spin of a rolling ball is exactly that of rolling
+    ball.w = s.w;  // exactly the spin of rolling
     b.v = planar(s.v);
     b.s = b.R * Vec2(s.w.y(), -s.w.x());
     b.u = s.state == MotionState::kSliding ? Vec2(b.v - b.s) : Vec2(Vec2::Zero());
@@ -66,7 +66,7 @@ Link link_of(const Group& g, const RestingContact& c) {
     return link;
 }
 
-// Accepts the velocities after impulses at an instant as the present ones.
+// Makes the velocities after impulses at an instant the present ones.
 void accept(Group& g) {
     const double gone = std::max(g.noise, 3.5 * g.motion.slide * kStopNoise);
     for (Body& b : g.bodies)
@@ -83,7 +83,7 @@ void accept(Group& g) {
     }
 }
 
-// If a contact opens so slowly that friction alone could close it again within the duration of a contact, it
+// A contact that opens so slowly that friction alone could close it again within the duration of a contact
 // continues until its gap is noticeable.
 void mark_open(Group& g) {
     for (Link& link : g.links) {
@@ -105,8 +105,8 @@ double closing_speed(const Group& g, const Rate& rate) {
     return fastest;
 }
 
-// In flat wedges rounding leaves no solution; a state that comes nearer is accepted. A contact with a gap may
-// close slowly: the interval ends that.
+// In flat wedges rounding can prevent a solution; a state with much lower closing speeds is then accepted. A
+// contact with a gap may close slowly: the interval ends that.
 void remove_closing_speeds(Group& g) {
     double fastest = 0.0;
     for (const Body& b : g.bodies) fastest = std::max(fastest, length(b.v));
@@ -121,8 +121,8 @@ void remove_closing_speeds(Group& g) {
     mark_open(g);
 }
 
-// A contact ends once its gap opens by more than rounding, but never at the instant at which it began, so
-// that no contact can begin and end forever. A contact without force that does not open (balls at rest, equal
+// A contact ends once its gap opens by more than rounding, but never at the instant at which it began;
+// otherwise it could begin and end forever. A contact without force that does not open (resting balls, equal
 // rolling) stays.
 void mark_released(Group& g) {
     for (std::size_t c = 0; c < g.links.size(); ++c) g.group.contacts[c].released = g.links[c].open;
@@ -138,9 +138,9 @@ void solve(Group& g) {
 
 }  // namespace
 
-// Energy that does not exist comes from slips that count as zero, from gaps that open under an impulse within
-// their room, and in a flat wedge from the rounding of impulses a million times larger than the speeds.
-// Scales all motions alike, so that rates and slips of zero stay zero.
+// Spurious energy arises from slips that count as zero, from gaps that open within their allowed range under
+// an impulse, and in a flat wedge from the rounding of impulses a million times larger than the speeds. All
+// motions are scaled equally, so that rates and slips of zero stay zero.
 bool keep_energy(Group& g, double h) {
     double before = 0.0, after = 0.0;
     for (const Body& b : g.bodies) {

@@ -1,9 +1,9 @@
-// Resting contacts: balls that stay in contact and push each other, or a cushion. Accelerations are constant
+// Resting contacts: balls that stay in contact and push each other or a cushion. Accelerations are constant
 // over an interval, so that motions remain polynomials. Source: docs/reference/physics.md, tests/README.md
 // H5, H7.
 //
 // Forces per contact (normal force N >= 0, n from the ball to the other one or into the cushion): -N n on the
-// ball, +N n on the other, and the vertical part of the friction between two balls, which loads the cloth and
+// ball, +N n on the other, and between two balls the vertical part of the friction, which loads the cloth and
 // slows the spins. Friction parallel to the cloth and friction of cushions are neglected.
 #pragma once
 
@@ -20,13 +20,13 @@ namespace carom {
 /// contact instead of a bounce: the rebound would be shorter than the Hertz contact time.
 bool holds(double v_n, double a_c, double restitution);
 
-/// Speed that counts as zero in a group [m/s]: the rounding of the velocities in a few sums of eight terms,
+/// [m/s] Speed that counts as zero in a group: the rounding of the velocities in a few sums of eight terms,
 /// or a speed that rolling friction stops at once.
 double resting_noise(const Vec3& v, const Vec3& w, const MotionParams& motion);
 
 struct RestingContact {
     Contact contact;  ///< with a ball, a cushion or a nose
-    /// unit, from the ball to the other or into the table's part; fixed over one interval
+    /// unit, from the ball to the other or into the part; fixed over one interval
     Vec2 n = Vec2::Zero();
     double began = 0.0;     ///< [s] when the resting contact began
     bool released = false;  ///< result: the gap opens
@@ -44,7 +44,7 @@ struct RestingBall {
 struct RestingGroup {
     std::vector<RestingBall> balls;
     std::vector<RestingContact> contacts;
-    double last = kNever;  ///< [s] shortest interval that its balls have been in until now
+    double last = kNever;  ///< [s] shortest interval of its balls until now
 };
 
 /// The table that a group touches, and the parameters of its balls.
@@ -55,8 +55,8 @@ struct RestingSurroundings {
 };
 
 /// Solves the group from `now` [s] on and writes the segments of all members (resting_group.h). They end
-/// together: at the first state transition, at the end of a cushion, or when constant accelerations err by
-/// too much. Contacts that open are marked released; a contact without force that does not open stays.
+/// together: at the first state transition, at the end of a cushion, or when constant accelerations become
+/// too inaccurate. Contacts that open are marked released; a contact without force that does not open stays.
 void solve_resting(RestingGroup& group, const RestingSurroundings& around, double now);
 
 /// Sets the state of a member after its state transition (its slip, velocity or spin has become zero).

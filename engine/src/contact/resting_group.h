@@ -1,23 +1,22 @@
 // One solution of one group of resting contacts (resting.h): the effect of impulses (resting_response.cpp);
-// the impulses that close no contact at the end of an interval (resting_newton.cpp); the step over an
-// interval, and the criteria for a solution (resting_step.cpp); and the length of the interval
-// (resting_interval.cpp). resting.cpp defines the order.
+// the impulses that leave no contact closing at the end of an interval (resting_newton.cpp); the step over an
+// interval, and the criteria for a solution (resting_step.cpp); the length of the interval
+// (resting_interval.cpp); and their order (resting.cpp).
 //
 // Everything is evaluated at the end of the interval h (an implicit step, after J. J. Moreau's time-stepping
 // for unilateral contacts with friction). For each ball, per mass, let v be its velocity, s = R (w_y, -w_x)
 // the velocity with which it would roll, and u = v - s its slip:
 //   v' = v + P + f - d,  s' = s + 5/2 (C - f) - d,  u' = u + P - 5/2 C + 7/2 f
 // P = sum of +-J n are the pushes, C = -sum of Z n the couples of the vertical friction Z between two balls,
-// f is the friction of the cloth, and d the resistance of a rolling ball. The friction opposes the slip at
-// the end: f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the velocity
-// at the end. So a ball stops, rolls, or slides by the effect of the whole interval, and no interval is too
-// short for a direction that reverses. The impulses of the contacts fulfil J >= 0, gap rate at the end >= 0,
+// f is the friction of the cloth, and d the rolling resistance. The friction opposes the slip at the end:
+// f = -mu_s g h u'/|u'|, or less if that suffices to end the slip; d likewise opposes the velocity at the
+// end. So a ball stops, rolls, or slides by the effect of the whole interval, and the step remains valid if a
+// direction reverses, for any h. The impulses of the contacts satisfy J >= 0, gap rate at the end >= 0,
 // J x rate = 0.
 //
-// Z opposes the slip between the balls at the end, and loads the cloth. It lags by one step of Newton's
-// method: for given Z the rates are the gradient of a convex function of J, so that J exists and is found.
-// Balls that lock each other would let Z grow for ever; after some steps it may only decrease, and so never
-// drives them.
+// Z opposes the slip between the balls at the end, and loads the cloth. It lags by one Newton step: for given
+// Z the rates are the gradient of a convex function of J, so that J exists and is found. Balls that lock each
+// other would let Z grow without limit; after some steps it may only decrease, and so never drives them.
 #pragma once
 
 #include <optional>
@@ -32,7 +31,6 @@ namespace carom::resting {
 
 enum class Mode : unsigned char { kSliding, kRolling, kResting };
 
-/// A symmetric matrix.
 struct Matrix {
     double xx = 0.0, xy = 0.0, yy = 0.0;
     Vec2 operator*(const Vec2& a) const { return {xx * a.x() + xy * a.y(), xy * a.x() + yy * a.y()}; }
@@ -47,13 +45,13 @@ struct Body {
     // At the start of the interval [m/s].
     Vec2 v = Vec2::Zero(), s = Vec2::Zero();
     Vec2 u = Vec2::Zero();  ///< exactly zero if the ball rolls or rests
-    /// Direction of the friction, if an earlier solution gives that of the middle of the interval.
+    /// Direction of the friction at the middle of the interval, from an earlier solution.
     bool guided = false;
     Vec2 guide = Vec2::Zero();
-    double slid = 0.0;  ///< share of the interval in which a ball that slips at its start still does
+    double slid = 0.0;  ///< fraction of the interval in which a ball that slips at its start continues to
     double load = 1.0;  ///< share of the weight that the cloth supports
     double R = 0.0;     ///< [m]
-    double ease = 1.0;  ///< mass of the lightest ball over that of this one: how much an impulse moves it
+    double ease = 1.0;  ///< mass of the lightest ball over that of this one: its response to an impulse
 
     // At the end.
     Mode mode = Mode::kResting;
@@ -72,18 +70,18 @@ struct Link {
     Vec2 first;  ///< the normal at the start of the interval
     Vec2 n;      ///< in its middle: the direction of the impulse
     Contact contact;
-    /// [m] between the centres, as the normal turns; 0: a straight cushion; negative: a wall around the ball
+    /// [m] between the centres, as the normal turns; 0: straight cushion; negative: wall around the ball
     double distance = 0.0;
     double gap = 0.0;      ///< [m]; negative: overlap
-    bool begins = false;   ///< the contact begins now, and so does not end now
+    bool begins = false;   ///< the contact begins now, and so cannot end now
     bool open = false;     ///< the gap opens by more than rounding
-    double slack = 0.0;    ///< [m/s] rate at which it may close at an instant: it has a gap
-    double turning = 0.0;  ///< [m/s^2] of the gap at the end, beyond the rate along n
-    double tilt = 0.0;     ///< of the normal, upwards from i to j: vertical share over level one
-    // Impulses [m/s] per mass of the lightest ball: level, vertical by friction on ball i, and all vertical.
+    double slack = 0.0;    ///< [m/s] closing rate allowed at an instant because it has a gap
+    double turning = 0.0;  ///< [m/s^2] of the gap at the end, in addition to the rate along n
+    double tilt = 0.0;     ///< of the normal, upwards from i to j: vertical over level component
+    // Impulses [m/s] per mass of the lightest ball: level; vertical by friction on ball i; all vertical.
     double J = 0.0, Z = 0.0, lift = 0.0;
-    double friction_z = 0.0;  ///< Z over the J that it was found with
-    /// The mean of the interval of this, if an earlier solution gives it.
+    double friction_z = 0.0;  ///< Z divided by the J for which it was computed
+    /// Mean of friction_z over the interval, from an earlier solution.
     std::optional<double> guide = std::nullopt;
 };
 
@@ -94,9 +92,9 @@ struct Group {
     double now;
     std::vector<Body> bodies{};  ///< as group.balls
     std::vector<Link> links{};   ///< as group.contacts
-    double solved = 0.0;         ///< [s] interval for which the bodies and links have a solution; 0: none
-    bool smooth = false;         ///< the solution has less friction between balls than they have
-    double overlap = 0.0;        ///< [m] the deepest one that is removed
+    double solved = 0.0;         ///< [s] interval that the bodies and links solve; 0: none
+    bool smooth = false;         ///< the solution has less than the full friction between balls
+    double overlap = 0.0;        ///< [m] the deepest one being removed
     double noise = 0.0;          ///< [m/s] rounding of the group's speeds in a few sums of eight terms
     // Workspace of solve_interval() and step().
     std::vector<Body> bodies_before{};
@@ -104,7 +102,7 @@ struct Group {
     Complementarity problem{};
 };
 
-/// Removes energy at the end of an interval, or of an instant (h = 0), that is not there at the start.
+/// Removes energy at the end of an interval, or of an instant (h = 0), that did not exist at the start.
 /// @return whether there was any
 bool keep_energy(Group& g, double h);
 /// [m/s] Velocity of the other ball, or of the table, relative to ball i: v or v_end.
@@ -121,7 +119,7 @@ class GapCourse {
         const Vec2 to = from_ + moved;
         return gap_ + round_ * dot(moved, from_ + to) / (far_ + length(to));
     }
-    /// [m] The least and the greatest until h.
+    /// [m] The smallest and the largest until h.
     using Range = std::pair<double, double>;
     Range range(double h) const;
 
@@ -141,26 +139,25 @@ Vec2 contact_slip(const Group& g, const Link& link, bool at_end);
 void respond(Group& g, double h);
 
 // resting_newton.cpp
-/// Solves for the impulses of the contacts that are not open, by Newton's method, starting from the present
-/// ones.
+/// Solves for the impulses of the contacts that are not open, by Newton's method from the present ones.
 /// @return whether there is a solution
 bool solve_newton(Group& g, double h, bool stabilise);
-/// [m/s] Slip of two balls that their friction ends within the interval.
+/// [m/s] Slip of two balls that their friction can end within the interval.
 double slip_ended(const Group& g, const Link& link);
 
 // resting_step.cpp
 /// Solves the step over h [s]; 0 is an instant, without friction. @return whether there is a solution; if
-/// not, leaves the closest state
+/// not, leaves the nearest state
 bool step(Group& g, double h);
 /// Solves for the impulses that leave no contact closing. @return whether there is a solution
 bool strike(Group& g);
-/// [m/s] Rounding of the rates of the gaps.
+/// [m/s] Rounding of the gap rates.
 double rate_rounding(const Group& g);
 /// [m/s] Friction between balls, given the slip at the start.
 double friction_at_start(const Group& g, const Link& link);
 
 // resting_interval.cpp
-/// [s] Time after which friction has ended the slip of a ball that slips at the start of the interval h.
+/// [s] Time at which friction has ended the slip of a ball that slips at the start of the interval h.
 double slip_gone(const Group& g, const Body& b, double h);
 /// [s] How long a solution over h is accurate.
 double accurate_interval(const Group& g, double h);

@@ -12,7 +12,7 @@ namespace carom::resting {
 
 namespace {
 
-// First time at which |x + t D| = S t: friction S has then removed the initial x and the contribution of D.
+// First time at which |x + t D| = S t: friction S has then cancelled the initial x and the contribution of D.
 double time_gone(const Vec2& x, const Vec2& D, double S) {
     const double xx = dot(x, x), xD = dot(x, D), A = S * S - dot(D, D);
     const double root = std::sqrt(std::max(0.0, xD * xD + A * xx));
@@ -20,7 +20,7 @@ double time_gone(const Vec2& x, const Vec2& D, double S) {
     return time > 0.0 ? time : kNever;
 }
 
-// Interval, reduced in steps of a tenth, in which an error that grows as the given power of it is at most
+// Interval, reduced in steps of a tenth, for which an error that grows with the given power of it is at most
 // `allowed`.
 double allowed_interval(double h, double error, double allowed, int power) {
     if (!(error > allowed)) return kNever;
@@ -50,14 +50,14 @@ double turn_of(const Vec2& from, const Vec2& to) {
     return dot(from, to) > 0.0 ? std::abs(cross(from, to)) / (length(from) * length(to)) : 1.0;
 }
 
-// Time at which the slip or the velocity of a ball has gone, if that is within the interval h.
+// Time at which the slip or the velocity of a ball has ended, if within the interval h.
 double gone_within(const Group& g, const Body& b, double h) {
     if (moves(b.u)) return b.mode == Mode::kSliding ? kNever : slip_gone(g, b, h);
     if (b.mode != Mode::kResting || !moves(b.v)) return kNever;
     return time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll);
 }
 
-// Time at which the last ball of a group stops that comes to rest within the interval h.
+// Time at which the whole group rests, if within the interval h.
 double time_of_rest(const Group& g, double h) {
     double last = 0.0;
     for (const Body& b : g.bodies) {
@@ -67,13 +67,13 @@ double time_of_rest(const Group& g, double h) {
     return last > 0.0 ? last : kNever;
 }
 
-// [s] How far an interval may extend past a stop: a ball that stops within it decelerates evenly until its
-// end, and so moves too far.
+// [s] How far an interval may extend past a stop: its ball decelerates uniformly until the end of the
+// interval, and so moves too far.
 double after_stop(double speed) {
     return std::min(kStopsWithin, 2.0 * kPlaceError / speed);
 }
 
-// The same, but only if the interval has to end there.
+// Time at which the slip or velocity ends, if the interval has to end there.
 double gone_fast(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     if (gone == kNever) return kNever;
@@ -81,7 +81,7 @@ double gone_fast(const Group& g, const Body& b, double h) {
     return slack <= kSoon * gone && h > gone + slack ? gone : kNever;
 }
 
-// Time at which a fast slip or velocity will have gone if it continues as in the interval h.
+// Time at which a fast slip or velocity will end if the interval h is continued.
 double gone_later(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     const double start = length(m.start), along = start > 0.0 ? dot(m.end, m.start) / start : 0.0;
@@ -90,9 +90,9 @@ double gone_later(const Group& g, const Body& b, double h) {
     return goes ? h * start / (start - along) : kNever;
 }
 
-// Interval for which the friction of a ball has the right direction. A friction of strength S along a
-// direction that turns by w, taken at the middle of the interval, has the error S w h^2 / 12; S h^2 / 2 is an
-// upper bound of any error.
+// Interval over which a ball's friction direction is accurate. A friction of strength S along a direction
+// that turns by w, evaluated at the middle of the interval, has the error S w h^2 / 12; S h^2 / 2 is an upper
+// bound of any error.
 double friction_interval(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     if (!moves(m.start)) return kNever;
@@ -113,14 +113,14 @@ double friction_interval(const Group& g, const Body& b, double h) {
     return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
 }
 
-// Whether a gap stays within its room until h.
+// Whether a gap stays within its allowed range until h.
 bool stays(const Group& g, const Link& link, double h) {
     const auto [least, most] = GapCourse(g, link, h).range(h);
     return least >= std::min(link.gap, -kOverlapGrowth) - kNoGap &&
            !(link.J > 0.0 && most > std::max(link.gap, kGapLeft));
 }
 
-// Whether the friction between two balls lasts as long as the interval.
+// Whether two balls slip on each other until the end of the interval.
 bool slips_on(const Group& g, const Link& link) {
     return slip_ended(g, link) < length(contact_slip(g, link, false));
 }
@@ -134,8 +134,7 @@ double link_interval(const Group& g, const Link& link, double h) {
     if (!stays(g, link, h)) interval = std::min(interval, kShorter * h);
     if (!(link.J > 0.0)) {
         const double rate = gap_rate(g, link);
-        // A contact that opens is released once its rate can be distinguished from rounding, and before its
-        // gap is visible.
+        // A contact that opens is released once its rate exceeds rounding, and before its gap is visible.
         const double opening = 2.0 * (GapCourse(g, link, h).at(h) - link.gap - rate * h) / (h * h);
         if (opening > 0.0)
             interval = std::min(interval, std::max(std::sqrt(2.0 * kGapLeft / opening),
@@ -145,7 +144,7 @@ double link_interval(const Group& g, const Link& link, double h) {
     }
     const double force = link.J / h;
     if (link.j >= 0 && !g.smooth) {
-        // The friction between two balls changes with their slip, until that is gone.
+        // The friction between two balls changes with their slip, until that has ended.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
         interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kFrictionError,
@@ -153,13 +152,13 @@ double link_interval(const Group& g, const Link& link, double h) {
     }
     if (link.distance == 0.0) return interval;
     const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
-    // [rad] How far the normal turns at most.
+    // [rad] Largest possible turn of the normal.
     const double turn = 0.5 * h / std::abs(link.distance) *
                         (std::abs(cross(link.first, v)) + std::abs(cross(link.first, v_end)));
     return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3));
 }
 
-// The first attempt: until friction alone would have stopped the first ball.
+// First attempt: until friction alone would have stopped the first ball.
 double first_attempt(const Group& g) {
     double h = kLongestInterval;
     for (const Body& b : g.bodies) {
@@ -176,8 +175,8 @@ void unguide(Group& g) {
     for (Link& link : g.links) link.guide.reset();
 }
 
-// Gives friction its mean of the interval, for second order: the direction of the middle on the cloth, and
-// the mean of start and end between balls.
+// Second order: uses the mean friction over the interval; on the cloth its direction at the middle, and
+// between balls the mean of start and end.
 bool guide(Group& g) {
     bool any = false;
     unguide(g);
@@ -201,7 +200,7 @@ bool guide(Group& g) {
     return any;
 }
 
-// Whether guided balls still move in the direction that their friction opposes, and slip on each other so.
+// Whether guided balls still move, and slip on each other, in the directions that their frictions oppose.
 bool keeps_direction(const Group& g) {
     return std::all_of(g.bodies.begin(), g.bodies.end(),
                        [&g](const Body& b) { return !b.guided || dot(moving(g, b).end, b.guide) >= 0.0; }) &&
@@ -210,7 +209,7 @@ bool keeps_direction(const Group& g) {
            });
 }
 
-// Solves the same interval again, guided; without a solution it stays as it was.
+// Solves the same interval again, guided; keeps the old solution if that fails.
 void guide_friction(Group& g, double h) {
     g.bodies_before = g.bodies;
     g.links_before = g.links;
@@ -223,8 +222,8 @@ void guide_friction(Group& g, double h) {
     g.links.swap(g.links_before);
 }
 
-// A wall around a ball turns it and does no work, but its impulse along the first normal does some: that
-// would add up all along the wall. Only for a ball that touches nothing else.
+// A wall around a ball turns it and does no work, but its impulse along the first normal does some, which
+// would accumulate along the wall. Corrected only for a ball that touches nothing else.
 void run_along_walls(Group& g) {
     for (const Link& link : g.links) {
         if (!(link.distance < 0.0) || !(link.J > 0.0)) continue;
@@ -305,7 +304,7 @@ void solve_interval(Group& g) {
     const double shortest = std::max(kShortestInterval, kClockTicks * kEpsilon * g.now);
     double h = std::max(shortest, std::min(first_attempt(g), kGrowth * g.group.last));
     int longer = 0;
-    double gone_before = 0.0;  // something has gone before this time, but not before the last interval
+    double gone_before = 0.0;  // something ended before this time, but not within the last interval
     for (int attempt = 1;; ++attempt) {
         const bool solved = step(g, h);
         double accurate = accurate_interval(g, h), gone = kNever, later = kNever;
@@ -326,7 +325,7 @@ void solve_interval(Group& g) {
             h = rest * (1.0 + 0.5 * kSame);
             ++longer;
         } else {
-            // If all moves straight and evenly, continue until something ends it.
+            // If everything moves straight and uniformly, continue until something ends it.
             if (solved && !accelerates(g)) h = std::max(shortest, std::min(accurate, gone));
             guide_friction(g, h);
             const bool all_stay = std::all_of(g.links.begin(), g.links.end(), [&](const Link& link) {

@@ -21,18 +21,18 @@ double ease_of(const Group& g, const Link& link) {
     return ease(g.bodies[link.i]) + ease(g.bodies[link.j]);
 }
 
-// The rate that must not be negative: at an instant that of a gap, beyond the rate at which it may close;
-// over an interval the one that leaves the gap which the contact keeps.
+// The rate that must not be negative: at an instant, the gap's rate plus the allowed closing rate; over an
+// interval, the rate that leads to the gap which the contact keeps.
 double wanted_rate(const Group& g, const Link& link, double h, bool stabilise) {
     return end_rate(g, link) + (h == 0.0 ? link.slack : stabilise ? h * link.turning : 0.0);
 }
 
-// The friction impulse between two balls opposes their slip at the end. With the upward slip X without it,
-// and its effect on the slip, Z = -X / (effect + |slip| / (mu J)), where |slip| follows from a few iterations
-// of the secant method.
+// The friction impulse between two balls opposes their slip at the end. With X the upward slip without it,
+// and `effect` its effect on the slip, Z = -X / (effect + |slip| / (mu J)); a few secant iterations give
+// |slip|.
 double vertical_impulse(const Group& g, const Link& link) {
     const double most = g.around.balls.ball_friction()(0.0) * link.J;
-    // A friction that holds two balls at rest may have any size.
+    // Friction that holds two resting balls may have any size up to its limit.
     if (g.bodies[link.i].mode == Mode::kResting && g.bodies[link.j].mode == Mode::kResting)
         return std::clamp(link.Z, -most, most);
     const Vec2 slip = contact_slip(g, link, true);
@@ -60,15 +60,15 @@ struct Turn {
     double turning;
 };
 
-// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error is gone
-// after two intervals. It keeps the gap at which its present rate would end evenly, within its room: a normal
-// that turns needs room on both sides, because the gap's acceleration changes. Overlaps end, and the other
-// gaps of the group may close by as much: without room the whole row would be pressed, and would push out
-// balls at its side.
+// A contact ends the interval where gap + h/2 rate equals the gap that it keeps, so that an error has
+// disappeared after two intervals. It keeps the gap at which its present rate would end uniformly, within
+// limits: a normal that turns needs room on both sides, because the gap's acceleration changes. Overlaps are
+// removed, and the other gaps of the group may close by the same amount: otherwise the whole row would be
+// pressed, and would push out balls at its side.
 Turn turn_of(const Group& g, const Link& link, double h) {
     const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
     const double rate = dot(link.first, v), D = link.distance;
-    // room [m] for the turning; the gap and its rate at the end; the share of the rate that is not along n
+    // room [m] for the turning; the gap and its rate at the end; the part of the rate that is not along n
     const auto correction = [&](double room, double gap_end, double rate_end, double turned) {
         double least = link.gap < -kOverlapDepth ? 0.0 : std::min(link.gap, 0.0);
         if (room > kNoGap) least = std::max(least, std::min(kGapKept, room));
@@ -93,12 +93,12 @@ Turn turn_of(const Group& g, const Link& link, double h) {
         2.0 * h * std::abs(turn * cross(v_end - v, n)) + std::abs(D) * turn_squared * turn_squared / 32.0;
     const double gap_end = link.gap + 2.0 * dot(moved, n) * far / (length(from) + far_end);
     const double turning = correction(room, gap_end, dot(n, v_end), dot(n_end - n, v_end));
-    // A change that rounds to no gap would only stop balls at rest from leaning on each other.
+    // A change that rounds to no gap would only make resting balls stop leaning on each other.
     return {n, std::abs(turning - level.turning) * h * h <= kNoGap ? level.turning : turning};
 }
 
-// Takes from a solution the vertical impulses and the turning of normals of the next one. They lag by one
-// step, so that the rates are the gradient of a convex function of the level impulses.
+// Computes from one solution the vertical impulses and normals of the next. They lag by one step, so that the
+// rates are the gradient of a convex function of the level impulses.
 // @return whether anything changed
 bool update(Group& g, double h, bool stabilise, int times) {
     if (h == 0.0) return false;
@@ -146,8 +146,8 @@ bool update(Group& g, double h, bool stabilise, int times) {
     return changed;
 }
 
-/// The impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate = 0. The
-/// problem is piecewise smooth and monotone.
+/// Solves for the impulses of the contacts that do not open, by Newton's method on J >= 0, rate >= 0, J rate
+/// = 0, which is piecewise smooth and monotone.
 class Newton {
   public:
     Newton(Group& g, double h, bool stabilise) : g_(g), h_(h), stabilise_(stabilise), problem_(g.problem) {
@@ -200,8 +200,8 @@ class Newton {
 
     double rate(std::size_t k) const { return wanted_rate(g_, g_.links[active_[k]], h_, stabilise_); }
 
-    // Stores the rates. If balls alternate between rest and rolling, a share of kRestCompliance remains,
-    // which is harmless unless a gap notices it.
+    // Stores the rates. If balls alternate between rest and rolling, errors of the order of kRestCompliance
+    // remain, which are harmless unless they change a gap noticeably.
     bool is_solved(bool& harmless) {
         const double rounding = rate_rounding(g_), time = std::max(h_, kShortestInterval);
         bool solved = true;
@@ -215,7 +215,7 @@ class Newton {
         return solved;
     }
 
-    // rate + A (J - J now) for the present kinds of motion.
+    // rate + A (J - J now) for the present modes of motion.
     void linearise() {
         problem_.q = rates_;
         problem_.clear();
@@ -248,9 +248,8 @@ class Newton {
         }
     }
 
-    // The rates are the gradient of a convex function of the impulses. A line
-    // search towards the solution of the linear problem takes its minimum, so that two kinds of motion do not
-    // alternate.
+    // The rates are the gradient of a convex function of the impulses. A line search towards the solution of
+    // the linear problem finds its minimum, so that two modes of motion do not alternate.
     void search() {
         const double first = slope();
         double low = 0.0, at_low = first, high = 1.0;
@@ -285,8 +284,8 @@ class Newton {
     const bool stabilise_;
     std::vector<std::size_t> active_;  // links
     Complementarity& problem_;
-    std::vector<double> before_, rates_;  // impulses and rates before the step, as active_
-    // The contacts of each ball, as indices into active_, and where those of each ball begin.
+    std::vector<double> before_, rates_;  // impulses and rates before the step, indexed as active_
+    // The contacts of each ball, as indices into active_, and the start of each ball's list.
     std::vector<std::size_t> of_body_, first_;
 };
 

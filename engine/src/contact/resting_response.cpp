@@ -14,7 +14,7 @@ Matrix identity(double c) {
 
 // c (1 - d d^T)
 Matrix across_of(double c, const Vec2& d) {
-    // the products first, so that turned directions give the same bits
+    // Products first, so that turned directions give the same bits.
     return {c * (d.y() * d.y()), -c * (d.x() * d.y()), c * (d.x() * d.x())};
 }
 
@@ -32,7 +32,7 @@ void slide(Body& b, const Vec2& friction) {
     b.s_end = b.s + 2.5 * (b.couple - friction);
 }
 
-// A puck, which nothing turns: its slip is its velocity.
+// A puck cannot turn: its slip is its velocity.
 void respond_puck(const Group& g, Body& b, double h) {
     const double grip = g.motion.slide * b.load * h;
     const Vec2 v = b.v + b.push;
@@ -57,7 +57,6 @@ void respond(const Group& g, Body& b, double h) {
     const bool slips = moves(b.u);
     // A ball that slips at the start rolls from the end of its slip on.
     const double drag = (slips ? 1.0 - b.slid : 1.0) * std::min(g.motion.roll * h, grip);
-    // At an instant there is no friction.
     if (h == 0.0) {
         slide(b, Vec2::Zero());
         b.by_push = identity(1.0);

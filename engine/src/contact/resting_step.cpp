@@ -35,7 +35,7 @@ bool step(Group& g, double h) {
         b.s_end = b.s + share * (b.s_end - b.s);
     }
     bool solved = solve_newton(g, h, h > 0.0);
-    // Two opposing normals that turn can ask for more than there is: then they keep what they have.
+    // Two opposing normals that turn may make the problem infeasible: then keep the first normals.
     if (!solved && h > 0.0) {
         for (Link& link : g.links) {
             link.J = link.Z = link.lift = link.turning = 0.0;

@@ -18,8 +18,8 @@ double curvature(const double (&b)[5], double s) {
     return 2.0 * b[2] + s * (6.0 * b[3] + s * (12.0 * b[4]));
 }
 
-// The sign change of g in [lo, hi]: Newton steps inside the bracket, and bisection if a step would leave it
-// or is more than half of the last one. The caller refines the result with the distance itself.
+// The sign change of g in [lo, hi]: Newton steps inside the bracket; bisection if a step would leave it or
+// exceeds half of the last one. The caller refines the result with the distance itself.
 template <class G, class D>
 double bracketed_root(G g, D dg, double lo, double hi, bool positive_at_lo) {
     double s = 0.5 * (lo + hi);
@@ -90,12 +90,12 @@ bool each_extremum(const double (&b)[5], const Visit& visit) {
     return false;
 }
 
-// Follows f over its monotone pieces, which end at its critical points, up to the first descent.
+// Follows f over its monotone pieces, which end at its critical points, to the first descent.
 class Descent {
   public:
     explicit Descent(const double (&b)[5]) : b_(b), above_(b[0] > 0.0) {}
 
-    // Advances to the next end of a monotone piece; true if the result is known.
+    // Advances to the next end of a monotone piece; true if the result has been found.
     bool piece(double end, bool is_maximum) {
         const double y = value(b_, end);
         if (above_ && !(y > 0.0)) {

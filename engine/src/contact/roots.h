@@ -10,7 +10,7 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// f(t) = c[0] + c[1] t + ... + c[4] t^4 on [0, T], T finite. Returns the first t > 0 at which f reaches 0
 /// from above (f(t) >= 0 there up to rounding), or kNever. If f starts at <= 0 (touching and not closing), a
-/// later maximum with f <= 0, from which f decreases again, counts too.
+/// later maximum with f <= 0 counts too.
 double first_descent(const double (&c)[5], double T);
 
 /// The extrema of such a polynomial within (0, T), in order. @return how many

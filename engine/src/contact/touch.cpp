@@ -6,7 +6,7 @@ namespace carom {
 
 namespace {
 
-// [ulp of the coordinates and the length] A foot point closer to the end of a cushion than this is at the
+// [ulp of the coordinates and the length] A foot point within this distance of the end of a cushion is at the
 // end: four roundings of position, end and projection.
 constexpr double kEndUlp = 4.0;
 

@@ -1,7 +1,7 @@
 // The geometry of a contact: its direction, its gap, and how fast the gap closes. One function per kind of
 // part: another ball, a straight nose, a round nose (a point if its radius is 0, a wall around the balls if
-// it is negative), the cloth. A new kind of part needs one here, its time in detect.h, and its keys in the
-// reader. The functions take numbers, or dual numbers (tangent/dual.h) for derivatives.
+// it is negative), the cloth. A new kind of part needs a function here, its time in detect.h, and its keys in
+// the reader. For derivatives the functions accept dual numbers (tangent/dual.h).
 #pragma once
 
 #include <cmath>
@@ -17,18 +17,17 @@
 
 namespace carom {
 
-/// The scalar, and the vector of the plane, that belong to a vector in space.
+/// The scalar, and the plane vector, that belong to a vector in space.
 template <class Space>
 using Number = std::remove_cvref_t<decltype(std::declval<const Space&>()[0])>;
 template <class Space>
 using Plane = decltype(planar(std::declval<const Space&>()));
 
-/// The centre of a ball at an instant.
 template <class Space>
 struct BallAt {
     Space r, v;
     Number<Space> R;
-    /// Whether it meets noses in space. On the cloth it meets them in the plane, whatever r.z and v.z are.
+    /// Whether it meets noses in space; on the cloth it meets them in the plane, whatever r.z and v.z are.
     bool flies = false;
 };
 
@@ -37,19 +36,18 @@ struct Touch {
     Space n;                ///< unit, from the ball into what it touches; level for balls on the cloth
     Number<Space> gap;      ///< [m] negative: overlap
     Number<Space> closing;  ///< [m/s] the rate at which the gap closes
-    Number<Space> bend;     ///< [m/s^2] the rate at which motion along a curved part slows the closing
+    Number<Space> bend;     ///< [m/s^2] deceleration of the closing by motion along a curved part
 
-    /// [m/s^2] Closing acceleration of a ball with the level acceleration `a` (for two balls: the relative
-    /// one).
+    /// [m/s^2] Closing acceleration of a ball with the (for two balls, relative) level acceleration `a`.
     Number<Space> pressing(const Plane<Space>& a) const { return dot(planar(n), a) - bend; }
 };
 
-/// [m] Distance of a touching ball's centre from a nose: horizontally, or in space if the ball flies.
+/// [m] Distance of a touching ball's centre from a nose: horizontally, or in space if it flies.
 template <class Part, class T>
 T reach_of(const Part& part, const T& R, bool flies) {
     return flies ? nose_reach(R, part.height, part.inset) : T(R - part.inset);
 }
-/// [m] Radius on which a touching ball moves around a round nose on the cloth; negative inside a wall.
+/// [m] Path radius of a touching ball around a round nose on the cloth; negative inside a wall.
 template <class Round, class T>
 T turn_around(const Round& nose, const T& R) {
     return R + nose.radius - nose.inset;
@@ -91,7 +89,7 @@ Touch<Space> touch_ball(const BallAt<Space>& ball, const BallAt<Space>& other) {
     return detail::touch_spheres<Space>(other.r - ball.r, ball.v - other.v, ball.R + other.R);
 }
 
-/// Two balls on the cloth, or discs, at whatever height the fall of one began.
+/// Two balls on the cloth, or discs; ignores their heights.
 template <class Space>
 Touch<Space> touch_level(const BallAt<Space>& ball, const BallAt<Space>& other, bool discs) {
     const Space apart{other.r[0] - ball.r[0], other.r[1] - ball.r[1], 0.0};
@@ -143,30 +141,30 @@ inline Vec2 in_frame(const CushionLine& line, const Vec2& x) {
 /// Rounding error [m] of the distance between a foot point and the end of a cushion, for a centre at r.
 double end_rounding(const Vec2& r, double line_length);
 
-/// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding its direction
-/// of motion decides, so that a ball that leaves over the end is not mistaken for one that arrives: the
-/// condition that ends a contact here cannot begin it. Beyond the end, the end point or the jaw takes over.
+/// Whether a foot point `left` [m] before the end of a cushion has passed it. Within rounding the direction
+/// of motion decides, so that a leaving ball is not mistaken for an arriving one: a contact cannot begin
+/// under the condition that ends it. Beyond the end, the end point or the jaw applies.
 inline bool past_end(double left, double rate, double pull, double rounding) {
     if (std::abs(left) > rounding) return left < 0.0;
     return rate < 0.0 || (rate == 0.0 && pull < 0.0);
 }
 
-/// Whether a foot that moves along a line is between its ends.
+/// Whether a foot point moving along a line is between its ends.
 inline bool between_ends(double foot, double rate, double pull, double line_length, double rounding) {
     return !past_end(foot, rate, pull, rounding) && !past_end(line_length - foot, -rate, -pull, rounding);
 }
 
-/// The point of a cushion or an arc that is nearest to a place, or the centre of another nose.
+/// The point of a cushion or an arc nearest to a position, or the centre of another nose.
 Vec2 nearest_point(const CushionLine& line, const Vec2& place);
 Vec2 nearest_point(const Nose& nose, const Vec2& place);
 
-/// Whether a place is on the far side of a round nose: inside a jaw, outside a wall around the balls.
+/// Whether a position is on the far side of a round nose: inside a jaw, outside a wall around the balls.
 inline bool behind(const Nose& nose, const Vec2& place) {
     return nose.sign() * length(place - nose.center) < nose.radius;
 }
 
-/// Whether the ball is beside the part, so that it can touch it there: between the ends of a cushion or an
-/// arc, on the side on which an arc acts, and not over the disc of a jaw.
+/// Whether the ball can touch the part where it is: between the ends of a cushion or an arc, on the side on
+/// which an arc acts, and not over the disc of a jaw.
 /// @param slack [m] rounding of the direction from an arc's centre
 bool beside(const CushionLine& line, const BallAt<Vec3>& ball);
 bool beside(const Nose& nose, const BallAt<Vec3>& ball, double slack = 0.0);
@@ -185,7 +183,7 @@ bool beside(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>
 bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball);
 /// [m] Height of the nose.
 double part_height(const Geometry& geometry, const Contact& contact);
-/// [m] Radius on which a touching ball moves around the part: 0 for a straight one, negative inside a wall.
+/// [m] Path radius of a touching ball around the part: 0 for a straight one, negative inside a wall.
 double part_turn(const Geometry& geometry, const Contact& contact, double R);
 /// The point of a cushion nearest to a ball, or the centre of a nose or a pocket.
 Vec2 part_place(const Geometry& geometry, const Contact& contact, const Vec2& r);

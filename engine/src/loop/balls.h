@@ -21,7 +21,8 @@ struct BallsMemory {
         double fell, flew;
     };
     std::vector<Turns> turns_;
-    /// Of a ball that collides: its motion after the cluster, and another ball of it. These form a ring.
+    /// For a colliding ball: its motion after the cluster, and another ball of the cluster. These form a
+    /// ring.
     struct Afterwards {
         Segment segment;
         int next;
@@ -39,7 +40,6 @@ class Balls : private Borrowed<BallsMemory> {
     }
 
     int count() const { return static_cast<int>(segments_.size()); }
-    /// The present motion of the ball.
     const Segment& segment(int ball) const { return segments_[ball]; }
     void set(int ball, const Segment& segment) {
         const MotionState before = segments_[ball].state;
@@ -49,7 +49,7 @@ class Balls : private Borrowed<BallsMemory> {
         if (before == MotionState::kColliding) leave_cluster(ball);
         segments_[ball] = segment;
     }
-    /// Sets the motion of a colliding ball after its cluster, in which `other` is, too.
+    /// Sets a colliding ball's motion after its cluster, to which `other` belongs as well.
     void set_afterwards(int ball, const Segment& segment, int other) {
         afterwards_[ball].segment = segment;
         if (other == ball) return;
@@ -57,13 +57,13 @@ class Balls : private Borrowed<BallsMemory> {
         afterwards_[other].next = ball;
     }
     bool collides(int ball) const { return segments_[ball].state == MotionState::kColliding; }
-    /// Of a ball that collides: its motion afterwards, and another ball of its cluster, if there is one.
+    /// For a colliding ball: its motion afterwards, and another ball of its cluster, if any.
     const Segment& afterwards(int ball) const { return afterwards_[ball].segment; }
     int next_in_cluster(int ball) const { return afterwards_[ball].next; }
     bool sinks(int ball) const { return segments_[ball].state == MotionState::kFalling; }
-    /// Whether these two meet in space rather than in the plane: one of them flies, or has flown since the
-    /// other began to fall into a pocket. That lasts until one of them is gone or the falling ball is back on
-    /// the cloth, because until then they may overlap in the plane.
+    /// Whether these two collide in space rather than in the plane: one of them flies, or has flown since the
+    /// other began to fall into a pocket. Until one of them is gone or the falling ball is back on the cloth,
+    /// they may overlap in the plane.
     bool in_space(int a, int b) const {
         return flies(segments_[a].state) || flies(segments_[b].state) ||
                (sinks(a) && turns_[b].flew >= turns_[a].fell) ||
@@ -79,12 +79,12 @@ class Balls : private Borrowed<BallsMemory> {
     Vec3 velocity(int ball) const { return velocity_at(segments_[ball], now_ - segments_[ball].start); }
     Vec3 spin(int ball) const { return spin_at(segments_[ball], now_ - segments_[ball].start, radius(ball)); }
 
-    /// Includes the height of a ball that flies or falls.
+    /// Includes the height of a flying or falling ball.
     Placed placed(int ball) const {
         return placed_at(segments_[ball], now_ - segments_[ball].start, plan_.gravity);
     }
 
-    /// The ball in the plane of the cloth, for what it touches there.
+    /// The ball in the plane of the cloth, for contacts there.
     BallAt<Vec3> at(int ball) const { return {position(ball), velocity(ball), radius(ball)}; }
     double radius(int ball) const { return plan_.sizes[ball].R; }
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }

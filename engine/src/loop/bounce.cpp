@@ -11,8 +11,8 @@ namespace carom {
 
 namespace {
 
-// [-] Two parts count as one if the cosine of the angle between their normals is above this: a cushion and
-// the jaw that continues it.
+// [-] Two parts count as one if the cosine of the angle between their normals is larger: a cushion and the
+// jaw that continues it.
 constexpr double kOneNormal = 1.0 - 1e-6;
 
 }  // namespace
@@ -47,7 +47,7 @@ TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector&
             touches.add(touch);
     };
     detector.parts_near({here.x() - reach, here.y() - reach, here.x() + reach, here.y() + reach}, add);
-    // A tree finds the parts in another order.
+    // A tree finds the parts in a different order.
     std::sort(touches.begin() + 1, touches.end(), [](const TableTouch& p, const TableTouch& q) {
         return p.normal.x() < q.normal.x() || (p.normal.x() == q.normal.x() && p.normal.y() < q.normal.y());
     });

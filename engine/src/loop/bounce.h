@@ -17,9 +17,8 @@
 
 namespace carom {
 
-/// A cushion or a nose that a ball touches.
 struct TableTouch : NoseTouch {
-    ContactKinematics approach;  ///< its a_c is that before the impact
+    ContactKinematics approach;  ///< a_c is the acceleration before the impact
     double bend = 0.0;           ///< [m/s^2] Touch::bend
 
     /// [m/s^2] Closing acceleration of a ball with the acceleration `pull`.
@@ -28,11 +27,10 @@ struct TableTouch : NoseTouch {
     }
 };
 
-/// All that a ball touches at one instant.
 class TableTouches {
   public:
     explicit TableTouches(const TableTouch& first) : count_(1) { list_[0] = first; }
-    /// Holds at most four. A further touch is left out: the ball meets it next, at the same instant.
+    /// At most four. A further part is dropped: the ball hits it next, at the same instant.
     void add(const TableTouch& touch) {
         if (count_ < list_.size()) list_[count_++] = touch;
     }
@@ -42,7 +40,7 @@ class TableTouches {
     const TableTouch* begin() const { return list_.data(); }
     const TableTouch* end() const { return list_.data() + count_; }
     const TableTouch& operator[](std::size_t k) const { return list_[k]; }
-    /// Without what the loop needs beside them; valid until the next call.
+    /// The part of the list that the cushion models need; valid until the next call.
     std::span<const NoseTouch> noses() {
         std::copy_n(list_.begin(), count_, noses_.begin());
         return {noses_.data(), count_};
@@ -54,11 +52,11 @@ class TableTouches {
     std::size_t count_;
 };
 
-/// A contact with a cushion or nose, in the present state of its ball.
+/// A contact with a cushion or nose, in the ball's present state.
 TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& contact);
 
-/// This contact and all others of its ball at the same instant: those that touch within kTouchTolerance,
-/// close by more than rounding and are not resting contacts. Parts that join smoothly count as one.
+/// This contact and all simultaneous ones of its ball: those within kTouchTolerance that close by more than
+/// rounding and are not resting contacts. Parts that join smoothly count as one.
 TableTouches table_touches(const Plan& plan, const Balls& balls, const Detector& detector,
                            const RestingContacts& resting, const Contact& contact);
 

@@ -9,9 +9,9 @@ namespace carom {
 
 namespace {
 
-// [1/m] Box2D enlarges its boxes by 0.1 units; with a unit of one centimetre that is 1 mm.
+// [1/m] Box2D enlarges its boxes by 0.1 units: 1 mm with a unit of one centimetre.
 constexpr double kUnitsPerMetre = 100.0;
-// [units] Far beyond any table, and small enough that sums and products of a few do not overflow in single
+// [units] Far beyond any table, and small enough that sums and products of a few do not overflow single
 // precision.
 constexpr double kFarthest = 1e15;
 // [-] Margin of the conversion to float, whose relative error is at most 2^-24.
@@ -29,12 +29,12 @@ float up(double x) {
     return static_cast<float>(y + kOutward * std::abs(y));
 }
 
-// [-] Margin of a block's box in the tree, as a share of its circumference.
+// [-] Margin of a block's box in the tree, as a fraction of its circumference.
 constexpr float kBlockMargin = 0.05f;
 // [-] Searches per box before the blocks are rebuilt: sorting costs about 100 ns per box.
 constexpr std::int64_t kSearchesPerBox = 4;
 
-constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of boxes that are not placed
+constexpr float kNowhere = std::numeric_limits<float>::infinity();  // bound of unplaced boxes
 
 }  // namespace
 
@@ -91,7 +91,7 @@ void BoxSearch::place(int index, const RoundedBox& rounded) {
     const std::size_t s = slot(index);
     set(s, rounded);
     if (tree_) surround(s, rounded);
-    if (!tree_ || proxy_[s / kBlock] < 0) return;  // there are no blocks before the first build
+    if (!tree_ || proxy_[s / kBlock] < 0) return;  // no blocks exist before the first build
     if (!tree_->GetFatAABB(proxy_[s / kBlock]).Contains(aabb_of(rounded))) update_block(s / kBlock);
 }
 
@@ -99,7 +99,7 @@ void BoxSearch::remove(int index) {
     set(slot(index), {kNowhere, kNowhere, -kNowhere, -kNowhere});
 }
 
-// Gives the tree the present box of a block, with a margin for motion.
+// Updates the tree's box of a block, with a margin for motion.
 void BoxSearch::update_block(std::size_t block) {
     Rounded around{kNowhere, kNowhere, -kNowhere, -kNowhere};
     for (auto* low : {&around_[block].low_x, &around_[block].low_y}) low->fill(kNowhere);
@@ -130,8 +130,8 @@ void BoxSearch::rebuild() {
             return p < q || (p == q && i < j);
         };
     };
-    // The sum of a removed box is infinity - infinity. Any order will do for it, but NaN must not be
-    // compared.
+    // The sum of a removed box is infinity - infinity. Its position in the order is irrelevant, but NaN must
+    // not be compared.
     const auto finite = [](float sum) { return sum == sum ? sum : 0.0f; };
     const auto middle_x = [finite](const Rounded& r) { return finite(r.low_x + r.high_x); };
     const auto middle_y = [finite](const Rounded& r) { return finite(r.low_y + r.high_y); };
@@ -150,7 +150,7 @@ void BoxSearch::rebuild() {
     for (std::size_t b = 0; b < blocks; ++b) {
         if (proxy_[b] < 0) {
             const b2AABB nothing{b2Vec2(0.0f, 0.0f), b2Vec2(0.0f, 0.0f)};
-            // The user pointer of the tree stores the number of the block, and is never dereferenced.
+            // The user pointer of the tree stores the block's number, and is never dereferenced.
             void* block = reinterpret_cast<void*>(b);  // NOLINT(performance-no-int-to-ptr): see above
             proxy_[b] = tree_->CreateProxy(nothing, block);
         }

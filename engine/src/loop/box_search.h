@@ -1,6 +1,6 @@
 // Finds the boxes that overlap a box. Boxes are in single precision and rounded outward: they only exclude
-// pairs, and the other pairs are decided in double precision. The search is either a loop over all boxes,
-// sixteen at a time, or Box2D's dynamic tree with blocks of 64 neighbouring boxes as leaves, and the loop
+// pairs; the remaining pairs are decided in double precision. The search is either a loop over all boxes,
+// sixteen at a time, or Box2D's dynamic tree with blocks of 64 neighbouring boxes as leaves and that loop
 // inside each block. Both find the same set.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace carom {
 
-/// [-] Relative margin of the boxes that exclude distant balls and parts of the table: it covers rounding.
+/// [-] Relative margin, for rounding, of the boxes that exclude distant balls and parts of the table.
 inline constexpr double kBoxShare = 1e-9;
 
 /// A rectangle on the table [m].
@@ -46,8 +46,8 @@ class BoxSearch {
         if (tree_ && --until_rebuild_ <= 0) rebuild();
     }
 
-    /// Calls found(index) for every placed box that overlaps or touches
-    /// `box`, in the order of the indices unless the search uses the tree.
+    /// Calls found(index) for every placed box that overlaps or touches `box`; without a tree, in index
+    /// order.
     template <class Found>
     void overlapping(const Box& box, Found found) const {
         search(outward(box), found);
@@ -56,7 +56,7 @@ class BoxSearch {
     void overlapping(const RoundedBox& box, Found found) const {
         search(box, found);
     }
-    /// The same for a placed box, which does not find itself.
+    /// The same for a placed box, excluding itself.
     template <class Found>
     void neighbours(int index, Found found) const {
         search(at(slot(index)), [index, &found](int other) {
@@ -72,7 +72,7 @@ class BoxSearch {
     struct alignas(64) Row {
         Bounds low_x, low_y, high_x, high_y;
     };
-    // A box around each row of a block: it only grows until the block's own box is renewed.
+    // A box around each row of a block; only grows until the block's own box is renewed.
     struct alignas(64) Around {
         std::array<float, kBlock / kRow> low_x, low_y, high_x, high_y;
     };
@@ -155,8 +155,8 @@ void BoxSearch::scan_row(std::size_t row, const Rounded& box, Found& found) cons
         found(static_cast<int>(row * kRow) + __builtin_ctz(mask));
 }
 
-// A bit for every box of the rows that overlaps this one. Compares all without a branch, because the number
-// of overlaps cannot be predicted.
+// A bit for every box of the rows that overlaps this one. Branchless, because the number of overlaps is
+// unpredictable.
 #if defined(__SSE2__)
 template <class Boxes>
 __m128 BoxSearch::four(const Boxes& boxes, std::size_t k, const Rounded& box) {

@@ -12,21 +12,21 @@ namespace carom {
 
 namespace {
 
-// [reach] Contacts between balls nearer than this follow the motion of the balls: their normals turn.
+// [reach] The normals of contacts with a smaller gap follow the motion of the balls.
 constexpr double kNearShare = 0.5;
-// [reach] Contacts up to this gap are listed, because balls may get there while the cluster lasts.
+// [reach] Contacts up to this gap are listed, because balls may close it during the cluster.
 constexpr double kListed = 8.0;
-// [contact time] A cluster that would last longer takes no time: its balls would go too far on straight
-// paths.
+// [contact time] A cluster that would last longer is instantaneous: its balls would travel too far on
+// straight paths.
 constexpr double kLongest = 20.0;
-// Balls that may join a cluster because one of it would meet them.
+// Most balls that may join a cluster because one of its balls would hit them.
 constexpr std::size_t kMostJoin = 4;
-// [m/s] A slower cluster takes no time: it would last for milliseconds, in which other balls come along.
+// [m/s] A slower cluster is instantaneous: it would last for milliseconds, in which other balls arrive.
 constexpr double kSlowest = 0.2;
-// [approach speed] A contact that closes more slowly after a cluster closes only by rounding.
+// [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
 
-/// Of balls on the cloth: whatever height the fall of one of them began at, and unlike balls touch above or
+/// For balls on the cloth, ignores the height at which the fall of one began; unlike balls touch above or
 /// below their equators.
 Touch<Vec3> touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
     const auto at = [&](const ClusterBall& b) {
@@ -69,10 +69,10 @@ ClusterBall Clusters::member(int ball) const {
     return {ball, balls_.position(ball), balls_.velocity(ball), balls_.spin(ball), size.R, mass};
 }
 
-// Breadth-first search from the pair: finds every ball that can be reached during the contact (equation 5),
-// then all contacts between them. The fastest approach among near balls sets the scale of the solution: a
-// pair may touch very slowly while its neighbours are about to collide at full speed. Each approach is
-// weighted by nearness, so that the result does not jump when a fast ball comes within reach.
+// Breadth-first search from the pair: finds every ball within reach during the contact (equation 5), then all
+// contacts between them. The fastest approach among near balls sets the scale of the solution, because a pair
+// may touch very slowly while its neighbours are about to collide at full speed. Each approach is weighted by
+// nearness, so that the result does not jump when a fast ball comes within reach.
 double Clusters::collect(int a, int b, double v_n) {
     first_ = a;
     second_ = b;
@@ -91,8 +91,8 @@ double Clusters::collect(int a, int b, double v_n) {
     return v_n;
 }
 
-// The box of every ball within `gap` of this ball overlaps the result: a ball's box contains its present
-// position, and the margin covers rounding.
+// Overlaps the box of every ball within `gap` of this one: a ball's box contains its present position, and
+// the margin covers rounding.
 Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     const double x = ball.r.x(), y = ball.r.y();
     const double half =
@@ -100,7 +100,7 @@ Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     return {x - half, y - half, x + half, y + half};
 }
 
-// [s] The duration of the contact of two balls: it goes with the 0.4th power of mass over stiffness.
+// [s] Duration of the contact of two balls, proportional to (mass / stiffness)^0.4.
 double Clusters::pair_time(int a, int b, double v_n) const {
     const BallSize &p = plan_.sizes[a], &q = plan_.sizes[b];
     const double time = contact_time(v_n);
@@ -116,8 +116,8 @@ void Clusters::collect_at(int a, int b, double v_n) {
     const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
         Touch<Vec3> near = touch_of(p, q, flights_, plan_.balls.discs());
-        // Whether balls touch is decided only here: a gap within
-        // the rounding of the positions counts as touching.
+        // Only here is it decided whether balls touch: a gap within the rounding of the positions counts as
+        // touching.
         if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;
         return near;
     };
@@ -130,9 +130,9 @@ void Clusters::collect_at(int a, int b, double v_n) {
         const ClusterBall here = members_[k];
         const double speed = here.v.z() == 0.0 ? length(planar(here.v)) : length3(here.v);
         const double most = time * (speed + detector_.fastest() + v_n);
-        // The order is arbitrary: the set of members does not depend on it, and they are sorted below.
+        // The order is arbitrary: it does not affect the set of members, which are sorted below.
         detector_.balls_near(near_box(here, most), [&](int q) {
-            // A ball of another cluster is compressed; what it meets waits until that is over.
+            // A ball of another cluster is compressed; its other contacts wait for the end of that cluster.
             if (is_member(q) || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
@@ -159,7 +159,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
                                      nearness(near.gap, reach(near))});
         }
     }
-    // Sort by position. Insertion sort keeps the order of equal elements and allocates no memory.
+    // Sort by position. Insertion sort is stable and allocates no memory.
     const auto place = [this](const ClusterContact& c) {
         return Vec2(planar(members_[c.i].r) + planar(members_[c.j].r));
     };
@@ -172,12 +172,11 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// A contact whose balls have no other contact is an impact of two balls: its normal stays as it was at the
-// start, as in the pair kernel. So that the result does not jump when the last other ball moves out of reach,
-// a normal turns in proportion to how firmly its two balls belong to the cluster, and to the nearness of the
-// nearest other contact of its balls. A ball belongs by the nearness of the weakest contact on the best chain
-// from the pair that met; one that has joined belongs fully. Unlike balls turn fully, and so do balls in
-// space.
+// A contact whose balls have no other contact is an impact of two balls: its normal stays fixed, as in the
+// pair kernel. To keep the result from jumping when the last other ball moves out of reach, a normal turns by
+// a fraction: the minimum of how firmly its two balls belong to the cluster and the nearness of the nearest
+// other contact of its balls. The firmness of a ball is the nearness of the weakest contact on the best chain
+// from the first pair; joined balls belong fully. The normals of unlike balls, and in space, turn fully.
 void Clusters::share_turning() {
     if (unlike_ || in_space_) {
         for (ClusterContact& c : contacts_) c.turn = 1.0;
@@ -216,8 +215,8 @@ void Clusters::share_turning() {
     }
 }
 
-// Where the balls are when the cluster ends, which is when no two of them overlap. A ball whose contacts turn
-// less has moved in part as if the impact took no time.
+// Positions of the balls at the end of the cluster, when no two of them overlap. A ball whose contacts turn
+// less has moved partly as if the impact were instantaneous.
 // @return false: the balls must stay in place
 bool Clusters::find_paths() {
     double duration = map_.duration();
@@ -241,7 +240,7 @@ bool Clusters::find_paths() {
     return duration_ > 0.0;
 }
 
-// [s] How long it takes until balls that overlap at the ends of their paths do not; 0: none overlap.
+// [s] Time until balls that overlap at the ends of their paths no longer do; 0: none overlap.
 double Clusters::overlap_ends() const {
     double longest = 0.0;
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -258,7 +257,7 @@ double Clusters::overlap_ends() const {
     return longest;
 }
 
-// Returns the first ball that a member meets on its path, kTable or kNone. A ball that no cluster may include
+// Returns the first ball that a member hits on its path, kTable or kNone. A ball that no cluster may include
 // counts as the table.
 int Clusters::find_obstacle() const {
     int found = kNone;
@@ -282,7 +281,7 @@ bool Clusters::is_member(int ball) const {
                        [ball](const ClusterBall& m) { return m.ball == ball; });
 }
 
-// Whether a ball on its path does not meet another one, which continues as it does now.
+// Whether a ball on its path misses another one that continues its present motion.
 bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) const {
     const Segment& s = balls_.segment(other);
     if (is_gone(s.state)) return true;
@@ -290,7 +289,7 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) co
     double touching = (ball.R + balls_.radius(other)) * (1.0 + kBoxShare);
     touching += 0.5 * duration_ * duration_ * length(s.a);
     if (balls_.collides(other) || s.held) {
-        // It may leave its cluster, or be pushed otherwise.
+        // The other one may leave its cluster, or be pushed by other balls.
         double speed = length(planar(balls_.velocity(other)));
         if (!s.held) speed = std::max(speed, length(planar(balls_.afterwards(other).v)));
         return length(apart) > touching + length(path) + duration_ * speed;
@@ -301,10 +300,10 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) co
     return length(apart + share * relative) > touching;
 }
 
-// Where a cluster takes no time, its solution moves the balls, but they stay in place. In the solution, a
+// In an instantaneous cluster, the solution moves the balls, but they stay in place. In the solution, a
 // glancing contact with a fast slip opens almost without force, because its normal turns while the balls pass
-// each other. In place they still approach, and the same cluster would recur ten thousand times. So every
-// touching contact must open in place: solve again with fixed normals, as in an impact of two balls.
+// each other. In place they still approach, and the same cluster would recur ten thousand times. Then solve
+// again with fixed normals, as in an impact of two balls.
 bool Clusters::closes_still(double v_n) const {
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const ClusterContact& c) {
         return c.gap == 0.0 && dot3(c.n, members_[c.i].v - members_[c.j].v) > kClosesStill * v_n;
@@ -333,8 +332,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         return in_space_ || unlike_ ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
                                     : map_.compliant(members_, contacts_, settings, v_n);
     };
-    // A ball that falls, or one in space, would move up or down during the cluster, and resting contacts
-    // would push others meanwhile.
+    // A falling ball, or one in space, would move up or down during the cluster, and resting contacts would
+    // push other balls meanwhile.
     may_last &= v_n > kSlowest && !in_space_ &&
                 std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
                     return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
@@ -342,7 +341,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     std::int64_t steps = run();
     if (steps >= 0 && may_last) {
         if (find_paths()) return steps;
-        // A ball that is met meanwhile joins. If that leads to no end, it meets a cluster that took no time.
+        // A ball that is hit meanwhile joins. If that does not help, the cluster is instantaneous and the
+        // ball is hit afterwards.
         while (obstacle_ != kTable && joined_.size() < kMostJoin) {
             joined_.push_back(obstacle_);
             collect_at(first_, second_, v_n);
@@ -364,11 +364,11 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         const std::int64_t more = run();
         steps = more < 0 ? more : steps + more;
     }
-    // Friction and a wedge can press balls together without end: the cluster is then resolved as rigid.
+    // Friction and a wedge can press balls together without end: then resolve the cluster as rigid.
     return steps < 0 ? rigid(settings) : steps;
 }
 
-// Balls that all lie push each other in the plane, whatever the tilt of their normals.
+// Balls on the cloth push each other in the plane, whatever the tilt of their normals.
 std::int64_t Clusters::rigid(const ClusterSettings& settings) {
     ClusterSettings without = settings;
     without.e_b = plan_.balls.e_b;

@@ -1,4 +1,4 @@
-// Ball-ball impacts with a third ball within reach: finds the members of such a cluster, and their motion
+// Ball-ball impacts with a third ball within reach: finds the members of such a cluster and their motion
 // after it.
 #pragma once
 
@@ -20,20 +20,20 @@ struct ClustersMemory {
     std::vector<std::array<double, 2>> nearest_;  // per ball
     std::vector<double> firm_;                    // per ball
     std::vector<Vec2> paths_;                     // per ball
-    std::vector<int> joined_;                     // balls that one of the others would meet meanwhile
+    std::vector<int> joined_;                     // balls that a member would hit during the cluster
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
   public:
     Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory);
 
-    /// Finds the cluster of two balls that meet at v_n [m/s]. @return the fastest approach in it [m/s]
+    /// Finds the cluster of two balls that collide at v_n [m/s]. @return the fastest approach in it [m/s]
     double collect(int a, int b, double v_n);
     /// The result of the last collect(). Without a third ball: two balls and no contacts.
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
-    /// Whether a ball found by the last collect() flies, or may leave the cloth in this model of the impact.
+    /// Whether a ball found by the last collect() flies, or may leave the cloth in this impact model.
     bool in_space() const { return in_space_; }
 
     /// Replaces the velocities and spins of balls() by those after the impact.
@@ -43,12 +43,12 @@ class Clusters : private Borrowed<ClustersMemory> {
     /// @return number of integration steps
     std::int64_t resolve(double v_n, bool friction, bool may_last);
 
-    /// [s] Duration of the cluster that was resolved last; 0: it takes no time, and the balls stay in place.
+    /// [s] Duration of the last resolved cluster; 0: instantaneous, and the balls stay in place.
     double duration() const { return duration_; }
-    /// [m] The displacement of the k-th ball in it.
+    /// [m] The displacement of the k-th ball during that time.
     const Vec2& path(std::size_t k) const { return paths_[k]; }
 
-    /// Number of balls that collect() has examined besides the first two; used by tests.
+    /// Number of balls that collect() examined besides the first two; for tests.
     std::int64_t looks() const { return looks_; }
 
   private:
@@ -74,7 +74,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
-    // The index of the ball for which the last cluster takes no time, or one of these two.
+    // The ball that made the last cluster instantaneous, or one of these two.
     static constexpr int kNone = -1, kTable = -2;
     int obstacle_ = kTable;
     bool in_space_ = false;

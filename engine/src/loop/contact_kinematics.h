@@ -1,4 +1,4 @@
-// The motion of a ball relative to what it touches.
+// The motion of a ball relative to its partner in a contact.
 #pragma once
 
 #include "contact/contact.h"
@@ -6,15 +6,13 @@
 
 namespace carom {
 
-/// A ball at a contact, with its closing speed and closing acceleration.
 struct ContactKinematics {
     Contact contact;
-    Vec2 n;            ///< unit, from the ball to the other one or into the table's part
+    Vec2 n;            ///< unit, from the ball to the other one or into the part
     double v_n = 0.0;  ///< [m/s] closing speed
     double a_c = 0.0;  ///< [m/s^2] closing acceleration
 };
 
-/// The kinematics of two balls that touch.
 ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two);
 
 }  // namespace carom

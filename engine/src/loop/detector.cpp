@@ -16,7 +16,7 @@ int rank(With with) {
 
 }  // namespace
 
-// Allocates all memory that the search needs and earlier runs did not.
+// Allocates all memory for the search that earlier runs have not allocated.
 Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& resting, Costs* costs,
                    DetectorMemory& memory)
     : Borrowed(memory),
@@ -35,7 +35,7 @@ Detector::Detector(const Plan& plan, const Balls& balls, const RestingContacts& 
     set_up_table();
 }
 
-// Measures the closing speed of a contact at its time: of simultaneous contacts, the fastest comes first.
+// The closing speed of a contact at its time: the fastest of simultaneous contacts comes first.
 double Detector::closing(const PredictedEvent& c) const {
     if (c.contact.with != With::kBall) return 0.0;
     const Segment &s = balls_.segment(c.contact.ball), &q = balls_.segment(c.contact.other);
@@ -69,7 +69,7 @@ Vec2 Detector::place(const PredictedEvent& c) const {
     return here;
 }
 
-// Order of simultaneous predicted events: kind, then greater closing(), then position (x, then y); never an
+// Order of simultaneous predicted events: kind, then larger closing(), then position (x, then y); never an
 // id.
 bool Detector::before_at_once(const PredictedEvent& x, const PredictedEvent& y) const {
     const int rank_x = rank(x.contact.with), rank_y = rank(y.contact.with);
@@ -81,7 +81,7 @@ bool Detector::before_at_once(const PredictedEvent& x, const PredictedEvent& y) 
     return place_x.y() < place_y.y();
 }
 
-// Call whenever a predicted event of the ball or the expiry of its box has changed.
+// Call after any change to a predicted event of the ball or to the expiry of its box.
 void Detector::requeue(int ball) {
     const Mover& mover = mover_[ball];
     queue_.set(ball,
@@ -104,8 +104,8 @@ bool Detector::must_search_again(int ball) const {
     return c.stamp != mover_[partner].stamp;
 }
 
-// Searches again for the contacts of balls whose box has expired or whose partner has changed its motion.
-// Then chooses among simultaneous events, using the present motions.
+// Repeats the search for balls whose box has expired or whose partner has changed its motion, then chooses
+// among simultaneous events by the present motions.
 PredictedEvent Detector::next() {
     const Stopwatch watch(detect_ns_);
     for (;;) {
@@ -126,7 +126,7 @@ PredictedEvent Detector::next() {
     }
 }
 
-// Updates the data of a ball whose motion an event has changed: its transition, table contact and box.
+// Updates the data of a ball after an event changed its motion: its transition, table contact and box.
 void Detector::renew(int ball) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);

@@ -1,8 +1,8 @@
 // Finds the next contact or state transition. Every ball has three predicted events: its state transition,
-// its first contact with the table and its first contact with another ball. Boxes exclude all that a ball
-// cannot reach before its own next event (broad phase), closed forms give the times of the other contacts
-// (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in detector.cpp (the
-// order), pair_search.cpp, table_search.cpp and flight_search.cpp.
+// its first contact with the table and its first contact with another ball. Boxes exclude everything that a
+// ball cannot reach before its own next event (broad phase), closed forms give the times of the remaining
+// contacts (contact/detect.h), and a queue orders the earliest times of all balls. Implemented in
+// detector.cpp (the order), pair_search.cpp, table_search.cpp and flight_search.cpp.
 #pragma once
 
 #include <algorithm>
@@ -32,26 +32,26 @@ struct PredictedEvent {
 
 /// The data of a ball besides its segment, in two cache lines.
 struct alignas(64) Mover {
-    double until = kNever;    ///< the box is valid until this time; later contacts have not been searched
+    double until = kNever;    ///< the box is valid until this time; later contacts are not searched yet
     double own = kNever;      ///< time of the ball's transition
     double surface = 0.0;     ///< R |w| at the start of the segment [m/s]
     std::uint32_t stamp = 0;  ///< incremented with every new segment
-    std::uint32_t round = 0;  ///< last search in which this ball's motion was new
-    /// First contact with another ball. It is kept until it is the next event, even if the partner's
-    /// motion has changed; then it is no later than the true first contact.
+    std::uint32_t round = 0;  ///< last search for which this ball's motion was new
+    /// First contact with another ball. Kept until it is the next event, even if the partner's motion has
+    /// changed; it is then no later than the true first contact.
     PredictedEvent pair;
     PredictedEvent table;  ///< first contact with the table
-    /// When the box expires; kNever if an event of the ball itself comes first
+    /// When the box expires; kNever if an event of the ball itself comes first.
     double refresh = kNever;
     double travel = 0.0;  ///< [m] distance that the next box covers
     bool straight = false;
-    bool asks_table = false;  ///< the table has not been searched: no box so far has reached a part of it
+    bool asks_table = false;  ///< the table is not searched yet: no box so far has reached it
 };
 
 struct DetectorMemory {
     std::vector<Mover> mover_;
-    std::vector<int> tied_;  // balls whose next event is at the same instant
-    EventQueue queue_;  // of the balls: the time of the first predicted event, or of the expiry of the box
+    std::vector<int> tied_;  // balls whose next events are simultaneous
+    EventQueue queue_;       // of balls: time of the first predicted event or of the box's expiry
     // boxes of balls until their own next event, and boxes of the parts of the table
     BoxSearch ball_boxes_, table_boxes_;
     std::vector<Contact> parts_;  // cushions, then noses, then pockets; without a ball
@@ -77,13 +77,13 @@ class Detector : private Borrowed<DetectorMemory> {
     void balls_near(const Box& box, Found found) const {
         ball_boxes_.overlapping(box, found);
     }
-    /// Calls found(contact) for every part of the table whose box overlaps this box; the contacts have no
+    /// Calls found(contact) for every part of the table whose box overlaps this box; the contacts contain no
     /// ball.
     template <class Found>
     void parts_near(const Box& box, Found found) const {
         table_boxes_.overlapping(box, [&](int part) { found(parts_[part]); });
     }
-    /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", the only user).
+    /// [m/s] Upper bound of the speeds of all balls so far (0 unless clusters = "compliant", its only user).
     double fastest() const { return fastest_; }
 
   private:
@@ -138,7 +138,7 @@ class Detector : private Borrowed<DetectorMemory> {
     double fastest_ = 0.0;
 };
 
-// Motion of a ball from the time `from`. Contacts are searched from the start of the segments, not from the
+// Motion of a ball from the time `from`. Contacts are searched from the starts of the segments, not from the
 // present time, so that the result depends only on the segments.
 inline Path Detector::path(int ball, double from) const {
     const Segment& s = balls_.segment(ball);

@@ -1,6 +1,6 @@
-// Finds the players with the earliest next event. Groups of sixteen times are compared without branches,
-// which could not be predicted. The earliest time of each group is an entry in the next level, until a level
-// has only one group. set_up() allocates all memory.
+// Finds the players with the earliest next event. Groups of sixteen times are compared without unpredictable
+// branches. The earliest time of each group is an entry in the next level; the last level is one group.
+// set_up() allocates all memory.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class EventQueue {
         level_.resize(levels);
     }
 
-    /// Sets the time of the next event of player i; infinite if there is none.
+    /// Sets the time of player i's next event; infinite if there is none.
     void set(int i, double time) {
         auto place = static_cast<std::size_t>(i);
         for (std::size_t level = 0;; ++level) {

@@ -1,4 +1,4 @@
-// Search for contacts of balls in the air.
+// Search for contacts of flying balls.
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -20,7 +20,7 @@ Flight Detector::flight(int ball, double from) const {
                 (length3(placed.velocity) + mover_[ball].surface)};
 }
 
-// [s] Time from `from` until two balls meet, at least one of which flies or falls into a pocket.
+// [s] Time from `from` until two balls collide, at least one of which flies or falls into a pocket.
 double Detector::time_to_flight(int a, int b, double from) const {
     const Flight one = flight(a, from), two = flight(b, from);
     const Flight relative{two.r - one.r, two.v - one.v, two.a - one.a, std::min(one.horizon, two.horizon),
@@ -28,7 +28,7 @@ double Detector::time_to_flight(int a, int b, double from) const {
     return flight_to_ball(relative, balls_.radius(a) + balls_.radius(b));
 }
 
-// [s] Time until a ball that flies over a pocket leaves its circle on the side without cloth.
+// [s] Time until a ball flying over a pocket leaves its circle on the side without cloth.
 double Detector::time_over_pocket(int index, const Path& path, double R) const {
     const Pocket& pocket = plan_.geometry.pockets[index];
     const double enters = time_to_pocket(path, pocket.center, pocket.radius);
@@ -41,8 +41,8 @@ double Detector::time_over_pocket(int index, const Path& path, double R) const {
 
 namespace {
 
-// [s] Time until the centre is over the disc of a jaw. The search for its nose ends by flight_over_disc(),
-// which also sees a graze that time_to_circle() passes by, and a centre that is over it already.
+// [s] Time until the centre is over the disc of a jaw, which ends the search for its nose. flight_over_disc()
+// adds grazes that time_to_circle() skips, and a centre that is over it already.
 double time_over_jaw(const Path& path, const Vec2& center, double radius) {
     const double over = time_to_circle(path, center, radius);
     return over < kNever ? over : flight_over_disc(path.r - center, path.v, radius, path.horizon);
@@ -56,9 +56,9 @@ bool Detector::over_pocket(const Vec2& here) const {
                        [&here](const Pocket& p) { return is_inside(p, here); });
 }
 
-// A flying ball meets noses at their height. Once over them it is out, and it meets a pocket only at its far
-// side. Landing is its own transition. Cloth may lie behind a cushion's line, if the table has a bed; there
-// is none inside a jaw.
+// A flying ball hits noses at their height. Once over them it is out; it meets a pocket only at its far side.
+// Landing is a state transition. If the table has a bed, cloth may lie behind a cushion's line, but never
+// inside a jaw.
 void Detector::search_table_in_air(int ball) {
     PredictedEvent& first = mover_[ball].table;
     const double start = balls_.segment(ball).start, R = balls_.radius(ball);

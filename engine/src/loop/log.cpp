@@ -17,10 +17,10 @@ namespace carom {
 
 namespace {
 
-// [-] Initial capacity for segments and events: enough for a break. It doubles when full.
+// [-] Initial capacity for segments and events: enough for a break. Doubles when full.
 constexpr std::size_t kRoom = 256;
-// [sqrt(2 R/g)] A ball in the air that has stayed in place for this long balances. If it were off balance
-// only by rounding, it would slide off in half this time. That is 5 s for a pool ball.
+// [sqrt(2 R/g)] A flying ball that has stayed in place for this long is balanced: 5 s for a pool ball. A ball
+// off balance only by rounding would slide off in half this time.
 constexpr double kLongestBalance = 65.0;
 
 }  // namespace
@@ -98,8 +98,7 @@ void Log::end_set_up(double set_up_ns) {
     *costs_ = {};
 }
 
-// An iteration can cause several events: the first one gets the cost. If it causes none, its cost goes to the
-// next event.
+// If an iteration causes several events, the first one gets the cost; if it causes none, the next event does.
 void Log::book_costs() {
     event_costs_.resize(events_.size());
     EventCost& cost = costs_->event;
@@ -108,7 +107,7 @@ void Log::book_costs() {
         event_costs_[events_before_] = cost;
         *costs_ = {};
     } else {
-        cost.steps = 0;  // of an impact that caused no event
+        cost.steps = 0;  // of an impact without an event
         cost.method = {};
     }
 }
@@ -146,13 +145,13 @@ void Log::fail(const std::string& why) {
         text += fmt::format("  {} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", id(i),
                             name(s.state), r.x(), r.y(), v.x(), v.y(), w.x(), w.y(), w.z());
     }
-    text.pop_back();  // a message has no final line break
+    text.pop_back();  // messages do not end with a line break
     if (keep_ != Keep::kRecord) throw SimulationError(text);
     if (costs_) event_costs_.resize(events_.size());
     throw SimulationError(text, std::make_shared<const Record>(record(StopReason::kEvents)));
 }
 
-// An empty record for this run, in the memory that the record has.
+// An empty record for this run, in the record's existing memory.
 void Log::begin_record(Record& record) const {
     const Scene& scene = plan_.scene;
     record.clear();

@@ -31,7 +31,7 @@ struct LogMemory {
     std::vector<ClusterBall> cluster_ball_;
     std::vector<std::size_t> cluster_end_;
     std::vector<int> touched_;
-    /// Of a ball in the air: where it has stayed, apart from trembling, and since when [s].
+    /// For a ball in the air: where it has stayed, apart from trembling, and since when [s].
     struct Stay {
         double since;
         Vec3 place;
@@ -41,7 +41,7 @@ struct LogMemory {
 };
 
 class Log : private Borrowed<LogMemory> {
-    /// [-] Most consecutive iterations without an event; with more, the simulation is stalled.
+    /// [-] Most consecutive iterations without an event; more mean that the simulation is stalled.
     static constexpr int kQuietCap = 1000000;
 
   public:
@@ -53,7 +53,7 @@ class Log : private Borrowed<LogMemory> {
         if (keep_ != Keep::kOutcome || ball == struck_) segments_.push_back({segment, ball});
         touched_.push_back(ball);
     }
-    /// Starts the motion of a ball in a cluster that lasts, together with `other`.
+    /// Starts the motion of a ball in a cluster that takes time, together with `other`.
     void begin_colliding(int ball, const Segment& segment, const Segment& afterwards, int other) {
         begin(ball, segment);
         balls_.set_afterwards(ball, afterwards, other);
@@ -63,7 +63,7 @@ class Log : private Borrowed<LogMemory> {
         quiet_rounds_ = 0;
     }
     /// Call when a ball that may fly has begun a motion after an impact. @throws SimulationError if it
-    /// trembles forever in the air on whatever is under it
+    /// trembles forever on top of another body
     void watch(int ball);
     /// The last event was a slow contact.
     void mark_slow() { events_.back().slow = true; }
@@ -71,9 +71,9 @@ class Log : private Borrowed<LogMemory> {
     void event(EventType type, const Contact& contact) {
         event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));
     }
-    /// A simultaneous impact of several balls, begun by a and b; `balls` are ordered by position.
+    /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls);
-    /// The ball drops into the pocket now.
+    /// The ball falls into the pocket now.
     void fall(int ball, int pocket);
 
     const std::vector<Event>& events() const { return events_; }
@@ -96,14 +96,14 @@ class Log : private Borrowed<LogMemory> {
         if (costs_) book_costs();
         if (options_.progress) report_progress();
     }
-    /// Marks this iteration as long, so that it ends with a report of progress.
+    /// Marks this iteration as slow, so that it ends with a progress report.
     void note_long_round() { long_round_ = true; }
 
-    /// @throws SimulationError with the state of all moving balls, and the record if one is kept. The log is
-    /// empty afterwards.
+    /// @throws SimulationError with the state of all moving balls, and the record if one is kept. Empties the
+    /// log.
     [[noreturn]] void fail(const std::string& why);
 
-    /// The record; the log is empty afterwards.
+    /// The record; empties the log.
     Record record(StopReason why);
     /// The same in the memory of `record`.
     void record(StopReason why, Record& record);

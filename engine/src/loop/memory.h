@@ -5,8 +5,8 @@
 
 namespace carom {
 
-/// Takes memory over for its lifetime and then returns it, for the next run to use. A derived class has the
-/// members of `Memory` as its own.
+/// Takes memory over for its own lifetime, then returns it for the next run. A derived class has the members
+/// of `Memory` as its own.
 template <class Memory>
 class Borrowed : protected Memory {
   public:

@@ -14,7 +14,7 @@ namespace carom {
 
 namespace {
 
-/// The member of a cluster that is nearest to this ball; -1 if the ball is not in the cluster.
+/// The member of a cluster nearest to this ball; -1 if the ball is not in it.
 int nearest(std::span<const ClusterBall> cluster, int ball) {
     const auto self =
         std::find_if(cluster.begin(), cluster.end(), [ball](const ClusterBall& b) { return b.ball == ball; });
@@ -42,7 +42,7 @@ int struck_ball(const Scene& scene) {
     return -1;
 }
 
-/// Whether the struck ball was driven to the cushion or jaw that it meets in this event.
+/// Whether the struck ball was driven to its partner in this event, a cushion or jaw.
 bool Log::is_driven(const Event& event) {
     if (of_struck_.empty())
         for (const BallSegment& s : segments_)

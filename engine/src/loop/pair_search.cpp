@@ -47,8 +47,8 @@ Box Detector::swept(int ball, double from, double duration) const {
     return box;
 }
 
-// Whether a ball whose boxes cover short ways waits for one that reaches a part of the table before it
-// searches the table: most balls of many are far from it.
+// Whether a ball whose boxes cover short distances searches the table only once a box reaches a part of it:
+// if there are many balls, most are far from the table's parts.
 bool Detector::may_wait(int ball) const {
     const Segment& s = balls_.segment(ball);
     return plan_.pairs && !flights_ && translates(s.state) && s.state != MotionState::kFalling;
@@ -85,7 +85,7 @@ void Detector::bound(int ball, double from, const RoundedBox* whole) {
 }
 
 // First contact of two balls. May return none if it is later than `latest`, or than the next own event of one
-// of them, after which its contacts are searched again. `mine` is the path of ball a from the start of its
+// of them, after which its contacts are searched again anyway. `mine` is ball a's path from the start of its
 // segment.
 PredictedEvent Detector::pair(int a, const Path& mine, int b, double latest) const {
     const Segment &s = balls_.segment(a), &q = balls_.segment(b);
@@ -114,7 +114,7 @@ void Detector::offer(int ball, int partner, PredictedEvent c) {
     requeue(ball);
 }
 
-// Finds the contacts of one ball with others, and offers each to both balls.
+// Finds the contacts of one ball with others, and offers each contact to both balls.
 void Detector::search_pairs(int ball) {
     ball_boxes_.rebuild_if_due();
     const Path mine = path(ball, balls_.segment(ball).start);
@@ -130,8 +130,8 @@ void Detector::search_pairs(int ball) {
     });
 }
 
-// Updates the upper bound of all speeds, for the search for clusters. The speed in a segment is largest at
-// one of its ends. The bound only increases, and no result depends on its value.
+// Updates the upper bound of all speeds, for the cluster search. The speed in a segment is largest at one of
+// its ends. The bound only increases, and no result depends on it.
 void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, length(planar(s.v)));
     if (flights_ && flies(s.state))
@@ -140,7 +140,7 @@ void Detector::bound_speed(const Segment& s) {
     fastest_ = std::max(fastest_, s.duration < kNever ? length(planar(velocity_at(s, s.duration))) : kNever);
 }
 
-// Searches again without an event: the ball's box has expired, or its expected contact does not happen.
+// Searches again without an event: the ball's box has expired, or its predicted contact does not happen.
 void Detector::search_again(int ball) {
     const Stopwatch watch(search_ns_);
     Mover& mover = mover_[ball];

@@ -80,8 +80,8 @@ void Resolver::ball_ball(int a, int b) {
         free_balls(a, b);
         return;
     }
-    // Ball 1 is the one with the smaller x, then y, so that the result does not depend on the ids, to the
-    // last bit.
+    // Ball 1 is the one with the smaller x, then y, so that the ids do not affect the result, to the last
+    // bit.
     const Vec3 ra = balls_.position(a), rb = balls_.position(b);
     const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
     const int one = swap ? b : a, two = swap ? a : b;
@@ -91,7 +91,7 @@ void Resolver::ball_ball(int a, int b) {
     if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
 
-    // In the plane, at whatever height one of them began to fall.
+    // In the plane, ignoring the height at which one of them began to fall.
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
     const double up = plan_.sizes[two].R - plan_.sizes[one].R;
     const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
@@ -117,11 +117,11 @@ void Resolver::ball_ball(int a, int b) {
     resting_.go_on();
 }
 
-// A slow cluster may contain another contact that is pressed together, besides the first one. As a resting
-// contact it drives that one too; after a common bounce the two would meet again and again.
+// A slow cluster may contain another pressed contact besides the first one. As a resting contact it drives
+// that one too; after a common bounce the two would collide again and again.
 bool Resolver::hold_in_cluster(Pressed when) {
-    // Before an impact, slow rolling balls decelerate and seem to separate; after it, this shows whether the
-    // bounce ends.
+    // Before an impact, slowly rolling balls decelerate and seem to separate; their motion after it shows
+    // whether the bounce ends.
     const auto pressing = [this](const ClusterBall& p, const ClusterBall& q) {
         const auto segment = [this](const ClusterBall& b) {
             return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
@@ -148,8 +148,8 @@ bool Resolver::cluster(int a, int b, double v_n) {
     v_n = clusters_.collect(a, b, v_n);
     if (clusters_.balls().size() < 3) return false;
     const bool in_space = clusters_.in_space();
-    // Slow contacts of balls in the air separate pair by pair, however fast other contacts are: the cloth
-    // would press them together again and again.
+    // Slow contacts of flying balls separate pair by pair, however fast other contacts are: otherwise the
+    // cloth would press them together again and again.
     if (in_space && parts_slowly) return false;
     // Whether the balls approach so slowly that friction alone could end the rebound within the Hertz contact
     // time.
@@ -186,7 +186,7 @@ bool Resolver::cluster(int a, int b, double v_n) {
     return true;
 }
 
-// Every ball moves straight to its place at the end of the cluster, and freely from there.
+// Every ball moves straight to its position at the end of the cluster, and freely from there.
 void Resolver::begin_cluster(int a, int b) {
     const std::vector<ClusterBall>& members = clusters_.balls();
     log_.cluster(a, b, members);
@@ -210,8 +210,8 @@ void Resolver::end_cluster(int ball) {
     }
 }
 
-// A ball of a cluster that meets something else leaves it, with the velocity that it would have afterwards.
-// Whether the two then still meet is searched again.
+// A ball that hits something else during a cluster leaves it, with its velocity after the cluster. The search
+// then decides again whether the two collide.
 bool Resolver::leave_cluster(const Contact& contact) {
     if (contact.with == With::kNothing) return false;
     bool left = false;
@@ -249,8 +249,8 @@ void Resolver::cushion(const Contact& contact) {
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another model",
                         model, log_.id(ball)));
     const Segment after = after_impact(ball, r, moves.v, moves.w);
-    // A ball that rolls in slowly decelerates before the impact, but the spin that it keeps drives it back to
-    // the cushion and ends the bounce. So the acceleration after the impact decides.
+    // A ball that rolls in slowly decelerates before the impact, but its remaining spin drives it back to the
+    // cushion and ends the bounce. So the acceleration after the impact decides.
     for (TableTouch& touch : touches) {
         touch.approach.a_c = touch.pressing(after.a);
         held |= holds(touch.approach.v_n, motion.slide, e_c) && resting_.try_begin(touch.approach, e_c);
@@ -289,8 +289,8 @@ void Resolver::pocket(const Contact& contact) {
     log_.event(EventType::kBallEdge, contact);
 }
 
-// Whether another ball is in the place where a ball would leave a pocket: it passed over while the ball was
-// sunk.
+// Whether another ball occupies the position where a ball would leave a pocket, having passed over while the
+// ball was sunk.
 bool Resolver::is_barred(int ball, const Vec3& place) const {
     const double R = balls_.radius(ball), reach = R * (1.0 + kBoxShare);
     bool barred = false;

@@ -30,7 +30,7 @@ class Resolver {
     void begin_cluster(int a, int b);
     void end_cluster(int ball);
     bool leave_cluster(const Contact& contact);
-    /// Whether the accelerations before or after the impact decide that balls are pressed together.
+    /// Whether the accelerations before or after the impact decide if balls are pressed together.
     enum class Pressed : std::uint8_t { kBefore, kAfter };
     bool hold_in_cluster(Pressed when);
     void cushion(const Contact& contact);

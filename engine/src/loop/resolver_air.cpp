@@ -1,4 +1,4 @@
-// Impacts of balls in the air, and those after which balls leave the cloth.
+// Impacts of flying balls, and impacts after which balls leave the cloth.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -12,19 +12,18 @@ namespace carom {
 
 namespace {
 
-// [R] A ball that has flown over a pocket falls into it if it is no higher than this at the far side.
-// pooltool's value.
+// [R] A ball that has flown over a pocket falls into it if it is no higher than this at the far side. Value
+// of pooltool.
 constexpr double kCatchHeight = 1.4;
 
 }  // namespace
 
-/// Whether two balls meet as free bodies: in space, or because the model treats them so.
+/// Whether two balls collide as free bodies: in space, or because the model treats them so.
 bool Resolver::is_free(int a, int b) const {
     return plan_.ball_ball->free || balls_.in_space(a, b);
 }
 
-/// Begins the motion of a ball after an impact. A ball that lies on the cloth and is pressed down hits the
-/// cloth now.
+/// Begins the motion of a ball after an impact. A ball on the cloth that is pressed down hits the cloth now.
 void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
     const MotionParams& motion = balls_.motion(ball);
     const bool lies = !(r.z() > motion.R);
@@ -36,7 +35,7 @@ void Resolver::go_on(int ball, const Vec3& r, Velocities after) {
     log_.watch(ball);
 }
 
-/// Continues the fall of a ball into a pocket after a hit in space.
+/// Continues the fall of a ball into a pocket after a collision in space.
 void Resolver::fall_on(int ball, const Vec3& r, const Velocities& after) {
     const MotionParams& motion = balls_.motion(ball);
     const double falls = -after.v.z(), fallen = falls * falls / (2.0 * motion.gravity);

@@ -62,8 +62,8 @@ void RestingContacts::note(const Bounce& bounce) {
     next_bounce_ = (next_bounce_ + 1) % resting::kBouncesKept;
 }
 
-// Whether the closing speed of a contact has fallen since this bounce. Of one that is not known any more,
-// among a thousand others since, it is taken to have.
+// Whether the closing speed of a contact has fallen since this bounce. Assumes that it has if the bounce is
+// no longer stored.
 bool RestingContacts::has_fallen(const Event& from, const Contact& contact, double v_n) const {
     for (std::size_t k = 0; k < bounces_.size(); ++k) {
         const Bounce& b = bounces_[(next_bounce_ + k) % bounces_.size()];
@@ -77,7 +77,7 @@ bool RestingContacts::find(const Contact& contact) const {
                        [&](const RestingContact& c) { return c.contact.same(contact); });
 }
 
-// Whether the speed at which a contact closes may be lost: a bounce that loses nothing continues.
+// Whether the closing speed of a contact may be discarded: a lossless bounce continues.
 bool RestingContacts::may_lose(const ContactKinematics& a) const {
     if (!lossless_) return true;
     const int partner = a.contact.partner();
@@ -88,12 +88,13 @@ bool RestingContacts::may_lose(const ContactKinematics& a) const {
 
 // A contact becomes a resting contact if
 //   - the rebound would be shorter than the Hertz contact time (holds()). The acceleration is that of the
-//     contact or, if a ball is already in a resting contact, the one that friction alone could cause. Bounces
-//     within a group lose a share of their speed each, so that it takes ten times as many for every power of
-//     ten down to rounding; their limit is the resting contact, which the group's solution keeps or opens.
-//   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or if an impact goes back and
-//     forth through balls that rest on each other between two rails. The limit is again the resting contact.
-//     Elastic bounces count only if the closing speed has in fact fallen.
+//     contact or, if a ball is already in a resting contact, the one that friction alone could cause. Each
+//     bounce within a group loses a fraction of its speed, so bouncing down to rounding would need ten times
+//     as many for every power of ten; their limit is the resting contact, which the group's solution keeps or
+//     opens.
+//   - or it has chattered (Zeno behaviour), as in a wedge with a plastic side, or when an impact travels back
+//     and forth through balls that rest on each other between two rails. The limit is again the resting
+//     contact. Elastic bounces count only if the closing speed has in fact fallen.
 bool RestingContacts::try_begin(const ContactKinematics& a, double restitution) {
     const Contact& c = a.contact;
     const int partner = c.partner();
@@ -121,12 +122,12 @@ bool RestingContacts::in_contact(int ball) const {
 }
 
 void RestingContacts::start(int ball) {
-    // The contact of a ball that fell into a pocket did not begin.
+    // A ball that fell into a pocket has no contact to start.
     if (in_contact(ball)) solve(ball, Transitions::kNotYet);
 }
 
 bool RestingContacts::chatters(const Contact& contact, double v_n) const {
-    // Bounces without losses continue. Only those without duration must end.
+    // Lossless bounces continue; only those without duration must end.
     const double since = lossless_ ? balls_.now() : balls_.now() - resting::kChatterSpan;
     const double restitution = contact.with == With::kBall ? plan_.balls.e_b : plan_.balls.e_c;
     int bounces = 0;
@@ -138,7 +139,7 @@ bool RestingContacts::chatters(const Contact& contact, double v_n) const {
         if (phase != EventPhase::kImpact && phase != EventPhase::kHold) continue;
         if (!contact_of(e).same(contact)) continue;
         bounces += phase == EventPhase::kHold || e.type == EventType::kBallCluster ? resting::kManyAtOnce : 1;
-        // Most impacts have none before them, so the limit is counted only from the least of all limits on.
+        // Computed late, because most impacts have no bounces before them.
         if (bounces >= resting::kFewestBounces && bounces >= most_bounces(restitution))
             return restitution < 1.0 || e.time == balls_.now() || has_fallen(e, contact, v_n);
     }
@@ -232,8 +233,8 @@ bool RestingContacts::has_come_to_transition(const Segment& s) const {
     return s.held && s.ends && s.start + s.duration <= balls_.now();
 }
 
-// The balls connected to this ball by resting contacts, in their present states. Removes their contacts from
-// the list.
+// Removes from the list the contacts of this ball's group, all balls connected to it by resting contacts.
+// Returns the group in its present state.
 RestingGroup RestingContacts::group_of(int ball, Transitions transitions) {
     std::vector<int> members{ball};
     const auto is_member = [&](int b) {
@@ -295,7 +296,7 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     }
 }
 
-// Logs the transitions that really happened: a ball that the group drives on at once has not stopped, and a
+// Logs only transitions that really happened: a ball that the group drives on at once has not stopped, and a
 // ball that keeps sliding has no event.
 void RestingContacts::log_transitions(const RestingGroup& group) {
     for (const RestingBall& member : group.balls) {
@@ -307,8 +308,8 @@ void RestingContacts::log_transitions(const RestingGroup& group) {
     }
 }
 
-// A ball that moves past the end of its cushion leaves it once the remaining time is below the resolution of
-// the clock.
+// A ball moving past the end of its cushion leaves it once the remaining time is below the clock's
+// resolution.
 bool RestingContacts::release_past_ends(RestingGroup& group) {
     return std::erase_if(group.contacts, [this](const RestingContact& c) {
                const int ball = c.contact.ball;
@@ -322,7 +323,7 @@ bool RestingContacts::release_past_ends(RestingGroup& group) {
            }) > 0;
 }
 
-// Sorts contacts by position on the table, which does not depend on ids or on the order in which they began.
+// Sorts contacts by position on the table, independent of ids and of the order in which they began.
 void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const {
     const auto place_of = [this](const RestingContact& c) {
         return Vec2(planar(balls_.position(c.contact.ball)) + balls_.radius(c.contact.ball) * c.n);

@@ -14,7 +14,6 @@
 namespace carom {
 
 struct RestingMemory {
-    /// A ball and its motion after an impact.
     struct Struck {
         int ball;
         Segment segment;
@@ -27,7 +26,7 @@ struct RestingMemory {
     };
     std::vector<RestingContact> contacts_;
     std::vector<Struck> struck_;
-    std::vector<Bounce> bounces_;  ///< the latest ones, the oldest of them at next_bounce_
+    std::vector<Bounce> bounces_;  ///< the latest ones, the oldest at next_bounce_
     std::size_t next_bounce_ = 0;
 };
 
@@ -50,8 +49,8 @@ class RestingContacts : private Borrowed<RestingMemory> {
     /// one.
     bool try_begin(const ContactKinematics& approach, double restitution);
     void start(int ball);
-    /// Ends all resting contacts of a ball before another event
-    /// changes its motion; its partners continue without it.
+    /// Ends all resting contacts of a ball before another event changes its motion; its partners continue
+    /// without it.
     void release(int ball);
     /// Stores the motion of a ball after an impact; go_on() begins all stored motions together. A resting
     /// contact of these balls continues if it closes or opens so slowly that friction alone could press or
@@ -62,7 +61,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     void advance(int ball);
 
   private:
-    /// Whether to apply first the state transitions that are due at the end of an interval.
+    /// Whether to apply the due state transitions first.
     enum class Transitions : std::uint8_t { kNotYet, kDue };
 
     bool find(const Contact& contact) const;
@@ -86,7 +85,7 @@ class RestingContacts : private Borrowed<RestingMemory> {
     const Plan& plan_;
     const Balls& balls_;
     Log& log_;
-    const bool lossless_;  // nothing dissipates energy, so that no bounces end
+    const bool lossless_;  // nothing dissipates energy, so bounces never end
 };
 
 }  // namespace carom

@@ -21,13 +21,13 @@ struct RunBuffers::Memory {
 
 class Run {
   public:
-    /// @param keep  what the log must keep, which depends on the result wanted
+    /// @param keep  what the log must store for the requested result
     Run(const Plan& plan, const SimulateOptions& options, RunBuffers::Memory& memory,
         Keep keep = Keep::kRecord);
 
     Record simulate();
     void simulate(Outcome& outcome);
-    /// Both, with the record in the memory that it already has.
+    /// Both, with the record in its existing memory.
     void simulate(Outcome& outcome, Record& record);
 
     const Clusters& clusters() const { return resolver_.clusters(); }
@@ -38,8 +38,8 @@ class Run {
     void check_digits(int ball, double time);
     void check_creeping(double time);
     [[noreturn]] void lose(int ball, double when);
-    /// Whether the run has reached its number of events. @throws SimulationError if [stop] did not ask for
-    /// that
+    /// Whether the run has reached its number of events. @throws SimulationError if [stop] does not set that
+    /// number
     bool is_full();
     StopReason stop(double next);
 

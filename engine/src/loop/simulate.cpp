@@ -1,4 +1,4 @@
-// The event loop: find the next event -> advance -> resolve -> search the contacts of the balls that changed.
+// The event loop: find the next event -> advance -> resolve -> search the contacts of the changed balls.
 #include "carom/engine/simulate.h"
 
 #include <fmt/format.h>
@@ -17,9 +17,9 @@ namespace carom {
 
 namespace {
 
-// [R] A run fails if the resolution of its clock leaves a ball's position uncertain by more than this.
+// [R] A run fails if the clock's resolution leaves a ball's position uncertain by more than this.
 constexpr double kLostShare = 1e-3;
-// [s] Before this the clock is fine enough for any speed that a scene allows, and is not checked.
+// [s] Before this the clock is fine enough for any legal speed, and is not checked.
 constexpr double kDigitsAreMany = 1e3;
 
 }  // namespace
@@ -78,7 +78,7 @@ StopReason Run::run() {
 }
 
 // Without friction a slow ball can move for so long that the clock's resolution no longer suffices: it would
-// pass through what it meets.
+// pass through other bodies.
 void Run::check_digits(int ball, double time) {
     const Segment& s = balls_.segment(ball);
     const double R = balls_.radius(ball);
@@ -86,9 +86,9 @@ void Run::check_digits(int ball, double time) {
     if (time > end) lose(ball, end);
 }
 
-// Closing speeds below the rounding of a ball's surface speed count as no approach. With much spin and no
-// friction a ball may creep that slowly, and would pass through what it never meets. A faster one meets
-// something first, or is gone.
+// Closing speeds below the rounding of a ball's surface speed do not count as an approach. With much spin and
+// no friction a ball may creep that slowly, and would pass through other bodies. A faster ball hits something
+// first, or is gone.
 void Run::check_creeping(double time) {
     const Geometry& g = plan_.geometry;
     if (!plan_.pairs && g.cushions.empty() && g.noses.empty()) return;

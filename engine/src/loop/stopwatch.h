@@ -7,7 +7,7 @@
 
 namespace carom {
 
-/// Costs since the last event; those of iterations without an event count towards the next one.
+/// Costs since the last event; iterations without an event count towards the next one.
 struct Costs {
     EventCost event;         ///< queue_ns is computed at the end
     double search_ns = 0.0;  ///< part of event.detect_ns: the search for contacts

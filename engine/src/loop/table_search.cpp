@@ -14,7 +14,6 @@ Box around(const Vec2& center, double reach) {
     return {center.x() - reach, center.y() - reach, center.x() + reach, center.y() + reach};
 }
 
-/// Whether all parts are in the same positions.
 bool same_places(const Geometry& a, const Geometry& b) {
     const auto same = [](const auto& x, const auto& y, auto equal) {
         return std::equal(x.begin(), x.end(), y.begin(), y.end(), equal);
@@ -32,7 +31,7 @@ bool same_places(const Geometry& a, const Geometry& b) {
 
 }  // namespace
 
-// A batch plays most of its shots on one table, so its boxes are kept.
+// Most shots of a batch use the same table, so its boxes are kept.
 void Detector::set_up_table() {
     const Geometry& g = plan_.geometry;
     if (table_search_ == plan_.table_search && same_places(g, table_)) return;
@@ -79,7 +78,7 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
         search_table_in_air(ball);
         return;
     }
-    if (!translates(s.state)) {  // a ball that rests inside the circle of a pocket falls
+    if (!translates(s.state)) {  // a resting ball inside a pocket's circle falls
         for (const int part : near_) {
             const Contact contact = parts_[part].of(ball);
             if (contact.with == With::kPocket &&
@@ -90,14 +89,14 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     }
     const Path p = path(ball, s.start);
     const bool falls = s.state == MotionState::kFalling;
-    if (falls) {  // it may come over the edge again
+    if (falls) {  // it may return over the edge
         const int under = pocket_under(plan_.geometry, p.r);
         const Pocket& pocket = plan_.geometry.pockets[under];
         const double t = time_to_edge(p.r, p.v, pocket.center, pocket.radius);
         if (t < s.duration) first = {s.start + t, {ball, With::kPocket, under}};
     }
     for (const int part : near_) {
-        // Contacts after the first one found so far are not needed: it limits the window of the quick
+        // Contacts after the first one found so far are not needed: that one limits the window of the quick
         // rejection.
         const Contact contact = parts_[part].of(ball);
         if (falls && contact.with == With::kPocket) continue;
@@ -106,7 +105,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     }
 }
 
-// [s] Time until the contact; kNever if the ball stays away for the whole window, or is already in it.
+// [s] Time until the contact; kNever if the ball stays away for the whole window, or already has this
+// contact.
 double Detector::time_to(const Contact& contact, const Path& p, double window) const {
     const double R = balls_.radius(contact.ball);
     switch (contact.with) {

@@ -9,13 +9,13 @@ namespace carom {
 
 namespace {
 
-// [R] Height of the lowest bounce: a ball at rest sinks into the cloth by this much.
+// [R] Height of the lowest bounce: the depth to which a resting ball sinks into the cloth.
 constexpr double kBounceApex = 0.0045;
-// [bounce_end] Speed at which a slow contact separates. Such contacts occur about 1000 times a second, and
-// raise the energy by at most 1.3e-5 J/kg.
+// [bounce_end] Separation speed of a slow contact. Such contacts occur about 1000 times a second, and raise
+// the energy by at most 1.3e-5 J/kg.
 constexpr double kPartingShare = 0.1;
-// [-] A contact with less restitution is slow only if it would be with this one: a plastic contact at metres
-// a second has its friction.
+// [-] A contact with less restitution is treated as having this one when deciding whether it is slow: so a
+// plastic contact at metres per second still has friction.
 constexpr double kSlowRestitution = 0.5;
 
 }  // namespace

@@ -60,8 +60,8 @@ constexpr BallBallModelInfo kElastic = {
     .source = "exchange of the normal velocities",
     .collide = elastic,
 };
-// The free impact of two balls, then that of the cloth on those that it presses down (airborne.h). If no
-// ball can leave the cloth, it is the planar impact of balls without friction or of equal height.
+// The free impact of two balls, then the cloth's impact on balls that it presses down (airborne.h). If no
+// ball can leave the cloth, this is the planar impact of balls without friction or of equal height.
 constexpr BallBallModelInfo kTwoStep = {
     .name = "two_step",
     .source = "A. Domenech, Int. J. Mech. Sci. 50 (2008): ball on ball, then ball on cloth",
@@ -158,7 +158,7 @@ namespace effects {
     const Vec2 y = apart / length(apart), x(y.y(), -y.x());
     const double S = (R2 - R1) / (R1 + R2), C = std::sqrt((1.0 - S) * (1.0 + S));
     const Vec3 v = ball1.v - ball2.v;
-    // [rad/s] Both spins as one of ball 1. For equal radii, no factor here changes a bit.
+    // [rad/s] Both spins as one spin of ball 1. For equal radii, the factors here change no bit.
     const Vec3 w = ball1.w + (R2 / R1) * ball2.w;
     const double along = x.x() * v.x() + x.y() * v.y() - C * (R1 * w.z()) + S * (R1 * dot(y, planar(w)));
     const double upward = R1 * (x.x() * w.x() + x.y() * w.y()) - S * dot(y, planar(v));
@@ -176,7 +176,7 @@ Ball kernel_ball(const Vec3& r, const Velocities& at) {
 }  // namespace
 
 ImpactParams PairLaw::params(const BallSize& size1, const BallSize& size2, double mu_b) const {
-    // Between equal balls without friction nothing presses a ball on the cloth.
+    // Between equal balls without friction nothing presses a ball onto the cloth.
     const double mu_s = mu_b != 0.0 || size1.R != size2.R ? balls.mu_s : 0.0;
     return {.R = size1.R,
             .m = size1.m,

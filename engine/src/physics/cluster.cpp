@@ -17,16 +17,16 @@ constexpr std::size_t kCacheLine = 64;  // [bytes]
 
 // [L/V] The integration continues while a listed pair would touch within this time.
 constexpr double kClusterLookAhead = 4.0;
-// [-] Largest exponent of the unloading law; inside a cluster, restitutions below 0.05 count as 0.05.
+// [-] Largest exponent of the unloading law; in a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
-// [-] Sweeps of the rigid projection; a rack of 15 takes about 500.
+// [-] Limit on sweeps of the rigid projection; a rack of 15 needs about 500.
 constexpr std::int64_t kRigidSweeps = 100000;
 
 }  // namespace
 
 double fifth_root(double x) {
     if (x == 0.0) return 0.0;
-    // x = 2^(5 q) f with f in [1, 32): start from a straight line in f, then apply a fixed number of Newton
+    // x = 2^(5 q) f with f in [1, 32): start from a linear function of f, then apply a fixed number of Newton
     // steps to y^5 = f.
     int exponent = static_cast<int>((std::bit_cast<std::uint64_t>(x) >> 52) & 0x7FF) - 1023;
     if (exponent == -1023) return fifth_root(x * 0x1p500) * 0x1p-100;  // subnormal
@@ -46,7 +46,7 @@ double fifth_root(double x) {
 }
 
 double contact_length(double V) {
-    // V^4 would underflow, but a contact has a length at any speed. The scale changes no bit.
+    // V^4 would underflow, but a contact has a length at any speed. The scaling changes no bit.
     if (V < 0x1p-200 && V > 0.0) return contact_length(V * 0x1p250) * 0x1p-200;
     const double x = V * V / kContactStiffness;
     return fifth_root(x * x);
@@ -74,8 +74,8 @@ kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
             s.mu_b_fall * V, slide};
 }
 
-// The integration reads and writes four numbers at once. Aligned to a cache line, none of these groups
-// crosses two lines; at other addresses, the contact phase of a break took a fifth longer.
+// The integration reads and writes four numbers at once. With cache-line alignment, no such group crosses two
+// lines; otherwise, the contact phase of a break took 20% longer.
 double* on_cache_line(std::vector<double>& numbers) {
     void* first = numbers.data();
     std::size_t space = numbers.size() * sizeof(double);
@@ -126,8 +126,8 @@ double ClusterMap::energy(int axes) const {
     return e;
 }
 
-// Step error can raise the energy if e = 1 and mu = 0: scale the velocities about their mean so that it does
-// not. That keeps the momentum and the signs of relative velocities.
+// The step error can raise the energy if e = 1 and mu = 0. Scaling the velocities about their mean prevents
+// that and preserves the momentum and the signs of relative velocities.
 void ClusterMap::keep_energy(double before, int axes) {
     const double after = energy(axes);
     if (!(after > before)) return;
@@ -154,16 +154,16 @@ void ClusterMap::keep_energy(double before, int axes) {
 
 namespace {
 
-// L/(2 R), by which normals turn. The stiffness is that of pool balls, so that
-// small balls at hundreds of m/s would overlap by more than their radius, and then
-// no normal is left; they are taken for larger ones that touch in the same places.
+// L/(2 R), by which normals turn. The stiffness is that of pool balls, so small balls at hundreds of m/s
+// would overlap by more than their radius and have no normal. They are treated as larger balls that touch at
+// the same points.
 double curvature(double L, double R, bool turns) {
     constexpr double kLargest = 0.125;
     return turns ? std::min(kLargest, L / (2.0 * R)) : 0.0;
 }
 
-// A slow pair can be the first to touch when faster ones are about to. The faster ones set the scale, or
-// their forces would need a million steps.
+// A slow pair can touch first just before faster ones do. The fastest sets the scale: otherwise its forces
+// would need a million steps.
 double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts, double V) {
     for (const ClusterContact& c : contacts) V = std::max(V, dot3(balls[c.i].v - balls[c.j].v, c.n));
     return V;
@@ -204,14 +204,14 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
 
 namespace {
 
-// A share of the turning below this is none: the distance of the centres would be so long that rounding
+// A smaller share of the turning counts as none: the distance of the centres would be so large that rounding
 // shows.
 constexpr double kLeastTurn = 1e-4;
 
 }  // namespace
 
-// Hertz: the stiffness goes with the root of the effective radius.
-// @return the longest step, over that of alike balls: light balls part sooner
+// Hertz: the stiffness is proportional to the root of the effective radius.
+// @return longest step relative to that of alike balls: light balls separate sooner
 double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
                                    const std::vector<ClusterContact>& contacts, double L,
                                    const ClusterSettings& settings, bool held) {
@@ -233,7 +233,7 @@ double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
 
 namespace {
 
-// [L] Overlap of two balls of this mass, at least that of balls with the mass 1.
+// [L] Overlap of two balls of this mass, at least the overlap at mass 1.
 double overlap_of(double mass) {
     return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
 }
@@ -263,9 +263,9 @@ std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
     double longest_step = settings.longest_step, longest = kClusterTimeLimit;
     kernel::UnlikeBalls unlike{};
     if (settings.unlike) {
-        // Heavy balls compress each other for longer and more deeply, and what is between them then
-        // oscillates faster: overlaps go with the 0.4th power of the mass, and frequencies with the fourth
-        // root of them.
+        // Heavy balls compress each other for longer and more deeply, and balls between them then oscillate
+        // faster: overlaps are proportional to the 0.4th power of the mass, and frequencies to the fourth
+        // root of the overlaps.
         const double deepest = overlap_of(*std::max_element(mass_.begin(), mass_.end()));
         longest *= deepest;
         longest_step *= describe_unlike(balls, contacts, L, settings, held) / std::sqrt(std::sqrt(deepest));

@@ -1,6 +1,6 @@
-// Many contacts at once: the compliant model (Hertz contacts of the whole cluster, which last while the balls
-// move) and the rigid symmetric projection, which takes no time. Equations: docs/reference/physics.md;
-// docs/design/hard_cases.md says what such a model can and cannot claim.
+// Many contacts at once: the compliant model (Hertz contacts of the whole cluster, during which the balls
+// move) and the instantaneous, rigid symmetric projection. Equations: docs/reference/physics.md; limits of
+// such models: docs/design/hard_cases.md.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +13,34 @@
 namespace carom {
 
 /// [V] A contact of a cluster that closes faster than this, times its nearness, sets the scale V itself,
-/// because the step length suits approaches near V. It is above 1 by the amount that the reach may jump if
+/// because the step length suits approaches near V. The excess over 1 is the possible jump of the reach if
 /// another contact sets it.
 inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Smaller gaps are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
 /// [V] and [L/V] Regularisation of the friction in the compliant model, which causes its errors: 6e-4 V in
-/// racks that touch, up to 2.7e-3 V if gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md);
+/// touching racks, up to 2.7e-3 V if gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md);
 /// and its longest steps, without friction (at the speed V) and with it.
 inline constexpr double kClusterEpsilon = 1.3e-3;
 inline constexpr double kClusterStep = 1.0 / 60.0;
 inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
-/// [L/V] A cluster that has not separated after this many contact times, of its heaviest balls, is solved as
-/// rigid; the slowest of 16 balls takes a few dozen.
+/// [L/V] A cluster that has not separated after this many contact times of its heaviest balls is solved as
+/// rigid; the slowest of 16 balls needs a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
 
 struct ClusterBall {
     int ball = -1;      ///< engine index
     Vec3 r, v, w;       ///< v and w are replaced by the map
-    double R = 0.0;     ///< [m] read where the balls of the cluster differ (ClusterSettings::unlike)
-    double mass = 1.0;  ///< over that of the balls that ClusterSettings describes
+    double R = 0.0;     ///< [m] read only if the balls of the cluster differ (ClusterSettings::unlike)
+    double mass = 1.0;  ///< relative to the balls that ClusterSettings describes
 };
 
 struct ClusterContact {
     int i, j;    ///< into the list of balls
     Vec3 n;      ///< unit, from i to j; level if both lie on the cloth
     double gap;  ///< [m], >= 0; 0 if the balls touch
-    /// Share of the balls' turning that the normal follows (kernel::HertzContact).
+    /// Fraction of the balls' turning that the normal follows (kernel::HertzContact).
     double turn = 1.0;
 };
 
@@ -50,49 +50,49 @@ struct ClusterSettings {
     bool published_cloth_slip = false;
     double epsilon = kClusterEpsilon;    ///< regularisation of the friction directions, in units of V
     double longest_step = kClusterStep;  ///< in units of L / V
-    kernel::ContactPhaseFunction integrate = nullptr;  ///< not read where the balls are unlike or in space
+    kernel::ContactPhaseFunction integrate = nullptr;  ///< not read for balls that are unlike or in space
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
     double slide = 0.0;   ///< [m/s^2] deceleration of a ball that slips on the cloth
-    bool turns = true;    ///< false: all normals stay as the contacts give them
-    bool unlike = false;  ///< the balls differ in size; R is that of balls with the mass 1
+    bool turns = true;    ///< false: all normals remain as in the contacts
+    bool unlike = false;  ///< the balls differ in size; R is that of balls with mass 1
 };
 
-/// Duration of a Hertz contact at the approach speed V, t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
+/// Duration of a Hertz contact at the approach speed V: t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
 /// 5).
 double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.
 double contact_length(double V);
 
-/// x^(1/5) for x > 0, made of + - * / only, correct to about 1 ulp.
+/// x^(1/5) for x > 0, from + - * / only, correct to about 1 ulp.
 double fifth_root(double x);
 
-/// The two models. Scratch memory is kept between calls.
+/// The two models. Keeps scratch memory between calls.
 class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
-    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls stay:
-    /// duration() and moved() tell how long the contacts last and how far the balls move in that time.
+    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls are
+    /// unchanged; see duration() and moved().
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V);
 
     /// The same along normals in space. `held`: balls that differ in size stay on the cloth, so that their
-    /// normals are tilted. Otherwise a ball flies or may leave the cloth, which reacts next: its friction and
-    /// `turn` are ignored.
+    /// normals are tilted. Otherwise a ball flies or may leave the cloth, which reacts next: cloth friction
+    /// and `turn` are ignored.
     std::int64_t compliant_in_space(std::vector<ClusterBall>& balls,
                                     const std::vector<ClusterContact>& contacts,
                                     const ClusterSettings& settings, double V, bool held);
 
-    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that
-    /// close no contact (equations 7, 8), nor press a ball that lies (r_z not above its R) into the cloth;
-    /// frictionless. Of the settings only R, e_b and `unlike` are read. Returns the number of sweeps.
+    /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8)
+    /// and press no ball on the cloth (r_z not above its R) into it; frictionless. Reads only R, e_b and
+    /// `unlike` of the settings. Returns the number of sweeps.
     std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                        const ClusterSettings& settings);
 
-    /// Of the last compliant map, also in space or of unlike balls: its duration [s], and the horizontal
-    /// displacement of ball k in it [m].
+    /// Of the last compliant map, including in space or of unlike balls: its duration [s], and ball k's
+    /// horizontal displacement in it [m].
     double duration() const { return duration_; }
     Vec2 moved(std::size_t k) const { return {moved_[2 * k], moved_[2 * k + 1]}; }
 
@@ -106,13 +106,13 @@ class ClusterMap {
 
     // Per ball, v along two or three axes and R w along three, in units of V.
     std::vector<double> motion_;
-    // Per ball x and y [L], and the duration [L/V]; after the map in SI units.
+    // Per ball x and y [L], and the duration [L/V]; in SI units after the map.
     std::vector<double> moved_;
     double duration_ = 0.0;
     std::vector<double> mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
     std::vector<kernel::HertzContactInSpace> contacts_in_space_;
-    // Of balls that differ: per ball, and per contact.
+    // For balls that differ: per ball, and per contact.
     std::vector<double> inverse_mass_, stiffness_, curvature_;
     std::vector<double> numbers_;
     std::vector<int> places_;

@@ -8,7 +8,7 @@ namespace carom {
 
 namespace effects {
 
-// Squirt turns the velocity by -atan2(S, C), computed as a ratio. A cue without end mass does not squirt.
+// Squirt turns the velocity by -atan2(S, C), computed as a ratio. A cue without end mass produces no squirt.
 [[gnu::noinline]] SinCos squirt(const Cue& cue, const BallSize& ball) {
     const double a = cue.side;
     if (a == 0.0 || cue.end_mass == 0.0) return {0.0, 1.0};
@@ -19,7 +19,7 @@ namespace effects {
 }
 
 // The same in space: the velocity turns away from the offset by that angle, in the plane of the cue and the
-// point of contact.
+// contact point.
 [[gnu::noinline]] Vec3 spatial_squirt(const Cue& cue, const BallSize& ball, const Vec3& along,
                                       const Vec3& left, const Vec3& up) {
     const double a = cue.side, b = cue.height, r = std::sqrt(a * a + b * b);
@@ -34,7 +34,6 @@ namespace effects {
 
 namespace {
 
-/// The axes of a cue: along it, to its left, and upwards, perpendicular to both.
 struct Axes {
     Vec3 along, left, up;
 };

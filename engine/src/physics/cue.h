@@ -12,13 +12,13 @@ struct StruckBall {
     double dropped_vertical;  ///< vertical speed that a planar scene drops [m/s]
 };
 /// @param squirt    whether the plan computes squirt
-/// @param vertical  kKeep: v_z is that of the tip's impulse, before the cloth reacts, and squirt is spatial
-/// if the cue is raised
+/// @param vertical  kKeep: v_z is from the tip's impulse, before the cloth reacts, and squirt is spatial if
+/// the cue is raised
 StruckBall strike(const Cue& cue, const BallSize& ball, bool squirt = true,
                   Vertical vertical = Vertical::kDrop);
 
-/// Whether a ball that lies on the cloth would meet the tip again, because it returns from the cloth faster
-/// along the cue than the cue moves. The stroke is then more than a single impact. Equation (A8).
+/// Whether a ball on the cloth would hit the tip again, because it rebounds from the cloth faster along the
+/// cue than the cue moves. The stroke is then more than a single impact. Equation (A8).
 /// @param v, w  the ball after the cloth has reacted
 bool meets_tip_again(const Cue& cue, const BallSize& ball, const Vec3& v, const Vec3& w);
 

@@ -1,4 +1,4 @@
-// Where the cue itself would be while it strikes: over rails and other balls, or in them.
+// The space that the cue occupies during the stroke: whether rails and other balls leave room for it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace carom {
 namespace {
 
-// [m] A usual cue: 58 inches long, with a tip of 13 mm and a butt of 29 mm.
+// [m] A usual cue: 58 inches long, 13 mm thick at the tip and 29 mm at the butt.
 constexpr double kCueLength = 1.473, kTipRadius = 0.0065, kButtRadius = 0.0145;
-// [degrees] A level cue in a scene stands for one that is raised as little as any rail asks for, by some 2 to
-// 4 degrees.
+// [degrees] A level cue in a scene represents one raised as little as the rails require, by some 2 to 4
+// degrees.
 constexpr double kLevel = 5.0;
 // [degrees] Elevations to try.
 constexpr int kElevations = 890;
@@ -40,7 +40,7 @@ Cone cone_of(const Cue& cue, double elevation_deg, const Vec3& ball, double R) {
 /// Whether the cone is clear of an edge that it crosses at s, as seen from above. `turn` is the sine of the
 /// angle between the two there.
 bool clears_edge(const Cone& cone, double s, double height, double turn) {
-    // A ball that touches the nose has the tip above it, within rounding.
+    // If the ball touches the nose, the tip is above it, within rounding.
     if (!(s > -1e-9 && s <= kCueLength)) return true;
     const double level = length(planar(cone.back)), over = cone.at(s).z() - height;
     // Between two lines in space.
@@ -75,7 +75,7 @@ bool clears(const Cone& cone, const Vec3& ball, double R) {
     return length3(cone.at(s) - ball) >= R + cone.radius_at(s);
 }
 
-/// The obstacle that the cue would be in, or "".
+/// The obstacle that the cue would intersect, or "".
 std::string met(const Scene& scene, const Cue& cue, double elevation_deg) {
     const BallStart* struck = nullptr;
     for (const BallStart& ball : scene.ball)
@@ -105,7 +105,7 @@ CueRoom room_for(const Scene& scene, const Cue& cue) {
             continue;
         }
         room.clears_deg = elevation;
-        // Name the part that forces this elevation, not the one that forces the least.
+        // Name the part that forces this elevation, not the one that forces the smallest.
         room.in = last;
         return room;
     }

@@ -17,7 +17,7 @@ double spin_time(double w_z, const MotionParams& p) {
     return w_z == 0.0 ? 0.0 : (p.spin > 0.0 ? std::abs(w_z) / p.spin : kInfinity);
 }
 
-// The segment of a ball on which nothing acts, for ever.
+// The segment of a ball without forces; endless.
 Segment free_of_forces(double t, const Vec3& r, const Vec3& v, const Vec3& w) {
     Segment s;
     s.start = t;
@@ -45,8 +45,8 @@ MotionParams motion_params(const BallParams& balls, double gravity, double R) {
 
 namespace effects {
 
-// Friction of a slipping ball: a = -mu_s g u/|u|, dw_xy/dt =
-// -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
+// Friction of a slipping ball: a = -mu_s g u/|u|,
+// dw_xy/dt = -(5 mu_s g / 2R) (u x z)/|u|, until t = 2|u|/(7 mu_s g).
 [[gnu::noinline]] void sliding_friction(Segment& s, const Vec2& u, double slip, const MotionParams& p) {
     if (p.slide == 0.0) return;
     const Vec2 direction = u / slip;
@@ -56,7 +56,7 @@ namespace effects {
     s.duration = 2.0 * slip / (7.0 * p.slide);
 }
 
-// A puck: a = -mu_s g v/|v|, until |v|/(mu_s g). Nothing turns it.
+// A puck: a = -mu_s g v/|v|, until |v|/(mu_s g). It does not turn.
 void puck_friction(Segment& s, double speed, const MotionParams& p) {
     if (p.slide == 0.0) return;
     s.duration = speed / p.slide;
@@ -71,7 +71,7 @@ void puck_friction(Segment& s, double speed, const MotionParams& p) {
     s.dw = Vec2(-s.a.y() / p.R, s.a.x() / p.R);
 }
 
-// The vertical spin decays. The motion of a ball that spins in place ends when no spin is left.
+// The vertical spin decays. A ball that spins in place stops when no spin is left.
 [[gnu::noinline]] void spin_decay(Segment& s, const MotionParams& p) {
     if (s.w.z() == 0.0) return;
     s.spin_decay = p.spin;
@@ -82,7 +82,7 @@ void puck_friction(Segment& s, double speed, const MotionParams& p) {
 
 namespace {
 
-// [m/s] A ball whose centre and surface are slower, without its vertical spin, neither slides nor rolls.
+// [m/s] A ball whose centre and surface, apart from its vertical spin, are slower neither slides nor rolls.
 // Impacts at one instant may each remove half of a speed or more, down to numbers whose squares underflow, so
 // that the direction of friction is undefined.
 constexpr double kStill = 1e-100;
@@ -186,7 +186,7 @@ Segment after_transition(const Segment& s, const MotionParams& p) {
 }
 
 EventType transition_type(const Segment& segment, const Segment& next) {
-    // Friction turns any ball that slides, but no puck.
+    // Friction turns every sliding ball, but no puck.
     const bool puck = segment.dw.isZero(0.0) && next.state != MotionState::kRolling;
     if (segment.state == MotionState::kSliding && !puck) return EventType::kSlideRoll;
     if (segment.state == MotionState::kSpinning) return EventType::kSpinStop;

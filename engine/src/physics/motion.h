@@ -14,13 +14,13 @@ Vec2 cloth_slip(const Vec3& v, const Vec3& w, double R);
 /// @param R  radius of the ball
 MotionParams motion_params(const BallParams& balls, double gravity, double R);
 
-/// The segment that starts at time t with these velocities. The motion state follows from them: rolling if
-/// the slip is at most kRollingUlp ulp of |v| + R |w| (the spin is then set to that of rolling), and so on.
+/// The segment that starts at time t with these velocities, which determine the motion state: rolling if the
+/// slip is at most kRollingUlp ulp of |v| + R |w| (the spin is then set to that of rolling), and so on.
 Segment start_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
 /// The segment of a ball that falls into a pocket at the speed `falls` [m/s]: it moves on a straight path,
-/// without the cloth, until its centre is as low as the cloth.
-/// @param r  with the height at which the fall began, or would have begun: its centre is falls^2/2g lower
+/// without the cloth, until its centre is at cloth level.
+/// @param r  with the (perhaps virtual) height at which the fall began: its centre is falls^2/2g lower
 Segment falling_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, double falls,
                         const MotionParams& params);
 
@@ -30,7 +30,7 @@ inline double fall_speed(const Segment& segment, double tau, double gravity) {
 }
 
 /// Position and velocity of a ball, including the height in a fall or flight, which position_at and
-/// velocity_at leave out.
+/// velocity_at omit.
 struct Placed {
     Vec3 position, velocity;
 };
@@ -48,7 +48,7 @@ inline Placed placed_at(const Segment& segment, double tau, double gravity) {
     return p;
 }
 
-/// The same for a ball of radius R that may have left the table: on the floor it stays.
+/// The same for a ball of radius R that may have left the table: it stays where it reaches the floor.
 inline Placed placed_at(const Segment& segment, double tau, double gravity, double R) {
     const double floor = until_floor(segment, R, gravity);
     if (tau < floor) return placed_at(segment, tau, gravity);
@@ -63,14 +63,14 @@ Segment airborne_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, 
 /// faster than bounce_end(), otherwise as start_segment().
 Segment free_segment(double t, const Vec3& r, const Vec3& v, const Vec3& w, const MotionParams& params);
 
-/// The velocity with which a flying ball lands: exact, also for a ball that rose from the cloth.
+/// The velocity of a flying ball when it lands: exact, even for a ball that rose from the cloth.
 Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
 /// The segment of a ball in a cluster that lasts for `duration` and moves it by `path`. Its spin afterwards
 /// is w.
 Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration);
 
-/// Whether two balls with these segments are in one cluster, which lasts. They may overlap.
+/// Whether two balls with these segments are in the same cluster. They may overlap.
 inline bool collide(const Segment& a, const Segment& b) {
     return a.state == MotionState::kColliding && b.state == MotionState::kColliding && a.start == b.start;
 }
@@ -84,7 +84,6 @@ Segment after_transition(const Segment& segment, const MotionParams& params);
 /// The type of that transition; the segment must have a finite duration.
 EventType transition_type(const Segment& segment, const Segment& next);
 
-/// Whether the centre moves in this state.
 inline bool translates(MotionState state) {
     return state == MotionState::kSliding || state == MotionState::kRolling ||
            state == MotionState::kFalling || state == MotionState::kAirborne ||

@@ -8,9 +8,8 @@ namespace carom {
 /// [R] No ball farther away touches a nose: in the air, nose_reach() is up to sqrt(2) R.
 inline constexpr double kNoseReach = 1.5;
 
-/// [m] Distance of the centre from the line of a nose at this height, in the plane perpendicular to it. A
-/// ball on the cloth touches at the horizontal distance R - inset; the nose is the cylinder about its line
-/// for which that is so.
+/// [m] Distance of the centre from the line of a nose at this height, in the plane perpendicular to it. The
+/// nose is a cylinder about its line that a ball on the cloth touches at the horizontal distance R - inset.
 template <class T>
 T nose_reach(const T& R, const T& height, const T& inset) {
     using std::sqrt;

@@ -1,4 +1,4 @@
-// How deep two things may overlap and still count as touching.
+// The overlap at which two bodies still count as touching.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace carom {
 
-// [1] Share of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
-// the rounding of a coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference make
+// [-] Fraction of the largest coordinate that rounding can explain as an overlap: far from the origin (1e5 m)
+// the rounding of a coordinate, 2^-53 of it, exceeds kTouchTolerance. Two coordinates and a difference cause
 // up to four roundings.
 inline constexpr double kTouchRounding = 0x1p-51;
 

@@ -12,7 +12,7 @@
 
 namespace carom {
 
-/// The inputs of the decisions. The plan has those that are already made.
+/// The inputs of the decisions. The plan contains the decisions already made.
 struct EffectFacts {
     const Scene& scene;
     const Plan& plan;
@@ -32,7 +32,7 @@ Need coefficient(const Facts& f, const char* symbol, double value) {
     return {value != 0.0, f.say("{} = {}", symbol, value)};
 }
 
-/// "mu_b = 0.06", or the formula if it falls with the slip.
+/// "mu_b = 0.06", or the formula if the coefficient falls with the slip.
 std::string say(const Facts& f, const char* symbol, const Falling& x) {
     return x.constant() ? f.say("{} = {}", symbol, x.at_rest)
                         : f.say("{} = {} + {} exp(-{} u)", symbol, x.at_rest, x.more, x.fall);
@@ -160,7 +160,7 @@ Need airborne(const Facts& f) {
     return {false, f.say("all balls start on the cloth, the cue is level, and no impact lifts a ball")};
 }
 
-// In the order of Effect, which is familiar to users.
+// In the order of Effect, which users know.
 constexpr EffectInfo kTable[kEffects] = {
     {.keyword = "sliding",
      .skipped_when = "`mu_s` or `gravity` is 0, or no ball ever slips",

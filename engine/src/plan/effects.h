@@ -9,8 +9,8 @@ namespace carom {
 
 /// Fills Plan::effects, and removes skipped effects from the plan: lists, coefficients, models. The plan's
 /// geometry, balls, and cushion models must be those of its scene.
-/// @param say  whether reasons are wanted
-/// @throws SceneError at the line of an [effects] key that excludes what the scene needs
+/// @param say  whether to state reasons
+/// @throws SceneError at the line of an [effects] key that excludes a needed effect
 void decide_effects(Plan& plan, ReachMemory& memory, const Words& say);
 
 }  // namespace carom

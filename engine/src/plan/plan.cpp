@@ -1,4 +1,4 @@
-// Makes the plan of a scene: what to compute for it, and its table in final form.
+// Makes the plan of a scene: the required computations, and the table in final form.
 #include "carom/engine/plan.h"
 
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ namespace carom {
 
 namespace {
 
-// [share of the jaw radius] A jaw rounds off a cushion end this close to its circle, which then needs no tip
-// of its own. The jaw is a full circle, so nothing can slip between the two.
+// [share of the jaw radius] A jaw rounds off a cushion end this close to its circle, and then replaces the
+// end's own tip. The jaw is a full circle, so nothing can slip between the two.
 constexpr double kJawJoinShare = 1e-9;
 
 // An end of a cushion needs its own circle unless a jaw rounds it off.
@@ -69,7 +69,7 @@ Geometry geometry_of(const Scene& scene) {
     return geometry;
 }
 
-// The friction on a ball of this radius, without the effects that the plan skips.
+// The friction on a ball of this radius, without skipped effects.
 MotionParams motion_of(const Plan& plan, double R) {
     MotionParams p = motion_params(plan.balls, plan.gravity, R);
     p.sliding = plan.in_force(Effect::kSliding);
@@ -90,7 +90,7 @@ void choose_search(Plan& plan) {
     if (balls >= kShortBoxesFromBalls) plan.box_travel = kBoxTravel;
 }
 
-// Fills in all that follows from the plan's scene and instruction set.
+// Fills in everything that follows from the plan's scene and instruction set.
 void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words& say) {
     const Scene& scene = plan.scene;
     plan.balls = scene.balls;
@@ -132,7 +132,8 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
             cue.elevation_deg));
 }
 
-// [-] The least restitution of a contact inside a cluster: the exponent of the unloading law is bounded.
+// [-] The smallest restitution of a contact in a cluster, because the exponent of the unloading law is
+// limited.
 constexpr double kLeastInCluster = 0.05;
 
 void warn_of_clusters(Plan& plan) {
@@ -148,7 +149,7 @@ constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
 constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
 
-/// Warns of numbers that are valid but look as if they were in another unit.
+/// Warns of valid numbers that look as if they were in a different unit.
 void warn_of_units(Plan& plan) {
     const Scene& scene = plan.scene;
     const Table& table = scene.table;
@@ -225,7 +226,7 @@ ArcSpan span_of(const Jaw& jaw) {
         return Vec2(at.cos, at.sin);
     };
     const double turn = *jaw.to_deg - *jaw.from_deg;
-    // 360 degrees beyond any angle, rounded.
+    // At least 360 degrees, up to rounding.
     const bool whole = turn > 360.0 - 1e-9;
     return {direction(*jaw.from_deg), direction(*jaw.to_deg), whole, turn > 180.0};
 }
@@ -250,7 +251,7 @@ Plan make_plan(const Scene& scene, kernel::Isa isa) {
 
 struct Planner::Memory {
     bool has_geometry = false;
-    Geometry geometry;  // with all that balls may meet
+    Geometry geometry;  // with everything that balls may hit
     ReachMemory reach;
 };
 
@@ -265,12 +266,12 @@ const Plan& Planner::plan(bool same_table) {
     if (!same_table || !memory_->has_geometry) {
         geometry = geometry_of(plan_.scene);
         memory_->has_geometry = true;
-        // The loop refers to pockets by index. Copying names for every shot would allocate memory.
+        // The loop refers to pockets by index. Copying their names for every shot would allocate memory.
         for (Pocket& pocket : geometry.pockets) pocket.name.clear();
     }
     try {
         fill(plan_, geometry, memory_->reach, Words(false));
-    } catch (const SceneError&) {  // an effect is excluded; the error must say why
+    } catch (const SceneError&) {  // [effects] excludes a needed one; the error must say why
         fill(plan_, geometry, memory_->reach, Words(true));
         throw;
     }

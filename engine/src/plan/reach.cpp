@@ -42,7 +42,7 @@ class Bounds {
             motion_.R = size.R;
             starts_.push_back(
                 {ball.position.head<2>(), v, w, start_segment(0.0, ball.position, v, w, motion_), size});
-            // A ball that starts in the air, or that the tip presses onto the cloth, flies and slips.
+            // A ball that starts in the air, or is pressed onto the cloth by the tip, flies and slips.
             if (ball.flies() || v.z() != 0.0) {
                 lifted_ = true;
                 starts_.back().segment.state = MotionState::kSliding;
@@ -70,8 +70,8 @@ class Bounds {
             reach.why = say_("ball {}, the only one that moves, goes no farther than {:.3g} m",
                              scene_.ball[m].id, radius[m]);
         }
-        // The bound of a ball that meets nothing holds as long as it indeed meets nothing. Over a pocket, the
-        // cloth does not slow it.
+        // The bound of a ball without contacts is valid only if it indeed has none. Over a pocket, the cloth
+        // does not slow it.
         if (movers > 1 || lifted_ || meets_cushion(radius) || meets_ball(radius) || meets_pocket(radius)) {
             const double far = by_energy();
             std::fill(radius.begin(), radius.end(), far);
@@ -154,7 +154,7 @@ class Bounds {
     std::vector<double>& radius_;
     MotionParams motion_;
     double time_;
-    bool lifted_ = false;         // the cloth does not limit how far a ball goes
+    bool lifted_ = false;         // the cloth does not limit a ball's path
     double energy_height_ = 0.0;  // [J] of all balls
 };
 

@@ -1,4 +1,4 @@
-// How far the balls of a scene can ever get: bounds that hold for the whole shot.
+// How far the balls of a scene can get: bounds that hold for the whole shot.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace carom {
 
-/// A ball at the start. If the cue strikes it, the velocities are those after the stroke.
+/// A ball at the start; the cue ball after the stroke.
 struct Start {
     Vec2 place;
     Vec3 v, w;
@@ -18,7 +18,7 @@ struct Start {
     BallSize size;
 };
 
-/// Lists that are refilled for every scene.
+/// Lists that are reused for every scene.
 struct ReachMemory {
     std::vector<Start> starts;
     std::vector<double> radius;  ///< [m] how far each ball can get
@@ -34,7 +34,7 @@ struct Reach {
     std::string why;
 };
 
-/// The smaller of two bounds. (1) A ball that moves alone and meets nothing goes no farther than its friction
+/// The smaller of two bounds. (1) A ball that moves alone and hits nothing gets no farther than its friction
 /// allows: |v| t + mu_s g t^2/2 while it slides (t = 2|u|/(7 mu_s g)), then v^2/(2 mu_r g) with v = v - 2u/7.
 /// (2) If the models do not gain energy, no ball is ever faster than sqrt(2E) until the scene's stop time,
 /// where E is the energy of all balls per mass.

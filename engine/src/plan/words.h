@@ -1,4 +1,4 @@
-// Reasons of a plan in words, if wanted.
+// The reasons of a plan in words, if wanted.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 namespace carom {
 
-/// Formats a text as fmt::format does, or returns "" without allocating memory.
+/// Formats a text like fmt::format, or returns "" without allocating memory.
 class Words {
   public:
     explicit Words(bool wanted) : wanted_(wanted) {}

@@ -49,7 +49,7 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
         rank += i < index;
         ++all;
     }
-    // During a cluster a ball has the velocities that it has afterwards.
+    // During a cluster a ball has its velocities after the cluster.
     const auto state = [&](auto segment) {
         BallState s = state_of(record, ball, *segment, std::max(0.0, time - segment->start));
         if (s.state != MotionState::kColliding) return s;
@@ -60,7 +60,7 @@ BallAtEvent around(const Record& record, std::size_t index, int ball) {
     return {ball, state(first - 1), state(std::max(first, end) - 1), rank == 0, rank == all - 1};
 }
 
-/// Sets the point and the normal of what ball a meets.
+/// Sets the contact point and normal of ball a.
 void place_contact(const Record& record, const Event& event, EventDetails& d) {
     const BallState& a = d.balls.front().after;
     const double R = record.size(event.a).R;
@@ -176,7 +176,7 @@ Table without_arcs(const Table& table) {
         if (!arc.is_arc()) continue;
         const double turn = *arc.to_deg - *arc.from_deg;
         const int pieces = std::max(2, static_cast<int>(std::ceil(turn / kDrawnStep)));
-        // Exact at both ends, so that they join what begins there.
+        // Exact at both ends, so that they join the neighbouring parts.
         const auto at = [&](int i) {
             const SinCos out = sin_cos_deg(i == pieces ? *arc.to_deg : *arc.from_deg + turn * i / pieces);
             return Vec2(arc.center + arc.radius * Vec2(out.cos, out.sin));

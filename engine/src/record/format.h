@@ -4,10 +4,9 @@
 namespace carom {
 
 inline constexpr char kRecordFormat[] = "carom-record";
-/// The version that is written. Keys may be added to it, as long as a reader that ignores them still draws
-/// the same shot (docs/reference/record_format.md, "Versions").
+/// The written version. It may gain keys, as long as a reader that ignores them still draws the same shot
+/// (docs/reference/record_format.md, "Versions").
 inline constexpr int kRecordVersion = 3;
-/// The oldest version that is read.
 inline constexpr int kOldestVersion = 2;
 
 }  // namespace carom

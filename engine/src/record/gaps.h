@@ -1,4 +1,4 @@
-// Distances between balls, and from balls to noses, for the checker of records.
+// Distances between balls, and from balls to noses, for the record checker.
 #pragma once
 
 #include <cstddef>
@@ -11,25 +11,24 @@
 
 namespace carom {
 
-/// A ball at its position, with its height.
 struct SeenBall {
     Vec3 r;
     double R;
     bool flies = false;     ///< or is out
-    double fell = kNever;   ///< [s] when it began to fall into a pocket; kNever if it does not
+    double fell = kNever;   ///< [s] when it began to fall into a pocket; kNever if it is not falling
     double flew = -kNever;  ///< [s] when its last flight ended
     double rounding = 0.0;  ///< [m] rounding_of()
     bool disc = false;
 };
 
-/// [m] How far a ball with these speeds may have moved too far in t [s]: closing speeds within rounding
-/// (kClosingUlp) count as no approach, and times are rounded.
+/// [m] How much too far a ball with these speeds may have moved in t [s]: closing speeds within rounding
+/// (kClosingUlp) do not count as an approach, and times are rounded.
 double rounding_of(const Vec3& v, const Vec3& w, double R, double t);
-/// [m] Allowed overlap with another ball or the cloth, or with the wall at this place.
+/// [m] Allowed overlap with another ball or the cloth, or with the wall at this position.
 double allowed_depth(const SeenBall& ball);
 double allowed_depth(const SeenBall& ball, const Vec2& wall);
 
-/// A ball at the position `r`, in its segment of this number.
+/// A ball at the position `r`, in segment number `segment`.
 /// @param flights  whether balls may leave the cloth
 SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
              bool flights);
@@ -41,7 +40,7 @@ double gap_between(const SeenBall& one, const SeenBall& two);
 double gap_to(const CushionLine& line, const SeenBall& ball);
 /// [m] To a jaw or the end of a cushion; infinite if the ball is not beside it.
 double gap_to(const Nose& nose, const SeenBall& ball);
-/// [m] To the cloth: 0 for a ball that lies there.
+/// [m] To the cloth: 0 for a ball on it.
 double gap_to_cloth(const SeenBall& ball);
 
 }  // namespace carom

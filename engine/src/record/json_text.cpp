@@ -18,10 +18,10 @@ using Json = nlohmann::json;
 
 /// [bytes] Long enough for any id or method name, and short enough that a hostile file cannot fill messages.
 constexpr std::size_t kLongestName = 256;
-/// [bytes] The most that one byte of a text can take, as an escape: \u0000.
+/// [bytes] Largest size of one byte of text as an escape: \u0000.
 constexpr std::size_t kLongestEscape = 6;
-/// The largest number in a record. Values in a scene are far smaller, in every unit, and products of a few
-/// such numbers, as in states and orientations, are still finite.
+/// The largest number in a record: far larger than scene values in any unit, and small enough that products
+/// of a few such numbers, as in states and orientations, are finite.
 constexpr double kLargestNumber = 1e25;
 
 bool is_space(char c) {
@@ -71,7 +71,7 @@ std::string unescaped(std::string_view token) {
     return Json::parse(token).get<std::string>();
 }
 
-/// Returns line and column of a byte, for an editor; one byte more or less does not matter there.
+/// Returns line and column of a byte, for an editor, within one byte.
 SourceLocation location(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
     const std::size_t line_start = before.rfind('\n') + 1;  // 0 in the first line

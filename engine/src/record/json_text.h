@@ -1,6 +1,6 @@
-// Reads JSON in place: the text is checked as a whole, once, and then searched. No tree is built, so reading
-// takes no memory in addition to the text and the result, and a huge list of nothing costs no more than its
-// size. Nesting is followed by loops, never by recursion.
+// Reads JSON in place: the whole text is checked once, and then searched. No tree is built, so reading needs
+// no memory beyond the text and the result, and a huge empty list costs only its size. Nesting is followed by
+// loops, never by recursion.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,21 +16,21 @@
 
 namespace carom::detail {
 
-/// A text that is JSON, and the state that its readers share.
+/// A JSON text, and the state that its readers share.
 struct JsonText {
-    /// Checks all of it. `file` is its name in messages. @throws SceneError
+    /// Checks the whole text. `file` is its name in messages. @throws SceneError
     JsonText(std::string_view text, const std::string& file);
 
     std::string_view text;
     const std::string& file;
     std::size_t root = 0;  ///< byte at which the value begins
-    // Keys that no reader asked for.
+    // Keys that no reader requested.
     std::size_t unknown_keys = 0;
     std::string first_unknown;  ///< the path to the first of them
 };
 
-/// One value of the text, and the path to it ("tracks[3].segments[2].duration"), for messages. It refers to
-/// the value that contains it, which must outlive it.
+/// One value of the text, and the path to it ("tracks[3].segments[2].duration"), for messages. Refers to the
+/// containing value, which must outlive it.
 class JsonValue {
   public:
     explicit JsonValue(JsonText& source) : source_(source), at_(source.root) {}
@@ -64,7 +64,7 @@ class JsonValue {
         return v;
     }
 
-    /// One of an enumeration whose values 0..count-1 all have a name().
+    /// One value of an enumeration whose values 0..count-1 all have a name().
     template <class Enum>
     Enum one_of(std::size_t count) const {
         const std::string value = text();
@@ -89,12 +89,12 @@ class JsonValue {
 
     JsonText& source_;
     const JsonValue* parent_ = nullptr;
-    std::string_view key_;  ///< in an object; otherwise the index counts
+    std::string_view key_;  ///< in an object; otherwise the index applies
     std::size_t index_ = 0;
     std::size_t at_;
 };
 
-/// The members of an object by name. A key that is not among `keys` is counted as unknown and ignored; a
+/// The members of an object by name. A key that is not in `keys` is counted as unknown and ignored; a
 /// repeated key is an error.
 class JsonObject {
   public:

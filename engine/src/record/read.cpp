@@ -1,5 +1,4 @@
-// read_record: reads what write_record wrote, and checks it item by item. A file may come from anywhere, so
-// nothing in it is trusted.
+// read_record: reads the output of write_record and checks every item, because files may be untrusted.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -28,7 +27,7 @@ int index_below(const JsonValue& value, std::int64_t least, std::size_t count) {
     return static_cast<int>(value.integer(least, static_cast<std::int64_t>(count) - 1));
 }
 
-/// Reads a value that the row allows. Checks only the sign of its range, because nobody types a record.
+/// Reads a value that the row allows. Of its range, checks only the sign, because nobody types a record.
 FieldValue read_value(const Key& key, const JsonValue& value) {
     const Interval& range = key.range;
     const bool positive = range.low > 0.0 || (range.low == 0.0 && range.low_open);
@@ -147,8 +146,7 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
     return track;
 }
 
-/// Number of values that an event's b may have: the index of a ball, cushion, jaw or pocket; 0 if it has
-/// none.
+/// Number of possible values of an event's b: the index of a ball, cushion, jaw or pocket; 0 if it has none.
 std::int64_t partners(EventType type, const Record& record) {
     switch (kind(type).partner) {
         case Partner::kBall:
@@ -228,7 +226,7 @@ std::string text_of_file(const std::string& path) {
                          "is larger than " + std::to_string(kMaxRecordSize >> 20) +
                              " MiB; stop the shot earlier ([stop]) and write it in parts");
     }
-    // One byte more than allowed, to notice a file that grows meanwhile.
+    // One byte more than allowed, to detect a file that grows meanwhile.
     std::string text(std::min<std::uintmax_t>(error ? kMaxRecordSize : size, kMaxRecordSize) + 1, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -245,7 +243,6 @@ void check_version(const JsonValue& version) {
                  "; use the carom that wrote it, or write it again: carom simulate SCENE -o shot.json");
 }
 
-/// Warnings about a file that was read all the same.
 void add_notes(const JsonText& source, std::vector<std::string>& notes) {
     if (source.unknown_keys == 0) return;
     notes.push_back(source.unknown_keys == 1

@@ -28,19 +28,19 @@ namespace {
 Eigen::Quaterniond rotation(const Vec3& turn) {
     const double angle = std::sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
     if (angle == 0.0) return Eigen::Quaterniond::Identity();
-    // A ball that spins for years turns farther than sin_cos can reduce; its orientation is then rounding.
+    // A ball that spins for years turns farther than sin_cos can reduce; its orientation is then only
+    // rounding.
     constexpr double kTwoTurns = 12.566370614359172;
     const auto [s, c] = sin_cos(0.5 * std::fmod(angle, kTwoTurns));
     const double k = s / angle;
     return {c, k * turn.x(), k * turn.y(), k * turn.z()};
 }
 
-// [rad] The largest angle of a step, and [-] the most steps that all balls of a record may take together. A
-// record with more rotation, which no shot has, is followed in larger steps, to limit the work.
+// [rad] The largest angle of a step, and [-] the most steps for all balls together. A record with more
+// rotation, which no shot has, is integrated in larger steps, to limit the work.
 constexpr double kLargestStep = 0.2, kMostSteps = 1e6;
 
-// Returns how many steps it takes to follow w from w0 at the rate dw over `time`, if each turns the ball by
-// `largest_step`.
+// Returns the number of steps of `largest_step` that follow w from w0 at the rate dw over `time`.
 double step_count(const Vec3& w0, const Vec3& dw, double time, double largest_step) {
     const double steps = std::max(w0.norm(), (w0 + time * dw).norm()) * time / largest_step;
     return steps < kMostSteps ? steps : kMostSteps;
@@ -202,7 +202,7 @@ Scene scene_after(const Scene& scene, const Record& record) {
         }
         if (is_gone(end.state)) continue;
         BallStart& ball = after.ball.emplace_back(scene.ball[i]);
-        // A ball that falls into a pocket starts its fall again.
+        // A ball that is falling into a pocket starts its fall again.
         const double R = record.size(static_cast<int>(i)).R;
         const bool in_air = end.state == MotionState::kAirborne;
         ball.height = in_air ? std::max(0.0, end.position.z() - R) : 0.0;

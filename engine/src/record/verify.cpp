@@ -18,7 +18,7 @@ namespace carom {
 
 namespace {
 
-// [of the energy] The integration of a cluster in steps loses less: up to 1e-6 was seen.
+// [of the energy] Bound on the loss from integrating a cluster in steps; losses up to 1e-6 were seen.
 constexpr double kStepsLose = 1e-5;
 
 // Returns the ball's mass divided by that in [balls]: 1 in most scenes.
@@ -55,7 +55,7 @@ class Checker {
         std::vector<BallState> start = states_at(record_, 0.0);
         enter_clusters(start, 0.0);
         double last_time = 0.0, last_energy = energy_of(record_, start);
-        bool lasted = false;  // whether a cluster has lasted since last_energy
+        bool lasted = false;  // whether a cluster took place since last_energy
         const double first_energy = std::max(last_energy, first_energy_after_cue());
         const double rounding = height_rounding(record_);
         const bool lossless = loses_nothing(plan_) && !plan_.scene.physics.substeps;
@@ -65,14 +65,15 @@ class Checker {
                 report("U2", "time falls from {:.17g} to {:.17g} s", last_time, e.time);
             last_time = e.time;
             check_crowd();
-            // If several events have the same time, the laws hold for the state after the last of them.
+            // Of simultaneous events, the laws hold for the state after the last one.
             const bool last_of_instant =
                 event_ + 1 == record_.events.size() || record_.events[event_ + 1].time > e.time;
             if (!last_of_instant) continue;
             std::vector<BallState> now = states_at(record_, e.time);
             check_penetration(now, e.time);
             check_rolling(e.time);
-            // During a cluster energy is in the contacts, too: the next instant outside of clusters decides.
+            // During a cluster the contacts store energy, too; the check waits for the next instant outside
+            // clusters.
             const bool lasts = std::any_of(now.begin(), now.end(), [](const BallState& ball) {
                 return ball.state == MotionState::kColliding;
             });
@@ -103,7 +104,7 @@ class Checker {
         return track.segments[track.segment_at(t)];
     }
 
-    // Replaces the states of balls that collide by those in which they enter their clusters.
+    // Replaces the states of colliding balls by those in which they enter their clusters.
     // @return false if a cluster began before t
     bool enter_clusters(std::vector<BallState>& states, double t) const {
         for (std::size_t i = 0; i < states.size(); ++i) {
@@ -120,7 +121,7 @@ class Checker {
         if (!found_) found_ = Violation{event_, law, fmt::format(message, std::forward<Values>(values)...)};
     }
 
-    // [m/s] Error that the impact kernel may leave in each velocity.
+    // [m/s] Possible error of the impact kernel in each velocity.
     double velocity_error(double approach) const {
         const Physics& physics = plan_.scene.physics;
         const bool to_tolerance = plan_.ball_ball->reads_tolerance && !physics.substeps;
@@ -139,15 +140,15 @@ class Checker {
         return false;
     }
 
-    // [J/kg] What slow contacts of balls in the air may add at an instant: each parts at parting_speed().
+    // [J/kg] Energy that slow contacts of flying balls may add at an instant: each separates at
+    // parting_speed().
     double slow_contacts(double time) const {
         if (!plan_.in_force(Effect::kAirborne)) return 0.0;
         double energy = 0.0;
         for (std::size_t k = event_ + 1; k-- > 0 && record_.events[k].time == time;) {
             const Event& e = record_.events[k];
             if (!e.slow) continue;
-            // Two balls separate at the speed for the larger one, and the heavier one may be the one that
-            // flies.
+            // Two balls separate at the speed for the larger one, and the heavier one may be the flying one.
             const int other = kind(e.type).partner == Partner::kBall ? e.b : e.a;
             const double larger = std::max(record_.size(e.a).R, record_.size(other).R),
                          heavier = std::max(mass(record_, e.a), mass(record_, other)),
@@ -214,7 +215,7 @@ class Checker {
         }
     }
 
-    // Contacts conserve the momentum of a cluster, and the cloth may take some.
+    // Contacts conserve the momentum of a cluster; the cloth may absorb some.
     void check_cluster(const Event& e) {
         if (plan_.balls.mu_s > 0.0) return;
         Vec2 change = Vec2::Zero();
@@ -230,15 +231,14 @@ class Checker {
             report("U5", "the cluster changes the momentum of its balls by {:.3g} m/s", length(change));
     }
 
-    // Compares the velocities before and after a ball-ball impact, at the ends of the segments that meet
-    // there.
+    // Compares the velocities before and after a ball-ball impact, at the ends of the adjoining segments.
     void check_impacts() {
         for (event_ = 0; event_ < record_.events.size() && !found_; ++event_) {
             const Event& e = record_.events[event_];
             if (e.type == EventType::kBallCluster) check_cluster(e);
             if (e.type != EventType::kBallBall) continue;
             // Only if each ball has exactly one segment that starts here, because two impacts at one instant
-            // cannot be told apart.
+            // cannot be distinguished.
             const Segment *before1, *after1, *before2, *after2;
             if (!around(e.a, e.time, before1, after1) || !around(e.b, e.time, before2, after2)) continue;
             const auto is_free = [this](const Segment& s) {
@@ -257,11 +257,11 @@ class Checker {
                        w2 = spin_at(*before2, e.time - before2->start, R2);
             const BallAt<Vec3> ball1{after1->r, v1, R1}, ball2{after2->r, v2, R2};
             const Vec3 n3 = (free ? touch_ball(ball1, ball2) : touch_level(ball1, ball2, true)).n;
-            // Two radii on the cloth touch along a tilted line.
+            // Balls of two radii on the cloth touch along a tilted line.
             const double S = free || record_.balls.discs() ? 0.0 : (R2 - R1) / (R1 + R2),
                          C = std::sqrt(1.0 - S * S);
             const Vec3 line = S == 0.0 ? n3 : Vec3(C * n3.x(), C * n3.y(), S);
-            // A slow contact holds a ball that lies on the cloth, and below bounce_end() a ball stays there.
+            // A slow contact keeps a ball on the cloth, and a rise below bounce_end() leaves it there.
             const bool lies = !flies(after1->state) || !flies(after2->state);
             if (free && lies) continue;
             const double scale = m1 * (v1.norm() + R1 * w1.norm()) + m2 * (v2.norm() + R2 * w2.norm());
@@ -271,14 +271,14 @@ class Checker {
                 dv2(after2->v.x() - v2.x(), after2->v.y() - v2.y(), up2);
             const Vec3 change = m1 * dv1 + m2 * dv2;
             const Vec3 dw1 = m1 * R1 * (after1->w - w1), dw2 = m2 * R2 * (after2->w - w2);
-            // During the whole impact the friction of the cloth is at most mu_s times the vertical friction,
+            // Over the whole impact the friction of the cloth is at most mu_s times the vertical friction,
             // which is at most mu_b times the normal impulse.
             const double J_n = std::max(m1 * std::abs(dv1.dot(n3)), m2 * std::abs(dv2.dot(n3)));
             const bool cloth = !free && plan_.balls.mu_s > 0.0 && plan_.ball_ball->reads_cloth;
             const double mu_b = plan_.balls.ball_friction().most(), steep = std::abs(S);
             const double limit =
                 cloth ? plan_.balls.mu_s * (C * mu_b + steep) * J_n / (C - steep * mu_b) : 0.0;
-            // A straight shot meets that limit exactly, and an impact is solved to a tolerance.
+            // A straight shot reaches that limit exactly, and an impact is solved to a tolerance.
             const double solved = cloth ? (m1 + m2) * velocity_error((v1 - v2).dot(n3)) : 0.0;
             if (change.norm() > limit + solved + 64.0 * kEpsilon * scale)
                 report("U5", "the impact changes the pair's momentum by {:.3g} m/s", change.norm());

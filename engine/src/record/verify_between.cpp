@@ -20,11 +20,11 @@
 namespace carom {
 namespace {
 
-// [-] Points of a piece of motion at which balls are checked, besides its start.
+// [-] Points at which a piece of motion is checked, besides its start.
 constexpr double kShares[] = {0.25, 0.5, 0.75};
-// [m] A centre that crosses a cushion this close to its end may move around it.
+// [m] A centre that crosses a cushion this close to its end may be rolling around it.
 constexpr double kCrossingEnd = 1e-9;
-// [-] A flight that ends so near to a cushion's line has ended there: the ball is out.
+// [-] A flight that ends this near to a cushion's line ended at it: the ball is out.
 constexpr double kBeforeEnd = 1.0 - 1e-9;
 
 /// A ball in the present piece of motion.
@@ -143,7 +143,7 @@ class Between {
 
     void check_energy(double from, double to) {
         if (!keeps_energy_) return;
-        // During a cluster energy is in the contacts, too.
+        // During a cluster the contacts store energy, too.
         bool begins = false;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             if (segment(i).state != MotionState::kColliding) continue;
@@ -161,8 +161,8 @@ class Between {
         start += chord_energy(record_, from);
         middle += chord_energy(record_, half);
         if (from == times_.front()) first_energy_ = last_energy_ = start;
-        // At the start, allow for what slow contacts of balls in the air have added; each of them is checked
-        // at its event.
+        // At the start, allow for energy added by slow contacts of flying balls; each of them is checked at
+        // its event.
         double added = plan_.in_force(Effect::kAirborne) ? slow_contacts() : 0.0;
         for (const auto& [t, now] : {std::pair{from, start}, std::pair{half, middle}}) {
             if (now > last_energy_ + 1e-12 * first_energy_ + rounding_ + std::exchange(added, 0.0))
@@ -214,7 +214,7 @@ class Between {
                 const double gap = gap_to(nose, there);
                 if (gap < -allowed_depth(there, nose.center))
                     report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
-                // It would come down inside of it.
+                // It would land inside the jaw.
                 const double over = nose.radius - length(planar(there.r) - nose.center);
                 if (in_air && over > allowed_depth(there, nose.center))
                     report("U3", t, "ball {} flies on {:.3g} m behind the nose of a jaw", id(ball), over);
@@ -240,8 +240,8 @@ class Between {
                    flew ? "flies on behind" : "passes through");
     }
 
-    // The same for a round wall, from the side on which it meets balls: behind an arc with ends nothing else
-    // would notice. It bisects between the points of the piece, and so shares no formula with the detector.
+    // The same for a round wall, from the side on which it acts: no other check would notice a passage behind
+    // an open arc. Bisects between the points of the piece, and so shares no formula with the detector.
     void check_passing(std::size_t ball, const Nose& nose, double from, double to) {
         const auto out = [&](double t) { return Vec2(place(ball, t) - nose.center); };
         const auto in_front = [&](double t) { return nose.sign() * length(out(t)) > nose.radius; };

@@ -1,4 +1,4 @@
-// Checks between the events of a record: overlaps, cushions passed through, energy.
+// Checks between the events of a record: overlaps, penetrated cushions, energy.
 #pragma once
 
 #include <optional>
@@ -7,21 +7,21 @@
 
 namespace carom {
 
-/// The state of a ball at the end of the segment before `colliding`, one of its own: it enters a cluster.
+/// The state in which a ball enters a cluster: at the end of the segment before `colliding`, one of its own.
 BallState entering(const Record& record, std::size_t ball, const Segment& colliding);
 
-/// Whether a cluster moves both balls at time t, or would have if one of them had not met something else
-/// before its end: until then they may still overlap.
+/// Whether a cluster moves both balls at time t, or would if neither had hit something else before its end:
+/// until then they may still overlap.
 bool share_cluster(const Record& record, std::size_t one, std::size_t other, double t);
 
 /// [J/kg] Energy of a ball, divided by the mass in [balls]; a ball in a pocket has none.
 double ball_energy(const Record& record, int ball, const BallState& state);
 
-/// [J/kg] The rounding of the heights may change the energy of all balls together by this.
+/// [J/kg] Possible change of the total energy by the rounding of the heights.
 double height_rounding(const Record& record);
 
-/// [J/kg] What ball_energy() misses of balls that run along a round wall, in all: between two moments their
-/// velocity goes straight from one to the other, and in truth it turns.
+/// [J/kg] Total energy that ball_energy() misses of balls that run along a round wall: between two instants
+/// their velocity is interpolated linearly, while in truth it turns.
 double chord_energy(const Record& record, double t);
 
 /// Checks the start, the quarters and the middle of every piece of motion between two changes of any segment,

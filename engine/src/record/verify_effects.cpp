@@ -20,7 +20,7 @@ class Skipped {
 
     std::optional<Violation> run() {
         const Scene& scene = plan_.scene;
-        // If nothing more happens after a run, its last segments continue forever.
+        // If no event can follow the run, its last segments continue forever.
         const bool for_ever =
             record_.stopped == StopReason::kAtRest || record_.stopped == StopReason::kEndless;
         last_ = for_ever ? kNever : record_.duration;
@@ -59,7 +59,7 @@ class Skipped {
         return k + 1 < segments.size() ? segments[k + 1].start : last_;
     }
 
-    /// The part of a segment between two times; it has begun by then.
+    /// The part of a segment, which has already begun, between two times.
     static Path path_of(const Segment& s, double from, double to) {
         const double t = from - s.start;
         return {s.r.head<2>() + t * (s.v.head<2>() + 0.5 * t * s.a),
@@ -70,7 +70,7 @@ class Skipped {
                 translates(s.state)};
     }
 
-    // A segment that another one replaces at the same instant never happened.
+    // A segment replaced at the same instant never happened.
     void check_frictions(const Segment& s, bool lasts) {
         if (!lasts) return;
         const BallParams& p = plan_.scene.balls;
@@ -103,7 +103,7 @@ class Skipped {
         }
     }
 
-    // Every other ball moves along its own segments meanwhile.
+    // Meanwhile, every other ball moves along its own segments.
     void check_pairs(int ball, const Segment& s, double end) {
         for (std::size_t j = 0; j < record_.tracks.size(); ++j) {
             if (static_cast<int>(j) == ball) continue;

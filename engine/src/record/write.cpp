@@ -73,7 +73,7 @@ OrderedJson segment_json(const Segment& s) {
             {"a", numbers(s.a)},
             {"dw", numbers(s.dw)},
             {"spin_decay", s.spin_decay},
-            // JSON has no infinity: null stands for "never ends".
+            // JSON has no infinity: null means "never ends".
             {"duration", std::isinf(s.duration) ? OrderedJson(nullptr) : OrderedJson(s.duration)},
             {"held", s.held},
             {"ends", s.ends}};
@@ -97,7 +97,7 @@ OrderedJson event_json(const Record& record, const Event& event, const EventCost
     return out;
 }
 
-/// Output of the writer: an OutputFile, or this.
+/// Output of the writer if not an OutputFile.
 struct Text {
     std::string all{};
     void write(std::string_view text) { all += text; }
@@ -150,7 +150,7 @@ void write_all(const Record& record, Sink& file) {
     file.write("}\n");
 }
 
-/// @param name  the beginning of the message
+/// @param name  start of the message
 void check_costs(const Record& record, const std::string& name) {
     if (!record.costs.empty() && record.costs.size() != record.events.size()) {
         throw std::runtime_error(name + ": the record has costs for " + std::to_string(record.costs.size()) +

@@ -30,7 +30,8 @@ class Aim {
                                   s_.number_of((*place)[1], "cue.aim_at[1]", kCoordinate)});
     }
 
-    /// ["1", 0.75]: three quarters of the ball, its left half as the player sees it; -0.75: its right half.
+    /// ["1", 0.75]: hit three quarters of the ball, its left half as the player sees it; -0.75: its right
+    /// half.
     double hit() const {
         const toml::array& list =
             list_of("aim_hit", "[\"1\", 0.75]: a ball, and how full it is hit, -1 to 1");
@@ -45,7 +46,7 @@ class Aim {
         return angle(way) + (full > 0.0 ? 1.0 : -1.0) * (90.0 - arc_cos(reach) * kDegrees);
     }
 
-    /// ["1", "p3"]: the ball goes along the line from its centre to the middle of the pocket.
+    /// ["1", "p3"]: the ball moves along the line from its centre to the middle of the pocket.
     double ghost() const {
         const toml::array& list = list_of("ghost", "[\"1\", \"p3\"]: a ball and a pocket");
         const BallStart& ball = other("ghost", text(list, "ghost"));
@@ -63,7 +64,7 @@ class Aim {
         return towards("ghost", place);
     }
 
-    /// ["foot", 2.5]: a place on a rail, counted from the origin's side.
+    /// ["foot", 2.5]: a point on a rail, counted from the origin's side.
     double diamond() const {
         const toml::array& list =
             list_of("aim_diamond", "[\"foot\", 2.5]: head, foot, left or right, and a number");
@@ -79,7 +80,7 @@ class Aim {
         return towards("aim_diamond", *diamond_place(scene_.table, rail, n));
     }
 
-    /// The speed of the cue that gives the struck ball this speed.
+    /// The cue speed that gives the struck ball this speed.
     double speed() const {
         const double wanted =
             s_.number_of(*s_.node("ball_speed"), "cue.ball_speed", at_least(0.0, kMaxSpeed, "m/s"));

@@ -1,4 +1,4 @@
-// Aims as people say them: at a ball, at a part of it, at a diamond, into a pocket.
+// Aims in a player's words: at a ball, at a part of it, at a diamond, into a pocket.
 #pragma once
 
 #include <string_view>
@@ -8,16 +8,16 @@
 
 namespace carom::detail {
 
-/// Keys of [cue] that stand for aim_deg or speed.
+/// Keys of [cue] that replace aim_deg or speed.
 inline const std::vector<std::string_view> kAimKeys = {"aim_at", "aim_hit", "aim_diamond", "ghost",
                                                        "ball_speed"};
 
-/// Sets aim_deg and speed by these keys. All balls of the scene are known.
+/// Sets aim_deg and speed by these keys. All balls of the scene must be known.
 /// @param s  the section [cue], with the keys of cues and kAimKeys
-/// @throws SceneError for two aims, two speeds, or one that cannot be taken
+/// @throws SceneError for two aims, two speeds, or an impossible one
 void read_aim(const Section& s, const Scene& scene, Cue& cue);
 
-/// Replaces these keys by the aim_deg and the speed that they came to.
+/// Replaces these keys by the resulting aim_deg and speed.
 void write_aim(toml::table& file, const Cue& cue);
 
 }  // namespace carom::detail

@@ -68,7 +68,7 @@ void check_reach(const Section& top, const Scene& scene) {
         const BallAt<Vec3> at{ball.position, Vec3::Zero(), R, ball.height != 0.0};
         const auto depth_in = [&](Nose nose) {
             nose.inset = nose_inset(scene.physics.cushion_touch, R, nose.height);
-            // Inside the circle of a jaw there is no cloth to land on, however high the ball starts.
+            // No cloth lies inside the circle of a jaw, however high the ball starts.
             BallAt<Vec3> there = at;
             there.flies = at.flies && !behind(nose, p);
             return -touch_round(nose, there).gap;
@@ -116,7 +116,7 @@ void check_reach(const Section& top, const Scene& scene) {
     }
 }
 
-/// Refuses a nose as high as the top of a ball or higher: no ball could meet it.
+/// Refuses a nose at or above the top of a ball: no ball could hit it.
 void check_noses(const Section& top, const Scene& scene) {
     const auto check = [&](const char* kind, const std::string& id, double height) {
         for (const BallStart& ball : scene.ball) {
@@ -134,8 +134,8 @@ void check_noses(const Section& top, const Scene& scene) {
     for (const Jaw& j : scene.table.jaws) check(j.is_arc() ? "arc" : "jaw", j.id, j.height);
 }
 
-/// Refuses a cloth on which rolling would cost a ball more speed than sliding: resting contacts have no
-/// solution there. Without sliding friction (mu_s = 0) there is nothing to compare.
+/// Refuses a cloth on which rolling decelerates a ball more than sliding: resting contacts have no solution
+/// there. Without sliding friction (mu_s = 0) there is nothing to compare.
 void check_cloth(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     if (p.mu_s == 0.0 || p.mu_r <= p.mu_s) return;
@@ -148,7 +148,7 @@ void check_cloth(const Section& top, const Scene& scene) {
              p.mu_r, p.mu_s);
 }
 
-/// Why the integrated impact cannot handle two sizes of the scene; "" if it can.
+/// The reason why the integrated impact cannot handle two ball sizes of the scene; "" if it can.
 std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSize& two) {
     const double masses = std::max(one.m, two.m) / std::min(one.m, two.m);
     const double radii = std::max(one.R, two.R) / std::min(one.R, two.R);
@@ -164,7 +164,7 @@ std::string sizes_refused(const Scene& scene, const BallSize& one, const BallSiz
         scene.balls.mu_s, mu_b);
 }
 
-/// Refuses balls of different size if the models of the scene have no formula for them.
+/// Refuses balls of different size if the scene's models have no formula for them.
 void check_sizes(const Section& top, const Scene& scene) {
     if (scene.alike()) return;
     if (scene.physics.cushion_touch == CushionTouch::kNose)
@@ -222,7 +222,7 @@ bool may_fly(const Scene& scene) {
     return scene.lifts() || (scene.physics.vertical == Vertical::kKeep && impacts);
 }
 
-/// Refuses what discs and pucks have no formulas for.
+/// Refuses settings without formulas for discs and pucks.
 void check_discs(const Section& top, const Scene& scene) {
     const BallParams& p = scene.balls;
     const BallBallModelInfo& model = *scene.physics.ball_ball;
@@ -250,7 +250,7 @@ void check_discs(const Section& top, const Scene& scene) {
                  "a cue turns what it strikes, and balls.rolls = false are pucks; give one a velocity");
 }
 
-/// Refuses arcs where a ball may fly.
+/// Refuses arcs if a ball may fly.
 void check_arcs(const Section& top, const Scene& scene) {
     const auto arc = std::find_if(scene.table.jaws.begin(), scene.table.jaws.end(),
                                   [](const Jaw& j) { return j.is_arc(); });
@@ -268,7 +268,7 @@ void check_arcs(const Section& top, const Scene& scene) {
                          in_quotes(ball.id), R, j.id, j.radius);
 }
 
-/// Refuses all that a planar scene cannot do.
+/// Refuses everything that a planar scene cannot represent.
 void check_vertical(const Section& top, const Scene& scene) {
     if (scene.physics.vertical == Vertical::kKeep) return;
     for (const BallStart& ball : scene.ball)
@@ -307,12 +307,12 @@ void check_bed(const Section& top, const Scene& scene) {
     }
 }
 
-/// Refuses balls in the air behind the cushions of a table by name: they would come down on its rail.
+/// Refuses balls in the air behind the cushions of a preset table: they would land on its rail.
 void check_rails(const Section& top, const Scene& scene) {
     const Table& table = scene.table;
     if (table.preset.empty() || table.bed) return;
     const Vec2 low = table.corner, high = low + Vec2(table.width, table.length);
-    // Exactly above a nose it is behind it if it moves there.
+    // A ball exactly above a nose is behind it if it moves there.
     const auto next = [](double x, double v) {
         constexpr double kFar = std::numeric_limits<double>::infinity();
         return v == 0.0 ? x : std::nextafter(x, v > 0.0 ? kFar : -kFar);
@@ -330,7 +330,7 @@ void check_rails(const Section& top, const Scene& scene) {
     }
 }
 
-/// Whether impacts with the table can give a ball vertical spin.
+/// Whether impacts with the table can cause vertical spin.
 bool cushions_twist(const Scene& scene) {
     const auto twists = [&](const CushionModelInfo* model) {
         return model->reads_friction && scene.balls.cushion_friction().most() > 0.0;
@@ -339,7 +339,6 @@ bool cushions_twist(const Scene& scene) {
            (!scene.table.jaws.empty() && twists(scene.physics.jaw_model()));
 }
 
-/// The motions that can occur in a scene.
 struct Motions {
     bool travel = false;  ///< some ball can move over the cloth
     bool slip = false;    ///< some ball can slide on the cloth

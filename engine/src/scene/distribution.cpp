@@ -55,12 +55,12 @@ std::int64_t whole(std::string_view name, const toml::array& list, std::size_t i
     return value(name, list, i, [](const toml::node& node) { return integer_in(node); });
 }
 
-/// The values of a list, which stay where they are.
+/// The values of a list, at fixed addresses.
 struct List {
     explicit List(toml::array list) : nodes(std::move(list)) {
         for (const toml::node& node : nodes) items.emplace_back(node);
     }
-    /// The list has whole numbers only if all its values are whole.
+    /// kWhole only if all values are integers.
     ValueKind kind() const {
         const auto all = [this](auto&& is) { return std::all_of(nodes.begin(), nodes.end(), is); };
         if (all([](const toml::node& value) { return value.is_integer(); })) return ValueKind::kWhole;
@@ -71,14 +71,12 @@ struct List {
     std::vector<ListItem> items;
 };
 
-/// The values of grid(list(v,...)).
 Distribution grid_of_list(std::string_view text) {
     const auto list = std::make_shared<const List>(arguments("list", text));
     if (list->items.empty()) fail("list has 0 values; write list(v,...)");
     return {{}, list->kind(), list->items.size(), [list](std::uint64_t step) { return &list->items[step]; }};
 }
 
-/// The values of grid(a,b,n).
 Distribution grid_of_numbers(std::string_view text) {
     const toml::array values = arguments("grid", text);
     if (values.size() != 3) fail("grid has {} values; write grid(a,b,n) or grid(list(v,...))", values.size());
@@ -88,7 +86,7 @@ Distribution grid_of_numbers(std::string_view text) {
     if (steps < 1 || steps > 1000000000) fail("grid(a,b,n) needs 1 <= n <= 1000000000");
     if (steps == 1 && low != high) fail("grid(a,b,n) needs n >= 2 to reach from a to b");
     const auto last = static_cast<std::uint64_t>(steps - 1);
-    // Whole numbers suit keys that accept nothing else.
+    // Integers suit keys that accept nothing else.
     constexpr double kExact = 0x1p53;
     const double each = last > 0 ? (high - low) / static_cast<double>(last) : 0.0;
     const bool whole_numbers = low == std::floor(low) && each == std::floor(each) &&
@@ -125,7 +123,7 @@ ListItem::ListItem(const toml::node& value) : node(&value) {
     }
     try {
         if (value.is_number()) exact = number_in(value);
-    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number holds
+    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number can represent
     }
 }
 

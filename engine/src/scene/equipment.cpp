@@ -1,4 +1,4 @@
-// The balls, cloths and cues that come with the program. Sources of the numbers, and how far to trust them:
+// The built-in balls, cloths and cues. Sources of the numbers, and their reliability:
 // docs/reference/physics.md, "Where the numbers come from".
 #include <fmt/format.h>
 
@@ -24,11 +24,11 @@ struct BallPreset {
     const char* name;
     BallParams balls;
     const CushionModelInfo* cushion;
-    BallSize cue = {0.0, 0.0};  ///< of the cue ball; R = 0: as the others
+    BallSize cue = {0.0, 0.0};  ///< of the cue ball; R = 0: like the others
 };
 
-/// The values that most simulators share: one set of coefficients for every game, and friction between balls
-/// that does not depend on their slip.
+/// The values that most simulators share: one set of coefficients for every game, and ball-ball friction
+/// independent of the slip.
 constexpr BallParams classic(double R, double m) {
     return {.R = R,
             .m = m,
@@ -70,8 +70,8 @@ constexpr BallParams carom_balls() {
     return p;
 }
 
-/// English pool balls of 2 in, with a cue ball of 1 7/8 in; masses by volume from a pool ball's, whose resin
-/// they share. Coefficients as for pool.
+/// English pool balls of 2 in, with a cue ball of 1 7/8 in; masses by volume from a pool ball of the same
+/// resin. Coefficients as for pool.
 constexpr double by_volume(double R) {
     const double ratio = R / kPoolClassic.R;
     return kPoolClassic.m * (ratio * ratio * ratio);
@@ -89,8 +89,8 @@ constexpr BallParams pyramid_balls() {
 }
 constexpr double kOversized = 2.375 / 2.0 * 0.0254, kEnglishCue = 1.875 / 2.0 * 0.0254, kOunce = 0.028349523;
 
-/// In the order of kBallPresets. The oversized cue ball of a coin-operated table has 2 3/8 in and the resin
-/// of the others; a magnetic one has their size, and is half an ounce to an ounce heavier.
+/// In the order of kBallPresets. The oversized cue ball of a coin-operated table measures 2 3/8 in and is of
+/// the same resin; a magnetic one has the usual size, and is half an ounce to an ounce heavier.
 constexpr BallPreset kBalls[] = {
     {"pool", pool(), &kHan2005},
     {"snooker", snooker(), &kMathavan2010},

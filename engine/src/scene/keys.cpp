@@ -41,7 +41,7 @@ std::size_t take_part(std::string_view& key, std::string_view list) {
     return number - 1;
 }
 
-/// The index of "x", "side" or "0". The names are those of docs/reference/scene_format.md.
+/// The index of "x", "side" or "0". The names are listed in docs/reference/scene_format.md.
 std::size_t element_index(std::string_view name) {
     constexpr struct {
         const char* name;

@@ -1,5 +1,5 @@
-// Keys with dots, as sweeps and batches write them:
-// cue.offset.side, ball.1.position.x, table.pocket.p1.radius.
+// Keys with dots, as written in sweeps and batches: cue.offset.side, ball.1.position.x,
+// table.pocket.p1.radius.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@ struct KeyPath {
     std::string name;                    ///< of the value in its section
     std::optional<std::size_t> element;  ///< of the value, if it is a list
 
-    /// Whether one of the two keys names the value of the other, or a part of it.
+    /// Whether one key names the other's value, or a part of it.
     bool overlaps(const KeyPath& other) const;
 };
 
-/// @param ids  of the balls that a key may name, in their order
+/// @param ids  of the balls that a key may name, in order
 /// @throws std::invalid_argument
 KeyPath parse_key(std::string_view key, const std::vector<std::string>& ids);
 

@@ -38,7 +38,7 @@ std::string read_scene_text(const std::string& path) {
         cannot_read(path, "it is a directory; name a scene file in it");
     std::ifstream in(path, std::ios::binary);
     if (!in) cannot_read(path, "it cannot be opened; check its permissions");
-    // In pieces: a buffer for the largest file would take longer to clear than a shot to play.
+    // In pieces: clearing a buffer for the largest file would take longer than a shot.
     std::string text;
     std::array<char, 1U << 14U> piece;
     while (in && text.size() <= kMaxFileSize) {

@@ -16,14 +16,14 @@ using Rows = std::vector<std::vector<double>>;
 
 struct RackPair {
     std::size_t i, j;
-    double apart;  // [m] of the centres when the balls are as close as they may be
-    double pull;   // [-] the force that draws them together
+    double apart;  // [m] smallest possible distance of the centres
+    double pull;   // [-] force that draws them together
     Vec2 normal = Vec2::Zero();
     double open = 0.0;  // [m]
 };
 
 /// Around each ball in the middle of six others, the gaps of the rim minus those of the spokes do not depend
-/// on where the balls are, to first order: a row for each, with 1 and -1 for its pairs.
+/// on the positions, to first order: one row for each, with 1 and -1 for its pairs.
 Rows wheels(const std::vector<RackPair>& pairs, std::size_t balls) {
     Rows rows;
     for (std::size_t hub = 0; hub < balls; ++hub) {
@@ -39,8 +39,8 @@ Rows wheels(const std::vector<RackPair>& pairs, std::size_t balls) {
 }
 
 /// The pairs that stay open, one for each wheel: of all gaps >= 0 with these sums, those with the least work
-/// against the pulls. The simplex method on the dual problem, "most sum . y with wheels^T y <= pull", whose
-/// free variables y enter the basis first and stay there.
+/// against the pulls. The simplex method on the dual problem, "maximise sum . y with wheels^T y <= pull",
+/// whose free variables y enter the basis first and stay there.
 std::vector<bool> open_pairs(const std::vector<RackPair>& pairs, const Rows& wheel,
                              const std::vector<double>& sum) {
     constexpr std::size_t kFree = std::numeric_limits<std::size_t>::max();
@@ -56,7 +56,7 @@ std::vector<bool> open_pairs(const std::vector<RackPair>& pairs, const Rows& whe
         for (std::size_t c = 0; c < m; ++c) t[r][c] = wheel[c][r];
     }
     for (std::size_t c = 0; c < m; ++c) t[n][c] = most > 0.0 ? -sum[c] / most : 0.0;
-    // Each exchange lowers the work; rounding must not keep it from ending.
+    // Each exchange lowers the work; the limit guarantees termination despite rounding.
     for (std::size_t exchanges = 0; exchanges < 100 * (m + 1); ++exchanges) {
         std::size_t s = 0;
         for (std::size_t c = 1; c < m; ++c)
@@ -87,8 +87,8 @@ std::vector<bool> open_pairs(const std::vector<RackPair>& pairs, const Rows& whe
     return open;
 }
 
-/// Solves a x = b for a symmetric positive definite matrix; b becomes x. Eigen adds up in another order with
-/// other instructions, which would give other bits.
+/// Solves a x = b for a symmetric positive definite matrix; b becomes x. Not by Eigen, whose order of
+/// summation, and so whose bits, depends on the instruction set.
 void solve_positive(Rows& a, std::vector<double>& b) {
     const std::size_t n = b.size();
     for (std::size_t k = 0; k < n; ++k)
@@ -104,7 +104,7 @@ void solve_positive(Rows& a, std::vector<double>& b) {
     }
 }
 
-/// One step of Newton's method: the smallest moves that close these pairs, to first order.
+/// One step of Newton's method: the smallest displacements that close these pairs, to first order.
 void close_pairs(const std::vector<const RackPair*>& pairs, std::vector<Vec2>& places) {
     const std::size_t n = pairs.size();
     Rows a(n, std::vector<double>(n));
@@ -130,7 +130,7 @@ void close_pairs(const std::vector<const RackPair*>& pairs, std::vector<Vec2>& p
 void press(std::vector<Vec2>& places, std::span<const double> radii, double R, double gap, std::size_t fixed,
            SplitMix64& random) {
     constexpr int kRounds = 30;
-    // [m] Steps converge quadratically: after one of at most this length only rounding is left.
+    // [m] Steps converge quadratically: after a step of at most this length only rounding remains.
     constexpr double kSmallStep = 1e-10, kRounding = 1e-14;
     std::vector<RackPair> pairs;
     for (std::size_t i = 0; i < places.size(); ++i)

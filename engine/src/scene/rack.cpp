@@ -35,8 +35,8 @@ void shuffle(std::vector<int>& numbers, SplitMix64& random) {
     }
 }
 
-/// By the world standardised rules, the 8 lies in the middle of the third row, one solid and one stripe in
-/// the back corners, and the rest at random.
+/// By the world standardised rules, the 8 is in the middle of the third row, one solid and one stripe are in
+/// the back corners, and the others are random.
 std::vector<int> eight_ball_numbers(SplitMix64& random) {
     const int solid = 1 + random.below(7);
     const int stripe = 9 + random.below(7);
@@ -52,7 +52,7 @@ std::vector<int> eight_ball_numbers(SplitMix64& random) {
     return numbers;
 }
 
-/// The 1 lies at the apex, the last ball (9 or 10) in the middle of the third row, and the rest at random.
+/// The 1 is at the apex, the last ball (9 or 10) in the middle of the third row, and the others are random.
 std::vector<int> rotation_numbers(int last, SplitMix64& random) {
     std::vector<int> numbers(static_cast<std::size_t>(last - 2));
     std::iota(numbers.begin(), numbers.end(), 2);
@@ -73,7 +73,7 @@ std::vector<int> numbers_of(const Rack& rack, SplitMix64& random) {
 
 constexpr std::size_t kPink = 4;  // among the colours of snooker
 
-/// Balls that have spots.
+/// Balls with their own spots.
 std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     const Vec2 beside = opening_spot(table), head = head_spot(table), foot = foot_spot(table);
     if (rack.game == RackGame::kThreeCushion) return {{"white", beside}, {"yellow", head}, {"red", foot}};
@@ -86,7 +86,7 @@ std::vector<RackedBall> spotted(const Rack& rack, const Table& table) {
     return balls;
 }
 
-/// Metropolis sampling of hard discs, starting with the rack without jitter. Every step is a valid rack.
+/// Metropolis sampling of hard discs, starting from the rack without jitter. Every step is a valid rack.
 void add_jitter(std::vector<Vec2>& places, const std::vector<double>& radii, const Rack& rack,
                 SplitMix64& random) {
     // With a gap of 0, only the outer balls can move at first; after a hundred rounds every ball has moved.
@@ -113,7 +113,7 @@ void add_jitter(std::vector<Vec2>& places, const std::vector<double>& radii, con
     }
 }
 
-/// Normal about R, cut at kCut standard deviations.
+/// Normal about R, truncated at kCut standard deviations.
 std::vector<double> radii_of(const Rack& rack, double R, std::size_t balls, SplitMix64& random) {
     constexpr double kCut = 2.5;
     std::vector<double> radii(balls, R);
@@ -162,7 +162,7 @@ std::vector<RackedBall> scattered(const Rack& rack, const Table& table, const st
                 throw std::invalid_argument(
                     fmt::format("there is no room for ball {} of {}; take fewer balls or a smaller gap",
                                 number, rack.count));
-            // One statement each: the order of the draws belongs to the layout.
+            // Separate statements, because the order of the draws determines the layout.
             place.x() = low.x() + room.x() * random.uniform();
             place.y() = low.y() + room.y() * random.uniform();
         } while (!is_free(place, aside));

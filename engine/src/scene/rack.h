@@ -13,25 +13,24 @@ struct RackedBall {
     std::string id;  ///< "1", "2", ..., or a colour
     Vec2 position;
     double radius = 0.0;
-    /// Puts it on the cloth; the mass goes with the cube of the radius.
+    /// Puts it on the cloth, with a mass proportional to the cube of the radius.
     void put(BallStart& ball, const BallSize& common) const;
 };
 
-/// Number of numbered balls in a rack.
 int balls_of(const Rack& rack);
 
-/// Places a rack, ordered by number; colours with spots come last.
+/// Places a rack, ordered by number, then colours with spots.
 ///
 /// @param R  ball radius [m]
 ///
-/// With rack.radius_sd, the radii are normal about R, cut at 2.5 standard deviations, from a stream of draws
-/// of their own. Unlike balls of a rack are pressed together until neighbours are rack.gap apart (press.h),
-/// then jitter.
+/// With rack.radius_sd, the radii are normal about R, truncated at 2.5 standard deviations, from their own
+/// stream of draws. Unlike balls of a rack are pressed together until neighbours are rack.gap apart
+/// (press.h), then jittered.
 ///
 /// The apex, or rack.spot_ball (which must be in the rack), is at rack.position, by default the foot spot
 /// (snooker: behind the pink, a diameter and a gap away). Rows run towards +y, turned by rack.angle_deg about
-/// that ball. The colours of snooker and the balls of three-cushion are on their spots, whose distances
-/// scale with the length of the table; they have no jitter.
+/// that ball. The colours of snooker and the balls of three-cushion are on their spots, whose distances scale
+/// with the table's length; they have no jitter.
 ///
 /// Without jitter the rack is its own exact mirror image about x = apex.x, bit for bit, and neighbours are 2R
 /// + gap apart to within rounding.
@@ -39,12 +38,12 @@ int balls_of(const Rack& rack);
 /// Jitter never makes balls overlap. In each of a hundred rounds every ball in turn, row by row from left to
 /// right, draws a position (x, then y) in the box of half-width `jitter` around its slot, and keeps its old
 /// one if the new one would overlap. For balls far apart, that is a uniform draw; close together, a uniform
-/// draw among the possible racks. The seed decides the numbers first, then the jitter.
+/// draw among the possible racks. The seed determines the numbers first, then the jitter.
 ///
-/// A scatter has no rack: each ball in turn is uniform over the bed of the table, wherever it is at least
-/// rack.gap away from every cushion, jaw and ball before it, and outside the pockets.
+/// A scatter has no rack: each ball in turn is uniform over the bed of the table, except within rack.gap of
+/// cushions, jaws and earlier balls, and in the pockets.
 ///
-/// @param others  balls that are on the table already, for a scatter
+/// @param others  balls already on the table, for a scatter
 /// @throws std::invalid_argument if a scatter finds no room
 std::vector<RackedBall> make_rack(const Rack& rack, const Table& table, double R,
                                   std::span<const BallStart> others = {});

@@ -111,7 +111,7 @@ std::int64_t Section::integer(const toml::node& node, const Key& key) const {
 }
 
 std::string Section::text(const toml::node& node, const Key& key) const {
-    // A switch, whose words are those of TOML.
+    // A switch, whose words are TOML's booleans.
     if (node.is_boolean() && key.options.names.size() == 2 &&
         key.options.names[0] == std::string_view("true"))
         return *node.value<bool>() ? "true" : "false";

@@ -1,4 +1,4 @@
-// A typed reader over toml++: every value is checked when it is read, and every error says where it is in the
+// A typed reader over toml++: every value is checked when read, and every error states its position in the
 // file.
 #pragma once
 
@@ -21,14 +21,14 @@ using carom::in_quotes;
 
 SourceLocation place(const toml::source_region& region);
 
-/// A key that a section does not have, or a section that does not exist (`section` is "").
+/// A key that a section does not allow, or a section that does not exist (`section` is "").
 class UnknownKey : public SceneError {
   public:
     UnknownKey(const std::string& file, SourceLocation where, std::string_view key,
                const std::string& section, const std::vector<std::string_view>& keys);
 };
 
-/// Reads one table of the file. `path` names it in messages ("cue", "table.cushion"); it is "" for the whole
+/// Reads one table of the file. `path` is its name in messages ("cue", "table.cushion"); "" for the whole
 /// file. A section of a scene built in code has no table: it only checks, and its errors have no location.
 class Section {
   public:
@@ -54,7 +54,7 @@ class Section {
     static SourceLocation where(const toml::node& node) { return place(node.source()); }
     static SourceLocation where(SourceLocation known) { return known; }
 
-    /// Reads the values that the section has; the rest of the object stays as it is.
+    /// Reads the values present in the section; the rest of the object is unchanged.
     template <class T, std::size_t kRows>
     void read(const Field<T> (&fields)[kRows], T& object, std::string_view except = {}) const {
         for (const Field<T>& f : fields) {
@@ -64,13 +64,13 @@ class Section {
         }
     }
     std::optional<bool> boolean(std::string_view key) const;
-    /// The value of a key that has() is true for.
+    /// The value of a key for which has() is true.
     const toml::node* node(std::string_view key) const { return table_->get(key); }
-    /// A number inside a value; `what` names it in messages.
+    /// A number inside a value; `what` is its name in messages.
     double number_of(const toml::node& node, const std::string& what, const Interval& allowed) const {
         return number(node, what, allowed);
     }
-    /// A text in a section inside this one that is read later, and checked then; nothing if there is none.
+    /// A text in an inner section that is read and checked later; nothing if absent.
     std::optional<std::string> peek(std::string_view section, std::string_view key) const {
         return table_ != nullptr ? (*table_)[section][key].value<std::string>() : std::nullopt;
     }
@@ -88,7 +88,7 @@ class Section {
 
     /// A section inside this one, if it exists.
     std::optional<Section> section(const char* key, const std::vector<std::string_view>& keys) const;
-    /// The same, and its values are read into the object.
+    /// The same, and reads its values into the object.
     template <class T, std::size_t kRows>
     std::optional<Section> read(const char* key, const Field<T> (&fields)[kRows], T& object) const {
         std::optional<Section> inner = section(key, keys_of(fields, Files::kScene));
@@ -98,7 +98,7 @@ class Section {
     /// The tables of an array of tables; nothing if the key is absent.
     std::optional<std::vector<const toml::table*>> tables(std::string_view key) const;
 
-    /// Throws a SceneError at a key, a node or a location; the message and its values are as for fmt::format.
+    /// Throws a SceneError at a key, a node or a location; message and values as for fmt::format.
     template <class At, class... Values>
     [[noreturn]] void fail(const At& at, fmt::format_string<Values...> message, Values&&... values) const {
         throw SceneError(file_, where(at), fmt::format(message, std::forward<Values>(values)...));

@@ -49,8 +49,8 @@ struct Found {
 };
 
 /// The number that a key names in the rows of its section.
-/// @param at  returns the object with the rows, given a scene
-/// @param change  what must be checked after a change within the range
+/// @param at  scene -> the object with the rows
+/// @param change  the checks after a change within the range
 template <class T, std::size_t kRows, class At>
 Found find(const Field<T> (&fields)[kRows], const char* section, const KeyPath& path, Change change, At at) {
     for (const Field<T>& f : fields) {
@@ -59,7 +59,7 @@ Found find(const Field<T> (&fields)[kRows], const char* section, const KeyPath& 
             const std::size_t k = *path.element;
             if (f.element == nullptr || k >= f.count()) break;
             return {&f,
-                    // The numbers of a fit have limits together, too.
+                    // The numbers of a fit also have joint limits.
                     [&f, at, k, change](Scene& scene, double value) {
                         *f.element(at(scene), k) = value;
                         const bool alone = f.options.instead_of == nullptr;
@@ -95,7 +95,7 @@ Found find(const Field<T> (&fields)[kRows], const char* section, const KeyPath& 
          did_you_mean(path.name, keys_of(fields, Files::kScene)));
 }
 
-/// Puts balls that rest on the cloth at the height of their size, after `found` has changed it.
+/// Lifts balls on the cloth to the height of their size, after `found` has changed it.
 template <class Balls>
 Found lifting(Found found, Balls balls) {
     found.put = [put = std::move(found.put), balls](Scene& s, double value) {
@@ -128,7 +128,7 @@ Found find_in_balls(const KeyPath& path) {
     return size ? lifting(std::move(found), [](Scene& s) { return std::span(s.ball); }) : found;
 }
 
-/// @param first  how many parts of the list the file keeps in another list
+/// @param first  number of leading parts that the file has in another list
 template <class Part, std::size_t kRows>
 Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, std::vector<Part> Table::*parts,
                     const Scene& scene, const KeyPath& path, std::size_t first = 0) {
@@ -138,7 +138,7 @@ Found find_in_parts(const Field<Part> (&fields)[kRows], const char* section, std
                 [parts, i](Scene& s) -> Part& { return (s.table.*parts)[i]; });
 }
 
-/// A measure of the table: changing it makes the parts anew.
+/// A measure of the table: changing it rebuilds the parts.
 Found rebuilding(Found found) {
     found.put = [put = std::move(found.put)](Scene& s, double value) {
         const Change change = put(s, value);
@@ -203,7 +203,7 @@ SceneNumber::SceneNumber(const Scene& scene, std::string_view key) {
         row_ = found.row;
         put_ = std::move(found.put);
         get_ = std::move(found.get);
-        if (row_->optional) value(scene);  // which may refuse a part of a list
+        if (row_->optional) value(scene);  // may refuse a part of a list
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("{}: {}", key, error.what()));
     }

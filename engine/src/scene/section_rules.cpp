@@ -1,4 +1,4 @@
-// Rules about the values of one section that go beyond the range of a single key.
+// Rules about the values of one section, beyond the range of a single key.
 #include <fmt/format.h>
 
 #include <string>
@@ -22,7 +22,7 @@ void check_id(const Section& section, const std::string& id) {
         section.fail(
             "id", "the ball id {} contains a comma, a semicolon, a quote or a control character; remove it",
             in_quotes(id));
-    // A spreadsheet reads these as formulas, and a shell reads the last one as an option.
+    // Spreadsheets read these as formulas, and a shell reads the last one as an option.
     if (id.find_first_of("=+@-") == 0)
         section.fail("id", "the ball id {} begins with {}; begin it with a letter or a digit", in_quotes(id),
                      in_quotes(id.substr(0, 1)));

@@ -23,9 +23,9 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [m] Between balls in a wooden triangle, on average.
+// [m] Mean gap of balls in a wooden triangle.
 constexpr double kTriangleGap = 5e-5;
-// [-] Largest balls.radius_sd, of the radius: balls that differ more do not lie in rows.
+// [-] Largest balls.radius_sd, of the radius: balls that differ more do not form rows.
 constexpr double kMostOfRadius = 0.005;
 
 BallStart read_ball(const Section& s, const BallSize& common, const std::optional<BallSize>& cue_ball,
@@ -75,7 +75,7 @@ void apply_method(const Section& s, Rack& rack) {
     rack.gap = 0.0;
 }
 
-/// Puts the balls of a rack behind the others.
+/// Puts the balls of a rack after the others.
 void place_rack(const Section& top, const Section& s, const Rack& rack, Scene& scene) {
     if (rack.radius_sd > kMostOfRadius * scene.balls.R)
         top.fail(top.where("balls", "radius_sd"),

@@ -6,7 +6,7 @@
 namespace carom {
 namespace {
 
-// From the rules of the WPBSA, section 1, for a playing area of 3.569 m; other tables are scaled: the baulk
+// From the rules of the WPBSA, section 1, for a playing area of 3.569 m, scaled for other tables: the baulk
 // line from the bottom cushion, the radius of the D, the black spot from the top cushion.
 constexpr double kFullLength = 3.569, kBaulk = 0.737, kRadiusOfD = 0.292, kBlackFromTop = 0.324;
 

@@ -38,7 +38,7 @@ Cue legal_strike(Cue cue) {
     const auto beyond = [&cue] {
         return cue.side * cue.side + cue.height * cue.height > kMiscueOffset * kMiscueOffset;
     };
-    // Divided first, so that no square overflows. Rounding may leave it outside by a bit, so repeat.
+    // Divided first, so that no square overflows. Rounding may leave it slightly outside, so repeat.
     if (const double most = std::max(std::abs(cue.side), std::abs(cue.height)); most > 1.0) {
         cue.side /= most;
         cue.height /= most;

@@ -16,7 +16,7 @@
 namespace carom::detail {
 namespace {
 
-/// Nose height over ball radius of pool tables (physics.md: 1.28 R), the default of a custom outline.
+/// Nose height over ball radius of pool tables (physics.md: 1.28 R): the default of a custom outline.
 constexpr double kNoseShare = 1.28;
 
 /// Reads every item of a list into a part of the table, and calls `check(section, part)`.
@@ -37,7 +37,7 @@ void read_parts(const Section& outline, const char* key, const Field<Part> (&fie
     }
 }
 
-/// Directions in which an arc may be farthest out: along an axis, or to its ends.
+/// Directions in which an arc may extend farthest: along an axis, or to its ends.
 std::vector<Vec2> farthest_of(const ArcSpan& span) {
     std::vector<Vec2> all;
     for (const Vec2& axis : {Vec2(1.0, 0.0), Vec2(0.0, 1.0), Vec2(-1.0, 0.0), Vec2(0.0, -1.0)})
@@ -46,8 +46,8 @@ std::vector<Vec2> farthest_of(const ArcSpan& span) {
     return all;
 }
 
-/// Box inside the nose lines: the cushions along x and along y bound it, so that facings do not count. If
-/// they bound nothing, it is the box around the cushions, or around jaws and pockets if there are none.
+/// Box inside the nose lines: only cushions along x and along y bound it, not facings. If they bound nothing,
+/// it is the box around the cushions, or around jaws and pockets if there are none.
 void set_surface(Table& table) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     Vec2 low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
@@ -68,7 +68,7 @@ void set_surface(Table& table) {
         include(c.from, 0.0);
         include(c.to, 0.0);
     }
-    // A round wall bounds it, too, where it is farthest out.
+    // The farthest points of a round wall bound it, too.
     for (const Jaw& j : table.jaws)
         if (j.around())
             for (const Vec2& out : farthest_of(span_of(j))) include(j.center + j.radius * out, 0.0);

@@ -1,4 +1,4 @@
-// The measures of a table as people take them, and the dimensions that they mean.
+// The measures of a table as a person would take them, and the resulting dimensions.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace carom {
 namespace {
 
-/// [m] or [degrees] Two measures are the same if they are nearer than this: more than the rounding of a sum,
-/// and less than anybody measures.
+/// [m] or [degrees] Two measures are equal within this: more than the rounding of a sum, and less than
+/// anybody measures.
 constexpr double kSame = 1e-12;
 
 /// The angle between nose and facing if the facing runs along the pocket's axis.
@@ -20,7 +20,7 @@ constexpr double kCornerAxis = 135.0, kSideAxis = 90.0;
 
 const double kRoot2 = std::sqrt(2.0);
 
-/// The pocket as its axis sees it: the facings begin at the ends of the mouth and close in.
+/// The pocket along its axis: the facings begin at the ends of the mouth and converge.
 struct Channel {
     double throat;  ///< between their back ends
     double depth;   ///< of their back ends behind the mouth
@@ -50,7 +50,7 @@ bool replace(double& mine, const std::optional<double>& wanted) {
 /// The angle in degrees with this tangent, from 0 to 90; 0 for a negative one.
 double angle_with_tangent(double tangent) {
     double low = 0.0, high = 90.0;
-    // Halving 90 degrees 60 times leaves less than an ulp of any angle that matters.
+    // Halving 90 degrees 60 times leaves less than an ulp of any relevant angle.
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         (tan_deg(middle) < tangent ? low : high) = middle;
@@ -58,7 +58,7 @@ double angle_with_tangent(double tangent) {
     return high;
 }
 
-/// @returns whether the facing is another one
+/// @returns whether the facing changed
 bool replace_angle(double& angle, double axis, const std::optional<double>& wanted) {
     double whole = axis + angle;
     if (!replace(whole, wanted)) return false;

@@ -1,4 +1,4 @@
-// The tables that come with the program.
+// The built-in tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@
 namespace carom {
 namespace {
 
-/// Seven-foot table. The numbers are those of pooltool 0.6.0 for a Showood table. Its side facings end at
-/// sin(angle) instead of tan(angle) times the depth, 5e-5 m off the tangent; that is kept, so that the two
-/// tables are equal.
+/// Seven-foot table, with pooltool 0.6.0's numbers for a Showood table. Its side facings end at sin(angle)
+/// instead of tan(angle) times the depth, 5e-5 m off the tangent; this is kept, so that the two tables are
+/// equal.
 PocketTable seven_foot() {
     constexpr double kSideAngle = 7.14;
     return {.length = 1.9812,
@@ -38,8 +38,8 @@ PocketTable seven_foot() {
             .side_run = sin_cos_deg(kSideAngle).sin};
 }
 
-/// [m] Shelf of a corner pocket, from the middle of the mouth to the edge where the ball falls: 1 3/4 in, the
-/// middle of the BCA's 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
+/// [m] Shelf of a corner pocket, from the middle of the mouth to the edge of the hole: 1 3/4 in, the middle
+/// of the BCA's 1 5/8 to 1 7/8 in and within the WPA's 1 to 2 1/4 in.
 constexpr double kCornerShelf = 1.75 * 0.0254;
 /// [m] Radius of the point between a nose and a facing: on a pool table only the rubber rounds it.
 constexpr double kPointRadius = 0.003;
@@ -50,9 +50,9 @@ double depth_of_shelf(const PocketTable& t, double shelf) {
 
 /// Nine-foot table. The playing surface is 100 x 50 in. The mouths are the middle of the range in the WPA
 /// equipment specifications (corner 4.5 to 4.625 in, side 5 to 5.125 in), and so are the angles between rail
-/// and facing (corner 142, side 104 degrees; here they count from 135 and from 90). The nose, at 64 % of the
+/// and facing (corner 142, side 104 degrees; here measured from 135 and from 90). The nose, at 64 % of the
 /// ball's diameter, is within the specified 62.5 to 64.5 %. Cushion width, pocket radii and the depth at the
-/// sides are those of the seven-foot table; the shelf there is then 4 mm (specified: 0 to 9.5 mm).
+/// sides are as on the seven-foot table; the shelf there is then 4 mm (specified: 0 to 9.5 mm).
 PocketTable nine_foot() {
     PocketTable t = seven_foot();
     t.length = 2.54;
@@ -68,7 +68,7 @@ PocketTable nine_foot() {
 }
 
 /// Eight-foot table: playing surface 92 x 46 in, the eight-foot size of the WPA equipment specifications
-/// (tables of 88 x 44 in are sold as eight-foot too). Pockets as on the nine-foot table, because the
+/// (tables of 88 x 44 in are also sold as eight-foot). Pockets as on the nine-foot table, because the
 /// specification has one set for both.
 PocketTable eight_foot() {
     PocketTable t = nine_foot();
@@ -78,8 +78,8 @@ PocketTable eight_foot() {
 }
 
 /// Coin-operated bar table, called seven-foot in America: playing surface 80 x 40 in (Valley, Diamond),
-/// mouths of Valley's (corner 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). The
-/// rest is as for the nine-foot table.
+/// Valley's mouths (corner 4 7/8, side 4 3/4 in), angles of the BCA (corner 142, side 103 degrees). Otherwise
+/// as the nine-foot table.
 PocketTable bar_table() {
     PocketTable t = nine_foot();
     t.length = 80.0 * 0.0254;
@@ -95,8 +95,8 @@ PocketTable bar_table() {
 /// Twelve-foot snooker table. Playing surface 3.569 x 1.778 m (11 ft 8 1/2 in x 5 ft 10 in, rules of the
 /// WPBSA, section 1). Nose height 7/5 of the ball's radius (Mathavan, Jackson, Parkin 2010). The pocket
 /// templates of the WPBSA are not published: mouths of 89 and 105 mm are commonly quoted (from memory). Jaw
-/// radii, depths and pocket radii are chosen to suit them: the jaws are large and round, and a ball falls
-/// when its centre passes the corner, or the rail line at the side.
+/// radii, depths and pocket radii are chosen to match: the jaws are large and round, and a ball falls when
+/// its centre passes the corner, or the rail line at the side.
 PocketTable snooker_table() {
     constexpr double kSideAngle = 10.0;
     return {
@@ -109,8 +109,8 @@ PocketTable snooker_table() {
         .side_run = tan_deg(kSideAngle)};
 }
 
-/// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, and all of
-/// them smaller as the balls are.
+/// Seven-foot table for English pool: playing surface 6 x 3 ft. Round jaws as on a snooker table, scaled to
+/// the smaller balls.
 PocketTable english_pool_table() {
     constexpr double kBalls = 0.0254 / 0.02625;
     PocketTable t = snooker_table();
@@ -123,7 +123,7 @@ PocketTable english_pool_table() {
     return t;
 }
 
-/// Nine-foot table with corner mouths of 4 1/4 in, as many professional events have them.
+/// Nine-foot table with corner mouths of 4 1/4 in, as in many professional events.
 PocketTable nine_foot_tight() {
     return with_measures(nine_foot(), {.corner_pockets = {.mouth = 4.25 * 0.0254}});
 }
@@ -133,7 +133,7 @@ PocketTable ten_foot() {
     return with_measures(nine_foot(), {.size = Vec2(56.0 * 0.0254, 112.0 * 0.0254)});
 }
 
-/// Ten-foot snooker table: 9 ft 5 in x 4 ft 10 in, as its owners give it. Pockets as on the twelve-foot one.
+/// Ten-foot snooker table: 9 ft 5 in x 4 ft 10 in, by owners' accounts. Pockets as on the twelve-foot one.
 PocketTable snooker_ten_foot() {
     return with_measures(snooker_table(), {.size = Vec2(58.0 * 0.0254, 113.0 * 0.0254)});
 }
@@ -149,9 +149,9 @@ PocketTable chinese_eight_ball() {
 }
 
 /// Russian pyramid, twelve feet: 3.55 x 1.775 m, points at the sides rounded by 11 mm (basic requirements of
-/// the International Committee of Pyramid); mouths 72 to 73 and 82 to 83 mm; nose at 5/8 of the ball, the
-/// share of a pool table (recalled). Facings, shelves, holes and points at the corners are chosen so that a
-/// ball just passes.
+/// the International Committee of Pyramid); mouths 72 to 73 and 82 to 83 mm; nose at 5/8 of the ball, as on a
+/// pool table (recalled). Facings, shelves, holes and points at the corners are chosen so that a ball just
+/// passes.
 PocketTable pyramid_table() {
     constexpr double kSharp = 0.005;
     return with_measures(
@@ -193,7 +193,7 @@ JawAndFacing side_jaw(const PocketTable& t) {
 }
 
 /// Clockwise from the corner at the origin: head-left corner, left rail, foot rail, right rail, head rail.
-/// Each quarter of the table is the mirror image of the one before it.
+/// Each quarter of the table mirrors the previous one.
 Table build(const char* preset, const PocketTable& t) {
     const JawAndFacing short_rail = corner_jaw(t), long_rail = short_rail.swapped(), side = side_jaw(t);
     const double w = t.width, l = t.length, h = t.nose_height;
@@ -286,7 +286,7 @@ struct WithoutPockets {
     const char *name, *also;
     double length;
 };
-/// Match table, 2.84 x 1.42 m between nose lines (UMB rules), and the small one of clubs, 2.3 x 1.15 m
+/// Match table, 2.84 x 1.42 m between nose lines (UMB rules), and the small club table, 2.3 x 1.15 m
 /// (recalled).
 constexpr WithoutPockets kWithoutPockets[] = {{"carom", "carom_ten_foot", 2.84},
                                               {"carom_small", "carom_small", 2.3}};

@@ -19,7 +19,6 @@ namespace {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-/// A TOML string.
 std::string quote(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -33,7 +32,7 @@ std::string quote(const std::string& text) {
     return out + '"';
 }
 
-// "-0" would be an integer, which has no sign: a scene and its text would differ in bits.
+// "-0" would be an integer without a sign: a scene and its text would differ in bits.
 std::string text_of(double number) {
     return number == 0.0 && std::signbit(number) ? "-0.0" : fmt::format("{}", number);
 }
@@ -49,7 +48,7 @@ std::string text_of(const FieldValue& value) {
     return text_of(std::get<double>(value));
 }
 
-/// A line for each value, under a heading that is written only if there is a line.
+/// A line for each value, under a heading that is written only with the first line.
 template <class T, std::size_t kRows>
 void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows], const T& object) {
     for (const Field<T>& f : fields)
@@ -57,7 +56,7 @@ void write_fields(Out out, const char* heading, const Field<T> (&fields)[kRows],
             fmt::format_to(out, "{}{} = {}\n", std::exchange(heading, ""), f.key, text_of(f.value(object)));
 }
 
-/// Whether a scene file would describe the parts of both tables in the same way.
+/// Whether a scene file would describe the parts of both tables identically.
 template <class Part, std::size_t kRows>
 bool same_parts(const Field<Part> (&fields)[kRows], const std::vector<Part>& a, const std::vector<Part>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](const Part& x, const Part& y) {

@@ -10,7 +10,7 @@
 namespace carom::detail {
 namespace {
 
-// Where the string that begins at `at` ends. A string must be closed on its line unless it has three quotes.
+// End of the string that begins at `at`. A string must be closed on its line unless it has three quotes.
 std::size_t string_end(std::string_view toml, std::size_t at) {
     const char quote = toml[at];
     const auto marks = [&] { return std::min(toml.find_first_not_of(quote, at), toml.size()) - at; };
@@ -59,8 +59,8 @@ std::optional<TooDeep> too_deep(std::string_view toml) {
                 fmt::format("brackets are nested more than {} deep here; close some above, or nest fewer",
                             kMaxNesting)};
         if (c == '\n') {
-            // Only a value may continue on the next line. An unclosed bracket of a section is another
-            // mistake, which toml++ describes better.
+            // Only a value may continue on the next line. toml++ describes an unclosed bracket of a section
+            // better.
             if (!in_value) depth = 0;
             in_value = depth > 0;
         }

@@ -16,7 +16,7 @@ struct TooDeep {
 };
 
 /// The first key with more than kMaxKeyParts parts, or the first array or inline table inside kMaxNesting
-/// others. Text that is not TOML gets a result too, which is right up to its first mistake.
+/// others. For text that is not TOML, the result is right up to its first mistake.
 std::optional<TooDeep> too_deep(std::string_view toml);
 
 }  // namespace carom::detail

@@ -1,4 +1,4 @@
-// Validates scenes built in code: every rule of the reader, in its order, on the struct itself.
+// Validates scenes built in code: every rule of the reader, in the same order, on the struct itself.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,7 +31,7 @@ void check_heights(const Section& top, const Scene& scene) {
     }
 }
 
-/// Refuses missing models, which no file can leave out.
+/// Refuses missing models, which no file can omit.
 void check_models(const Section& top, const Physics& physics) {
     for (const auto& [key, there] : {std::pair{"ball_ball", physics.ball_ball != nullptr},
                                      std::pair{"cushion", physics.cushion != nullptr}})
@@ -122,7 +122,7 @@ void check_all(const Scene& scene) {
     check_scene(top, scene);
 }
 
-// Drops the location: it is that of a file, which may have changed since.
+// Drops the location, which belongs to a file that may have changed since.
 [[noreturn]] void throw_without_place(const Scene& scene, const SceneError& error) {
     throw SceneError(scene.file, {}, error.message());
 }

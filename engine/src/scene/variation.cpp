@@ -21,7 +21,7 @@
 
 namespace carom {
 
-/// One rule of a variation. It is named, because Variation::Parts holds it.
+/// One rule of a variation. Not in an unnamed namespace, because Variation::Parts contains it.
 struct VariationRule {
     std::string key;
     detail::KeyPath path;
@@ -30,7 +30,7 @@ struct VariationRule {
     // The number or rack value of this key, if it can be set without the file.
     std::optional<SceneNumber> number;
     const Field<Rack>* rack = nullptr;
-    // Of a grid: how many shots share a value before the next one comes.
+    // Of a grid: number of consecutive shots with the same value.
     std::uint64_t stride = 1;
 
     DrawnValue draw(std::uint64_t seed, std::uint64_t index) const {
@@ -54,7 +54,7 @@ const ListItem* listed(const DrawnValue& value) {
 
 using Node = toml::node_view<toml::node>;
 
-/// The table of the file that holds the value of a key, or no node.
+/// The file's table that contains the value of a key, or no node.
 Node holder_in(toml::table& file, const KeyPath& path) {
     Node at = file[path.section];
     if (!path.list.empty()) at = at[path.list];
@@ -66,7 +66,7 @@ Node value_in(toml::table& file, const KeyPath& path) {
     return path.element ? at[*path.element] : at;
 }
 
-/// Sets the value of a key. Everything that holds it exists.
+/// Sets the value of a key, whose containers must exist.
 void put_value(toml::table& file, const KeyPath& path, const DrawnValue& value) {
     const Node holder = holder_in(file, path);
     const auto place = [&](const auto& v) {
@@ -96,7 +96,7 @@ bool is_whole(const DrawnValue& value) {
     return item != nullptr ? item->node->is_integer() : std::holds_alternative<std::int64_t>(value);
 }
 
-/// Writes a fit that a preset brings into the file, where one of its numbers is to be varied.
+/// Writes a preset's fit into the file if one of its numbers is to be varied.
 void write_fit(toml::table& balls, const std::string& name, const BallParams& params) {
     for (const Field<BallParams>& f : kBallFields) {
         if (f.options.instead_of == nullptr || name != f.key || balls.contains(name)) continue;
@@ -109,14 +109,15 @@ void write_fit(toml::table& balls, const std::string& name, const BallParams& pa
     }
 }
 
-/// The path that a key names in the file. If its section is missing and holds only settings, adds it, empty.
+/// The path that a key names in the file. If its section is missing and contains only settings, adds it,
+/// empty.
 KeyPath find_path(toml::table& file, std::string_view key, const Scene* base = nullptr) {
     std::vector<std::string> ids;
     for (std::size_t i = 0; const Node ball = file["ball"][i]; ++i)
         ids.push_back(ball["id"].value_or(std::string("cue")));
     KeyPath path = detail::parse_key(key, ids);
     if (!file.contains(path.section)) {
-        // These two would put balls on the table, or strike one.
+        // These two sections would put balls on the table, or strike one.
         if (path.section == "rack" || path.section == "cue")
             fail("the scene has no [{}]; write the section, then vary what is in it", path.section);
         file.insert(path.section, toml::table());
@@ -134,8 +135,8 @@ KeyPath find_path(toml::table& file, std::string_view key, const Scene* base = n
     return path;
 }
 
-/// Refuses a key that no scene has. If the file has no value for it, nothing else distinguishes it from a key
-/// that was left out.
+/// Refuses a key that no scene has. If the file has no value for it, this alone distinguishes it from an
+/// omitted key.
 void check_known(toml::table file, const std::string& name, const KeyPath& path) {
     put_value(file, path, 0.0);
     try {
@@ -160,14 +161,14 @@ VariationRule parse_rule(toml::table& file, const Scene& base, const std::string
 }
 
 /// Whether a key of the file is a number of the scene on which nothing else depends. Noses, racks and balls
-/// with their own size depend on the size of the balls, and the surface on the parts of the table.
+/// with their own size depend on the ball size, and the surface on the parts of the table.
 bool is_number_alone(const KeyPath& path) {
     if (path.section == "cue" || path.section == "physics" || path.section == "stop") return true;
     return (path.section == "ball" || path.section == "balls") && path.name != "radius" &&
            path.name != "mass";
 }
 
-/// Finds what a rule varies in the scene itself.
+/// Finds the value of a rule in the scene itself.
 void find_number(const Scene& scene, VariationRule& rule) {
     const std::string& name = rule.path.name;
     if (rule.path.section == "rack") {
@@ -233,7 +234,7 @@ struct Variation::Parts {
     std::vector<std::string> keys;
     std::uint64_t seed = 0;
     std::uint64_t fingerprint = 0;
-    std::uint64_t grid = 0;  // points of the product of all grids; 0: there is none
+    std::uint64_t grid = 0;  // points of the product of all grids; 0: no grid
     bool quick = true;       // every rule is a number of the scene or of its rack
     Rack rack;               // as in the file
 };
@@ -255,7 +256,8 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
     parts->quick = parts->rack.radius_sd == 0.0;
     std::ostringstream content;
     content << parts->file;
-    // A rule that sets the aim or the speed replaces the words for it; otherwise they follow the balls.
+    // A rule that sets the aim or the speed replaces the player's words for it; otherwise they follow the
+    // balls.
     const auto sets = [&rules](std::string_view key) {
         return std::any_of(rules.begin(), rules.end(),
                            [key](const std::string& rule) { return rule.starts_with(key); });
@@ -296,7 +298,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         parts->grid = rule->stride * steps;
     }
     parts_ = parts;
-    // A mistyped key or a range without valid values spoils every shot: report it here, once.
+    // A mistyped key or a range without valid values spoils every shot: report it once, here.
     for (int i = 0; i < kVariationTrials; ++i)
         if (shot(static_cast<std::uint64_t>(i)).scene) return;
     throw VariationError(fmt::format("none of the first {} shots is a valid scene; shot 0: {}",

@@ -1,4 +1,4 @@
-// Dual numbers: a value, and its derivatives by several inputs at once.
+// Dual numbers: a value, and its derivatives by several inputs.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace carom::tangent {
 
-// The same functions of duals follow.
+// The same functions for duals follow.
 using carom::contact_distance, carom::cross, carom::cross3, carom::dot, carom::dot3, carom::length,
     carom::length3, carom::planar;
 
@@ -25,7 +25,7 @@ struct Dual {
     Dual(double value) : x(value) {}  // NOLINT(google-explicit-constructor): a number is a constant
 };
 
-/// A number that depends on a and b with these derivatives.
+/// A function of a and b with these derivatives.
 inline Dual chain(double x, const Dual& a, double by_a, const Dual& b, double by_b) {
     Dual r(x);
     for (int i = 0; i < kLanes; ++i) r.d[i] = by_a * a.d[i] + by_b * b.d[i];
@@ -36,7 +36,6 @@ inline Dual chain(double x, const Dual& a, double by_a) {
     for (int i = 0; i < kLanes; ++i) r.d[i] = by_a * a.d[i];
     return r;
 }
-/// Compares the values.
 inline bool operator<(const Dual& a, const Dual& b) {
     return a.x < b.x;
 }
@@ -55,7 +54,7 @@ inline Dual operator*(const Dual& a, const Dual& b) {
 inline Dual operator/(const Dual& a, const Dual& b) {
     return chain(a.x / b.x, a, 1.0 / b.x, b, -(a.x / b.x) / b.x);
 }
-/// The derivative of the root of 0 is taken to be 0: of a length that stays 0.
+/// The derivative of the root of 0 is set to 0: it belongs to a length that stays 0.
 inline Dual sqrt(const Dual& a) {
     const double root = std::sqrt(a.x);
     return chain(root, a, root > 0.0 ? 0.5 / root : 0.0);

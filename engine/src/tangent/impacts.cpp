@@ -22,24 +22,24 @@
 namespace carom::tangent {
 namespace {
 
-// [-] Sizes of steps, relative to the speeds of the impact and to each coefficient. Larger ones may cross a
+// [-] Step sizes, relative to the speeds of the impact and to each coefficient. Larger ones may cross a
 // corner of a model (a nose that sticks or slides; from 1e-3 on, one shot of 500 with `mathavan_2010` was
-// right to 1e-7 only), smaller ones lose digits.
+// right only to 1e-7), smaller ones lose digits.
 constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
-// [-] Two estimates that differ by less agree; if the best ones differ by more, there is no derivative.
+// [-] Two estimates agree if they differ by less; there is no derivative if the best ones differ by more.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
-// [usual step] Derivatives of most breaks need shorter steps: a choice of the integration, as of a method,
-// changes its result by 1e-5 of a speed, and the difference of two results by as much.
+// [usual step] Derivatives of most breaks need shorter steps: a choice of the integration, such as of a
+// method, changes its result by 1e-5 of a speed, and the difference of two results equally.
 constexpr double kClusterFineStep = 1.0 / 8.0;
-// [R] Unit of the places of balls in a cluster: a third of a millimetre, within which a contact reaches.
+// [R] Unit of the positions of balls in a cluster: a third of a millimetre, the range of a contact.
 constexpr double kClusterReach = 1e-2;
-// [of the velocities after the impact, per step] A derivative below this is known no better than this.
+// [of the velocities after the impact, per step] Errors of smaller derivatives count relative to this.
 constexpr double kRounding = 1e-3;
 
 using List = std::vector<double>;
 using Map = std::function<List(const double*)>;
 
-/// The numbers that an impact reads. Spins are R w, so that a ball that rolls does so at every step.
+/// The numbers that an impact reads. Spins are R w, so that a rolling ball rolls at every step.
 class Arguments {
   public:
     explicit Arguments(const Numbers& numbers) {
@@ -96,19 +96,19 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map)
         double best = std::numeric_limits<double>::infinity();
         List below = at(lane, -2.0 * kFirstStep / size), above = at(lane, 2.0 * kFirstStep / size);
         for (double h = kFirstStep; h > kLastStep && !(best < kAgree); h *= 0.5) {
-            // Half of the points are those of the last step.
+            // Half of the points are shared with the last step.
             List near_below = at(lane, -h / size), near_above = at(lane, h / size);
             double apart = 0.0;
             for (std::size_t i = 0; i < y.size(); ++i) {
                 now[i] = (8.0 * (near_above[i] - near_below[i]) - (above[i] - below[i])) / (12.0 * h) * size;
                 apart = std::max(apart, std::abs(now[i] - last[i]));
             }
-            // Changes far below the size of the impact itself are rounding.
+            // Changes far smaller than the impact itself are rounding.
             const double scale = std::max({largest(now), largest(last), kRounding * size * largest(y)});
             const double error = scale > 0.0 ? apart / scale : 0.0;
             if (h < kFirstStep && error < best) {
                 best = error;
-                // Larger steps round less, as long as they agree with smaller ones.
+                // Larger steps cause less rounding, as long as they agree with smaller ones.
                 for (std::size_t i = 0; i < out.size(); ++i) out[i].d[lane] = last[i];
             }
             std::swap(last, now);
@@ -123,7 +123,6 @@ std::vector<Dual> differentiate(Laws& laws, const Arguments& in, const Map& map)
     return out;
 }
 
-/// Reads what Arguments holds.
 struct Reader {
     Reader(const Laws& laws, const double* list)
         : next(list + kParams), balls(with_numbers(laws.plan.scene.balls, list)), gravity(*next++) {}
@@ -161,15 +160,15 @@ double speed_of(const State& s, const Dual& R) {
     return std::sqrt(sum);
 }
 
-/// [m/s] At which two balls approach.
+/// [m/s] Speed at which two balls approach.
 double closing_speed(const Dual3& apart, const State& s1, const State& s2) {
     double sum = 0.0;
     for (int i = 0; i < 3; ++i) sum += apart[i].x * (s1.v[i].x - s2.v[i].x);
     return sum / length3(apart).x;
 }
 
-/// Differentiates a law of two balls. law(in, pair, ball1, ball2): the numbers that all share, the sizes and
-/// the way from centre to centre, and the velocities, which it replaces.
+/// Differentiates a law of two balls. law(in, pair, ball1, ball2) gets the shared numbers, the sizes and the
+/// vector from centre to centre, and the velocities, which it replaces.
 struct Pair {
     BallSize size1, size2;
     Vec3 apart;
@@ -178,7 +177,7 @@ template <class Law>
 void meet_pair(Laws& laws, int one, int two, const Dual3& apart, State& s1, State& s2, const Law& law) {
     const Numbers::Ball &b1 = laws.numbers.balls[one], &b2 = laws.numbers.balls[two];
     Arguments arguments(laws.numbers);
-    // In a thin hit the models bend within the closing speed.
+    // In a thin hit the models bend within a range of the closing speed.
     const double speed = std::abs(closing_speed(apart, s1, s2)), reach = length3(apart).x;
     const double most = std::max({speed_of(s1, b1.R), speed_of(s2, b2.R), speed});
     arguments.add(b1);
@@ -197,7 +196,7 @@ void meet_pair(Laws& laws, int one, int two, const Dual3& apart, State& s1, Stat
     put(s2, out.data() + 6);
 }
 
-/// The same of one ball. law(in, size, about, ball)
+/// The same for one ball. law(in, size, about, ball)
 /// @param about  three more numbers that the law reads, in this unit
 template <class Law>
 void meet_table(Laws& laws, int ball, const Dual3& about, double unit, double speed, State& s,
@@ -234,7 +233,7 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
                   const auto& [size1, size2, r] = pair;
                   const Vec2 level =
                       planar(r) * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(planar(r)));
-                  // Friction that a plan skips has no effect, but it may have derivatives: none is skipped.
+                  // A skipped friction has no effect, but may have derivatives: skip none.
                   const PairImpact impact =
                       carom::collide({*plan.ball_ball, settings, in.balls}, size1, size2, {0.0, 0.0, size1.R},
                                      {level.x(), level.y(), size2.R}, ball1, ball2);
@@ -260,8 +259,8 @@ void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, L
         });
 }
 
-// The loop resolves the cluster again, in a scene that contains nothing else. Where it ends depends on the
-// steps of the integration, but not where the balls are at one fixed time afterwards.
+// The loop resolves the cluster again, in a scene without anything else. The positions at the end depend on
+// the integration steps; the positions at a fixed time afterwards do not.
 void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states) {
     const auto member = [&](int ball) {
@@ -269,7 +268,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     };
     const std::size_t one = member(hit), two = member(met);
     const double speed = std::abs(closing_speed(states[two].r - states[one].r, states[one], states[two]));
-    // [s] By which lengths are as large as speeds.
+    // [s] Scales lengths to the size of speeds.
     const double unit = laws.numbers.balls[hit].R.x / speed;
     Arguments in(laws.numbers);
     for (std::size_t k = 0; k < balls.size(); ++k) {
@@ -283,11 +282,11 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     scene.cue.reset();
     scene.ball.clear();
     for (const int ball : balls) scene.ball.push_back(laws.plan.scene.ball[ball]);
-    // Without the table, other effects may be needed than those that the scene excludes.
+    // Without the table, the scene may need effects that it excludes.
     std::erase_if(scene.effects, [](const EffectOverride& effect) { return !effect.in_force; });
     if (laws.flights()) scene.effects.push_back({"airborne", true, {}});
     scene.stop.events = 1;
-    // The one that moves is put to touch, so that what touches at rest still does, to the last bit.
+    // Moves the moving ball into contact, so that resting balls still touch, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
     const auto resolve = [&](const double* list, double step) {
         Reader read(laws, list);

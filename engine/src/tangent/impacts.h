@@ -1,5 +1,5 @@
-// The derivatives of impacts. The models themselves are computed, at states that differ along the derivatives
-// of the incoming state: by differences of four points, whose step adapts until two sizes of it agree.
+// The derivatives of impacts. The models themselves are evaluated at states that differ along the derivatives
+// of the incoming state: differences of four points, with a step that adapts until two sizes of it agree.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,6 @@
 
 namespace carom::tangent {
 
-/// Shared by all impacts of a replay.
 struct Laws {
     const Plan& plan;
     const Numbers& numbers;
@@ -27,20 +26,20 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
 void collide_free(Laws& laws, int one, int two, const Dual3& apart, bool slow, Lies lies, State& s1,
                   State& s2);
 
-/// Balls on the cloth that touch at once, because two of them, `hit` and `met`, meet.
-/// @param duration  of the cluster [s], at the end of which the `states` are computed; 0: it takes no time
+/// Balls on the cloth that collide at once, because two of them, `hit` and `met`, do.
+/// @param duration  of the cluster [s]; the `states` are computed at its end; 0: instantaneous
 void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met, double duration,
                      std::vector<State>& states);
 
-/// A ball on the cloth at a nose; it may hop.
+/// A ball on the cloth hits a nose; it may hop.
 /// @param normal  into the table
 void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dual2& normal,
                   const Dual& height, bool hops, State& s);
 
-/// A ball in the air at a nose. `apart`: from the nose to the centre.
+/// A flying ball hits a nose. `apart`: from the nose to the centre.
 void meet_nose_in_air(Laws& laws, int ball, const CushionModelInfo& model, const Dual3& apart, State& s);
 
-/// A ball that meets the cloth from above.
+/// A ball hits the cloth from above.
 void meet_cloth(Laws& laws, int ball, State& s);
 
 }  // namespace carom::tangent

@@ -16,7 +16,7 @@
 namespace carom::tangent {
 namespace {
 
-// [-] and [degrees] Steps of the differences. Four points of them are exact to 1e-13 for sines and roots.
+// [-] and [degrees] Steps of the differences; four points are exact to 1e-13 for sines and roots.
 constexpr double kStep = 1e-3, kAngleStep = 0.1;
 
 Input with_step(const std::string& key, double value, const Interval& range,
@@ -65,7 +65,7 @@ void append(std::vector<Dual*>& list, std::array<Dual, N>& numbers) {
     for (Dual& number : numbers) list.push_back(&number);
 }
 
-/// All numbers, in one order.
+/// All numbers, in a fixed order.
 std::vector<Dual*> list_of(Numbers& n) {
     std::vector<Dual*> list;
     const auto add = [&list](auto&... numbers) { (append(list, numbers), ...); };
@@ -104,7 +104,7 @@ const Dual& Numbers::param(double BallParams::*member) const {
 }
 
 Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs) {
-    // Effects that the plan skips are computed: they change nothing here, but they change derivatives.
+    // Also compute effects that the plan skips: they change nothing here, but they change derivatives.
     const Vertical vertical = plan.in_force(Effect::kAirborne) ? Vertical::kKeep : Vertical::kDrop;
     Numbers n = values_of(scene, plan.geometry, vertical);
     const std::vector<Dual*> list = list_of(n);

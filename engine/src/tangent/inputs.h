@@ -1,4 +1,4 @@
-// All that a shot depends on, with the derivatives by its inputs.
+// Everything that a shot depends on, with the derivatives by its inputs.
 #pragma once
 
 #include <algorithm>
@@ -19,14 +19,14 @@ namespace carom::tangent {
 struct Input {
     std::string key;
     double value;
-    double step;  ///< of the differences that find what depends on it; nearly everything does linearly
+    double step;  ///< of the differences that find the dependent numbers, which are nearly all linear in it
     std::function<Change(Scene&, double)> put;
 };
 /// @param scene  is changed if it throws
-/// @throws TangentError if the number has no derivative, std::invalid_argument if there is no such number
+/// @throws TangentError if the number has no derivative, std::invalid_argument if it does not exist
 Input input_of(Scene& scene, const std::string& key);
 
-/// The numbers of BallParams: its keys have one row for each.
+/// The numbers of BallParams; each has one row.
 inline constexpr std::size_t kParams = std::count_if(std::begin(kBallFields), std::end(kBallFields),
                                                      [](const auto& row) { return row.number != nullptr; });
 inline constexpr auto kParamMembers = [] {
@@ -61,7 +61,7 @@ struct Numbers {
 
     const Dual& param(double BallParams::*member) const;
 };
-/// @param scene  that of the plan; changed and put back
+/// @param scene  of the plan; changed and restored
 /// @param inputs  at most kLanes
 Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inputs);
 

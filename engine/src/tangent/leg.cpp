@@ -46,7 +46,7 @@ State Leg::at(const Dual& time) const {
     for (int i = 0; i < 2; ++i) s.w[i] = from.w[i] + tau * dw[i];
     if (rolls) roll(s, R);
     if (spin.x > 0.0 && tau.x > 0.0) {
-        // Vertical spin has a dead zone: if there is none, a little of it is gone at once.
+        // Vertical spin has a dead zone: if it is zero, a small change decays at once.
         const double sign = from.w[2].x < 0.0 ? -1.0 : 1.0;
         const Dual left = sign * from.w[2] - spin * tau;
         s.w[2] = left.x > 0.0 ? sign * left : Dual(0.0);
@@ -80,7 +80,7 @@ Leg leg_of(const Segment& segment, const Dual& start, State s, const Surface& su
         case MotionState::kStationary:
         case MotionState::kSpinning: {
             const bool rolls = segment.state == MotionState::kRolling;
-            // A little slip is gone at once: the ball rolls at v - 2/7 u.
+            // A small slip ends at once: the ball rolls at v - 2/7 u.
             if (sticks) {
                 const Dual2 u = slip_of(s, surface.R);
                 for (int i = 0; i < 2; ++i)
@@ -89,7 +89,7 @@ Leg leg_of(const Segment& segment, const Dual& start, State s, const Surface& su
                 take(s.w, segment.w);
                 leg.rolls = rolls;
             }
-            // A little speed is gone at once, too.
+            // A small speed ends at once, too.
             if (!rolls && sticks && slows) s.v[0].d = s.v[1].d = s.w[0].d = s.w[1].d = {};
             if (rolls && slows) {
                 const Dual speed = length(planar(s.v));

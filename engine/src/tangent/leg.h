@@ -1,4 +1,4 @@
-// One ball between two of its events, on dual numbers: a segment of the record, and how it depends on the
+// One ball between two of its events, on dual numbers: a segment of the record and its dependence on the
 // inputs.
 #pragma once
 
@@ -12,12 +12,11 @@ struct State {
     Dual3 r, v, w;
 };
 
-/// The slip at the cloth.
 Dual2 slip_of(const State& s, const Dual& R);
-/// Gives a ball the spin with which it rolls.
+/// Gives a ball the spin of rolling.
 void roll(State& s, const Dual& R);
 
-/// All numbers that a ball's motion depends on.
+/// All numbers on which a ball's motion depends.
 struct Surface {
     Dual R, gravity, slide, roll, spin;  ///< as in MotionParams
 };
@@ -36,8 +35,8 @@ struct Leg {
     State at(const Dual& time) const;
 };
 
-/// The leg of a segment that begins in this state. Its numbers are the record's, its derivatives those of
-/// `state`; where friction leaves a ball no freedom (it rests or rolls), they follow.
+/// The leg of a segment that begins in this state. Its values are the record's; its derivatives are those of
+/// `state`, or follow from friction if that leaves a ball no freedom (it rests or rolls).
 Leg leg_of(const Segment& segment, const Dual& start, State state, const Surface& surface);
 
 /// Position and velocity in space, also of a falling ball.

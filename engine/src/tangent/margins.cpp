@@ -1,5 +1,5 @@
-// How far the inputs may move before the order of events changes: the room of every event that happens, and
-// of every contact that nearly does.
+// How far the inputs may move before the order of events changes: the margin of every event, and of every
+// near miss.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,15 +17,14 @@
 namespace carom::tangent {
 namespace {
 
-// [-] Places on a leg at which a gap is looked at, before the smallest one is refined by as many halvings.
+// [-] Points of a leg at which a gap is evaluated, and bisections that then refine the smallest.
 constexpr int kPlaces = 12, kHalvings = 40;
-// [m] What is nearer touches: its event is in the record.
+// [m] A gap below this is a contact; the record has its event.
 constexpr double kTouching = 1e-9;
 
 // [s] Around an event: the gap is smallest at the event only if it is larger before and after it.
 constexpr double kAround = 1e-6;
 
-/// The time of the smallest gap.
 template <class GapAt>
 double nearest_time(const GapAt& gap, double from, double to) {
     double best = from, least = std::numeric_limits<double>::infinity();
@@ -48,14 +47,13 @@ double nearest_time(const GapAt& gap, double from, double to) {
     return gap(t).x < least ? t : best;
 }
 
-/// The ball without the derivatives.
 BallAt<Vec3> numbers_at(const State& s, const Dual& R) {
     return {{s.r[0].x, s.r[1].x, s.r[2].x}, {s.v[0].x, s.v[1].x, s.v[2].x}, R.x};
 }
 
 }  // namespace
 
-// The smallest gap of two bodies between two times, unless they touch there.
+// Adds the smallest gap of two bodies between two times, unless they touch there.
 void Replay::add_near(std::vector<Room>& rooms, const Pair& pair, const GapOf& gap, const Dual& from,
                       const Dual& to, const std::string& what) const {
     if (!(to.x > from.x)) return;
@@ -67,7 +65,7 @@ void Replay::add_near(std::vector<Room>& rooms, const Pair& pair, const GapOf& g
     };
     const double t = nearest_time(at, from.x, to.x), close = 1e-9 * (to.x - from.x);
     const bool first = t - from.x <= close, last = to.x - t <= close;
-    // A gap that is smallest when an event changes the motion moves with the event.
+    // If the gap is smallest when an event changes the motion, that instant moves with the event.
     const Dual left = at(first ? from : last ? to : Dual(t));
     if (!(left.x > kTouching)) return;
     if ((first || last) && ((t > kAround && any_time(t - kAround) < left.x) ||
@@ -92,7 +90,7 @@ std::vector<Room> Replay::rooms() const {
             const Leg& leg = legs[k];
             if (is_gone(leg.state)) continue;
             const Dual to = ends(legs, k);
-            // Its own events change places with the next one.
+            // Consecutive events of the ball swap their order.
             if (k + 1 < legs.size() && to.x > leg.start.x) {
                 const double at = to.x;
                 rooms.push_back({to - leg.start,
@@ -133,7 +131,7 @@ std::vector<Room> Replay::rooms() const {
                 const std::vector<Leg>& others = balls_[j].legs;
                 for (std::size_t l = 0; j != i && l < others.size(); ++l) {
                     const Leg& other = others[l];
-                    // Two that move are looked at once.
+                    // Consider two moving balls only once.
                     if (!moves(leg) || (moves(other) && j < i) || is_off_cloth(other.state) ||
                         is_gone(other.state))
                         continue;

@@ -15,18 +15,18 @@
 namespace carom::tangent {
 namespace {
 
-// [-] A state that the replay computes agrees with the record within this share of the ball's speed, or
-// within ten times the tolerance of impacts.
+// [-] A computed state agrees with the record within this fraction of the ball's speed, or within ten times
+// the impact tolerance.
 constexpr double kAgrees = 1e-9;
 
-// [R] Two bodies that are closer or farther do not just touch.
+// [R] Two bodies with a larger gap or overlap do not just touch.
 constexpr double kTouches = 1e-8;
 
 double speed_of(const Vec3& v, const Vec3& w, double R) {
     return length3(v) + R * length3(w);
 }
 
-/// A record from a file may be of another scene.
+/// A record from a file may belong to another scene.
 template <class Part>
 const Part& part_of(const std::vector<Part>& parts, int index) {
     if (index < 0 || static_cast<std::size_t>(index) >= parts.size())
@@ -90,15 +90,15 @@ const Leg& Replay::leg_at(int ball, double time) const {
     return after[-1];
 }
 
-// An event at which a gap closes moves by -dg / (dg/dt).
+// An event at which a gap closes shifts by -dg / (dg/dt).
 Dual Replay::when(const Touch<Dual3>& touch, double size) const {
     if (std::abs(touch.gap.x) > kTouches * size)
         throw TangentError("the two overlapped before, and met when they began to approach");
     return chain(now_, touch.gap, 1.0 / touch.closing.x);
 }
 
-// On a straight path it would pass the centre at |apart x velocity| / |velocity|, and it meets because that
-// is less than |apart|.
+// On a straight path it would pass the centre at |apart x velocity| / |velocity|; it collides because that is
+// less than |apart|.
 void Replay::add_miss(const Dual2& apart, const Dual2& velocity, const Event& event) {
     const Dual speed = length(velocity), side = cross(apart, velocity) / speed;
     if (!(speed.x > 0.0)) return;
@@ -124,7 +124,7 @@ void Replay::begin(int ball, const Dual& time, const State& state) {
     const double R = plan_.sizes[ball].R;
     double off = 0.0, most = speed_of(segment.v, segment.w, R);
     for (int i = 0; i < 3; ++i) {
-        // The cloth takes a vertical speed that is too small for a bounce.
+        // The cloth absorbs a vertical speed that is too small for a bounce.
         if (i < 2 || is_off_cloth(segment.state)) off = std::max(off, std::abs(state.v[i].x - segment.v[i]));
         off = std::max(off, R * std::abs(state.w[i].x - segment.w[i]));
         most = std::max({most, std::abs(last.from.v[i].x), R * std::abs(last.from.w[i].x)});
@@ -344,7 +344,7 @@ Dual Replay::cushion(const Event& event) {
     const Dual time = when(touch_at(leg.at(now_)), R.x);
     State s = leg.at(time);
     const Touch<Dual3> touch = touch_at(s);
-    // Into the table.
+    // Points into the table.
     const Dual3 normal{-touch.n[0], -touch.n[1], -touch.n[2]};
     if (round != nullptr && round->is_arc()) {
         const Dual2 out = planar(s.r) - numbers_.noses[part.other].center;

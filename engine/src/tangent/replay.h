@@ -13,7 +13,7 @@
 
 namespace carom::tangent {
 
-/// Quantities that must stay above 0 for the order of events to hold.
+/// A quantity that must remain positive for the order of events to hold.
 struct Room {
     Dual left;
     std::string what;  ///< happens at 0
@@ -37,12 +37,12 @@ class Replay {
   private:
     struct Ball {
         std::vector<Leg> legs;
-        std::size_t segment = 0;  ///< of the record, that the last leg is of
+        std::size_t segment = 0;  ///< index in the record of the last leg's segment
         double fell = 0.0, flew;  ///< as in Balls
         bool on_cloth = false;    ///< the coming ball_cloth event is already part of the last leg
     };
     void replay(const Event& event);
-    /// Two balls that meet: when, from which to which, and how they move.
+    /// Two colliding balls: the time, the vector from one to the other, and their motion.
     struct Meeting {
         bool space;
         Dual time;
@@ -59,12 +59,11 @@ class Replay {
     const Segment& next(int ball, double start);
     void begin(int ball, const Dual& time, const State& state);
     void go_on(int ball, const Dual& time, State state);
-    /// When an event at which a gap closes happens: `touch` at the record's time, between bodies of this
-    /// size.
+    /// Time of an event at which a gap closes: `touch` at the record's time, between bodies of this size.
     Dual when(const Touch<Dual3>& touch, double size) const;
-    /// Adds how far something is from missing what it met: by `apart` and `velocity` from the other to it.
+    /// Adds how far a ball is from missing its partner: by `apart` and `velocity`, relative to the partner.
     void add_miss(const Dual2& apart, const Dual2& velocity, const Event& event);
-    /// margins.cpp. A ball, and the other ball of a gap, if there is one.
+    /// margins.cpp. A ball, and the other ball of a gap, if any.
     struct Pair {
         int ball;
         const Leg* leg;

@@ -1,8 +1,8 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
 // An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their
-// forces in lanes. Then it adds all forces to the balls, one contact after another in the order of their
-// numbers. A lane computes what a scalar program would, and every sum has one fixed order. Only contacts that
+// forces in lanes. Then it adds the forces to the balls, one contact after another in the order of their
+// numbers. A lane computes the same as a scalar program, and every sum has a fixed order. Only contacts that
 // overlap at that stage take part. Memory is laid out for whole registers: the velocity and the horizontal
 // spin of a ball are one row of four numbers.
 #include <cstdint>
@@ -32,8 +32,8 @@ CAROM_INLINE bool is_near(const Work& w, int c, double time) {
     return -w.d[c] < time * (largest(w.rate[0][c], 0.0) + time);
 }
 
-// Moves the contacts that overlap to the front, and behind them those that are near. At a stage those that
-// are not near stay so.
+// Moves overlapping contacts to the front, followed by the near ones. At a stage the distant ones stay
+// distant.
 template <bool kStage>
 void reorder(Work& w, const double* d) {
     int* place = w.places;
@@ -52,7 +52,7 @@ void reorder(Work& w, const double* d) {
     w.near = overlapping + near;
     for (int n = 0; n < near; ++n) w.order[overlapping + n] = w.spare[n];
     for (int n = w.near; n < w.contacts; ++n) w.order[n] = w.spare[w.contacts - 1 - (n - w.near)];
-    int begin = 0, end = w.contacts;  // range of those that move
+    int begin = 0, end = w.contacts;  // range of contacts to be moved
     while (begin < end && w.order[begin] == begin) ++begin;
     while (begin < end && w.order[end - 1] == end - 1) --end;
     const auto move = [&w, begin, end](auto* numbers, auto* moved) {
@@ -74,7 +74,7 @@ CAROM_INLINE bool out_of_order(const Work& w, const double* d, int lanes) {
     return change != 0;
 }
 
-// Whether a whole register could be saved: contacts that open stay at the front, where they have no force.
+// Whether reordering would save a whole register: opening contacts stay at the front without a force.
 CAROM_INLINE bool gaps_add_up(const Work& w) {
     Four open = broadcast<4>(0.0);
     for (int c = 0; c < w.count; c += 4)
@@ -82,9 +82,9 @@ CAROM_INLINE bool gaps_add_up(const Work& w) {
     return sum(open) >= 4.0 + padded(w.count) - w.count;
 }
 
-// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate` gets
-// the rates of the overlaps. This is separate from add_forces(), so that a processor that looks a few hundred
-// instructions ahead computes the roots and divisions of all contacts in parallel.
+// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate`
+// receives the rates of the overlaps. Separate from add_forces(), so that a processor that looks a few
+// hundred instructions ahead computes the roots and divisions of all contacts in parallel.
 template <bool kFalls, bool kStage>
 CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
                               double time, int first, double* rate) {
@@ -104,7 +104,7 @@ CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const doubl
     const Four turning = pack(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
                               turn[i[3]] + turn[j[3]]);
     const Four overlap = load<4>(d + first), none = broadcast<4>(0.0);
-    // The last four may include some that do not overlap.
+    // The last four may include contacts that do not overlap.
     const Four F =
         select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.inverse + first)), none);
     // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
@@ -143,11 +143,11 @@ CAROM_INLINE void add_forces(const Work& w, int first, double* dy) {
     }
 }
 
-// The friction of the cloth between two steps, under the balls that are pressed down. Leapfrog: apply half of
+// The friction of the cloth between two steps, on the balls that are pressed down. Leapfrog: apply half of
 // the last step's load and half of the load predicted at its end for a next step of equal length, so that the
 // error is of second order. The part applied in advance (kAhead) is subtracted the next time. The slip u
 // decays at the rate 3.5 mu_s N / |u|, by the implicit midpoint rule, which is stable for any step and exact
-// while the ball slides. |u| in the middle comes from half an implicit step.
+// while the ball slides. |u| at the midpoint comes from half an implicit step.
 template <bool kFalls>
 CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     const Four zero = broadcast<4>(0.0);
@@ -182,8 +182,8 @@ CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
     }
 }
 
-// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` gets the
-// rates of the overlaps.
+// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` receives
+// the rates of the overlaps.
 template <bool kStage, bool kFalls>
 CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
                          double* dy, double* rate) {
@@ -207,7 +207,7 @@ CAROM_INLINE void shift(const Work& w, const double* slope, double share) {
     }
 }
 
-// The same of the overlaps. A contact that is not watched stays open.
+// The same for the overlaps. A contact that is not watched stays open.
 CAROM_INLINE void shift_overlaps(const Work& w, const double* rate, double share) {
     const Four none = broadcast<4>(0.0);
     for (int c = 0; c < w.near; c += 4) {
@@ -230,8 +230,7 @@ CAROM_INLINE double largest_lane(const Four& v) {
 }
 
 // Computes the state after a step of length h, into y_stage. If kWatched, returns its largest difference from
-// the midpoint rule in a velocity or spin. Clears the slopes of the later stages, because forces() adds to
-// them.
+// the midpoint rule in a velocity or spin. Clears the slopes of the later stages, to which forces() adds.
 template <bool kWatched>
 CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
     double *k0 = w.dy[0], *k1 = w.dy[1], *k2 = w.dy[2], *k3 = w.dy[3];
@@ -281,8 +280,7 @@ CAROM_INLINE double stiffest(const Work& w, const double* dy) {
     return largest_lane(most);
 }
 
-// The square of the fastest contact's speed (slowness()). Of contacts that open, only those that overlap
-// count.
+// The square of the fastest contact's speed (slowness()). Opening contacts count only if they overlap.
 template <bool kFalls>
 CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
     const Four none = broadcast<4>(0.0), first = broadcast<4>(kNoMemory);
@@ -296,7 +294,7 @@ CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
     return largest_lane(most);
 }
 
-// Contacts that may close within a step of length h. The others need no rates at its stages.
+// Marks the contacts that may close within a step of length h. The others need no rates at its stages.
 CAROM_INLINE void watch(Work& w, double h) {
     const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0);
     int beyond = 0;
@@ -308,12 +306,12 @@ CAROM_INLINE void watch(Work& w, double h) {
         if (c + 4 > w.near && (bits >> (w.near > c ? w.near - c : 0)) != 0) beyond = 1;
     }
     if (beyond == 0) return;
-    // So that they need not move again soon.
+    // A margin, so that they need not move again soon.
     w.horizon = 2.0 * h;
     reorder<false>(w, w.d);
 }
 
-// The slopes of the stages of a step of length h, after that of the state.
+// The slopes of the stages of a step of length h, except the first.
 template <bool kFalls>
 CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& method, double h) {
     for (int n = 0; n < method.stages(); ++n) {
@@ -350,7 +348,7 @@ CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, doubl
     double* const before = w.y;
     w.y = w.y_stage;
     w.y_stage = before;
-    // The trapezoidal rule: forces begin and end at 0, so that the errors of the steps cancel.
+    // The trapezoidal rule: forces begin and end at 0, so the errors of the steps cancel.
     for (int n = 0; n < kRow * w.rows; n += kRow)
         add_displacement(w, n, 0.5 * h * (load<4>(before + n) + load<4>(w.y + n)));
     if (law.cloth) drag(w, law, w.y);

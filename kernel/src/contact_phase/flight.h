@@ -1,5 +1,5 @@
-// The time between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part
-// of contact_phase.cpp.
+// Between the contacts of a contact phase: flights, and contacts that turn less than the balls. Part of
+// contact_phase.cpp.
 #pragma once
 
 #include "carom/kernel/contact_phase.h"
@@ -10,8 +10,8 @@
 namespace carom::kernel {
 namespace {
 
-// If a contact closes after a flight of up to this share of the look-ahead, its normal turns with the balls.
-// Beyond that it turns less, and so do contacts that close up to this much later [L/V].
+// If a contact closes after a flight of at most this fraction of the look-ahead, its normal turns with the
+// balls. Beyond that it turns less, and so do contacts that close up to this much later [L/V].
 constexpr double kFlight = 0.5, kSoonAfter = 0.5;
 // [longest steps] A contact that would touch within this time touches at once.
 constexpr double kAtOnce = 1e-3;
@@ -35,19 +35,18 @@ CAROM_INLINE bool any_pressed(const Work& w, const HertzLaw& law, double time_le
 
 constexpr double kNever = 1e300;
 
-// The motion of two balls along and across their line of centres, while nothing pushes them. Lengths in L,
-// kappa = L/(2 R).
+// The free motion of two balls along and across their line of centres. Lengths in L, kappa = L/(2 R).
 struct RelativePath {
     double closing, across, speed2;  // speeds, and their total squared
     double kappa, gap, apart;        // kappa, the gap, and kappa times the distance of the centres
 
-    // When they touch: |z - v s| = 2 R, without subtracting nearly equal numbers.
+    // Time of their touch: |z - v s| = 2 R, without subtracting nearly equal numbers.
     double touch() const {
         if (!(closing > 0.0)) return kNever;
         const double q = gap * (2.0 + kappa * gap), c = apart * closing, root2 = c * c - kappa * speed2 * q;
         return root2 < 0.0 ? kNever : q / (c + square_root(root2));
     }
-    // When they touch or are nearest, from now.
+    // Time until they touch or are nearest.
     double nearest() const {
         const double s = touch();
         if (s < kNever) return s;
@@ -75,7 +74,7 @@ CAROM_INLINE void turn_by_flight(const RelativePath& path, double s, double& nx,
     ny = y / length;
 }
 
-// When the next contact closes, if nothing pushes.
+// Time at which the next contact closes, without forces.
 CAROM_INLINE double next_touch(const Work& w) {
     double first = kNever;
     for (int c = 0; c < w.contacts; ++c) {
@@ -93,9 +92,9 @@ CAROM_INLINE double falling(double x, double from, double to) {
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
-// Moves all balls straight ahead for `time`, when the first contact closes. If that takes almost the whole
-// look-ahead, the caller is about to take over, and its impacts of two balls take no time. So such contacts,
-// and those that close soon after, turn less while they are closed. The caller updates the rates.
+// Moves all balls straight ahead for `time`, when the first contact closes. If that is almost the whole
+// look-ahead, the caller is about to take over with instantaneous impacts of two balls. So such contacts, and
+// those that close soon after, turn less while they are closed. The caller updates the rates.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     for (int n = 0; n < kRow * w.rows; n += kRow) add_displacement(w, n, time * load<4>(w.y + n));
@@ -113,8 +112,8 @@ CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double lo
 }
 
 // Closes a contact that turns less than the balls. By HertzContact::turn its normal moves from that of the
-// balls towards the one with which they would meet if they had moved with their present velocities since the
-// first touch, without earlier contacts. A contact that only closes late has the normal of the balls.
+// balls towards the one with which they would touch if they had moved with their present velocities since the
+// first touch, without earlier contacts. A contact that merely closes late has the normal of the balls.
 CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, double time) {
     double &nx = w.nx[c], &ny = w.ny[c];
     turn_by_flight(relative_path(w, c, nx, ny, largest(0.0, -w.d[c])), time, nx, ny);
@@ -131,7 +130,7 @@ CAROM_INLINE void close_contact(const ContactPhase& phase, Work& w, int c, doubl
     w.bend[c] = w.share[c] * w.curvature;
 }
 
-// Contacts that turn less than the balls do so from their touch to their end. A step ends where one of them
+// Contacts that turn less than the balls do so from their touch to their end. A step ends when one of them
 // touches.
 // @return the longest step
 CAROM_INLINE double update_turning(const ContactPhase& phase, Work& w, double longest) {

@@ -1,4 +1,4 @@
-// The contact phase in space, one contact at a time: clusters with a ball in the air are rare and small.
+// The contact phase in space, one contact at a time: clusters with a flying ball are rare and small.
 #include <cstdint>
 
 #include "carom/kernel/contact_phase.h"
@@ -40,7 +40,6 @@ void add(double* to, const Vector& a) {
     to[2] += a.z;
 }
 
-// A contact at one instant.
 struct Now {
     Vector n;              // from i to j
     double overlap, rate;  // and its rate
@@ -120,7 +119,7 @@ class InSpace {
         }
     }
 
-    // [1/L] by which the normal of a contact turns, and its inverse, the distance of centres that touch.
+    // [1/L] Curvature by which a contact's normal turns, and its inverse, the distance of touching centres.
     double curvature(int c) const { return unlike_ == nullptr ? phase_.curvature : unlike_->curvature[c]; }
     bool turns(int c) const { return curvature(c) > 0.0; }
     double diameter(int c) const { return turns(c) ? 1.0 / curvature(c) : 0.0; }
@@ -180,7 +179,7 @@ class InSpace {
         down_[j] += force.z;
     }
 
-    // A ball that stays on the cloth does not move up or down. Where it is pressed, the cloth brakes its
+    // A ball that stays on the cloth does not move vertically. If it is pressed down, the cloth brakes its
     // slip.
     void hold(const double* y, int b, double* slope) {
         double* to = slope + kPerState * b;
@@ -212,7 +211,7 @@ class InSpace {
         for (int b = 0; b < phase_.balls; ++b) hold(y, b, slope);
     }
 
-    // The slopes of the stages of a step of length h, after that of the state.
+    // The slopes of the stages of a step of length h, except the first.
     void stages(const RungeKutta& method, double h) {
         for (int n = 0; n < method.stages(); ++n) {
             const double time = h * method.node[n], *from = slope_[method.slope(n)];
@@ -275,7 +274,6 @@ class InSpace {
         return h / 6.0 * most;
     }
 
-    // Updates the largest overlap of a contact.
     void remember(int c, double h) {
         const Now now = contact_at(y_, c);
         memory_[c] = now.overlap > 0.0 ? largest(memory_[c], now.overlap) : 0.0;
@@ -299,8 +297,8 @@ class InSpace {
         return false;
     }
 
-    // When the next contact closes, if nothing pushes: |z - v s| = 2 R, without subtracting nearly equal
-    // numbers.
+    // Time at which the next contact closes, without forces: |z - v s| = 2 R, without subtracting nearly
+    // equal numbers.
     double next_touch() const {
         double first = kNever;
         for (int c = 0; c < phase_.contacts; ++c) {
@@ -326,11 +324,11 @@ class InSpace {
     const double cloth_sign_;
     const int size_;
     double *y_, *stage_, *slope_[kStages];
-    double next_;        // limit of the next step by the error of the last one
+    double next_;        // limit of the next step by the last error
     double* stiffness_;  // per ball: the sum of friction over slip
-    double* down_;       // per ball: what presses it on the cloth, where all are held
-    // Per contact: from one centre to the other at the start (3 numbers); the
-    // largest overlap since it opened; overlap and its slope before the step.
+    double* down_;       // per ball: load on the cloth, if all are held
+    // Per contact: the vector between the centres at the start (3 numbers); the largest overlap since it
+    // opened; overlap and its slope before the step.
     double *apart_, *memory_, *before_, *rate_;
 };
 

@@ -1,4 +1,4 @@
-// The forces of one contact, or of four in lanes, and the step that they allow. Part of contact_phase.cpp and
+// The forces of one contact, or of four in lanes, and the permitted steps. Part of contact_phase.cpp and
 // in_space.cpp.
 #pragma once
 
@@ -11,19 +11,19 @@ namespace {
 
 using Four = Pack<4>;
 
-// Slopes that a step keeps: at the state, of the last inner stage, in the middle and at the end.
+// Slopes stored by a step: at the state, of the last inner stage, in the middle and at the end.
 constexpr int kStages = 4;
 
 // An explicit Runge-Kutta method. Stage n starts at the state and advances by node[n] of the step along the
-// slope of the previous stage (the first one along that of the state). There are `more` inner stages, whose
-// slopes are not kept, then the last inner one, the middle and the end.
+// slope of the previous stage (the first one along that of the state). First come `more` inner stages, whose
+// slopes are not stored, then the last inner one, the middle and the end.
 struct RungeKutta {
     double weight[kStages];
     int more;
     double node[kStages + 3];
 
     CAROM_INLINE int stages() const { return more + kStages - 1; }
-    // Index of the kept slope after the first n stages.
+    // Index of the stored slope after the first n stages.
     CAROM_INLINE int slope(int n) const { return n == 0 ? 0 : n > more ? n - more : 1; }
 };
 
@@ -37,9 +37,9 @@ constexpr RungeKutta kClassical{{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0}, 0,
 // reach further, for large friction: chains like those of P. J. van der Houwen and B. P. Sommeijer, "On the
 // internal stability of explicit, m-stage Runge-Kutta methods for large m-values", ZAMM 60, 1980. The nodes
 // are new: a linear program chose the other coefficients of Y to minimise the largest |R| from -1.5 to the
-// end. It is 0.39 down to -12.2 with six stages, and 0.47 down to -24 with eight. No inner stage amplifies by
-// more than 1, nor does a step if the contacts also oscillate (z = x + i y, |y| <= 1) or if z changes by a
-// tenth within it. The nodes need all their digits, because R is a sum of terms above 1e4 that cancel.
+// end: 0.39 down to -12.2 with six stages, and 0.47 down to -24 with eight. No inner stage amplifies by more
+// than 1, nor does a step if the contacts also oscillate (z = x + i y, |y| <= 1) or if z changes by a tenth
+// within it. The nodes need all their digits, because R is a sum of terms above 1e4 that cancel.
 constexpr RungeKutta kFourStages{{1.0 / 6.0, 0.0, 2.0 / 3.0, 1.0 / 6.0}, 0, {0.25, 0.5, 1.0}};
 constexpr RungeKutta kSixStages{
     {1.0 / 6.0, 0.0, 2.0 / 3.0, 1.0 / 6.0}, 2, {0.03309011, 0.09856416, 0.25, 0.5, 1.0}};
@@ -57,7 +57,7 @@ CAROM_INLINE bool has_friction(const HertzLaw& law) {
 // 3.5 times the largest sum of k over both balls of a contact. A step of four, six and eight stages may be at
 // most 4.8, 12.2 and 24 divided by that.
 constexpr double kFourReach = 4.8 / 3.5, kSixReach = 12.2 / 3.5, kEightReach = 24.0 / 3.5;
-// For longer steps than these, six stages get further per evaluation than four, and eight further than six.
+// Above these step lengths, six stages get further per evaluation than four, and eight further than six.
 constexpr double kFromFour = 6.0 / 4.0 * kFourReach, kFromSix = 8.0 / 6.0 * kSixReach;
 
 // A method with friction, and the length of its step.
@@ -66,8 +66,8 @@ struct Plan {
     double h;
 };
 
-// The method for a step of length `wanted`, or of the longest stable length, if the largest sum of k is
-// `stiffest`.
+// The method for a step of length `wanted`, or of the longest stable length, if `stiffest` is the largest sum
+// of k.
 CAROM_INLINE Plan plan_step(double stiffest, double wanted) {
     const double stiff = wanted * stiffest;
     const bool six = kFromFour < stiff, eight = kFromSix < stiff;
@@ -76,22 +76,22 @@ CAROM_INLINE Plan plan_step(double stiffest, double wanted) {
     return {&method, reach < stiff ? reach / stiffest : wanted};
 }
 
-// Accuracy of the step, with friction. Its difference from the midpoint rule, whose stages are the same, may
-// be kStepError [V] in any velocity and spin. If it is larger, as where a slip turns to stick, half the step
-// is tried, and so on down to kShortest of the longest one.
+// Accuracy of the step, with friction: its difference from the midpoint rule, which has the same stages, may
+// be kStepError [V] in any velocity and spin. If it is larger, as where a slip turns to stick, the step is
+// halved, down to kShortest of the longest one.
 constexpr double kStepError = 1e-4, kAimedError = 0.5 * kStepError, kShortest = 1.0 / 64.0;
 
 // Limit of the next step after one of length h with this error; `before` is the limit of that step. The error
-// grows as h^3. The fourth root follows it with some damping, and needs fewer second tries than the third.
+// grows as h^3. The fourth root follows it with some damping, and causes fewer second tries than the third.
 CAROM_INLINE double step_after(double before, double h, double error) {
     if (!(error > kAimedError / 16.0)) return largest(before, 2.0 * h);
     const double ratio = square_root(square_root(kAimedError / error));
     return ratio > 1.0 ? largest(before, ratio * h) : largest(0.5, ratio) * h;
 }
 
-// Slow contacts. One at the speed v lasts v^(-1/5) times longer, and its errors are proportional to v, so
-// that steps may be v^(-1/2) times longer if nothing is faster. The square of v is that of the rate plus the
-// energy of the overlap, F d; a closing contact may be loaded as for the first time.
+// Slow contacts. A contact at the speed v lasts v^(-1/5) times longer, and its errors are proportional to v,
+// so steps may be v^(-1/2) times longer if nothing is faster. The square of v is that of the rate plus the
+// energy of the overlap, F d; a closing contact is treated as loaded for the first time.
 constexpr double kMostSlow = 16.0;
 CAROM_INLINE double slowness(double v2) {
     return v2 < 1.0 ? smallest(kMostSlow, 1.0 / square_root(square_root(v2))) : 1.0;
@@ -106,8 +106,8 @@ CAROM_INLINE T fill(double x) {
         return broadcast<4>(x);
 }
 
-// e^-x for x >= 0, as the 64th power of a Taylor series: relative error 4e-8 up to x = 10. From 64 on it
-// stays at e^-64.
+// e^-x for x >= 0, as the 64th power of a Taylor series: relative error 4e-8 up to x = 10. Constant above
+// x = 64.
 template <class T>
 CAROM_INLINE T falling_exponential(T x) {
     const T part = (1.0 / 64.0) * x, one = fill<T>(1.0), t = select(part < one, part, one);
@@ -118,8 +118,8 @@ CAROM_INLINE T falling_exponential(T x) {
     return power;
 }
 
-// The normal force at the overlap d > 0. `inverse` is 1 over the largest overlap since the contact opened,
-// kNoMemory before there is one; a, b and p are those of HertzLaw.
+// The normal force at the overlap d > 0. `inverse` is 1 over the largest overlap since the contact opened, or
+// kNoMemory; a, b and p are those of HertzLaw.
 constexpr double kNoMemory = 1e300;
 template <class T>
 CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
@@ -129,9 +129,9 @@ CAROM_INLINE T normal_force(T a, T b, int p, T d, T inverse) {
     return select(share < fill<T>(1.0), loading * (a + b * power), loading);
 }
 
-// The friction of the cloth that the weight of a ball causes in a time in which it could stop a slip of 7/2
-// `speed`. Slip and change of the velocity: u = (v_x - R w_y, v_y + R w_x), dv = -min(speed, 2/7 |u|) u/|u|.
-// It is so small that it need not act at every step, but only this often [L/V].
+// The cloth friction caused by a ball's weight in a time in which it could stop a slip of 7/2 `speed`. Slip
+// and velocity change: u = (v_x - R w_y, v_y + R w_x), dv = -min(speed, 2/7 |u|) u/|u|. It is small, so it is
+// applied only this often [L/V].
 constexpr double kBrakes = 0.5;
 CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, double& Rw_y) {
     const double u_x = v_x - Rw_y, u_y = v_y + Rw_x, slip = square_root(u_x * u_x + u_y * u_y);
@@ -143,16 +143,16 @@ CAROM_INLINE void brake(double speed, double& v_x, double& v_y, double& Rw_x, do
     Rw_y += 2.5 * x;
 }
 
-// [L/V] A phase that lasts longer ends as soon as no contact is closed, even if one is about to close: the
-// balls have gone far.
+// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have
+// moved far.
 constexpr double kLongPhase = 40.0;
 
-// [V] Further changes of the balls' speeds by a contact may be ignored below this: they are rounding. Balls
-// that move together would close at such speeds forever.
+// [V] Smaller changes of the balls' speeds by a contact are rounding and may be ignored. Balls that move
+// together would close at such speeds forever.
 constexpr double kNothing = 1e-12;
 
 // Whether a contact with the overlap d no longer acts: it closes at kNothing at most, and its force F changes
-// speeds by no more than that until it has opened, or in the remaining time.
+// speeds by at most that until it has opened, or in the remaining time.
 CAROM_INLINE bool is_over(double F, double d, double rate, double time_left) {
     return rate <= kNothing && (F * time_left <= kNothing || F * d <= -rate * kNothing);
 }

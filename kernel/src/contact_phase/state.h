@@ -12,7 +12,7 @@ namespace {
 constexpr int kPerBall = 5;  // numbers per ball in ContactPhase::motion
 
 // Numbers per ball here. A row has velocities at even positions and spins at odd ones: a contact needs the
-// difference of the velocities of its balls and the sum of their spins, which is one subtract_add().
+// difference of its balls' velocities and the sum of their spins, which is one subtract_add().
 constexpr int kRow = 8;
 constexpr int kForce = 6;                          // numbers per contact in Work::force
 constexpr int kPlace[kPerBall] = {0, 2, 1, 3, 5};  // of v_x, v_y, R w_x, R w_y, R w_z in a row
@@ -35,28 +35,27 @@ struct Work {
     // Per contact: overlap, its stages and their slopes, and 1 over the largest overlap since the contact
     // opened.
     double *d, *d_stage, *rate[kStages], *inverse;
-    // Normal at the start of the step, the speed at which it turns, and the curvature 1/(2 R) by which it
-    // turns: less than that of the balls if it turns less (update_turning()).
+    // Normal at the start of the step, its angular speed, and its curvature: 1/(2 R), or less if it turns
+    // less than the balls (update_turning()).
     double *nx, *ny, *turn, *bend;
     double* share;    // of the turning, while the contact is closed
     double* watched;  // 1: it may close within the step; 0: its rates are not computed at stages
-    // Per contact that overlaps: n_x, n_y, F, the friction along t and upwards, and minus friction divided by
-    // slip; four of each next to each other.
+    // Per overlapping contact: n_x, n_y, F, the friction along t and upwards, and minus friction divided by
+    // slip; four of each adjacent.
     double* force;
     double curvature;
     bool shares;  // whether some share is below 1
-    // Where the rows of the two balls begin, and the contact's number in ContactPhase. The contacts that
-    // overlap come first, then the others, each in the order of their numbers. So four of them are adjacent,
-    // and the sums of a ball have one order.
+    // The rows of the two balls, and the contact's number in ContactPhase. Overlapping contacts come first,
+    // then the others, each in the order of their numbers. So four of them are adjacent, and the sums of a
+    // ball have one order.
     int *i, *j, *id;
-    // contacts at the front: those that overlap, and fewer than four that have opened since the last
-    // reordering
+    // contacts at the front: overlapping ones, and fewer than four that have opened since the last reordering
     int count;
-    // Contacts at the front that may close within `horizon` [L/V], and the others of their registers.
+    // Contacts at the front that may close within `horizon` [L/V], and the others in their registers.
     int near;
     double horizon;
-    // The rows of balls on which a contact acts in this step. The rows of the others are the same in y and
-    // y_stage, and their slopes are 0.
+    // The rows of balls on which a contact acts in this step. The other rows are equal in y and y_stage, and
+    // their slopes are 0.
     int *active, *is_active, actives;
     // Workspace for reordering contacts.
     double* reordered;
@@ -76,7 +75,7 @@ CAROM_INLINE void copy_row(double* to, const double* from) {
     store(to + 4, load<4>(from + 4));
 }
 
-// Contacts that fill up the last register connect an additional ball, at rest, with itself, far away.
+// Contacts that pad the last register connect an additional distant ball, at rest, with itself.
 CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     Work w;
     w.balls = phase.balls;
@@ -135,7 +134,7 @@ CAROM_INLINE Work lay_out(const ContactPhase& phase) {
     return w;
 }
 
-// The balls of the contacts that overlap become active.
+// The balls of overlapping contacts become active.
 CAROM_INLINE void activate(Work& w) {
     for (int c = 0; c < w.count; ++c) {
         const int rows[] = {w.i[c], w.j[c]};
@@ -147,7 +146,7 @@ CAROM_INLINE void activate(Work& w) {
     }
 }
 
-// The balls that are active at the beginning of a step.
+// The active balls at the beginning of a step.
 CAROM_INLINE void find_active(Work& w) {
     for (int k = 0; k < w.actives; ++k) {
         const int row = w.active[k];
@@ -180,8 +179,8 @@ CAROM_INLINE void rates(const Work& w, const double* y, double time, int first, 
     }
 }
 
-// The speed at which the normal n of a contact turns. z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j): n' =
-// -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
+// The speed at which the normal n of a contact turns. z = x_j - x_i = (2 R - d) n moves by -(v_i - v_j):
+// n' = -(v_i - v_j) . t / (2 R - d) t, t = (-n_y, n_x).
 CAROM_INLINE Four turning(const Work& w, int c, const Four (&dv)[4], const Four& nx, const Four& ny,
                           const Four& d) {
     return load<4>(w.bend + c) * (dv[0] * ny - dv[2] * nx) / (broadcast<4>(1.0) - w.curvature * d);
@@ -198,9 +197,9 @@ CAROM_INLINE void update_rates(Work& w) {
     }
 }
 
-// Updates the contacts after a step of length h, whose state is already computed: overlaps and the largest of
-// each, normals, their turning, and the rates into rate[0]. The normals move by the mean of the speeds at
-// both ends, and so do the gaps of contacts that are not watched.
+// Updates the contacts after a step of length h, whose state is already computed: overlaps and their maxima,
+// normals, their turning, and the rates into rate[0]. The normals, and the gaps of contacts that are not
+// watched, move by the mean of the speeds at both ends.
 CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
     const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0), none = broadcast<4>(kNoMemory);
     const double w0 = h * method.weight[0], w1 = h * method.weight[1], w2 = h * method.weight[2],
@@ -213,7 +212,7 @@ CAROM_INLINE void advance(Work& w, const RungeKutta& method, double h) {
         closing(w, w.y, c, dv);
         const Four nx = load<4>(w.nx + c), ny = load<4>(w.ny + c), turn_before = load<4>(w.turn + c);
         const Four straight = h * turn_before, x = nx - straight * ny, y = ny + straight * nx;
-        // The rate at the end for the normal that the stages used.
+        // The rate at the end, for the normal that the stages used.
         const Four now = dv[0] * x + dv[2] * y;
         const Four change = select(zero < load<4>(w.watched + c), first + last, (0.5 * h) * (rate + now));
         const Four d = before + change;

@@ -1,5 +1,5 @@
-// An integration from table coordinates and back. The loop differs between kernel variants; the rest does
-// not: validation, projection into the contact frame, back-projection.
+// An integration from table coordinates and back: validation, projection into the contact frame, loop,
+// back-projection. Only the loop differs between kernel variants.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace carom::kernel {
 namespace {
 
 // March::loop<kSign>(state, params, n) integrates a state in the contact frame; kSign is the sign of the
-// cloth slip. It returns the number of steps, or -1 if it reached the limit of steps.
+// cloth slip. Returns the number of steps, or -1 at the limit of steps.
 template <class March>
 void drive(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
            ImpactResult& result) noexcept {

@@ -15,8 +15,8 @@
 namespace carom::kernel {
 namespace {
 
-// [m/s] A slip below this gives no friction, as in the published code. It is an absolute speed, and so breaks
-// the homogeneity of the model at extremely low speed (hard case H26), but this file has to agree with the
+// [m/s] A smaller slip causes no friction, as in the published code. As an absolute speed, it breaks the
+// homogeneity of the model at extremely low speed (hard case H26), but this file must agree with the
 // published code.
 constexpr double kSlipCutoff = 1e-16;
 

@@ -1,5 +1,5 @@
-// How far a direction stays smooth along a path that is assumed to be straight, which decides how wide a
-// block of the summed integration may be (summed.h).
+// How far a direction stays smooth along an assumed straight path, which limits the width of a block of the
+// summed integration (summed.h).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ using Eight = Pack<8>;
 // Distance of the poles that a block keeps, relative to the estimate for the tolerance.
 constexpr double kPoleMargin = 0.35;
 
-// How smooth the direction of a vector is along a block of K steps, from (a, b) with (da, db) per step. The
+// Smoothness of the direction of a vector along a block of K steps, from (a, b) with (da, db) per step. The
 // direction has poles where the length vanishes, at complex t. On a straight path, they are on the ellipse
 // around the block whose half axes have the sum rho, and the modes fall as rho^-n. `amplitude` is the largest
 // effect of the direction on a result, in units of the tolerance.
@@ -23,8 +23,7 @@ struct Path {
     double a, b, da, db, needed;  // needed: (rho + 1/rho) / 2
 };
 
-// Has an error of a tenth, which is enough here: the bits of a double, divided by 8, are close to those of
-// the root.
+// Accurate to 10%, which suffices here: the bits of a double, divided by 8, are close to those of the root.
 inline double eighth_root(double x) {
     // Not long, which has 4 bytes on wasm32, 32-bit ARM and 64-bit Windows.
     std::int64_t bits;
@@ -35,8 +34,8 @@ inline double eighth_root(double x) {
 }
 
 inline Path path(double a, double b, double da, double db, double amplitude) {
-    // On a straight path through zero the direction reverses there, between two nodes, and no mode shows it.
-    // So it is never treated as quite straight.
+    // On a straight path through zero the direction reverses between two nodes, without an effect on any
+    // mode. So no path is treated as quite straight.
     const double sine = largest(
         absolute(a * db - b * da) / (square_root((a * a + b * b) * (da * da + db * db)) + 1e-300), 1e-16);
     const double rho = 1.0 + kPoleMargin * eighth_root(amplitude * sine);

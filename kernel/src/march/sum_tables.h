@@ -1,7 +1,7 @@
 // Exact sums of polynomials over consecutive steps. A block has K steps, t = 0 .. K. A rate F is represented
-// by its values at eight Gauss-Legendre nodes, that is by the polynomial of degree 7 through them. The sum
-// over m < t of F(m) is then a polynomial of degree 8 in t, and the sum of these sums one of degree 9: there
-// is no quadrature error, only the error of the interpolation.
+// by its values at eight Gauss-Legendre nodes, that is, by the polynomial of degree 7 through them. The sum
+// over m < t of F(m) is then a polynomial of degree 8 in t, and the sum of these sums one of degree 9: the
+// only error is that of the interpolation.
 #pragma once
 
 namespace carom::kernel {
@@ -15,7 +15,7 @@ constexpr double kGaussNodes[kNodes] = {
 struct alignas(64) SumTable {
     double at[kNodes];            // t of the nodes
     double sums[kNodes][kNodes];  // [l][i]: weight of F(node l) in the sum at node i
-    double total[kNodes];         // [l]: its weight in the sum over the block
+    double total[kNodes];         // [l]: weight of F(node l) in the sum over the block
     double double_total[kNodes];  // [l]: its weight in the sum over m < K of the sums at m
     // Coefficients in theta of the sum (degree 8) and of the sum of sums (degree 9): degrees 0 .. 7 by node,
     // [l][k], and higher degrees by degree, [k - 8][l].
@@ -23,7 +23,7 @@ struct alignas(64) SumTable {
     double twice_low[kNodes][kNodes], twice_high[2][kNodes];
     double steps;               // K
     double theta0, theta_step;  // theta = theta0 + theta_step t
-    // The two highest Chebyshev modes of F, which show how large the error of the interpolation is.
+    // The two highest Chebyshev modes of F, which indicate the interpolation error.
     double mode6[kNodes], mode7[kNodes];
 };
 
@@ -63,7 +63,7 @@ constexpr SumTable sum_table(int K) {
     SumTable t{};
     t.steps = K;
     t.theta_step = 2.0 / K;
-    // the nodes span the K steps evenly: theta = -1 is half a step before the first
+    // The nodes span the K steps evenly: theta = -1 is half a step before the first.
     t.theta0 = -(K - 1.0) / K;
     for (int i = 0; i < kNodes; ++i) t.at[i] = (kGaussNodes[i] - t.theta0) / t.theta_step;
     const double end = t.theta0 + K * t.theta_step;

@@ -1,10 +1,10 @@
-// The result of the explicit Euler integration without its steps. The integration is the sequence y(m+1) =
-// y(m) + h f(y(m)). Over a block of K steps the rates are a smooth function of m: a polynomial through eight
-// nodes represents them all, and its sums over consecutive m are exact (sum_tables.h). Fixed-point sweeps
-// find the values at the nodes, eight lanes at once. They sum the Euler sequence, not the continuous impulse,
-// so step count, last step and discretisation error are those of the published integration. If the rates are
-// not smooth (a change of the pressed side, a slip near zero, a ball that starts rolling), exact steps are
-// made.
+// The result of the explicit Euler integration without its steps. The integration is the sequence
+// y(m+1) = y(m) + h f(y(m)). Over a block of K steps the rates are smooth functions of m: a polynomial
+// through eight nodes represents them, and its sums over consecutive m are exact (sum_tables.h). Fixed-point
+// sweeps find the values at the nodes, eight lanes at once. They sum the Euler sequence, not the continuous
+// impulse, so step count, last step and discretisation error are those of the published integration. If the
+// rates are not smooth (a change of the pressed side, a slip near zero, a ball that starts rolling), exact
+// steps are made.
 //
 // If rounding decides the published integration, no other order of summation can reproduce it, and this one
 // gives up: if many exact steps chatter near stick, or if the step that ends compression or the impact is a
@@ -26,7 +26,7 @@ constexpr int kMostBlockSweeps = 24;
 // Largest change of a node in the last sweep, and largest size of the highest modes of the rates, both
 // relative to the approach speed.
 constexpr double kSweepTolerance = 5e-13, kModeTolerance = 5e-11;
-// After two sweeps the modes may exceed kModeTolerance by this factor; with larger ones the block is given
+// After two sweeps the modes may exceed kModeTolerance by at most this factor; otherwise the block is given
 // up.
 constexpr double kEarlySlack = 10.0;
 // Rounding error of a sweep, summed over the nodes, relative to the slips.
@@ -35,14 +35,14 @@ constexpr double kSweepRounding = 4e-15;
 // integration: near stick, or if a cloth slip comes close to zero, rounding may decide the sign of a slip.
 constexpr std::int64_t kMostExactSteps = 40;
 constexpr double kMostGrowth = 10.0;
-// How close v_n and the work may come to the values that end a phase, relative to the approach speed; in
-// addition the published integration rounds v_n by up to half an ulp of the fastest speed in each step.
+// Smallest distance of v_n and of the work from the values that end a phase, relative to the approach speed;
+// in addition the published integration rounds v_n by up to half an ulp of the fastest speed in each step.
 constexpr double kTie = 1e-9, kTieRounding = 0x1p-51;
 
 template <int kSign>
 class SummedMarch {
   public:
-    // `close`: possible difference of v_n from that of the published integration.
+    // @param close  possible difference of v_n from that of the published integration
     SummedMarch(const Reduced& start, const ReducedConstants& constants, double close)
         : r(start),
           k(constants),
@@ -58,7 +58,7 @@ class SummedMarch {
             const FirstStep first = first_step();
             int level = widest(first);
             while (level >= 0 && !block(kSumTables[level], first)) --level;
-            // Exact steps: the longer no block is smooth, the more of them.
+            // Exact steps, more of them the longer no block is smooth.
             if (level >= 0)
                 patience = 1;
             else
@@ -78,7 +78,7 @@ class SummedMarch {
     double enlarged = 1.0;
 
     // Upper bound of the factor by which the next step enlarges a difference of a slip: the step turns with
-    // the direction of the slip.
+    // the slip's direction.
     double growth_of_step() const {
         const int pressed = r.z < 0.0;
         const double c = largest(absolute(r.x), absolute(r.z)),
@@ -89,7 +89,8 @@ class SummedMarch {
         return 1.0 + k.mu_h * (of_slip + of_cloth);
     }
 
-    // Makes exact steps until the impact ends or `count` are done; returns how many. Checks each for a tie.
+    // Makes exact steps until the impact ends or `count` are done; returns their number. Checks each for a
+    // tie.
     std::int64_t exact_steps(std::int64_t count) {
         const std::int64_t before = steps;
         while (count-- > 0 && stop.goes_on(r.v_n)) {
@@ -101,8 +102,8 @@ class SummedMarch {
         return steps - before;
     }
 
-    // The reciprocal lengths C and U and the rates at the present state. `cloth`: there is friction between
-    // the pressed ball and the cloth.
+    // The reciprocal lengths C and U and the rates at the present state. `cloth`: the pressed ball has
+    // friction with the cloth.
     struct FirstStep {
         int pressed;
         bool slips, turns, cloth, rolls;
@@ -160,7 +161,7 @@ class SummedMarch {
     };
 
     // y is close to 1/sqrt(square), with e = 1 - square y^2; corrected by the series of (1 - e)^(-1/2). The
-    // error 35/128 e^4 remains for the next sweep.
+    // error 35/128 e^4 is left to the next sweep.
     static Eight refined(Eight y, Eight e) { return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125)); }
 
     // C and U are the reciprocal lengths of the previous sweep on entry, and of this sweep on return.
@@ -182,7 +183,7 @@ class SummedMarch {
 
     // start plus the columns weighted by F.
     static Eight combined(const double (&columns)[kNodes][kNodes], Eight start, Eight F) {
-        // Through memory: a load broadcasts a number for free, a move between lanes of registers does not.
+        // Through memory: a load broadcasts a number for free, unlike a move between register lanes.
         alignas(64) double at_node[kNodes];
         store(at_node, F);
         Eight even = start + at_node[0] * load<8>(columns[0]), odd = at_node[1] * load<8>(columns[1]);
@@ -204,7 +205,7 @@ class SummedMarch {
         Rates f{};
         if (!first.slips) return advance(table, f, pressed);
         const double mu_s = first.cloth ? k.mu_s[pressed] : 0.0, z0 = first.turns ? first.size : 0.0;
-        // Without friction of the cloth its slip may be any number except zero.
+        // Without cloth friction the cloth slip may be any number except zero.
         const double a0 = first.cloth ? r.Ux[pressed] : 1e3 * scale, b0 = first.cloth ? r.Uy[pressed] : 0.0;
         const Eight at = load<8>(table.at), push = k.h * at;
         // First guess: the rates of the first step at all nodes.
@@ -213,7 +214,7 @@ class SummedMarch {
         Eight a = a0 + at * (first.xi - kKappa * first.q_x);
         Eight b = b0 + push - at * ((2.5 * kSign) * first.t + kKappa * first.q_y);
         Eight C = broadcast<8>(first.C), U = broadcast<8>(first.cloth ? first.U : 1.0 / a0);
-        // The second term is the rounding error, below which no sweep can get.
+        // The second term is the rounding error, the limit of any sweep.
         const double settled =
             kSweepTolerance * scale + kSweepRounding * (absolute(r.x) + z0 + absolute(a0) + absolute(b0));
         double change_before = scale;
@@ -243,7 +244,7 @@ class SummedMarch {
             if (!(sweep < kMostBlockSweeps)) return false;
         }
         if (!resolved(table, f, 1.0)) return false;
-        // A change of the pressed side within the block shows at a node or at the end of the block.
+        // A change of the pressed side within the block appears at a node or at the end of the block.
         if (!all_below(-1.0 * z, 0x1p-1074)) return false;
         if (z0 + total(table.total, 2.5 * f.q_y - 5.0 * f.t) < 0.0) return false;
         return advance(table, f, pressed);
@@ -257,7 +258,7 @@ class SummedMarch {
         return missing * table.steps <= slack * kModeTolerance * scale;
     }
 
-    // Advances by the block, or by as many of its steps as the impact needs.
+    // Advances by the block, or by the part of it that the impact needs.
     bool advance(const SumTable& table, const Rates& f, int pressed) {
         const double K = table.steps, h = k.h, v0 = r.v_n;
         const double Q = total(table.total, f.q_y), v_end = v0 + 2.0 * h * K - Q;
@@ -389,7 +390,7 @@ class SummedMarch {
 };
 
 struct Summed {
-    static constexpr int kFewestSubsteps = 100;  // with fewer the steps themselves cost no more than the sums
+    static constexpr int kFewestSubsteps = 100;  // with fewer, the steps cost no more than the sums
 
     // Larger frictions are left to the published integration. With the published sign the cloth adds to the
     // slip, and beyond these frictions the equations themselves amplify a difference without limit.
@@ -403,8 +404,8 @@ struct Summed {
     static std::int64_t loop(FrameState& s, const ImpactParams& p, int n) {
         if (n < kFewestSubsteps || !usual(p, kSign)) return -1;
         ReducedConstants k = reduced_constants<kSign>(s, p, n);
-        // Without friction between the balls the cloth has no effect, and its slips must not decide where the
-        // blocks end.
+        // Without friction between the balls the cloth has no effect, and its slips must not limit the
+        // blocks.
         if (p.mu_b == 0.0) k.mu_s[0] = k.mu_s[1] = 0.0;
         const Reduced start = reduce<kSign>(s, p.R);
         SummedMarch<kSign> march(start, k,

@@ -1,6 +1,5 @@
-// The lanes of a batch solved to a tolerance: impacts are loaded into lanes, brought into canonical form
-// there, solved by one collocation, and written back. tolerance.cpp chooses the impacts that are solved in
-// this way.
+// The lanes of a batch solved to a tolerance: impacts are loaded into lanes, brought into canonical form,
+// solved by one collocation, and written back. tolerance.cpp chooses the impacts.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,7 @@
 namespace carom::kernel {
 namespace {
 
-// The arrays of a batch by number, so that loops can iterate over them. A vector has three numbers, one per
-// component.
+// The arrays of a batch by number, for loops over them. A vector has three numbers, one per component.
 enum Input {
     kR1 = 0,
     kV1 = 3,
@@ -75,12 +73,11 @@ inline BatchView view(const ImpactBatch& batch, const ImpactBatchResult& result)
     return v;
 }
 
-// The results of a block of lanes: which lanes are proper impacts, which are solved, and which more nodes may
-// solve.
+// The results of a block of lanes: the proper impacts, the solved ones, and those that more nodes may solve.
 struct BlockResult {
     Wide out[kOutputs];
     Wide sweeps;
-    // the share of the slip that friction can remove per unit of impulse: the larger, the more sweeps
+    // Fraction of the slip that friction can remove per unit of impulse: more sweeps if it is larger.
     Wide hardness;
     WideMask good, done, resolvable;
 };
@@ -92,7 +89,7 @@ struct WideFrame {
 // As enter_frame(). The mask excludes lanes whose status would not be kOk.
 CAROM_INLINE WideMask wide_enter(const Wide (&in)[kInputs], WideFrame& f) {
     Wide wrong = {};
-    // This sum is 0, or NaN if an input is not finite.
+    // The sum is 0, or NaN if an input is not finite.
     for (int i = 0; i < kInputs; ++i) wrong += in[i] - in[i];  // NOLINT(misc-redundant-expression): see above
     const Wide dx = in[kR2] - in[kR1], dy = in[kR2 + 1] - in[kR1 + 1], dz = in[kR2 + 2] - in[kR1 + 2];
     const Wide d = square_root(dx * dx + dy * dy), by_d = 1.0 / d;

@@ -11,8 +11,9 @@ namespace {
 // Impacts that are solved together.
 constexpr int kPool = 128;
 
-// From this tolerance, lanes solve stretches of 4 nodes faster than stretches of 8: they are shorter, but a
-// sweep of 8 nodes costs more than twice as much, and its values do not fit into the registers.
+// From this tolerance on, lanes solve stretches of 4 nodes faster than stretches of 8: 4 nodes need shorter
+// stretches, but a sweep of 8 nodes costs more than twice as much, and its values do not fit into the
+// registers.
 constexpr double kLooseWide = 1e-7;
 
 // Impacts in canonical form, and their results.
@@ -35,7 +36,7 @@ CAROM_INLINE Problem problem_of(const HardPool& pool, int i, double tolerance, C
     return problem;
 }
 
-// The impacts in progress, one per lane: Adaptive, with a lane for each.
+// The impacts in progress, one per lane: Adaptive in lanes.
 struct WideRuns {
     WideModel m;
     WideStart at;
@@ -43,7 +44,7 @@ struct WideRuns {
     Wide S, shortest, compressed, left, shrink, sweeps, stretches;
     Wide end, asked, root_s;
     WideMask compressing, from_rest, last;
-    WideMask busy;  // lanes that have an impact
+    WideMask busy;  // lanes with an impact
 };
 
 // The scalar forms below and the lanes choose alike, also for NaN.
@@ -83,8 +84,7 @@ CAROM_INLINE WideMask wide_plan(WideRuns& r, double tolerance) {
 }
 
 // As add_stretch() and advance(), for the lanes that converged and for those that can be shortened. Returns
-// the lanes that are finished; `frozen` are those that neither converged nor can be shortened, and are
-// unchanged.
+// the finished lanes; `frozen` are those that neither converged nor can be shortened, and are unchanged.
 CAROM_INLINE WideMask wide_advance(WideRuns& r, const WideStretchResult& result, WideMask& frozen) {
     const WideModel& m = r.m;
     const WideResult& t = result.t;
@@ -181,7 +181,7 @@ CAROM_INLINE void keep_result(const Adaptive& run, int i, HardPool& pool) {
     pool.solved[i] = run.stretches < kMostStretches;
 }
 
-// Solves the first `count` impacts of a pool. A lane begins the next impact as soon as it has finished one.
+// Solves the first `count` impacts of a pool.
 template <int N>
 class StretchLanes {
   public:

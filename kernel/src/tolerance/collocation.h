@@ -26,8 +26,9 @@ namespace {
 // Most Picard sweeps of one collocation. One that converges more slowly is solved in shorter stretches.
 constexpr int kMostSweeps = 24;
 
-// Sweeps of 4 nodes before those of 8. Each costs half as much and reduces the error of the first guess by as
-// much. The part that 4 nodes do not resolve is left to the sweeps of 8; with 3, those are hardly fewer.
+// Sweeps of 4 nodes before those of 8. Each costs half as much and reduces the error of the first guess
+// equally. The part that 4 nodes do not resolve is left to the sweeps of 8; with 3, hardly any of those are
+// saved.
 constexpr int kCoarseSweeps = 2;
 
 // The square of the estimated error that the iteration may leave, in tolerances. The estimate is pessimistic,
@@ -35,14 +36,13 @@ constexpr int kCoarseSweeps = 2;
 // is two thirds of the bound; with 48 one exceeds it. Lanes have narrower margins.
 constexpr double kSweepGoal = 20.0, kSweepGoalOfLanes = 16.0;
 
-// Largest error that the iteration may leave, as a share of the friction between the balls. If friction is
-// slight, an error of the tolerance could exceed all that friction removes, and energy would rise.
+// Largest error that the iteration may leave, relative to the friction between the balls. For slight
+// friction, an error of the tolerance could exceed all that friction removes, and energy would rise.
 constexpr double kShareOfFriction = 0.03;
 
-// The error of the rows (EndRows) above which they are recomputed, as a share of the tolerance.
+// The error of the rows (EndRows), relative to the tolerance, above which they are recomputed.
 constexpr double kRowsGoal = 0.1;
 
-// The constants of one impact.
 struct Model {
     double mu_b, mu_s, sigma, kappa;
     double e_b;
@@ -56,10 +56,10 @@ struct Impulses {
     double p, xi, zeta, g_a, g_b;
 };
 
-// Where a collocation ends.
+// The end of a collocation.
 enum class End : unsigned char {
     kWhole,  // at the end of restitution, from v = -1; the end of compression is inside
-    // after a given impulse, or at the end of compression, v = 0, or at that of restitution, after a given
+    // after a given impulse; or at the end of compression, v = 0; or at the end of restitution, after a given
     // work
     kStretch,
 };
@@ -74,8 +74,8 @@ struct Stretch {
     double sweep_goal;  // square of the largest error that the iteration may leave
     // sixth power of the largest relative error of a carried root before its last correction
     double root_goal;
-    // The square of the highest Legendre coefficient of (xi, zeta), and of (g_a, g_b): how well the nodes
-    // resolve them.
+    // The square of the highest Legendre coefficient of (xi, zeta), and of (g_a, g_b): the resolution of the
+    // nodes.
     double s_top2, g_top2;
     int sweeps;
     bool given;  // kStretch: the impulse is given
@@ -169,7 +169,7 @@ struct Nodes {
     Pack<N> xi, zeta, g_a, g_b;  // the forces
 };
 
-// .|^2 T^2 of the carried roots T, before their correction; 1 if they were computed afresh.
+// |.|^2 T^2 of the carried roots T before their correction; 1 if computed afresh.
 template <int N>
 struct Carried {
     Pack<N> s, u;
@@ -251,8 +251,8 @@ CAROM_INLINE P squares(const Change<P>& c, double mu_s) {
            (mu_s * mu_s) * ((da * da + db * db) * (c.root_u * c.root_u));
 }
 
-// Whether `small` holds for the sum of the squares over all nodes; it must be monotone. For all sweeps except
-// the last, the later half of the nodes suffices, because they change most.
+// Whether `small`, which must be monotone, holds for the sum of the squares over all nodes. For all sweeps
+// except the last, the later half of the nodes suffices, because they change most.
 template <class Register, class Small>
 CAROM_INLINE bool changed_little(const Change<Register>& c, double mu_s, Small small) {
     return small(sum(squares(c, mu_s)));
@@ -273,7 +273,7 @@ CAROM_INLINE bool changed_little(const Change<Halves<Half>>& c, double mu_s, Sma
 
 // First guess. The cloth slip moves straight, as if by the normal impulse alone, and its middle determines
 // the cloth's force. The slip between the balls turns under the forces at the start. The end of a whole
-// impact is guessed with that cloth force.
+// impact is estimated with that cloth force.
 template <int N, End kEnd>
 CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stretch& stretch, Nodes<N>& n) {
     const double e_x = root_s * start.x, e_z = root_s * start.z, xi = m.mu_b * e_x, zeta = m.mu_b * e_z;
@@ -293,7 +293,7 @@ CAROM_INLINE void guess(const Model& m, const State& start, double root_s, Stret
     n.b = start.b + p * b;
 }
 
-// The slips, roots and forces that the sweeps begin with. For a whole impact, returns where compression ends
+// The initial slips, roots and forces of the sweeps. For a whole impact, returns the end of compression
 // (EndRows::t). The roots of 8 nodes are computed afresh: 1/|u| of a ball that rolled is no polynomial, and
 // carried roots cost up to two sweeps.
 template <int N, End kEnd>
@@ -347,8 +347,7 @@ CAROM_INLINE void add_stretch(const Model& m, const Impulses& t, State& state, I
 }
 
 // Solves one stretch. Returns false if the sweeps do not converge; then only `stretch` has changed. `exact`:
-// every sweep computes fresh roots instead of correcting those of the previous sweep. `root_s` is 1/|s| at
-// the start.
+// compute fresh roots in every sweep instead of correcting the previous ones. `root_s` is 1/|s| at the start.
 template <int N, End kEnd>
 CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stretch& stretch, double root_s,
                             bool exact) {
@@ -361,7 +360,7 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
     // `reach`.
     const double steep = sum(n.root_s * n.root_s + (m.mu_s * m.mu_s) * (n.root_u * n.root_u)),
                  slope = (reach * reach) * (reach * reach) * (steep * (1.0 / (N * N)));
-    // The end is the fixed point of an iteration too, with a contraction of at most a few mu_s mu_b.
+    // The end is also the fixed point of an iteration, with a contraction of at most a few mu_s mu_b.
     const double end_slope = steep * slope + 40.0 * (cloth * cloth);
     bool converged = false;
     EndRows<N> rows;
@@ -373,14 +372,14 @@ CAROM_INLINE bool collocate(const Model& m, State& state, Impulses& total, Stret
         const Nodes<N> old = n;
         slips<N>(m, start, h, G::integral[0], n, n);
         find_end<N, kEnd>(m, start, n.g_b, rows, stretch);
-        // The rows follow the end of compression one sweep late, so that no sweep has to wait for them.
+        // The rows follow the end of compression one sweep late, so that no sweep waits for them.
         if constexpr (kEnd == End::kWhole) {
             if (magnitude(t_c - rows.t) * cloth > stretch.row_goal) set_rows<N>(t_c, cloth, rows);
             t_c = 2.0 * stretch.p_c / stretch.h - 1.0;
         }
         const Carried<N> carried = exact ? forces<N, true>(n) : forces<N, false>(n);
         const double dh = stretch.h - h;
-        // Many sweeps mean a contraction near 1: then the remaining error exceeds the last change.
+        // Many sweeps mean a contraction near 1, so the remaining error exceeds the last change.
         const double slow = 1.0 + 0.03125 * (k * k);
         const double by_slips = slow * slope, by_end = (slow * end_slope) * (dh * dh);
         const auto small = [&](double change) { return by_slips * change + by_end <= stretch.sweep_goal; };

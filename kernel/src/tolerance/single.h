@@ -7,11 +7,11 @@
 namespace carom::kernel {
 namespace {
 
-// The cloth slip of a rolling ball is rounding: up to this share of the speeds it counts as zero.
+// The cloth slip of a rolling ball is rounding: up to this fraction of the speeds it counts as zero.
 constexpr double kSlipNoise = 0x1p-49;
 
-// Loosest tolerance that is solved for. A looser one would save nothing, and the iteration could stop so
-// early that energy rises.
+// Loosest tolerance used. A looser one would save nothing, and the iteration could stop so early that energy
+// rises.
 constexpr double kLoosestSolved = 1e-3;
 
 // Effect of an impulse on a ball, relative to its effect on one of two equal balls with the same reduced
@@ -34,8 +34,8 @@ CAROM_INLINE bool tolerance_in_range(const ImpactParams& p, const Shares& share,
 
 // Brings an impact into canonical form. Returns whether ball 2 is pressed on the cloth.
 //
-// Impulses are divided by twice the reduced mass. With the share f of the pressed ball, friction of the cloth
-// acts on its own slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g). So f mu_s, kappa/f and u/f
+// Impulses are divided by twice the reduced mass. With the share f of the pressed ball, cloth friction acts
+// on its own slip u as in x' = -7 xi + f g_a and u' = f (..., ... - kappa g). So f mu_s, kappa/f and u/f
 // replace mu_s, kappa and u in the equations of equal balls, which use only the direction of u. Their g is
 // then the change of the pressed ball's velocity.
 CAROM_INLINE bool pose(const FrameState& s, const ImpactParams& p, const Shares& share, double tolerance,

@@ -1,5 +1,5 @@
-// Chooses the method for an impact, and solves impacts in stretches if no single collocation can. Symbols:
-// collocation.h.
+// Chooses the method for an impact, and solves impacts in stretches if no single collocation suffices.
+// Symbols: collocation.h.
 #pragma once
 
 #include "carom/kernel/tolerance.h"
@@ -8,18 +8,18 @@
 namespace carom::kernel {
 namespace {
 
-// Most stretches of one impact; only degenerate input comes near it.
+// Most stretches of one impact; only degenerate input needs this many.
 constexpr int kMostStretches = 2000;
 
-// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU
-// mu_b mu_s rho_u^-5, and of one of 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b
-// mu_s rho_u^-10, with a margin of 4 or more: fitted to random impacts.
+// The error of one collocation of 4 nodes is at most kSizeS mu_b rho_s^-6 + kSizeU mu_b mu_s rho_u^-5, and of
+// one of 8 nodes kSizeS mu_b rho_s^-12 + kSizeU/2 mu_b mu_s rho_u^-10, with a margin of 4 or more: fitted to
+// random impacts.
 constexpr double kSizeS = 1.0, kSizeU = 1.2;
 
 // The sum of the axes if no singularity is near.
 constexpr double kFarAway = 1e20;
 
-// From this tolerance, stretches of 4 nodes are hardly shorter than stretches of 8, and cost less.
+// From this tolerance on, stretches of 4 nodes are hardly shorter than stretches of 8, and cost less.
 constexpr double kLooseStretches = 1e-4;
 
 // An impact in canonical form, scaled by the approach speed.
@@ -37,8 +37,8 @@ struct Solution {
 };
 
 // Powers of rho, the Bernstein ellipse about [0, 1] on which a singularity lies: the error of N nodes falls
-// as rho^-2N. They are computed without a root from the sum of its axes rho + 1/rho, 2 or more, because rho^n
-// + rho^-n is a polynomial of that sum. The values are up to 1 below the powers.
+// as rho^-2N. Computed without a root from the sum of its axes rho + 1/rho >= 2, because rho^n + rho^-n is a
+// polynomial of that sum. The values are up to 1 below the powers.
 template <class T>
 struct Powers {
     T five, six, ten, twelve;
@@ -62,8 +62,8 @@ CAROM_INLINE auto eight_will_do(const Powers<T>& s, const Powers<T>& u, T mu_b, 
     return (tolerance * s.twelve >= kSizeS * mu_b) & (tolerance * u.ten >= 0.5 * kSizeU * (mu_b * mu_s));
 }
 
-// s|^2/mu_b times the fastest rate at which |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2) mu_s
-// mu_b z/|s|.
+// |s|^2/mu_b times the fastest rate at which |s| can shrink; the cloth force adds up to (1 + 2.5^2)^(1/2)
+// mu_s mu_b z/|s|.
 CAROM_INLINE double fall(const Model& m, const State& at, double s) {
     return (7.0 * (at.x * at.x) + 5.0 * (at.z * at.z)) + (2.7 * m.mu_s) * (at.z * s);
 }
@@ -95,8 +95,8 @@ inline void finish_stuck(const Model& m, State at, double left, Impulses& total,
     v -= gb * zeta;
 }
 
-// Ellipses of stretches, each 1.125 times the one before: rho^6 (4 nodes) or rho^12 (8 nodes), and the sum of
-// the axes.
+// Ellipses of stretches, each 1.125 times the previous one: rho^6 (4 nodes) or rho^12 (8 nodes), and the sum
+// of the axes.
 template <int N>
 struct Ellipses {
     static constexpr int kCount = 33;
@@ -114,8 +114,8 @@ struct Ellipses {
 template <int N>
 constexpr Ellipses<N> kEllipses;
 
-// The sum of the axes of the smallest of the ellipses for which N nodes keep an error that is this multiple
-// of the tolerance for rho = 1.
+// The sum of the axes of the smallest ellipse for which N nodes keep an error that is this multiple of the
+// tolerance for rho = 1.
 template <int N>
 CAROM_INLINE double needed_axes(double excess) {
     // The powers increase. All are compared at once, so that no comparison waits for another.
@@ -126,8 +126,7 @@ CAROM_INLINE double needed_axes(double excess) {
     return kEllipses<N>.sum_of_axes[too_small == ~0u ? Ellipses<N>::kCount - 1 : __builtin_ctz(~too_small)];
 }
 
-// The last resort, which always makes progress: one explicit Euler step over a stretch that is too short to
-// matter.
+// The last resort, which always makes progress: one explicit Euler step over a negligible stretch.
 inline void frozen_step(const Model& m, double h, State& at, Impulses& total, double& done) {
     const double s = square_root(at.x * at.x + at.z * at.z), u = square_root(at.a * at.a + at.b * at.b);
     const double xi = s > 0.0 ? m.mu_b * (at.x / s) * h : 0.0, zeta = s > 0.0 ? m.mu_b * (at.z / s) * h : 0.0;
@@ -164,8 +163,8 @@ CAROM_INLINE bool resolved(const Model& m, const Stretch& stretch, double tolera
     return resolved(m.mu_b, m.mu_s, stretch.h, stretch.s_top2, stretch.g_top2, tolerance);
 }
 
-// An impact solved in stretches, each so short that |s| and |u| keep a share of their size over it. `plan`
-// chooses the next stretch; `advance` accepts or rejects the result of its collocation.
+// An impact solved in stretches so short that |s| and |u| keep a fraction of their size. `plan` chooses the
+// next stretch; `advance` accepts or rejects the result of its collocation.
 struct Adaptive {
     Model m;
     double tolerance, S, shortest;
@@ -194,7 +193,7 @@ CAROM_INLINE void begin_adaptive(const Problem& problem, Adaptive& run) {
     run.sweeps = run.stretches = 0;
 }
 
-// Returns false if the slip has almost vanished: then only the frictionless rest of the impact is missing.
+// Returns false if the slip has almost vanished: then only the frictionless rest of the impact remains.
 CAROM_INLINE bool plan(Adaptive& run) {
     const Model& m = run.m;
     State& at = run.at;
@@ -213,7 +212,7 @@ CAROM_INLINE bool plan(Adaptive& run) {
     // From here divide only at the end, because the next stretch waits for this.
     double h = 4.0 * (s * ss) / ((m.mu_b * (S + 2.0)) * fall(m, at, s));
     if (!run.from_rest) {
-        // (fx, fy) is |s| |u| u'. The cloth force itself speeds up or slows down the approach of u to zero.
+        // (fx, fy) is |s| |u| u'. The cloth force itself accelerates or delays the approach of u to zero.
         const double drag = (m.kappa * (m.mu_s * m.mu_b)) * at.z, su = s * u;
         const double fx = (m.mu_b * at.x) * u - drag * at.a,
                      fy = su - ((m.sigma * m.mu_b) * at.z) * u - drag * at.b;
@@ -329,8 +328,8 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
     }
     const double guess = 0.5 * (1.0 + m.e_b);
     const double ss = start.x * start.x + start.z * start.z, s = square_root(ss), root_s = inverse_root(ss);
-    // How far away the singularities are: stick is straight ahead, and the zero of the cloth slip is beside
-    // its nearly straight path.
+    // Distances of the singularities: stick is straight ahead, and the zero of the cloth slip is beside its
+    // nearly straight path.
     const double axes_s = 4.0 * (s * ss) / ((guess * m.mu_b) * fall(m, start, s)) - 2.0;
     double axes_u = kFarAway;
     if (!problem.from_rest) {
@@ -339,7 +338,7 @@ CAROM_INLINE void solve(const Problem& problem, Solution& solution) {
         const double a1 = start.a + by_s * start.x, b1 = (start.b + guess) - m.sigma * (by_s * start.z);
         const double u0 = square_root(start.a * start.a + start.b * start.b),
                      u1 = square_root(a1 * a1 + b1 * b1);
-        // The cloth force bends this path by no more than `bend`.
+        // The cloth force bends this path by at most `bend`.
         const double bend = guess * (magnitude(m.kappa) * (m.mu_s * m.mu_b));
         axes_u = ((u0 + u1) - bend) * by_path;
     }

@@ -1,8 +1,8 @@
 // Impacts solved to a tolerance, single and in batches. Built once per instruction set.
 //
 // A batch solves its easy impacts in lanes in their order, by one collocation of 4 nodes. Impacts that need 8
-// nodes are collected until they fill a register. Those that need stretches are collected too, and each lane
-// starts the next one as soon as it has finished one. Special cases are left to the single kernel.
+// nodes are collected until they fill a register. Impacts that need stretches are collected too, and each
+// lane starts the next one as soon as it has finished one. Special cases are left to the single kernel.
 #include <cstdint>
 
 #include "kernel_set.h"
@@ -14,7 +14,7 @@ namespace {
 
 // Impacts between two checks of the collected ones.
 constexpr std::int64_t kChunk = 256;
-// Impacts that need 8 nodes, and those that need stretches, are solved when this many have been collected.
+// Impacts that need 8 nodes, and those that need stretches, are solved once this many are collected.
 constexpr int kMostResolvable = 256, kMostHard = 256;
 
 // Solves lane i of a batch with the single kernel.
@@ -57,8 +57,8 @@ struct Remaining {
     int resolvables, hards;
 };
 
-// Sorts the resolvable impacts roughly by the number of sweeps that they will need, because all lanes of a
-// register wait for the slowest.
+// Sorts the resolvable impacts roughly by the expected number of sweeps, because all lanes of a register wait
+// for the slowest.
 inline void sort_resolvable(Remaining& rest) {
     constexpr int kBins = 32;
     const auto bin = [&](int i) {
@@ -97,7 +97,7 @@ inline void sweep_easy(const BatchView& v, std::int64_t begin, std::int64_t end,
             gather(v, index, lanes, in);
         }
         solve_block<4>(in, v.cloth_slip, tolerance, block);
-        if (lanes == kWidth) {  // lanes that are not solved are written again later
+        if (lanes == kWidth) {  // unsolved lanes are overwritten later
             for (int k = 0; k < kOutputs; ++k) store(v.out[k] + i, block.out[k]);
             for (int j = 0; j < kWidth; ++j) v.status[i + j] = ImpactStatus::kOk;
             if (v.steps != nullptr) {
@@ -206,7 +206,7 @@ void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& 
 void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept {
     const BatchView v = view(batch, result);
     if (!(tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance)) {
-        // The single kernel reports what is wrong.
+        // The single kernel reports the fault.
         for (std::int64_t i = 0; i < batch.count; ++i) solve_single(v, i, tolerance);
         return;
     }

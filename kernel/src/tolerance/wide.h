@@ -1,8 +1,8 @@
-// One collocation of many impacts at once: each lane is an impact, and the nodes are elements of arrays.
-// Symbols: collocation.h.
+// One collocation of many impacts: each lane is an impact, and the nodes are elements of arrays. Symbols:
+// collocation.h.
 //
 // A lane reads only its own numbers, and stores the impulses of the sweep at which it converged. Its bits
-// therefore depend neither on the width of the registers nor on the impacts in the other lanes.
+// therefore depend neither on the register width nor on the impacts in the other lanes.
 #pragma once
 
 #include "gauss.h"
@@ -48,7 +48,7 @@ CAROM_INLINE Wide wide_dot(const double* row, int stride, const Wide (&f)[N]) {
 }
 
 // Integrals from 0 to every node, for the even and the odd part of f: half the sum and half the difference of
-// mirrored columns. The nodes are symmetric, so that each part needs only half a table.
+// mirrored columns. The nodes are symmetric, so each part needs only half a table.
 struct Mirrored8 {
     double even[4][4], odd[4][4];
     constexpr Mirrored8() : even{}, odd{} {
@@ -104,8 +104,8 @@ CAROM_INLINE Wide wide_forces(const WideModel& m, WideNodes<N>& n, WideMask exac
             n.root_s[i] = fresh_s;
             n.root_u[i] = fresh_u;
         } else {
-            // Newton's step: fewer operations than the cubic one of forces(), and as many sweeps. If a root
-            // is very wrong, it leads to the negative root, so callers must check the returned value.
+            // Newton's step: fewer operations than the cubic one of forces(), and equally many sweeps. A very
+            // wrong root can lead to the negative root, so callers must check the returned value.
             const Wide rs = 1.0 - ss * (n.root_s[i] * n.root_s[i]),
                        ru = 1.0 - uu * (n.root_u[i] * n.root_u[i]);
             n.root_s[i] += n.root_s[i] * (0.5 * rs);
@@ -345,8 +345,7 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
     for (int k = 1; k < kMostSweeps && any(open); ++k) {
         const Wide change = wide_slips<N>(m, start, h, n);
         const Wide h_new = wide_find_end<N>(m, n.g_b, rows, p_c), dh = h_new - h;
-        // The rows change only in the lanes where that matters, so that each lane is independent of the
-        // others.
+        // The rows change only in the lanes that need it, so that each lane is independent of the others.
         const WideMask moved = open & (absolute(t_c - rows.t) * m.mu_b * m.mu_s > kRowsGoal * tolerance);
         if (any(moved)) wide_set_rows<N>(select(moved, t_c, rows.t), rows);
         t_c = 2.0 * p_c / h_new - 1.0;
@@ -358,9 +357,9 @@ CAROM_INLINE void wide_collocate(const WideModel& m, const WideStart& start, Wid
         wide_keep<N>(now, n, kept);
         finished |= now;
         out.sweeps = select(now, broadcast<kWidth>(k + 1.0 + kBefore<N>), out.sweeps);
-        open &= ~now & (r < 1.0);  // a root that is very wrong may have become negative
+        open &= ~now & (r < 1.0);  // a very wrong root may have become negative
     }
-    // The rows of a lane do not change after it has converged.
+    // A lane's rows do not change after it has converged.
     const Wide p = wide_find_end<N>(m, kept.g_b, rows, p_c);
     out.converged = finished & wide_resolved<N>(m, p, tolerance, kept);
     wide_integrate<N>(p, kept, out);

@@ -1,5 +1,5 @@
-// One stretch of many impacts at once, as collocate() for one impact. Symbols: collocation.h. A lane reads
-// only its own numbers, as in wide.h.
+// One stretch of many impacts, as collocate() for one impact. Symbols: collocation.h. As in wide.h, a lane
+// reads only its own numbers.
 #pragma once
 
 #include "tolerance/wide.h"
@@ -7,8 +7,8 @@
 namespace carom::kernel {
 namespace {
 
-// Sweeps after which a stretch that has not been shortened before is given up and shortened, because the
-// other lanes wait for it.
+// Sweeps after which a stretch that has not been shortened before is shortened, because the other lanes wait
+// for it.
 constexpr int kPatience = 10;
 
 struct WideStretch {
@@ -18,7 +18,7 @@ struct WideStretch {
     WideMask to_zero,
         to_work;      // the stretch ends with v = 0 or after the work; otherwise after the impulse h
     WideMask exact;   // compute fresh roots in every sweep
-    WideMask wanted;  // lanes that have a stretch
+    WideMask wanted;  // lanes with a stretch
     double tolerance;
 };
 
@@ -78,7 +78,7 @@ CAROM_INLINE void wide_stretch(const WideStretch& w, WideStretchResult& out) {
         else
             r = wide_forces<N, Roots::kCarried>(m, n);
         const Wide left = slope * change + end_slope * (dh * dh);
-        // A root that is very wrong may have become negative.
+        // A very wrong root may have become negative.
         exact |= ~(r < 1.0);
         const double slow = 1.0 + 0.03125 * (k * k);
         const WideMask now = open & (left * slow <= goal.sweep) & (r * r <= goal.root);

@@ -1,5 +1,5 @@
-// The impact of two balls of any size, whose line of centres is tilted: its state and its forces. The
-// equations are in docs/reference/physics.md, "Balls of different size".
+// The impact of two balls of any size, whose line of centres is tilted: its state and its forces. Equations:
+// docs/reference/physics.md, "Balls of different size".
 //
 // Speeds are over the approach speed, impulses over the reduced mass times it. In the contact frame n = (0,
 // C, S) points from ball 1 to ball 2, x is level and across, and z' = (0, -S, C) is across and steep. Ball 1
@@ -13,7 +13,6 @@
 namespace carom::kernel {
 namespace {
 
-// The constants of one impact.
 struct Tilt {
     double S, C;      // sine and cosine of the tilt
     double share[2];  // reduced mass over that of a ball; together 1
@@ -26,8 +25,8 @@ struct Slips {
     double cx, cz, ux[2], uy[2], v;
 };
 
-// Forces over the normal force: friction between the balls, on ball 2 along x and z', and what the cloth
-// takes from each ball. Integrated they are impulses.
+// Forces over the normal force: friction between the balls, on ball 2 along x and z', and the cloth's
+// friction on each ball. Integrated they are impulses.
 struct Forces {
     double xi, zeta, gx[2], gy[2];
 };
@@ -53,7 +52,7 @@ CAROM_INLINE Tilt tilt_of(const ImpactParams& p) {
 // change no velocity.
 CAROM_INLINE Slips moved(const Tilt& t, const Slips& s, double p, const Forces& f) {
     const double S = t.S, C = t.C, i1 = t.share[0], i2 = t.share[1];
-    const double level = C * p - S * f.zeta;  // what the contact does along y
+    const double level = C * p - S * f.zeta;  // the contact's impulse along y
     Slips r;
     r.cx = s.cx - 3.5 * f.xi - i1 * (1.0 - 2.5 * S) * f.gx[0] + i2 * (1.0 + 2.5 * S) * f.gx[1];
     r.cz = s.cz + S * level - 2.5 * f.zeta - i1 * (2.5 - S) * f.gy[0] - i2 * (2.5 + S) * f.gy[1];
@@ -65,8 +64,8 @@ CAROM_INLINE Slips moved(const Tilt& t, const Slips& s, double p, const Forces& 
     return r;
 }
 
-// The direction of the slip of a ball on the cloth. Without slip it is that of the force on the ball, along
-// which the slip starts.
+// The direction of a ball's slip on the cloth. Without slip it is that of the force on the ball, along which
+// the slip starts.
 CAROM_INLINE void slip_direction(const Tilt& t, const Slips& s, double xi, double zeta, int ball, double& x,
                                  double& y) {
     x = s.ux[ball];

@@ -1,9 +1,10 @@
 // Impacts of two balls that differ in mass or radius: by tolerance, and marched.
 //
 // By tolerance: Gauss collocation of 8 nodes over stretches of the normal impulse, solved by Picard sweeps.
-// Three things bend the forces and end a stretch early: the slip between the balls ends, after which they
-// stick; the pressed ball changes; the slip on the cloth passes near zero. A stretch that does not converge,
-// or that its nodes do not resolve, is tried again with 0.4 of its length. Alike balls have a faster kernel.
+// Three events end a stretch early, because they bend the forces: the slip between the balls ends, after
+// which they stick; the pressed ball changes; the slip on the cloth passes near zero. A stretch that does not
+// converge, or that its nodes do not resolve, is repeated with 0.4 of its length. Alike balls have a faster
+// kernel.
 #include "unlike/unlike.h"
 
 #include <cstdint>
@@ -20,22 +21,21 @@ namespace {
 using Table = Gauss<8>;
 constexpr int kNodes = 8;
 constexpr int kSweeps = 24;
-// Where a slip between the balls grows slowly from zero, the forces are stiff and stretches short. After so
-// many of them the rest is solved to ten times the tolerance, and so on; and after the last, without
-// friction.
+// If a slip between the balls grows slowly from zero, the forces are stiff and stretches short. After this
+// many stretches the rest is solved to ten times the tolerance, and so on; after the last, without friction.
 constexpr int kManyStretches = 1500, kStretches = 10000;
-// [tolerances] What one stretch may leave, by its sweeps and by its nodes.
+// [tolerances] Error allowed to one stretch, by its sweeps and by its nodes.
 constexpr double kSweepsLeave = 0.02, kNodesLeave = 0.1;
 // [tolerances] A slip between the balls below this has ended.
 constexpr double kStuck = 0.1;
 // A looser tolerance is solved as this one.
 constexpr double kLoosestSolved = 1e-3;
-// Of an error that is left, as a share of the friction: more could raise the energy.
+// Largest remaining error, relative to the friction: more could raise the energy.
 constexpr double kOfFriction = 0.03;
-// Shares of the slips' rounding, and of the tolerance, below which a slip on the cloth is zero.
+// Fractions of the slips' rounding, and of the tolerance, below which a slip on the cloth is zero.
 constexpr double kNoise = 0x1p-49, kSlight = 0.01;
-// The largest part of the normal force that friction may take from what parts the balls, and of the force
-// along a slip on the cloth that the cloth may take: so that none of them can hold.
+// Largest fraction that friction may take of the force that separates the balls, and that the cloth may take
+// of the force along a slip on it: with these limits neither can stop the motion.
 constexpr double kMostTaken = 0.9;
 
 bool finite_forces(const Forces& f) {
@@ -82,7 +82,7 @@ enum class Until : unsigned char { kGiven, kParted, kWorked };
 struct Stretch {
     Until until;
     double h;     // a guess, then the impulse
-    double work;  // to be done, or what has been done
+    double work;  // to be done, then done
 };
 
 class Solver {
@@ -113,7 +113,7 @@ class Solver {
                 next = 0.4 * asked;
                 continue;
             } else {
-                // The last resort, which always makes progress: too short to matter.
+                // The last resort, which always makes progress: a negligible stretch.
                 stretch.until = Until::kGiven;
                 stretch.h = smallest(asked, shortest);
                 const Forces f = forces(s_);
@@ -183,7 +183,7 @@ class Solver {
             const Slips one = moved(t_, s, 1.0, sliding_forces(t_, s));
             const double x = one.cx - s.cx, z = one.cz - s.cz, by = size(x, z);
             if (!(by > 0.0)) break;
-            // Half of the way, so that it does not jump to and fro.
+            // Only half of the change, to prevent oscillation.
             const double mx = 0.5 * (s.cx + x / by), mz = 0.5 * (s.cz + z / by), m = size(mx, mz);
             if (!(m > 0.0)) break;
             s.cx = mx / m;
@@ -200,7 +200,8 @@ class Solver {
         return change > 0.0 ? 0.6 * size(s_.cx, s_.cz) / change : kFar;
     }
 
-    // Solves one stretch. Returns false where the sweeps do not converge, or the nodes resolve too little.
+    // Solves one stretch. Returns false if the sweeps do not converge, or the nodes do not resolve the
+    // forces.
     bool collocate(Stretch& stretch, Slips& after, Forces& more) {
         Slips at[kNodes];
         Forces f[kNodes], mean{};
@@ -244,8 +245,8 @@ class Solver {
             two |= second;
             if (sticks_ && !can_stick(f[i])) return false;
         }
-        // Where the forces are smooth, the error of the sums is of the order of the square of what the nodes
-        // see last; where the pressed ball changes, they have a bend.
+        // For smooth forces, the error of the sums is of the order of the square of their highest mode; a
+        // change of the pressed ball bends them.
         const double rough = largest_of(top), friction = t_.mu_b + t_.S;
         const double error = h * (one && two ? rough : smallest(rough, 8.0 * rough * rough / friction));
         if (!(error <= kNodesLeave * tolerance_ + 0x1p-50 * h)) return false;
@@ -262,8 +263,7 @@ class Solver {
         return true;
     }
 
-    // Whether a slip that has friction turns round between two nodes: then they see little of what it does
-    // between.
+    // Whether a slip with friction reverses between two nodes, which then resolve little of it.
     bool turns_round(const Slips* at, const Slips& after) const {
         const Slips* before = &s_;
         for (int i = 0; i <= kNodes; ++i) {
@@ -296,7 +296,8 @@ class Solver {
     int sweeps_of_last_ = 0;
 };
 
-// Whether friction leaves every impact of these balls a solution that parts them, and slip on the cloth.
+// Whether, with this friction, every impact of these balls has a solution in which they separate, and slip on
+// the cloth.
 bool friction_in_range(const Tilt& t) {
     if (!(t.mu_b <= kLargestFriction)) return false;
     for (int ball = 0; ball < 2; ++ball) {
@@ -304,11 +305,11 @@ bool friction_in_range(const Tilt& t) {
         const double down = t.S + t.C * t.mu_b;
         if (!(t.S * t.mu_b + t.share[ball] * t.mu_s[ball] * down <= kMostTaken * t.C)) return false;
         if (t.drag < 0.0) continue;
-        // Along the force that moves the slip of a ball, which is least at one end of the friction's range.
+        // Along the force that moves a ball's slip, which is smallest at one end of the friction's range.
         const double still = 3.5 * t.mu_s[ball] * t.S, most = 3.5 * t.mu_s[ball] * down;
         if (!(still <= kMostTaken * t.C && most <= kMostTaken * (t.C + (2.5 - t.S) * t.mu_b))) return false;
     }
-    // Friction upwards on ball 1 removes load from it, and turns it with the force.
+    // Upward friction on ball 1 reduces its load, and turns it with the force.
     if (t.drag > 0.0) {
         const double up = smallest(t.mu_b, t.S / t.C);
         const double force = t.C - (2.5 - t.S) * up, load = t.S - t.C * up;
@@ -325,7 +326,7 @@ bool sizes_in_range(const ImpactParams& p) {
 // Checks the input and projects it into the contact frame. `params` has R of ball 1.
 ImpactStatus enter(const Ball& b1, const Ball& b2, const ImpactParams& p, Frame& f, FrameState& s,
                    ImpactResult& out) {
-    // The heights differ as the radii do: the frame is that of centres at one height.
+    // The heights differ by the difference of the radii; the frame is that of centres at one height.
     Ball level = b2;
     const double up = p.R * (p.radius_ratio - 1.0);
     level.r[2] -= up;
@@ -354,7 +355,7 @@ void swap_results(ImpactResult& r) {
     }
 }
 
-// Slips on the cloth that are rounding are zero.
+// Sets slips on the cloth to zero if they are rounding.
 void drop_noise(const Ball& b1, const Ball& b2, double R1, double R2, double n, double slight, Slips& s) {
     const Ball* const balls[2] = {&b1, &b2};
     const double radius[2] = {R1, R2};
@@ -366,8 +367,8 @@ void drop_noise(const Ball& b1, const Ball& b2, double R1, double R2, double n, 
     }
 }
 
-// The impact of two unlike balls. `run` gets its constants and the slips, of which those on the cloth below a
-// given size are zero, and returns the impulses; steps < 0: it reached its limit.
+// The impact of two unlike balls. `run` gets its constants and the slips (on the cloth, zero below a given
+// size), and returns the impulses; steps < 0: it reached its limit.
 template <class Run>
 void impact(const Ball& ball1, const Ball& ball2, const ImpactParams& params, bool in_range,
             ImpactResult& result, const Run& run) {
@@ -416,8 +417,8 @@ void solve_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
                   ImpactResult& result) noexcept {
     const bool in_range = tolerance >= kTightestTolerance && tolerance <= kLoosestTolerance;
     impact(ball1, ball2, params, in_range, result, [&](const Tilt& tilt, const auto& slips) {
-        // A ball gets up to twice the error that the same impulse makes between equal ones, and stretches
-        // add up.
+        // A ball gets up to twice the error that the same impulse causes between equal balls, and the errors
+        // of stretches add up.
         const double solved =
             0.25 * smallest(tolerance, kLoosestSolved) / largest(tilt.share[0], tilt.share[1]);
         Solver solver(tilt, slips(kSlight * solved), solved);
@@ -441,8 +442,8 @@ void march_unlike(const Ball& ball1, const Ball& ball2, const ImpactParams& para
         bool compressing = true;
         while (s.v > 0.0 || compressing || work < goal) {
             if (++done.steps > limit) return Impulses{.steps = -1};
-            // A slip that this step would turn round has ended: the steps would go to and fro, and press one
-            // ball and the other in turn.
+            // A slip that this step would reverse has ended: otherwise the steps would oscillate, and press
+            // the two balls alternately.
             const bool ends = size(s.cx, s.cz) <= 3.5 * tilt.mu_b * h;
             const Forces stick = sticking_forces(tilt, s);
             const bool sticks =

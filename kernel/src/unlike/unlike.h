@@ -1,5 +1,5 @@
-// Impacts of two balls that differ in mass or radius. The usual impact is between alike balls, whose kernels
-// look for no others; so these are separate, and are built once.
+// Impacts of two balls that differ in mass or radius. Separate from the kernels of alike balls, which are the
+// usual case, and built once.
 #pragma once
 
 #include "carom/kernel/impact.h"

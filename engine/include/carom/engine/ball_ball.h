@@ -1,5 +1,5 @@
-// Impacts of two balls in the plane: the models, one function each behind one interface, and the law that
-// applies them to balls of any size.
+// Planar impacts of two balls: one function per model behind one interface, and the law that applies them to
+// balls of any size.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@ namespace carom {
 
 /// Settings of a run: how accurately a model is integrated, and by which kernel.
 struct BallBallSettings {
-    kernel::MarchFunction march = nullptr;             ///< set if the scene asks for substeps
+    kernel::MarchFunction march = nullptr;             ///< set if the scene has substeps
     kernel::ToleranceFunction by_tolerance = nullptr;  ///< set otherwise
     int substeps = 0;
     double tolerance = 0.0;  ///< relative to the approach speed
     kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
 };
 
-/// Velocities after the impact of two balls of equal radius, whose centres are at the same height. Their
-/// masses are equal too, unless the model reads the tolerance. v_z does not change. `result.status` says
-/// whether the impact was solved; if not, the velocities are unchanged.
+/// Velocities after the impact of two balls of equal radius with centres at the same height. Their masses are
+/// equal too, unless the model reads the tolerance. v_z does not change. If `result.status` is an error, the
+/// velocities are unchanged.
 using BallBallFunction = void (*)(const BallBallSettings& settings, const kernel::Ball& ball1,
                                   const kernel::Ball& ball2, const kernel::ImpactParams& params,
                                   kernel::ImpactResult& result);
 
-/// One model: its function, the state that it reads and writes, and which balls it accepts. Every model reads
-/// and writes the velocities.
+/// One model: its function, its inputs and outputs, and the balls it accepts. Every model reads and writes
+/// the velocities.
 struct BallBallModelInfo {
     const char* name;
     const char* source;
@@ -39,7 +39,7 @@ struct BallBallModelInfo {
     bool reads_restitution = false;  ///< e_b matters
     bool reads_cloth = false;        ///< mu_s and the sign of the cloth slip matter
     bool reads_tolerance = false;    ///< the settings matter: the model integrates, it has no closed form
-    /// balls on the cloth collide as free balls, then the cloth reacts: they may leave it
+    /// Balls on the cloth collide as free balls, then hit the cloth, so they may leave it.
     bool free = false;
 
     /// e_b and the friction between two balls, as the model reads them.
@@ -56,7 +56,7 @@ const BallBallModelInfo* ball_ball_model(std::string_view name);
 
 /// Two balls of different size. The planar model keeps both on the cloth: the horizontal velocities along the
 /// line of centres separate at e_b times the approach speed, whatever the tilt of that line. Friction is
-/// known for equal radii only: mu_b must be 0 if the radii differ. Equations: docs/reference/physics.md,
+/// modelled for equal radii only: mu_b must be 0 if the radii differ. Equations: docs/reference/physics.md,
 /// "Balls of different size".
 ///
 /// @param params  R and m are not read
@@ -64,11 +64,11 @@ void collide_unequal(const BallSize& size1, const BallSize& size2, const kernel:
                      const kernel::Ball& ball2, const kernel::ImpactParams& params,
                      kernel::ImpactResult& result);
 
-/// Horizontal distance of the centres of two balls that touch while both lie on the cloth: 2 sqrt(R1 R2), and
-/// R1 + R2 for discs.
+/// Horizontal distance between the centres of two touching balls on the cloth: 2 sqrt(R1 R2); R1 + R2 for
+/// discs.
 double contact_distance(double R1, double R2, bool discs);
 
-/// The laws of the planar impacts of a scene. A friction that no ball can feel may be 0 in `balls`.
+/// The laws of a scene's planar impacts. A friction without effect in this scene may be 0 in `balls`.
 struct PairLaw {
     const BallBallModelInfo& model;
     const BallBallSettings& settings;
@@ -84,9 +84,9 @@ struct PairImpact {
     const char* method;  ///< for people: the model, or how the kernel integrated it
 };
 
-/// Replaces the velocities of two balls on the cloth that meet, unless the status is an error. The friction
-/// between them is that at their slip before the impact.
-/// @param r1, r2  the centres; their heights differ as the radii do
+/// Replaces the velocities of two colliding balls on the cloth, unless the status is an error. The friction
+/// between them is that of their slip before the impact.
+/// @param r1, r2  centres; their heights differ by the difference of the radii
 PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& size2, const Vec3& r1,
                    const Vec3& r2, Velocities& ball1, Velocities& ball2);
 

@@ -24,7 +24,7 @@ enum class ShotStatus : std::uint8_t {
     kTime,
     kEvents,
     kEndless,
-    kInvalid,  ///< its values do not make a valid scene
+    kInvalid,  ///< its values make no valid scene
     kFailed,   ///< the simulation failed
 };
 inline constexpr int kShotStatuses = 6;
@@ -37,11 +37,11 @@ constexpr bool has_result(ShotStatus status) {
     return status < ShotStatus::kInvalid;
 }
 
-/// Plays shots one after another. Once its buffers have grown, a shot allocates no memory, unless it fails or
-/// has resting contacts. Not safe for concurrent use.
+/// Plays shots one after another. Once its buffers have grown, a shot allocates no memory unless it fails or
+/// has resting contacts. Not thread-safe.
 class Simulator {
   public:
-    /// @param scene  need not be valid until the first shot has changed it
+    /// @param scene  may be invalid until the first shot has changed it
     /// @param isa    must be available
     Simulator(const Scene& scene, kernel::Isa isa);
 
@@ -49,17 +49,17 @@ class Simulator {
     Scene& scene() { return planner_.scene(); }
 
     /// Checks, plans and plays the scene.
-    /// @param change  covers at least what changed since the last shot that had a result
-    /// @throws only std::bad_alloc and what options.progress throws
+    /// @param change  covers at least the changes since the last shot with a result
+    /// @throws only std::bad_alloc and exceptions of options.progress
     ShotStatus play(Change change, const SimulateOptions& options = {});
     /// The same for another scene, which must be valid (as from a reader).
     ShotStatus play(const Scene& scene, const SimulateOptions& options = {});
-    /// The same for a shot of a variation. This simulator must have been made for its base(), and all its
+    /// The same for a shot of a variation. The simulator must have been made for its base(), and all its
     /// shots must come from this variation.
     /// @param values  receives the draws, one per key
     ShotStatus play(const Variation& variation, std::uint64_t index, std::span<DrawnValue> values,
                     const SimulateOptions& options = {});
-    /// From now on every shot also has a record, in memory that is reused.
+    /// From now on, also record every shot, in reused memory.
     void keep_records() { records_ = true; }
     /// Sets the message of a shot that cannot be played. @return kInvalid
     ShotStatus refuse(std::string why);
@@ -90,32 +90,32 @@ struct BatchOptions {
     int threads = 0;             ///< 0: one per core. The results do not depend on it.
     bool hash = false;           ///< fill Batch::hash
     SimulateOptions simulate{};  ///< `progress` is not called, and nothing is profiled
-    /// Empty, or one flag per ball of every shot: not 0 leaves the ball out. The shot is then that of the
-    /// scene without these balls; their x and y are NaN, and they have no pocket and no cushions.
+    /// Empty, or one flag per ball of every shot; nonzero removes the ball. The shot is that of the scene
+    /// without these balls; their x and y are NaN, and they have no pocket and no cushions.
     std::span<const std::uint8_t> absent{};
     /// Called by each thread between shots; true ends the batch with BatchStopped.
     std::function<bool()> stop{};
-    /// Called by each thread after a shot that has a result, once the arrays hold it: judge shots here,
-    /// without playing them again. Both arguments are valid during the call only, and neither contains balls
-    /// that were left out. An exception ends the batch.
+    /// Called by each thread after a shot with a result has been stored, to judge it without playing it
+    /// again. Both arguments are valid only during the call and omit removed balls. An exception ends the
+    /// batch.
     std::function<void(std::size_t shot, const Outcome& outcome, const Record& record)> judge{};
-    /// Called by each thread after every shot, once the arrays hold it and it is judged. @param message  why
-    /// it has no result, or ""
+    /// Called by each thread after every shot has been stored and judged. @param message  why the shot has no
+    /// result, or ""
     std::function<void(std::size_t shot, const std::string& message)> done{};
-    /// Hash only shots whose number is a multiple of this (not 0); the others have 0. Hashing makes
-    /// short shots take half as long again.
+    /// Hash only shots whose number is a multiple of this (not 0); the others get 0. Hashing makes short
+    /// shots 50% slower.
     std::uint64_t hash_every = 1;
 };
 
-/// Destination of the outcomes of n shots of b balls: the caller's arrays of n or of n x b, as in Batch.
-/// Null: not wanted.
+/// Destination of the outcomes of n shots of b balls: the caller's arrays of n or n x b elements, as in
+/// Batch. Null arrays are not filled.
 struct BatchArrays {
     ShotStatus* status = nullptr;
     double* duration = nullptr;
     std::int64_t* events = nullptr;
     std::int32_t *first_hit = nullptr, *contacts = nullptr, *approach_cushions = nullptr;
     double *x = nullptr, *y = nullptr;
-    /// step from one ball to the next in x and in y: 2 if x and y alternate
+    /// Step from one ball to the next in x and in y: 2 if x and y alternate.
     std::size_t place_stride = 1;
     std::int32_t *pocket = nullptr, *fell = nullptr, *cushions = nullptr;
     std::uint64_t* hash = nullptr;
@@ -126,28 +126,27 @@ class BatchStopped : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of each shot together, in the
-/// order of Scene::ball. A shot without a result has 0 everywhere, and -1 as ball and pocket.
+/// Outcomes of n shots of b balls: arrays of n, or of n x b with the balls of a shot together, in the order
+/// of Scene::ball. A shot without a result is all 0, with -1 for balls and pockets.
 struct Batch {
     Batch() = default;
     /// Arrays for n shots of b balls, to be filled. @param hash  whether to allocate `hash`
     Batch(std::size_t n, std::size_t b, bool hash = false);
-    /// The destination for simulate_many.
     BatchArrays arrays();
 
     std::size_t shots = 0, balls = 0;
     std::vector<ShotStatus> status;       ///< n
     std::vector<double> duration;         ///< n [s]
     std::vector<std::int64_t> events;     ///< n
-    std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball meets, or -1
-    std::vector<std::int32_t> contacts;   ///< n: the number of balls that it meets
-    /// n: the number of cushions that it meets before the second ball, or in all
+    std::vector<std::int32_t> first_hit;  ///< n: the first ball that the struck ball hits, or -1
+    std::vector<std::int32_t> contacts;   ///< n: the number of balls that it hits
+    /// n: the number of cushions that it hits before the second ball, or in all
     std::vector<std::int32_t> approach_cushions;
     std::vector<double> x, y;            ///< n x b [m], at the end
-    std::vector<std::int32_t> pocket;    ///< n x b: index of the pocket that holds the ball, kOffTable, or -1
+    std::vector<std::int32_t> pocket;    ///< n x b: index of the ball's pocket, kOffTable, or -1
     std::vector<std::int32_t> fell;      ///< n x b: 0 for the ball that fell first, 1, ..., or -1
-    std::vector<std::int32_t> cushions;  ///< n x b: how often the ball met a cushion or a jaw
-    std::vector<std::uint64_t> hash;     ///< n, if asked for: Outcome::hash
+    std::vector<std::int32_t> cushions;  ///< n x b: number of cushion and jaw hits
+    std::vector<std::uint64_t> hash;     ///< n, only with BatchOptions::hash: Outcome::hash
     struct Message {
         std::size_t shot;
         std::string text;  ///< why the shot has no result
@@ -160,16 +159,16 @@ inline constexpr std::size_t kMostBatchShots = std::size_t{1} << 31;
 /// @throws std::invalid_argument for more shots than that
 void check_shots(std::size_t shots);
 
-/// Plays `shots` shots that differ in the numbers of some columns. Shot i has the results of simulate() for
-/// the scene with these numbers, bit for bit, for any number of threads. If a shot is invalid or fails, its
-/// status says so, and the others are played.
+/// Plays `shots` shots that differ in the numbers of some columns. Shot i has exactly the result of
+/// simulate() for its scene, for any number of threads. A shot that is invalid or fails gets that status, and
+/// the others are played.
 /// @throws std::invalid_argument for a key that names no number, a repeated key, or a column of another
 /// length
 /// @throws std::bad_alloc, and std::system_error if the system cannot start the threads
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,
                     kernel::Isa isa, const BatchOptions& options = {});
 
-/// The same into existing arrays: allocates memory for the threads and the messages only. Ignores
+/// The same into existing arrays: allocates memory only for the threads and the messages. Ignores
 /// BatchOptions::hash. @return the messages, in the order of the shots
 std::vector<Batch::Message> simulate_many(const Scene& scene, std::size_t shots,
                                           std::span<const BatchColumn> columns, kernel::Isa isa,

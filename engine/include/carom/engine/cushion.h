@@ -21,29 +21,28 @@ struct CushionContact {
     double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
 };
 
-/// Input of the impact of a ball with velocity v and spin w: the friction at its slip at the nose, and the
-/// restitution at its speed along the normal (BallParams::f_c_more, e_c_fall), both taken once, before the
-/// impact.
+/// Input for a ball with velocity v and spin w: the friction at its slip at the nose, and the restitution at
+/// its normal speed (BallParams::f_c_more, e_c_fall), both evaluated once, before the impact.
 CushionContact cushion_contact(const BallParams& balls, const BallSize& size, double height,
                                const Vec2& normal, const Vec3& v, const Vec3& w);
 
 /// Restitution at a speed [m/s] along the normal.
 double cushion_restitution(const BallParams& balls, double speed);
 
-/// Tangential impulse per mass [m/s] of a ball in the air at a nose, which is all that it touches.
+/// Tangential impulse per mass [m/s] of a flying ball that touches only a nose.
 /// @param e, f  restitution and friction
-/// @param v_n, slip  [m/s] speed along the normal, and slip perpendicular to it at the nose
+/// @param v_n, slip  [m/s] normal speed, and slip perpendicular to the normal at the nose
 using GripFunction = double (*)(double e, double f, double v_n, double slip);
 
 /// Coulomb friction over a whole impact: f (1 + e) v_n, or 2/7 of the slip if that suffices to end it.
 double coulomb_grip(double e, double f, double v_n, double slip);
 
-/// Velocities after the impact, in place. v_z is 0 before and after it (planar). A ball that does not
-/// approach (v . normal >= 0) is left alone.
+/// Replaces the velocities by those after the impact. v_z is 0 before and after it (planar). A ball that does
+/// not approach (v . normal >= 0) is unchanged.
 ///
 /// @param normal  unit, horizontal, from the cushion into the table
-/// @return false if the model found no solution (it reached its limit of iterations, which takes friction
-/// that no cloth has); the velocities are then unchanged
+/// @return false if the model found no solution within its limit of iterations (only with friction larger
+/// than any real cloth's); the velocities are then unchanged
 using CushionFunction = bool (*)(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w);
 
 /// One model: its function and its inputs. All models are homogeneous in the velocities and do not read the
@@ -54,16 +53,16 @@ struct CushionModelInfo {
     CushionFunction resolve;
     bool reads_friction = false;  ///< f_c, the height of the nose and the spin matter, and the spin changes
     bool reads_cloth = false;     ///< mu_s matters
-    /// Without friction, and with the nose as high as the centre, the result is that of `smooth`, bit for
+    /// Without friction, and with the nose level with the centre, the result equals that of `smooth` bit for
     /// bit.
     bool reflects_when_level = false;
-    /// Whether the model has a solution for all velocities; null: always. In mathavan_2010 a ball can jam.
+    /// Whether the model has a solution for all velocities; null: it does. In mathavan_2010 a ball can jam.
     bool (*accepts)(const CushionContact& contact) = nullptr;
     /// Friction of a ball in the air; null: none.
     GripFunction grip = coulomb_grip;
 };
 
-/// The models that other code names directly; cushion_model("stronge") and all_of() find the rest.
+/// Models that other code names directly; for the rest, use cushion_model() and all_of().
 extern const CushionModelInfo kHan2005, kMathavan2010, kSmooth;
 
 /// All models, in the order in which messages list them.

@@ -1,6 +1,6 @@
 // Fields: the keys of a section as rows of a table. The readers and writers of scenes and records, the
-// schemas, the tables of docs/reference/scene_format.md and the C interface all use these rows, so a new key
-// is known to all of them. The rows of each section follow its struct, in scene.h and table.h.
+// schemas, the tables of docs/reference/scene_format.md and the C interface all use these rows, so a new row
+// reaches all of them. The rows of each section follow its struct, in scene.h and table.h.
 #pragma once
 
 #include <algorithm>
@@ -31,34 +31,34 @@ constexpr Interval at_least(double low, double high, const char* unit = "") {
 constexpr Interval more_than(double low, double high, const char* unit = "") {
     return {low, true, high, false, unit};
 }
-/// The upper end of integers without a limit of their own.
+/// Upper bound of integers without their own limit.
 inline constexpr double kAnyInteger = 0x1p63;
 
-/// The value of a field: nothing if an optional value is not set, and a list for a vector.
+/// The value of a field: nothing for an unset optional, a list for a vector.
 using FieldValue = std::variant<std::monostate, double, std::int64_t, std::string, std::vector<double>>;
 
-/// The files that have the key.
+/// The files that contain the key.
 enum class Files : std::uint8_t { kBoth, kScene, kRecord };
 
 struct KeyOptions {
     const char* shape = "";            ///< of a list: "[x, y]"
     const char* record_key = nullptr;  ///< the key in record files, if it differs
     Files files = Files::kBoth;
-    bool later = false;          ///< added within a version of record files: older ones of it lack the key
-    bool needed = false;         ///< the scene must give it
-    bool last_may_lack = false;  ///< the last number of a list may be omitted if it is 0
+    bool later = false;  ///< added within a version of record files: older files of that version lack the key
+    bool needed = false;                      ///< the scene must set it
+    bool last_may_lack = false;               ///< the last number of a list may be omitted if it is 0
     const char* standard = nullptr;           ///< the default in words, if it is not a value
-    const char* instead_of = nullptr;         ///< the key that this one replaces if it is given
+    const char* instead_of = nullptr;         ///< the key that this one replaces if it is set
     std::span<const char* const> names = {};  ///< the texts allowed; empty: all
 };
 
-/// One row without its type: all that is known about a key.
+/// One row without its type: everything about a key.
 struct Key {
     enum class Kind : std::uint8_t { kNumber, kInteger, kText, kNumbers, kIntegers };
 
     const char* key;
     Kind kind;
-    Interval range;       ///< of a number, and of every number in a list
+    Interval range;       ///< of a number, or of every number in a list
     const char* meaning;  ///< for people, without the unit
     KeyOptions options;
     bool optional;                          ///< the scene may omit it
@@ -67,7 +67,6 @@ struct Key {
 
     bool in(Files files) const { return options.files == Files::kBoth || options.files == files; }
     const char* record_key() const { return options.record_key ? options.record_key : key; }
-    /// The ends of the range of an integer.
     std::int64_t least() const { return static_cast<std::int64_t>(range.low); }
     std::int64_t most() const {
         return range.high < kAnyInteger ? static_cast<std::int64_t>(range.high) : INT64_MAX;
@@ -82,21 +81,21 @@ struct Key {
     }
 };
 
-/// A row of the struct T.
 template <class T>
 struct Field : Key {
     FieldValue (*get)(const T&);
     void (*set)(T&, const FieldValue&);  ///< the value is of this kind, and one of the choices
-    /// Whether files may have this value, found without allocating memory; false also if that is unknown.
+    /// Whether files may have this value, determined without allocating memory; false also if that is
+    /// unknown.
     bool (*fits)(const T&, const Key&) = nullptr;
     /// The k-th number of a list in the struct itself; null if the struct does not store the list.
     double* (*element)(T&, std::size_t k) = nullptr;
-    /// The number of the struct that the row sets first; null if it is none.
+    /// The number that the row sets first; null if it sets none.
     double T::*number = nullptr;
 
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
-        // A position leaves out the height of the ball.
+        // A position omits the height of the ball.
         if (auto* list = std::get_if<std::vector<double>>(&value)) {
             list->resize(count());
             if (options.last_may_lack && list->back() == 0.0) list->pop_back();
@@ -105,8 +104,8 @@ struct Field : Key {
     }
 };
 
-/// Whether a scene file that writes out all of `object` has this row: it has a value, and no other key
-/// replaces it.
+/// Whether a scene file that writes all of `object` has this row: it has a value, and no other key replaces
+/// it.
 template <class T, std::size_t kRows>
 bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T& object) {
     const bool replaced = std::any_of(fields, fields + kRows, [&](const Field<T>& other) {
@@ -116,10 +115,10 @@ bool is_written(const Field<T> (&fields)[kRows], const Field<T>& field, const T&
     return field.in(Files::kScene) && !replaced && field.value(object).index() != 0;
 }
 
-/// Smallest magnitude of a number other than 0: powers of smaller ones underflow.
+/// Smallest magnitude of a nonzero number: powers of smaller ones underflow.
 inline constexpr double kLeastSize = 1e-60;
 
-/// Whether a number is too small to compute with.
+/// Whether a number is nonzero but too small to compute with.
 constexpr bool is_tiny(double x) {
     return x != 0.0 && x > -kLeastSize && x < kLeastSize;
 }
@@ -193,7 +192,7 @@ std::vector<const char*> choice_names() {
     return names;
 }
 
-/// Whether a value is certainly allowed; for texts, that is unknown.
+/// Whether a value is certainly allowed; unknown for texts.
 template <class V>
 bool fits(const V& v, const Key& key) {
     if constexpr (kIsOptional<V>)
@@ -255,9 +254,9 @@ constexpr double ClassOf<kMember>::*number_of() {
 
 }  // namespace detail
 
-/// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration,
-/// whose names `names_of(V)` lists in the order of its values, or a pointer to a model: one of `all_of(V)`,
-/// named `name(v)`.
+/// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration whose
+/// names are `names_of(V)`, in the order of its values, or a pointer to one of the models `all_of(V)`, named
+/// `name(v)`.
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval& range, const char* meaning,
                                                 const KeyOptions& options = {}) {
@@ -279,7 +278,7 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* mea
     return field<kMember>(key, at_least(0.0, 0.0), meaning, options);
 }
 
-/// A row of two numbers, which files write as a list.
+/// A row of two numbers, which files write as one list.
 template <auto kFirst, auto kSecond>
 constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& range, const char* meaning,
                                                const KeyOptions& options) {
@@ -308,8 +307,7 @@ constexpr Field<detail::ClassOf<kFirst>> field(const char* key, const Interval& 
             }};
 }
 
-/// A row of a flag: false is the first word in files, true the second. False is the default, which files
-/// leave out.
+/// A row of a flag: files write the first word for false, the second for true. Files omit false, the default.
 template <auto kMember, const auto& kWords>
 constexpr Field<detail::ClassOf<kMember>> either(const char* key, const char* meaning) {
     using T = detail::ClassOf<kMember>;
@@ -328,8 +326,8 @@ constexpr Field<detail::ClassOf<kMember>> either(const char* key, const char* me
         }};
 }
 
-/// The rows of a coefficient that may be a number or a fit with three. `number` is the first number alone,
-/// and replaces a fit. `fit` is the list of all three, in scene files, if one of the other two is not 0.
+/// The rows of a coefficient that may be a number or a fit of three. `number` sets the first number alone and
+/// replaces a fit. `fit` is the list of all three, in scene files, if either of the other two is not 0.
 template <auto kFirst, auto... kOthers>
 constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const Interval& range,
                                                        const char* meaning, const KeyOptions& options = {}) {
@@ -371,7 +369,7 @@ constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& ra
             }};
 }
 
-/// The keys of some rows that these files have.
+/// The keys of some rows that occur in these files.
 template <class T, std::size_t kRows>
 std::vector<std::string_view> keys_of(const Field<T> (&fields)[kRows], Files files) {
     std::vector<std::string_view> keys;

@@ -34,10 +34,10 @@ struct ArcSpan {
 };
 ArcSpan span_of(const Jaw& jaw);
 
-/// A round nose: a jaw, an arc, or the end of a cushion or an arc that no jaw rounds off (radius 0).
+/// A round nose: a jaw, an arc, or an unrounded end of a cushion or an arc (radius 0).
 struct Nose {
     Vec2 center;
-    double radius;  ///< negative if it lies around the balls: all distances from it then have that sign, too
+    double radius;  ///< negative for a wall around the balls: all distances from it are then negative, too
     double height;
     EventType type;      ///< kBallJaw or kBallCushion
     int index;           ///< of the jaw or cushion in scene.table
@@ -49,10 +49,10 @@ struct Nose {
 /// @param index  of the jaw in scene.table
 Nose nose_of(const Jaw& jaw, int index, double inset);
 
-/// [m] How much closer to a nose of this height than its radius the centre of a touching ball is.
+/// [m] Reduction, at this height of the nose, of the horizontal distance at which a ball touches it.
 double nose_inset(CushionTouch touch, double R, double height);
 
-/// All parts of a table that a ball can meet.
+/// All parts of a table that can touch a ball.
 struct Geometry {
     std::vector<CushionLine> cushions;
     std::vector<Nose> noses;

@@ -1,5 +1,5 @@
-// Trigonometry made of + - * / and sqrt only, so that every machine, compiler and C library gives the same
-// bits (the C library picks variants by CPU).
+// Trigonometry from + - * / and sqrt only: every machine, compiler and C library gives the same bits (C
+// libraries pick variants by CPU).
 #pragma once
 
 #include <numbers>
@@ -21,8 +21,8 @@ struct SinCos {
 /// argument itself. NaN for both when |radians| >= 2^50 or not finite.
 SinCos sin_cos(double radians);
 
-/// Sine and cosine of an angle in degrees, within 1 ulp. Degrees are reduced exactly, whatever their size: 90
-/// gives exactly (1, 0), 180 gives (0, -1), 30 gives sine 0.5. NaN for both when not finite.
+/// Sine and cosine of an angle in degrees, within 1 ulp. The reduction is exact for any size: 90 gives
+/// exactly (1, 0), 180 gives (0, -1), 30 gives sine 0.5. NaN for both when not finite.
 SinCos sin_cos_deg(double degrees);
 
 /// Tangent of an angle in degrees, within 2 ulp; infinite at 90 and its odd multiples.
@@ -31,7 +31,7 @@ double tan_deg(double degrees);
 /// Arc cosine in [0, pi], within 2 ulp of pi/2; NaN outside [-1, 1].
 double arc_cos(double x);
 
-/// Direction of (x, y) in degrees, -180 to 180, from +x towards +y. Of (0, 0) it is 0, and NaN of NaN.
+/// Direction of (x, y) in degrees, -180 to 180, from +x towards +y; 0 for (0, 0), NaN for NaN.
 double direction_deg(double x, double y);
 
 /// e^x, within 2 ulp where the result is a normal number; 0 below -745.2, infinite above 709.8, NaN for NaN.

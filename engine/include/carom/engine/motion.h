@@ -19,13 +19,13 @@ double kinetic_energy(const V& v, const W& w, double R) {
     return 0.5 * (v.squaredNorm() + kInertia * R * R * w.squaredNorm());
 }
 
-/// One ball's friction as accelerations, as in the equations of motion.
+/// One ball's frictions as accelerations.
 struct MotionParams {
     double R;
     double slide;  ///< mu_s g [m/s^2]
     double roll;   ///< mu_r g
     double spin;   ///< 5 mu_sp g / (2 R) [rad/s^2]
-    // An effect that the plan skips is not computed at all.
+    // An effect that the plan skips is not computed.
     bool sliding = true;     ///< some ball can slip on a cloth with friction
     bool rolling = true;     ///< some ball can roll on a cloth that slows it
     bool spin_decay = true;  ///< some ball can have vertical spin that decays

@@ -1,4 +1,4 @@
-// Plan: what to compute for a scene. It is constant during a run, and the event loop reads nothing else.
+// Plan: the computations that a scene needs. Constant during a run, and the only input of the event loop.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct EffectDecision {
 struct Plan;
 struct EffectFacts;
 
-/// Whether a scene can ever feel an effect, and why.
+/// Whether an effect can influence a scene, and why.
 struct Need {
     bool needed;
     std::string reason;
@@ -40,16 +40,16 @@ struct Need {
 struct EffectInfo {
     const char* keyword;       ///< of [effects]
     const char* skipped_when;  ///< for people
-    const char* keys;          ///< the keys of a scene that belong to it, separated by commas
+    const char* keys;          ///< the scene keys that belong to it, separated by commas
     Need (*need)(const EffectFacts&);
     void (*leave_out)(Plan&) = nullptr;  ///< removes it from the plan, in addition to Plan::skipped
-    bool last = false;                   ///< decided after all others, because it depends on them
+    bool last = false;                   ///< decided last, because it depends on the others
 };
 /// All effects, in the order of Effect and of Plan::effects.
 std::span<const EffectInfo> effect_table();
 
-/// How detection finds what a ball can meet: by testing every box, or in a tree of boxes (Box2D's). The
-/// events are the same to the last bit; lab/notes/2026-11-event_cost.md has the measured crossing.
+/// How detection finds the possible partners of a ball: by testing every box, or with a box tree (as Box2D).
+/// The events are the same to the last bit; lab/notes/2026-11-event_cost.md has the measured crossover.
 enum class Search : std::uint8_t { kDirect, kTree };
 constexpr auto names_of(Search) {
     return std::array{"direct", "tree"};
@@ -58,20 +58,20 @@ constexpr auto names_of(Search) {
 struct Plan {
     Scene scene;                  ///< ids, table and settings, as read
     BallParams balls{};           ///< as in the scene, except that the friction of skipped effects is 0
-    std::vector<BallSize> sizes;  ///< of every ball of the scene
+    std::vector<BallSize> sizes;  ///< of every ball
     double gravity = 9.81;
-    std::vector<MotionParams> motion;           ///< of every ball, without the effects that are skipped
+    std::vector<MotionParams> motion;           ///< of every ball, without skipped effects
     Geometry geometry;                          ///< empty lists if nothing can reach them
     const CushionModelInfo* cushion = nullptr;  ///< of straight noses and their ends
     const CushionModelInfo* jaw = nullptr;      ///< of round jaws
-    std::vector<EffectDecision> effects;        ///< of effect_table(), then those that no scene can ask for
+    std::vector<EffectDecision> effects;        ///< of effect_table(), then those that no scene can request
     std::bitset<kEffects> skipped;
     bool in_force(Effect effect) const { return !skipped[static_cast<std::size_t>(effect)]; }
     void skip(Effect effect) { skipped.set(static_cast<std::size_t>(effect)); }
     bool pairs = true;  ///< two balls can meet
     kernel::Isa isa = kernel::Isa::kScalar;
     const BallBallModelInfo* ball_ball = nullptr;
-    /// e_b as the model of ball-ball impacts reads it: 1 if it does not.
+    /// e_b as the ball-ball model reads it: 1 if it does not read it.
     double e_b() const { return ball_ball->restitution(balls); }
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
@@ -86,17 +86,17 @@ struct Plan {
     std::vector<std::string> warnings;  ///< one sentence each, for stderr
 };
 
-/// Decides once per run, by arguments that hold for the whole shot (docs/design/architecture.md).
+/// Decides once per run, by arguments valid for the whole shot (docs/design/architecture.md).
 /// @param isa must be available (kernel::isa_from_environment)
-/// @throws SceneError if [effects] excludes what the scene needs
+/// @throws SceneError if [effects] excludes a needed effect
 Plan make_plan(const Scene& scene, kernel::Isa isa);
 
-/// Whether nothing in a plan dissipates energy: impacts return all of it, and there is no friction, no pocket
-/// and no flight. A nose above or below the centre of a ball drives it into the cloth, which dissipates some.
+/// Whether the plan dissipates no energy: impacts return all of it, without friction, pockets and flight. A
+/// nose above or below a ball's centre drives it into the cloth, which dissipates some.
 bool loses_nothing(const Plan& plan);
 
-/// Plans of one scene whose numbers change: the same decisions as make_plan, in memory that is kept. The
-/// plans have no reasons, no warnings, and no names of pockets in their geometry.
+/// Plans for one scene with changing numbers: the same decisions as make_plan, in reused memory. The plans
+/// have no reasons, no warnings, and no pocket names in their geometry.
 class Planner {
   public:
     Planner(const Scene& scene, kernel::Isa isa);
@@ -104,7 +104,7 @@ class Planner {
     Planner(Planner&& other) noexcept;
     Planner& operator=(Planner&& other) noexcept;
 
-    /// The scene to plan; it may be changed between two plans.
+    /// The scene to plan; may be changed between two plans.
     Scene& scene() { return plan_.scene; }
     /// Valid until the next call.
     /// @param same_table  the table has not changed since the last call

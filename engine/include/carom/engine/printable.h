@@ -6,8 +6,8 @@
 
 namespace carom {
 
-/// `text`, safe for a terminal: control characters, marks that change the direction of writing, and bytes
-/// that are not UTF-8 become "?", and text longer than 60 bytes is cut and ends in "...".
+/// `text`, safe for a terminal: control characters, writing-direction marks and bytes that are not UTF-8
+/// become "?"; text longer than 60 bytes is cut and ends in "...".
 std::string printable(std::string_view text);
 
 /// printable() without the cut; keeps line ends and tabs.

@@ -1,5 +1,5 @@
-// Record: the result of a simulation. A list of closed-form motion segments for each ball, and the ordered
-// events. Immutable once made.
+// Record: the result of a simulation: closed-form motion segments for each ball, and the ordered events.
+// Immutable once made.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,8 +21,8 @@
 
 namespace carom {
 
-/// kFalling: over a pocket, not yet in it. kOut: it flew over the cushions and is out of play. kColliding: in
-/// a cluster, whose contacts last; it moves straight to where it is when they are over.
+/// kFalling: over a pocket, not yet in it. kOut: flew over the cushions, out of play. kColliding: in a
+/// cluster, which lasts a while; the ball moves straight to its position at the end of the cluster.
 enum class MotionState : std::uint8_t {
     kStationary,
     kSpinning,
@@ -54,10 +54,10 @@ constexpr bool is_off_cloth(MotionState state) {
 /// The motion of one ball between two of its events, or in a cluster. Times inside are relative to `start`.
 struct Segment {
     double start = 0.0;  ///< s since the start of the shot
-    /// Centre, velocity and angular velocity at the start. While a ball falls into a pocket, r_z stays at the
-    /// height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z - g
-    /// tau)^2 / 2g below r_z. While it flies, its height is r_z + v_z tau - g tau^2 / 2. While it collides, v
-    /// is its mean velocity, and w that after the cluster.
+    /// Centre, velocity and angular velocity at the start. For a ball that falls into a pocket, r_z remains
+    /// the height where the fall began, and v_z is its vertical velocity at the start: after tau it is (v_z
+    /// - g tau)^2 / 2g below r_z. A flying ball is at the height r_z + v_z tau - g tau^2 / 2. For a colliding
+    /// ball, v is its mean velocity, and w that after the cluster.
     Vec3 r, v, w;
     Vec2 a;                   ///< acceleration [m/s^2], constant
     Vec2 dw;                  ///< d(w_x, w_y)/dt [rad/s^2], constant
@@ -65,7 +65,7 @@ struct Segment {
     double duration = 0.0;    ///< until the ball's own next transition [s]; infinite if there is none
     MotionState state = MotionState::kStationary;
     bool held = false;  ///< in a resting contact: `a` includes the contact forces
-    /// A transition follows at the end of the duration (for a held ball, perhaps only its forces change)
+    /// A transition follows at the end of the duration (for a held ball, perhaps only its forces change).
     bool ends = true;
     bool operator==(const Segment&) const = default;
 };
@@ -81,24 +81,24 @@ enum class EventType : std::uint8_t {
     kRollSpin,
     kRollStop,
     kSpinStop,
-    // Resting contacts: from a hold to its release, the two stay in contact and push each other.
+    // Resting contacts: from hold to release, the two stay in contact and push each other.
     kBallBallHold,
     kBallBallRelease,
     kBallCushionHold,
     kBallCushionRelease,
     kBallJawHold,
     kBallJawRelease,
-    /// the centre crosses the edge of a pocket: the ball begins to fall, or is back on the cloth
+    /// The centre crosses the edge of a pocket: the ball begins to fall, or returns to the cloth.
     kBallEdge,
-    kBallCloth,  ///< a flying ball, or one that another impact pressed down, hits the cloth
-    kBallOut,    ///< the centre of a flying ball is over a cushion: it has left the table
+    kBallCloth,  ///< a flying or pressed-down ball hits the cloth
+    kBallOut,    ///< a flying ball's centre passes over a cushion: it has left the table
 };
 inline constexpr int kEventTypes = 19;
 
-/// The list that Event::b is an index of.
+/// The list that Event::b indexes.
 enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
 
-/// The change for the ball.
+/// The kind of change for the ball.
 enum class EventPhase : std::uint8_t {
     kStrike,      ///< the cue hits it
     kImpact,      ///< it meets another ball, a cushion, a jaw, a pocket or the cloth
@@ -107,7 +107,7 @@ enum class EventPhase : std::uint8_t {
     kRelease      ///< a resting contact ends
 };
 
-/// All that follows from the type of an event.
+/// Everything that follows from the type of an event.
 struct EventKind {
     EventType type;
     const char* name;  ///< in files
@@ -144,7 +144,7 @@ constexpr const EventKind& kind(EventType type) {
 constexpr const char* name(EventType type) {
     return kind(type).name;
 }
-/// Whether balls collide: two, or a cluster.
+/// Whether two balls, or a cluster of balls, collide.
 constexpr bool balls_collide(EventType type) {
     return kind(type).phase == EventPhase::kImpact && kind(type).partner == Partner::kBall;
 }
@@ -156,12 +156,12 @@ struct Event {
     int b = -1;  ///< the other ball, or the index of the cushion, jaw or pocket; -1 if none
     /// kBallCluster: index into Record::clusters; cushions and jaws: index into the plan's noses, or -1
     int detail = -1;
-    /// a contact in the air so slow that it separates at a fixed speed: the energy may rise
+    /// The contact, in the air, was so slow that it separated at a fixed speed: the energy may rise.
     bool slow = false;
     bool operator==(const Event&) const = default;
 };
 
-/// Cost of one event; filled only by a profiled run.
+/// Cost of one event; only in a profiled run.
 struct EventCost {
     double detect_ns = 0.0;   ///< finding the next event, and detecting again after this one
     double resolve_ns = 0.0;  ///< advancing and resolving, kernel included
@@ -172,11 +172,10 @@ struct EventCost {
     bool operator==(const EventCost&) const = default;
 };
 
-/// kEndless: balls move forever without another event, and there was no time to stop at; the record ends at
-/// its last event.
+/// kEndless: balls move forever without another event, and no stop time was set; the record ends at its last
+/// event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
 
-/// The words for a StopReason.
 struct StopWords {
     const char* word;       ///< in tables, Python and C
     const char* in_record;  ///< in record files
@@ -191,25 +190,24 @@ inline constexpr std::array<StopWords, 4> kStopWords = {{
 constexpr const StopWords& words(StopReason why) {
     return kStopWords[static_cast<std::size_t>(why)];
 }
-/// As record files have them.
+/// As written in record files.
 constexpr auto names_of(StopReason) {
     std::array<const char*, kStopWords.size()> names{};
     for (std::size_t i = 0; i < names.size(); ++i) names[i] = kStopWords[i].in_record;
     return names;
 }
 
-/// State of one ball at a time.
 struct BallState {
     MotionState state = MotionState::kStationary;
     Vec3 position, velocity, spin;
-    int pocket = -1;  ///< index of the pocket that holds it, or -1
+    int pocket = -1;  ///< index of its pocket, or -1
     bool operator==(const BallState&) const = default;
 };
 
 struct BallTrack {
     std::string id;
     /// Ordered by start; of two with the same start, the later one counts. A record that ends during a
-    /// cluster has the motion after the cluster too: it starts after the end.
+    /// cluster also has the motion after the cluster, which starts after the record's end.
     std::vector<Segment> segments;
     int pocket = -1;
     std::optional<BallSize> own = std::nullopt;  ///< as BallStart::own
@@ -228,7 +226,7 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the pair that met
+    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the first pair.
     std::vector<std::vector<int>> clusters;
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: the first detection, of all pairs
@@ -236,18 +234,17 @@ class Record {
     double start_time = 0.0;       ///< s: SimulateOptions::start_time; all times here are relative to it
     StopReason stopped = StopReason::kAtRest;
 
-    /// Removes the result, for another shot. Keeps the memory of the segments and the events.
+    /// Removes the result, for another shot. Keeps the memory of segments and events.
     void clear();
 
-    /// Radius and mass of a ball.
     BallSize size(int ball) const { return tracks[ball].own.value_or(balls.size()); }
 
-    /// State of a ball at time t: the last segment that starts at or before t, in closed form. Before 0 it is
-    /// the start, and after the duration the end.
+    /// State of a ball at time t, in closed form from the last segment that starts at or before t. Before 0
+    /// it is the start, after the duration the end.
     BallState state_at(int ball, double t) const;
 
-    /// The same for every ball at many times, one time after another: position, velocity and spin as nine
-    /// numbers, and the state of motion. Null: not wanted.
+    /// The same for every ball at many times: for each time, nine numbers per ball (position, velocity,
+    /// spin), and its state of motion. Null arrays are not filled.
     void states_at(std::span<const double> times, double* rvw, std::uint8_t* kinds) const;
 
     /// Orientation (body to table) at time t, starting from the identity: the integral of the angular
@@ -255,8 +252,8 @@ class Record {
     /// 1e-7 rad over a shot).
     Eigen::Quaterniond orientation_at(int ball, double t) const;
 
-    /// 64-bit FNV-1a over the bits of the segments (except `ends`), of the events (except `detail`) and of
-    /// the duration, as 16 hex digits.
+    /// 64-bit FNV-1a over the bits of the segments (except `ends`), the events (except `detail`) and the
+    /// duration, as 16 hex digits.
     std::string hash() const;
 
     /// Id of an event's b: a ball, cushion, jaw or pocket, or "".
@@ -264,10 +261,10 @@ class Record {
 
   private:
     struct Orientations;
-    /// A cache that is not part of the value: any two of these are equal.
+    /// A cache, not part of the value: any two compare equal.
     struct Aside {
         Aside();
-        // A copy may be changed, so it computes its orientations afresh.
+        // A copy may be changed, so it computes its own orientations.
         Aside(const Aside&) : Aside() {}
         Aside(Aside&&) noexcept = default;
         ~Aside() = default;
@@ -288,7 +285,7 @@ inline Vec3 position_at(const Segment& s, double tau) {
 }
 inline Vec3 velocity_at(const Segment& s, double tau) {
     if (s.state == MotionState::kRolling && s.duration < std::numeric_limits<double>::infinity() && !s.held) {
-        // v + a tau, written so that the direction stays the same and the end is exactly 0.
+        // v + a tau, written so that the direction is kept and the end is exactly 0.
         const double left = std::max(0.0, 1.0 - tau / s.duration);
         return {s.v.x() * left, s.v.y() * left, 0.0};
     }
@@ -296,8 +293,8 @@ inline Vec3 velocity_at(const Segment& s, double tau) {
 }
 Vec3 spin_at(const Segment& segment, double tau, double R);
 
-/// [m] Depth of the floor below the cloth, where a ball that left the table comes to rest. The bed of a table
-/// is 29 1/4 to 31 inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
+/// [m] Depth of the floor below the cloth, where a ball that left the table comes to rest. A table bed is
+/// 29 1/4 to 31 inches high (WPA Tournament Table & Equipment Specifications, 2), 0.743 to 0.787 m.
 inline constexpr double kFloorDepth = 0.76;
 
 /// Time from the start of a segment until a ball of radius R lies on the floor [s]; infinite if it has not
@@ -308,28 +305,28 @@ inline double until_floor(const Segment& s, double R, double gravity) {
     return (v + std::sqrt(v * v + 2.0 * gravity * height)) / gravity;
 }
 
-/// Whether a record may be of this scene: it has the same balls in the same order.
+/// Whether a record can belong to this scene: it has the same balls in the same order.
 bool same_balls(const Scene& scene, const Record& record);
 
-/// The scene for the next shot: that of the record with every ball as it is at the end, without the balls in
-/// pockets and without a cue. The caller chooses the ball to strike, and puts fallen balls back. A ball that
-/// is still falling starts its fall again. The result may need other [effects].
-/// @param scene  that of the record: the same balls in the same order
+/// The scene for the next shot: every ball of the record in its final state, without pocketed balls and
+/// without a cue. The caller chooses the ball to strike and respots balls. A ball that is still falling
+/// starts its fall again. The result may need other [effects].
+/// @param scene  of the record: the same balls in the same order
 Scene scene_after(const Scene& scene, const Record& record);
 
-/// Writes a record as JSON to `path`, under a temporary name first. Doubles read back to the same bits.
+/// Writes a record as JSON to `path`, via a temporary file. Doubles read back to the same bits.
 /// @throws std::runtime_error naming the file
 void write_record(const Record& record, const std::string& path);
 
 /// The text that write_record writes. @throws std::runtime_error as write_record does, except for the file
 std::string record_json(const Record& record);
 
-/// Reads what write_record wrote, in this version of the format (docs/reference/record_format.md). `notes`
-/// receives a sentence for everything that the file lacks or that this version does not know. @throws
-/// SceneError
+/// Reads the output of write_record, in this version of the format (docs/reference/record_format.md). `notes`
+/// receives a sentence for everything that the file lacks or this version does not support.
+/// @throws SceneError
 Record read_record(const std::string& path, std::vector<std::string>* notes = nullptr);
 
-/// The same from text; messages call the file `name`.
+/// The same from text; messages use `name` for the file.
 Record parse_record(std::string_view text, const std::string& name,
                     std::vector<std::string>* notes = nullptr);
 

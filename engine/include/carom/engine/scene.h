@@ -1,4 +1,4 @@
-// Scene: the content of a scene file, validated, with every default written out.
+// Scene: the content of a scene file, validated, with all defaults filled in.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class SceneError : public std::runtime_error {
     SourceLocation where_;
 };
 
-// The structs below compare all their members, so that a test cannot miss one that is added later.
+// The structs below compare all their members, so that no test can miss a new one.
 
 inline constexpr Interval kBallRadius = at_least(kMinLength, kMaxLength, "m");
 inline constexpr Interval kMass = at_least(kMinMass, kMaxMass, "kg");
@@ -63,8 +63,7 @@ inline constexpr Field<BallSize> kSizeFields[] = {
     field<&BallSize::m>("mass", kMass, "of this ball", {.standard = "as `[balls]`"}),
 };
 
-/// A coefficient that falls with a speed u [m/s]: at_rest + more exp(-fall u), or at_rest alone if `more` is
-/// 0.
+/// A coefficient that falls with a speed u [m/s]: at_rest + more exp(-fall u); constant if `more` is 0.
 struct Falling {
     double at_rest, more = 0.0, fall = 0.0;  // fall [s/m]
     double operator()(double u) const;
@@ -83,15 +82,14 @@ struct BallParams {
     double e_b;
     double e_c;
     double f_c;
-    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u). 0: mu_b at
-    /// every slip.
+    /// Ball-ball friction that falls with the slip u [m/s]: mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0;
     double mu_b_fall = 0.0;  ///< [s/m]
     /// Cushion friction that falls with the slip u [m/s] at the nose: f_c + f_c_more exp(-f_c_fall u).
     double f_c_more = 0.0;
     double f_c_fall = 0.0;  ///< [s/m]
-    /// Cushion restitution that falls with the speed v_n [m/s] towards the cushion: above e_c_above it loses
-    /// e_c_fall per m/s, down to 0.
+    /// Cushion restitution that falls with the speed v_n [m/s] towards the cushion: above e_c_above it
+    /// decreases by e_c_fall per m/s, down to 0.
     double e_c_fall = 0.0;   ///< [s/m]
     double e_c_above = 0.0;  ///< [m/s]
     /// Restitution between ball and cloth, which may fall with the speed V [m/s]: e_t + e_t_more
@@ -101,12 +99,12 @@ struct BallParams {
     /// Share of the downward speed after a cushion that throws the ball up again. 0: the published planar
     /// cushions.
     double e_h = 0.0;
-    bool disc = false;    ///< two touch at R1 + R2, level with the cloth, and not as balls do
+    bool disc = false;    ///< two touch at R1 + R2, level with the cloth, unlike balls
     bool slides = false;  ///< pucks: they never roll
     bool discs() const { return disc; }
     bool rolls() const { return !slides; }
     BallSize size() const { return {R, m}; }
-    /// Between two balls, as a function of their slip at the contact. Source of the form: D. Alciatore,
+    /// Between two balls, as a function of the slip at the contact. Source of the form: D. Alciatore,
     /// Technical Proof A.14: a + b exp(-c u) with 9.951e-3, 0.108 and 1.088 s/m. An impact uses the slip
     /// before it; in a compliant cluster, every contact uses its current slip.
     Falling ball_friction() const { return {mu_b, mu_b_more, mu_b_fall}; }
@@ -124,7 +122,7 @@ inline constexpr Field<BallParams> kBallFields[] = {
     field<&BallParams::mu_s>("mu_s", kFriction, "sliding friction on the cloth"),
     field<&BallParams::mu_r>("mu_r", kFriction, "rolling friction"),
     field<&BallParams::mu_sp>("mu_sp", kFriction, "spinning friction"),
-    // Records have separate rows for the rest of a fit.
+    // Records have separate rows for the other two numbers of a fit.
     number_or_fit<&BallParams::mu_b, &BallParams::mu_b_more, &BallParams::mu_b_fall>(
         "mu_b", kFriction, "ball-ball friction, at any slip; replaces the fit of a preset"),
     field<&BallParams::mu_b_more>(
@@ -189,15 +187,14 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "rolls", "`false`: pucks, which slide until they stop; `mu_s` slows them, and nothing turns them"),
 };
 
-/// A ball at the start.
 struct BallStart {
     std::string id = "cue";
     Vec3 position = {0.635, 0.5, 0.0};           ///< centre [m], z = its radius + its height
     Vec3 velocity = Vec3::Zero();                ///< [m/s]
     Vec3 spin = Vec3::Zero();                    ///< [rad/s]
     double height = 0.0;                         ///< [m] between the ball and the cloth
-    SourceLocation where;                        ///< its line in the file (that of [rack] for a racked ball)
-    std::optional<BallSize> own = std::nullopt;  ///< its own radius and mass; nothing: those of [balls]
+    SourceLocation where;                        ///< its line in the file (of [rack] for a racked ball)
+    std::optional<BallSize> own = std::nullopt;  ///< own radius and mass; nothing: as in [balls]
     /// Whether it starts in the air.
     bool flies() const { return height > 0.0 || velocity.z() != 0.0; }
     bool operator==(const BallStart&) const = default;
@@ -232,8 +229,8 @@ constexpr auto names_of(RackGame) {
                       "triangle",   "line",      "scatter",  "pyramid", "four_ball"};
 }
 
-/// How balls are put into a rack: as gap and jitter say; pressed together; or in a wooden triangle, which
-/// leaves every contact open.
+/// How balls are racked: with gap and jitter; pressed together; or in a wooden triangle, which leaves every
+/// contact open.
 enum class RackMethod : std::uint8_t { kGap, kTemplate, kTriangle };
 constexpr auto names_of(RackMethod) {
     return std::array{"gap", "template", "triangle"};
@@ -274,14 +271,14 @@ inline constexpr Field<Rack> kRackFields[] = {
 /// Positions of a rack without jitter, row by row from left to right. @param R  ball radius [m]
 std::vector<Vec2> rack_slots(const Rack& rack, const Vec2& apex, double R);
 
-/// A key of [balls] that only a rack feels.
+/// A key of [balls] that affects only a rack.
 inline constexpr Field<Rack> kRackedBallFields[] = {
     field<&Rack::radius_sd>("radius_sd", at_least(0.0, kMaxRadiusSd, "m"),
                             "standard deviation of the radii of racked balls, at most a 200th of the radius; "
                             "their mass goes with the cube"),
 };
 
-/// The cue's stroke. The defaults are those of a scene file with an empty [cue], and of the C interface.
+/// The cue's stroke. The defaults are those of an empty [cue] and of the C interface.
 struct Cue {
     std::string preset = "low_deflection";
     std::string ball = "cue";
@@ -331,17 +328,17 @@ enum class CushionTouch : std::uint8_t { kRadius, kNose };
 constexpr auto names_of(CushionTouch) {
     return std::array{"radius", "nose"};
 }
-/// When a pocket takes a ball whose centre has crossed its circle.
+/// When a ball whose centre has crossed a pocket's circle is pocketed.
 enum class PocketModel : std::uint8_t { kFall, kAtOnce };
 constexpr auto names_of(PocketModel) {
     return std::array{"fall", "at_once"};
 }
-/// Whether balls leave the cloth. kDrop: a planar model, which drops the vertical part of a stroke.
+/// Whether balls leave the cloth. kDrop: a planar model, which ignores the vertical part of a stroke.
 enum class Vertical : std::uint8_t { kKeep, kDrop };
 constexpr auto names_of(Vertical) {
     return std::array{"keep", "drop"};
 }
-/// How `substeps` are integrated (kernel/march.h): summed exactly over many steps, or one by one, as
+/// Integration with `substeps` (kernel/march.h): summed exactly over many steps, or step by step, as
 /// published.
 enum class March : std::uint8_t { kSummed, kPublished };
 constexpr auto names_of(March) {
@@ -365,14 +362,14 @@ extern const CushionModelInfo kHan2005;
 struct Physics {
     double gravity = 9.81;
     const BallBallModelInfo* ball_ball = &kMathavan;
-    /// straight noses; a ball preset sets the model that suits its game
+    /// Straight noses; a ball preset sets the model that suits its game.
     const CushionModelInfo* cushion = &kHan2005;
-    const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: the same as straight noses
+    const CushionModelInfo* jaw = nullptr;  ///< round jaws; null: as for straight noses
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
     double tolerance = 1e-6;
-    /// set: the published integration with this many steps, instead of the tolerance
+    /// If set: the published integration with this many steps, instead of the tolerance.
     std::optional<int> substeps;
     March march = March::kSummed;
     CushionTouch cushion_touch = CushionTouch::kRadius;
@@ -419,8 +416,8 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
         "simulators"),
 };
 
-/// Effects that a plan computes or skips, in the order of effect_table() in plan.h, which has the keywords of
-/// [effects] and the conditions.
+/// Effects that a plan computes or skips, in the order of effect_table() in plan.h, which lists the keywords
+/// of [effects] and the conditions.
 enum class Effect : std::uint8_t {
     kSliding,
     kRolling,
@@ -482,7 +479,7 @@ inline constexpr Field<RenderSettings> kRenderFields[] = {
     either<&RenderSettings::hides_cue, kTrueOrFalse>("cue", "the cue is drawn"),
 };
 
-/// The three channels, 0..1, of a colour such as "#1d6a54"; nothing if it is none.
+/// The three channels, 0..1, of a colour such as "#1d6a54"; nothing if it is no colour.
 std::optional<std::array<double, 3>> color_of(std::string_view text);
 
 struct Scene {
@@ -490,7 +487,7 @@ struct Scene {
     Table table;
     std::string ball_preset = "pool";
     BallParams balls{};
-    /// Size of the cue ball where a preset or [balls.cue] gives it one. In `ball` it is the ball's own size.
+    /// The cue ball's size, if a preset or [balls.cue] sets it. In `ball` it is the ball's own size.
     std::optional<BallSize> cue_ball;
     std::vector<BallStart> ball;  ///< as written, then the racked ones
     std::optional<Cue> cue;       ///< nothing: no ball is struck
@@ -498,10 +495,10 @@ struct Scene {
     std::vector<EffectOverride> effects;
     Stop stop;
     RenderSettings render;
-    /// The ball that such a size is for: the one that the cue strikes.
+    /// The ball to which `cue_ball` applies: the one that the cue strikes.
     std::string cue_ball_id() const { return cue ? cue->ball : Cue().ball; }
     BallSize size_of(const BallStart& start) const { return start.own.value_or(balls.size()); }
-    /// Whether a ball may leave the cloth before it meets anything: one starts in the air, or the cue is
+    /// Whether a ball may leave the cloth before its first impact: one starts in the air, or the cue is
     /// raised.
     bool lifts() const {
         const bool raised = cue && cue->elevation_deg > 0.0 && cue->speed > 0.0;
@@ -535,35 +532,35 @@ Scene read_scene(const std::string& path);
 /// The text of a scene file, for parse_scene. @throws SceneError
 std::string read_scene_text(const std::string& path);
 
-/// The same from text; messages call the file `name`.
+/// The same from text; messages use `name` for the file.
 Scene parse_scene(std::string_view text, const std::string& name);
 
-/// The [cue] of such a text, aimed at the balls of `scene`. @throws SceneError
+/// Reads the [cue] of such a text, aimed at the balls of `scene`. @throws SceneError
 Cue parse_cue(std::string_view text, const Scene& scene);
 
-/// A scene as the text of a scene file, every value written out: parse_scene reads the same scene back.
-/// Racked balls are placed one by one; names for people and depths of pockets are left out.
+/// A scene as the text of a scene file, with every value: parse_scene reads back the same scene. Racked balls
+/// are placed one by one; display names and pocket depths are omitted.
 std::string scene_text(const Scene& scene);
 
-/// For a scene built in code: makes all the checks of parse_scene, with the same messages in the same order.
+/// For a scene built in code: all checks of parse_scene, with the same messages in the same order.
 /// @throws SceneError without a line
 void validate(const Scene& scene);
 
-/// A preset by name, with other measures. validate() checks whether they fit each other.
+/// A preset by name, with changed measures. validate() checks whether they fit together.
 /// @throws std::invalid_argument for an unknown preset
 Table make_table(std::string_view preset, const Measures& changed = {});
-/// All the measures of such a table; those of pockets are absent if it has none.
+/// All measures of such a table; no pocket measures if it has no pockets.
 Measures measures_of(std::string_view preset, const Measures& changed = {});
 /// The balls that such a table is for: "pool", "snooker", ...
 const char* balls_for(std::string_view table_preset);
-/// [degrees] The cut-off angle of a pocket: on a straight path that is farther from the pocket's axis, a ball
-/// cannot pass both ends of the mouth. 0 if it does not fit at all.
+/// [degrees] The cut-off angle of a pocket: a ball on a straight path at a larger angle to the pocket's axis
+/// cannot pass both ends of the mouth. 0 if the ball does not fit at all.
 double cut_off_deg(double mouth, double R);
 BallParams make_ball_params(std::string_view preset);
-/// Gives a scene the balls of a preset, and the cushion model that belongs to them.
+/// Gives a scene the balls of a preset, and the cushion model of their game.
 void use_balls(Scene& scene, std::string_view preset);
-/// Adds the balls of a rack to a scene whose table and balls are known. validate() checks their places.
-/// @throws SceneError for numbers that no [rack] may have
+/// Adds the balls of a rack to a scene whose table and balls are set. validate() checks their positions.
+/// @throws SceneError for numbers outside the range of [rack]
 void add_rack(Scene& scene, Rack rack);
 /// Rolling friction of a cloth by name.
 double cloth_mu_r(std::string_view cloth);

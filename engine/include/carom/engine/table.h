@@ -39,18 +39,18 @@ inline constexpr Field<Cushion> kCushionFields[] = {
     field<&Cushion::name>("name", "for people, such as: left rail, head half", {.files = Files::kRecord}),
 };
 
-/// A rounded jaw: a full circle. A ball touches it at centre distance R + radius. Or an arc: a round wall,
-/// which has the last three members, and acts on one side only.
+/// A rounded jaw: a full circle. A ball touches it at centre distance R + radius. With the last three members
+/// it is an arc: a round wall that acts on one side only.
 struct Jaw {
     std::string id;
     Vec2 center;
     double radius;
     double height;
     std::string name{};
-    std::optional<std::string> side = std::nullopt;  ///< of the circle on which the balls are
+    std::optional<std::string> side = std::nullopt;  ///< side of the circle on which the balls are
     std::optional<double> from_deg = std::nullopt, to_deg = std::nullopt;
     bool is_arc() const { return side.has_value(); }
-    /// Whether it lies around the balls.
+    /// Whether it encloses the balls.
     bool around() const { return side == "inside"; }
     bool operator==(const Jaw&) const = default;
 };
@@ -92,7 +92,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
 
-/// Measures of the pockets at the corners, or at the sides, that replace those of a preset.
+/// Measures of the corner or side pockets that replace a preset's.
 struct PocketMeasures {
     std::optional<double> mouth = std::nullopt, throat = std::nullopt, angle_deg = std::nullopt,
                           shelf = std::nullopt, jaw_radius = std::nullopt, radius = std::nullopt;
@@ -121,7 +121,7 @@ inline constexpr Field<PocketMeasures> kPocketMeasureFields[] = {
                                    {.later = true, .standard = "preset's"}),
 };
 
-/// Measures that replace those of a preset, as people take them.
+/// Measures that replace a preset's, as a person would measure them.
 struct Measures {
     std::optional<double> cushion_height = std::nullopt, rail_width = std::nullopt;
     PocketMeasures corner_pockets{}, side_pockets{};
@@ -136,7 +136,7 @@ inline constexpr Field<Measures> kMeasureFields[] = {
     field<&Measures::rail_width>("rail_width", kMeasure, "from the noses to the back ends of the facings",
                                  {.later = true, .standard = "preset's"}),
 };
-/// The sections of both kinds of pocket, inside [table].
+/// The sections of both kinds of pocket, in [table].
 struct PocketSection {
     const char *key, *path;
     PocketMeasures Measures::*pockets;
@@ -145,12 +145,12 @@ inline constexpr PocketSection kPocketSections[] = {
     {"corner_pockets", "table.corner_pockets", &Measures::corner_pockets},
     {"side_pockets", "table.side_pockets", &Measures::side_pockets}};
 
-/// Cushions are "c1", "c2", ..., jaws "j1", ..., arcs, which follow the jaws in their list, "a1", ...,
-/// and pockets "p1", ..., in the order of their lists. The presets
-/// list them clockwise as seen from above, starting at the pocket (or corner) at the origin.
+/// Cushions are "c1", "c2", ..., jaws "j1", ..., arcs (after the jaws in their list) "a1", ..., and pockets
+/// "p1", ..., in list order. Presets list them clockwise seen from above, from the pocket (or corner) at the
+/// origin.
 struct Table {
     std::string preset;  ///< "seven_foot", ..., or "" for a custom outline
-    /// the scene's name for it; its friction is in BallParams
+    /// The cloth's name in the scene; its friction is in BallParams.
     std::optional<std::string> cloth = std::nullopt;
     double width = 0.0,
            length = 0.0;         ///< playing surface between nose lines; the bounding box of a custom outline
@@ -158,19 +158,19 @@ struct Table {
     std::vector<Cushion> cushions;
     std::vector<Jaw> jaws;
     std::vector<Pocket> pockets;
-    Measures measures{};  ///< that differ from the preset's
-    /// A ball in the air is out beyond it; nothing: behind any cushion.
+    Measures measures{};  ///< differing from the preset's
+    /// A flying ball beyond it is out; nothing: out behind any cushion.
     std::optional<Rectangle> bed = std::nullopt;
     bool operator==(const Table&) const = default;
 };
 inline constexpr const char* kCloths[] = {"club", "tournament", "match_heated"};
 inline constexpr const char* kStandardTable = "nine_foot";
-/// carom_ten_foot is another name of carom, which has ten feet.
+/// carom_ten_foot is another name of carom, a ten-foot table.
 inline constexpr const char* kTablePresets[] = {
     "seven_foot", "seven_foot_bar", "eight_foot",     "nine_foot",        "nine_foot_tight",
     "ten_foot",   "snooker",        "english_pool",   "snooker_ten_foot", "chinese_eight_ball",
     "pyramid",    "carom",          "carom_ten_foot", "carom_small"};
-/// The lists of cushions, jaws and pockets beside.
+/// The keys of [table] besides the lists of cushions, jaws and pockets.
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
     field<&Table::cloth>(
@@ -203,21 +203,21 @@ std::vector<std::string> ids_of(const std::vector<Part>& list) {
     return ids;
 }
 
-/// A place on the long axis or beside it [m], from the table's corner of smallest y.
+/// A point on the long axis or `aside` of it [m], from the table's corner of smallest y.
 Vec2 spot_on_axis(const Table& table, double y, double aside = 0.0);
 /// Spots on the long axis: the head string, the centre and the foot string, at a quarter, a half and three
 /// quarters of the length. Racks are at the foot spot by default.
 Vec2 head_spot(const Table& table);
 Vec2 center_spot(const Table& table);
 Vec2 foot_spot(const Table& table);
-/// The cue ball's place at the start of a carom game, beside the head spot.
+/// The cue ball's position at the start of a carom game, beside the head spot.
 Vec2 opening_spot(const Table& table);
-/// The colours of snooker, from the highest value, 7, down to 2.
+/// The colours of snooker, in descending value from 7 to 2.
 inline constexpr std::array<std::string_view, 6> kColours = {"black", "pink",  "blue",
                                                              "brown", "green", "yellow"};
 /// The spot of a snooker colour. @throws std::invalid_argument for another id
 Vec2 snooker_spot(const Table& table, std::string_view colour);
-/// The radius of the D [m], whose centre is the spot of the brown.
+/// The radius of the D [m], which is centred on the brown spot.
 double radius_of_d(const Table& table);
 
 }  // namespace carom

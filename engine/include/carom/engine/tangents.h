@@ -1,5 +1,5 @@
-// The derivatives of a shot by the numbers of its scene: how far each of them moves every ball. The record's
-// events are replayed on dual numbers: nothing is simulated again.
+// The derivatives of a shot by the numbers of its scene: how each of them moves every ball. The record's
+// events are replayed on dual numbers; nothing is simulated again.
 #pragma once
 
 #include <memory>
@@ -13,36 +13,36 @@
 
 namespace carom {
 
-/// A shot that has no derivatives, or an input that has none. what() is one sentence.
+/// A shot or an input without derivatives. what() is one sentence.
 class TangentError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// How far one input may move before the order of events changes, to first order; infinite if nothing is
-/// near. Beyond it, the derivatives say nothing.
+/// The change of one input up to which the order of events stays the same, to first order; infinite if
+/// nothing is near. The derivatives are invalid beyond it.
 struct Margin {
     double down, up;               ///< >= 0, in the unit of the input
-    std::string down_why, up_why;  ///< what changes there: "cue misses j4 at 1.2 s"; "" if nothing does
+    std::string down_why, up_why;  ///< the event that changes there: "cue misses j4 at 1.2 s"; "" if none
 };
 
-/// Derivatives by one input of a ball's state.
+/// Derivatives of a ball's state by one input.
 struct StateTangent {
     Vec3 position = Vec3::Zero();  ///< of the centre [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     Vec3 spin = Vec3::Zero();      ///< [rad/s]
 };
 
-/// The derivatives of one record. All are by one input, in its own unit: cue.aim_deg gives m per degree.
+/// The derivatives of one record, each by one input in its own unit: cue.aim_deg gives m per degree.
 class Tangents {
   public:
     /// @param inputs  keys of numbers as in SceneNumber: cue.speed, ball.1.position.x, balls.mu_s; or a
     /// number of a fit, such as balls.mu_b_fit.0
     /// @param record  of this plan
-    /// @param until  [s] replays no event after this time
-    /// @throws TangentError if an event has no derivative here: a resting contact, three balls that meet in
-    /// the air, two cushions at once, a ball that leaves a pocket, the published march, or an impact at a
-    /// corner of its model.
+    /// @param until  [s] do not replay events after this time
+    /// @throws TangentError if an event has no derivative: a resting contact, three balls that meet in the
+    /// air, two cushions at once, a ball that leaves a pocket, the published march, or an impact at a corner
+    /// of its model.
     Tangents(const Plan& plan, const Record& record, const std::vector<std::string>& inputs,
              std::optional<double> until = std::nullopt);
     ~Tangents();
@@ -50,20 +50,20 @@ class Tangents {
     Tangents& operator=(Tangents&& other) noexcept;
 
     const std::vector<std::string>& inputs() const { return inputs_; }
-    /// At a fixed time. A ball that is out of play does not move: its derivatives are 0.
+    /// At a fixed time. For a ball out of play they are 0.
     StateTangent state_at(int ball, double time, std::size_t input) const;
     /// At rest, or at the end of the record.
     StateTangent at_end(int ball, std::size_t input) const { return state_at(ball, duration_, input); }
     /// Of the time of an event [s]; NaN if a ball leaves the table.
     double event_time(std::size_t event, std::size_t input) const;
-    /// Of the position at which the ball `Event::a` is at its event, while the event moves in time, too [m].
+    /// Of the position of ball `Event::a` at its event, including the shift of the event in time [m].
     Vec2 event_place(std::size_t event, std::size_t input) const;
-    /// Replayed events: all, unless `until` stopped earlier.
+    /// Number of replayed events: all, unless `until` stopped earlier.
     std::size_t events() const;
-    /// [-] The largest difference between two estimates of an impact's derivatives, relative to the largest
-    /// of them: at most 1e-5, and 1e-3 if three or more balls touch. Everything else is exact to rounding.
+    /// [-] Largest difference between two estimates of an impact's derivatives, relative to the largest of
+    /// them: at most 1e-5, or 1e-3 if three or more balls touch. Everything else is exact to rounding.
     double impact_error() const;
-    /// One per input. Searches the near misses of all balls, so it takes longer than the derivatives.
+    /// One per input. Searches the near misses of all balls, so it is slower than the derivatives.
     std::vector<Margin> margins() const;
 
   private:

@@ -1,4 +1,4 @@
-// Vectors of the engine. Sums over x and y use Vec2, so that swapping the axes cannot change the rounding.
+// Vectors of the engine. Sums over x and y use Vec2, so that swapping the axes does not change the rounding.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,7 +35,7 @@ inline double length(const Vec2& a) {
     return std::sqrt(x * x + y * y) / scale;
 }
 
-/// Sums over three axes add x and y first, so that swapping these two does not change the rounding.
+/// Sums over three axes add x and y first, so that swapping these does not change the rounding.
 inline double dot3(const Vec3& a, const Vec3& b) {
     return (a.x() * b.x() + a.y() * b.y()) + a.z() * b.z();
 }
@@ -51,8 +51,8 @@ inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Distance of p from the segment between two different points. The cross product keeps it exact to rounding
-/// if p is close to the line.
+/// Distance of p from the segment between two distinct points. The cross product makes it exact to rounding
+/// for p close to the line.
 inline double distance_to_segment(const Vec2& p, const Vec2& from, const Vec2& to) {
     const Vec2 along = to - from;
     const double s = dot(p - from, along);

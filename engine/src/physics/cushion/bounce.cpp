@@ -12,9 +12,9 @@ namespace {
 
 // [-] Most impacts of one contact in one bounce.
 constexpr int kMostImpacts = 200;
-// [of the energy] What rounding may add to it where two normals are nearly opposite; it is taken off again.
+// [of the energy] Amount that rounding may add if two normals are nearly opposite; it is removed again.
 constexpr double kEnergyRounding = 1e-10;
-// [-] Least determinant for which two impulses are scaled: below, the normals are opposite.
+// [-] Smallest determinant for scaling two impulses; below it the normals are opposite.
 constexpr double kLeastDeterminant = 1e-6;
 
 // [-] Below this determinant two normals are nearly opposite: they enclose less than 18 degrees, or more than
@@ -25,7 +25,6 @@ double closing(const NoseTouch& touch, const Velocities& m) {
     return -dot(touch.normal, planar(m.v));
 }
 
-/// A ball and all that touches it.
 class Bounce {
   public:
     Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches)
@@ -37,9 +36,9 @@ class Bounce {
     }
 
   private:
-    // After an impact with a high nose and a low restitution, a ball may still approach it (han_2005: e_c <
-    // 1/c^2 - 1). The next impact is at the same instant, so a bounce is a sequence of impacts, until the
-    // closing speed is within rounding.
+    // After an impact with a high nose and a low restitution, a ball may still approach the nose (han_2005:
+    // e_c < 1/c^2 - 1). The next impact is at the same instant, so a bounce is a sequence of impacts, until
+    // the closing speed is within rounding.
     bool alone(const NoseTouch& touch, Velocities& m) const {
         const CushionContact nose = cushion_contact(balls_, size_, touch.height, touch.normal, m.v, m.w);
         const double noise = closing_noise(size_.R, m);
@@ -47,7 +46,8 @@ class Bounce {
             if (!touch.model->resolve(nose, touch.normal, m.v, m.w)) return false;
             if (!(closing(touch, m) > noise)) return true;
         }
-        // A nose near the top of the ball takes a small share of the speed in each impact: the limit is 0.
+        // A nose near the top of the ball removes a small fraction of the speed in each impact: the limit is
+        // 0.
         const Vec2 stopped = planar(m.v) + closing(touch, m) * touch.normal;
         m.v = Vec3(stopped.x(), stopped.y(), m.v.z());
         return true;
@@ -59,13 +59,14 @@ class Bounce {
         const NoseTouch &first = touches_[0], &second = touches_[1];
         if (!alone(first, one) || !alone(second, two)) return false;
         const Velocities d1{one.v - m.v, one.w - m.w}, d2{two.v - m.v, two.w - m.w};
-        // The change of each closing speed by each impulse of size 1.
+        // Change of each closing speed by each impulse of size 1.
         const double a11 = -closing(first, d1), a12 = -closing(first, d2);
         const double a21 = -closing(second, d1), a22 = -closing(second, d2);
         const double determinant = a11 * a22 - a12 * a21;
         if (!(determinant > kLeastDeterminant * a11 * a22)) return false;
         double share1 = a22 * (a11 - a12) / determinant, share2 = a11 * (a22 - a21) / determinant;
-        // A negative one: the impulse of the other makes the ball leave this part faster than its own would.
+        // A negative share: the other part's impulse makes the ball leave this part faster than its own
+        // would.
         if (!(share1 > 0.0) || !(share2 > 0.0)) {
             m = share1 > 0.0 ? one : two;
             return true;
@@ -74,8 +75,7 @@ class Bounce {
             return Velocities{m.v + (share1 * d1.v + share2 * d2.v), m.w + (share1 * d1.w + share2 * d2.w)};
         };
         Velocities after = moved();
-        // The determinant of normals that are nearly opposite has lost its digits, and the speeds at which
-        // the ball leaves give them back.
+        // The determinant of nearly opposite normals has lost its digits; the separation speeds recover them.
         if (determinant < kOpposite * a11 * a22) {
             const double left1 = closing(first, one) - closing(first, after),
                          left2 = closing(second, two) - closing(second, after);
@@ -83,7 +83,7 @@ class Bounce {
             share2 += (a21 * left1 - a11 * left2) / determinant;
             after = moved();
         }
-        // Friction that its own impulse would have ended may turn the slip round.
+        // Friction that its own impulse would have ended may reverse the slip.
         const double before = kinetic_energy(m.v, m.w, size_.R),
                      now = kinetic_energy(after.v, after.w, size_.R);
         const double slack = determinant < kOpposite * a11 * a22 ? kEnergyRounding : 1e-14;
@@ -122,8 +122,8 @@ class Bounce {
     const std::span<const NoseTouch> touches_;
 };
 
-/// [m/s] Upward speed of a ball that lay on the cloth when it met a nose: the result of (A6), or the share
-/// e_h of it if that points down. 0 if that is below bounce_end().
+/// [m/s] Upward speed of a ball on the cloth after it hits a nose: the result of (A6), or e_h times its
+/// magnitude if it points down. 0 if that is below bounce_end().
 double hop_speed(const BallParams& balls, double R, double gravity, const NoseTouch& touch, Velocities ball) {
     const double up = R - touch.height, reach = nose_reach(R, touch.height, 0.0);
     const Vec3 n(R / reach * touch.normal.x(), R / reach * touch.normal.y(), up / reach);
@@ -141,8 +141,8 @@ bool bounce(const BallParams& balls, const BallSize& size, std::span<const NoseT
     ball.v.z() = 0.0;
     const NoseTouch& first = touches.front();
     if (!hops || balls.e_h == 0.0 || first.model->grip == nullptr) return true;
-    // A planar model may keep more speed than the law in space that throws the ball up: the hop gets at most
-    // the energy that was lost.
+    // A planar model may keep more speed than the law in space that throws the ball up; the hop gets at most
+    // the lost energy.
     const double lost = kinetic_energy(came.v, came.w, size.R) - kinetic_energy(ball.v, ball.w, size.R);
     ball.v.z() = std::min(hop_speed(balls, size.R, *hops, first, came), std::sqrt(std::max(0.0, 2.0 * lost)));
     return true;

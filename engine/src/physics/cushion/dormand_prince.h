@@ -3,8 +3,8 @@
 
 namespace carom::detail {
 
-/// A coefficient of the tableau. h is multiplied first and divided afterwards: the bits of the results depend
-/// on that order.
+/// A coefficient of the tableau. h is multiplied first and divided afterwards: this order determines the bits
+/// of the results.
 struct Fraction {
     double numerator, denominator;
 };

@@ -21,13 +21,13 @@ bool cushion_han_2005(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3
     const double S_y = -v_Y - R * w_Z * c + R * w_X * s;
     const double slip = std::sqrt(S_x * S_x + S_y * S_y);
     const double N = (1.0 + p.e_c) * v_X * c;
-    // Sticks (2/7 of the slip) or slides (f N).
+    // Stick (2/7 of the slip) or slip (f N).
     const double k = slip > 0.0 ? std::min(2.0 / 7.0, p.f_c * N / slip) : 0.0;
     const double P_x = k * S_x, P_y = k * S_y;
     const double P_X = -P_x * s - N * c, P_Z = P_x * c - N * s;
     const double turn = 2.5 / R;
     const double dw_X = -turn * P_y * s, dw_Y = turn * (P_X * s - P_Z * c), dw_Z = turn * P_y * c;
-    // Changes are added, so that nothing else is rounded: without friction, at ball height, the bits are
+    // Changes are added, so that nothing else is rounded: without friction, at ball height, the bits equal
     // those of the model smooth.
     v = Vec3(v.x() + (P_X * X.x() + P_y * Y.x()), v.y() + (P_X * X.y() + P_y * Y.y()), 0.0);
     w = Vec3(w.x() + (dw_X * X.x() + dw_Y * Y.x()), w.y() + (dw_X * X.y() + dw_Y * Y.y()), w.z() + dw_Z);

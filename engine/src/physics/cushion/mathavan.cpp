@@ -10,13 +10,13 @@
 //   dv_y = -(c - s q_y + p_y)    da_y = -(5/2) (s q_x - p_x)     C = (v_x - a_y, v_y + a_x)
 //                                da_z =  (5/2) c q_x
 // A slip gives q = f I/|I| and p = mu_s N C/|C|. If a slip vanishes, the contact sticks if static friction
-// can hold it, which is the limit of ever smaller explicit Euler steps. Otherwise it continues to slip in the
+// can hold it (the limit of ever smaller explicit Euler steps). Otherwise it continues to slip in the
 // direction in which it is driven. The two contacts never stick at the same time, because that would stop the
 // ball.
 //
-// The independent variable is the decrease of v_y, from the approach speed (1, all velocities are relative to
+// The independent variable is the decrease of v_y, from the approach speed (1; all velocities are relative to
 // it) to 0 and beyond, until the work of restitution is e^2 times that of compression. The method is Dormand
-// and Prince 5(4) with the step length controlled by the last error. Steps end where a slip vanishes or a
+// and Prince 5(4), with the step length controlled by the last error. Steps end where a slip vanishes or a
 // stuck contact breaks away.
 #include <algorithm>
 #include <cmath>
@@ -30,16 +30,16 @@ namespace detail {
 namespace {
 
 // [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about
-// as large, and far below the default tolerance of a ball-ball impact.
+// the same, far below the default tolerance of a ball-ball impact.
 constexpr double kCushionTolerance = 1e-7;
 // [of the approach speed] A nose that can stick is treated as sticking below this slip. The error is of
 // second order (docs/reference/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
-// [of the approach speed] A nose that has ceased to stick slips by less than this for a while. Its direction
-// then follows the drive without delay, which makes the equations stiff, so it is set to that of the drive.
-// The error is of second order: about the square root of this constant times its square.
+// [of the approach speed] A nose that has stopped sticking slips by less than this for a while. Its slip
+// direction then follows the drive without delay, which makes the equations stiff, so it is set to the
+// drive's direction. The error is of second order: about the square root of this constant times its square.
 constexpr double kCushionCreep = 1e-4;
-constexpr int kCushionSteps = 5000;  // [-] limit of steps; an impact takes 3 to 300
+constexpr int kCushionSteps = 5000;  // [-] limit of steps; an impact needs 3 to 300
 
 using State = MathavanState;
 using Forces = MathavanForces;
@@ -57,7 +57,7 @@ constexpr double kLetGo = 1e-9;
 // squared turn below which the iteration for a direction has converged
 constexpr double kTurned = 1e-26;
 constexpr int kTurns = 40;       // largest number of iterations
-constexpr int kLateSteps = 100;  // after this many, a slip counts as gone earlier
+constexpr int kLateSteps = 100;  // after this many, larger slips count as zero
 
 class Impact {
   public:
@@ -106,7 +106,7 @@ class Impact {
     }
 
     // Direction of a nose that static friction no longer holds: the drive minus the friction points along the
-    // slip. The iteration is a contraction, because friction acts nearly alike in all directions.
+    // slip. The iteration is a contraction, because friction acts similarly in all directions.
     Vec2 driven_nose(const Vec2& cloth_direction) const {
         Vec2 direction = nose_direction_;
         turn(direction, laws_.nose_hold(laws_.mu * cloth_direction));
@@ -124,14 +124,14 @@ class Impact {
         return {k.v_x * scale, -1.0, k.a_x * scale, k.a_y * scale, k.a_z * scale, std::abs(y.v_y) * scale};
     }
 
-    // Static friction required, divided by the largest possible: above 1 the contact slips.
+    // Required static friction, divided by the largest possible: above 1 the contact slips.
     double nose_strain() const { return norm(laws_.nose_hold(laws_.mu * cloth_direction_)) / laws_.f; }
     double cloth_strain(const Forces& f) const { return norm(laws_.cloth_hold(f.q)) / (laws_.mu * f.load); }
 
     // Decides for both contacts whether they stick, and in which direction a vanished slip continues. A stuck
-    // contact breaks away a little early, because the steps end just before that point.
+    // contact breaks away slightly early, because the steps end just before that point.
     void update_stick_state() {
-        // A slip gives its own direction; a vanished one keeps its last (at first: none).
+        // A slip has its own direction; a vanished one keeps its last (at first: none).
         const Vec2 nose = laws_.nose_slip(y_), cloth = laws_.cloth_slip(y_);
         const double nose_size = norm(nose), cloth_size = norm(cloth);
         const bool nose_gone = is_zero_slip(nose_size), cloth_gone = no_cloth_slip(cloth_size);
@@ -147,7 +147,7 @@ class Impact {
             const Forces f = forces(nose_direction_, cloth_direction_);
             cloth_stuck_ = cloth_strain(f) <= (cloth_was_stuck ? 1.0 - 2.0 * kLetGo : 1.0);
         }
-        // The same as in driven_nose(), for both.
+        // As in driven_nose(), for both contacts.
         const bool nose_turns = nose_gone && !nose_stuck_, cloth_turns = cloth_gone && !cloth_stuck_;
         for (int i = 0; i < kTurns && (nose_turns || cloth_turns); ++i) {
             const Forces f = forces(nose_direction_, cloth_direction_);
@@ -166,22 +166,22 @@ class Impact {
         if (nose_stuck_ != was_stuck || cloth_stuck_ != cloth_was_stuck) step_ = kFirstStep;
     }
 
-    // Slip below which a nose that can stick does so. If that takes long, or switches the cloth's load on or
-    // off, end_slip() is of first order only, and the slip must be smaller.
+    // Slip below which a nose sticks if it can. If that takes long, or switches the cloth's load on or off,
+    // end_slip() is of first order only, and the slip must be smaller.
     double ends_below(double nose_y, double cloth, double strain) const {
         const bool clamped = !(laws_.s + laws_.c * laws_.f * nose_y > 0.0);
         const bool soon = strain < 0.9 && clamped == nose_hold_clamped();
         return soon ? std::max(late_stick(), kCushionStick * std::min(1.0, cloth)) : late_stick();
     }
 
-    // If friction and drive nearly balance, a slip can linger. The longer the impact takes, the larger the
+    // If friction and drive nearly balance, a slip can linger. The longer the impact lasts, the larger the
     // slip that counts as none, so that every impact ends.
     double late_stick() const {
         return steps_ < kLateSteps ? kLateStick : kLateStick * (1 << std::min(10, steps_ / kLateSteps));
     }
 
-    // Removes the remaining slip at a nose that sticks from now on, by the friction that would do it. To
-    // first order it does not matter when, because a stuck nose takes up the drive in between.
+    // Removes the remaining slip of a nose that sticks from now on, by the friction that would end it. To
+    // first order the time is irrelevant, because a stuck nose compensates the drive in between.
     void end_slip(const Vec2& slip) {
         const Vec2 mu = nose_hold_clamped() ? Vec2(0.0, 0.0) : Vec2(laws_.mu * laws_.c * cloth_direction_);
         const double q_y = slip.y() / (laws_.s * laws_.s + 2.5 + (2.5 - laws_.s) * mu.y());
@@ -217,7 +217,7 @@ class Impact {
         return (direction - was).squaredNorm();
     }
 
-    // Largest decrease of v_y before a slip vanishes; a little less, so that the slip still has a direction
+    // Largest decrease of v_y before a slip vanishes, slightly reduced so that the slip still has a direction
     // at the end.
     double until_gone(const Vec2& slip, const Vec2& rate) const {
         const double size = norm(slip);
@@ -266,7 +266,7 @@ class Impact {
                 continue;
             }
             const bool ends = most > 0.0 && h == most;
-            // Near a vanishing slip the steps shrink with it.
+            // Steps shrink with a vanishing slip.
             double shrinking = 1.0;
             if (!nose_stuck_ && laws_.f > 0.0) shrinking = shrunk(laws_.nose_slip(y_), laws_.nose_slip(next));
             if (!cloth_stuck_ && laws_.mu > 0.0)
@@ -293,7 +293,7 @@ class Impact {
         return size > zero_slip() ? std::min(1.0, norm(after) / size) : 1.0;
     }
 
-    // Factor for the step length if the error is `x` times the allowed one: x^(-1/5) with some margin, from
+    // Factor for the step length if the error is `x` times the allowed one: x^(-1/5) with a margin, from
     // square roots (no libm), within [1/5, 4].
     static double scaled(double x) {
         const double root = std::sqrt(std::sqrt(x));  // x^(1/4), and x^(1/5) = x^(1/4) x^(-1/20)
@@ -323,7 +323,7 @@ class Impact {
     double noise_ = 0.0;
     double step_ = kFirstStep;
     int steps_ = 0;
-    State slope_{};  // at y_, if it is known
+    State slope_{};  // at y_, if computed
     bool known_ = false;
     bool restoring_ = false;
     bool nose_stuck_ = false, cloth_stuck_ = false, nose_creeps_ = false;
@@ -358,9 +358,8 @@ bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3&
 bool mathavan_2010_ends(const CushionContact& p) {
     const double s = (p.height - p.R) / p.R, c = std::sqrt((1.0 - s) * (1.0 + s)), f = p.f_c;
     if (!(f * std::abs(s) + p.mu_s * (std::abs(s) + f * c) < c)) return false;
-    // The friction required of the cloth to hold the ball, minus the largest possible, is linear in the
-    // nose's friction q_y wherever there is a load N = s + c q_y, so it suffices to test the ends of that
-    // interval.
+    // The cloth friction required to hold the ball, minus the largest possible, is linear in the nose's
+    // friction q_y wherever there is a load N = s + c q_y, so testing the ends of that interval suffices.
     const auto slips = [&](double q_y) { return (c + (2.5 - s) * q_y) / 3.5 > p.mu_s * (s + c * q_y); };
     const double low = std::max(-f, -s / c);
     return low > f || (slips(low) && slips(f));

@@ -71,7 +71,7 @@ struct MathavanLaws {
     }
 };
 
-/// The model mathavan_2010 with another tolerance, relative to the approach speed and per step.
+/// The model mathavan_2010 with a different tolerance, relative to the approach speed and per step.
 bool cushion_mathavan_2010_to(const CushionContact& contact, const Vec2& normal, Vec3& v, Vec3& w,
                               double tolerance);
 

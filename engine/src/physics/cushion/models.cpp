@@ -1,5 +1,5 @@
-// The list of cushion models, each in a file of this folder, and the laws of friction and restitution that
-// they share.
+// The list of cushion models, each in its own file of this folder, and their shared laws of friction and
+// restitution.
 #include "carom/engine/cushion.h"
 
 #include <algorithm>

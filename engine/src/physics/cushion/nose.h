@@ -7,12 +7,11 @@
 
 namespace carom::detail {
 
-/// Speed of the ball towards the cushion.
 inline double approach_speed(const Vec2& normal, const Vec3& v) {
     return -(v.x() * normal.x() + v.y() * normal.y());
 }
 
-/// The inclined contact: its normal points from the nose to the centre of the ball.
+/// The inclined contact: its normal points from the nose to the ball's centre.
 struct NoseContact {
     Vec3 n;          ///< unit
     double u_n;      ///< normal contact velocity, < 0

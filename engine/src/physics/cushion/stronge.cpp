@@ -16,11 +16,11 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [-] Grid that brackets the end of sticking: a thirtieth of the restitution, far finer than the oscillation
-// of the tangential spring.
+// [-] Grid that brackets the end of sticking: about a thirtieth of the restitution, far finer than the
+// oscillation of the tangential spring.
 constexpr int kStrongeGrid = 32;
 
-constexpr double kOmega = 1.8;  // tangential over normal frequency; pooltool 0.6.0's value
+constexpr double kOmega = 1.8;  // tangential over normal frequency; value of pooltool 0.6.0
 constexpr double kBeta = 3.5;
 constexpr double kEta = kBeta / (kOmega * kOmega);
 constexpr double kCompression = 1.5707963267948966;  // t_c
@@ -44,8 +44,8 @@ class NormalForce {
 // The oscillation of ball and spring while the nose sticks, from time t0.
 struct Swing {
     double t0;
-    double u0;  // tangential velocity then
-    double s0;  // deflection of the spring then
+    double u0;  // tangential velocity at t0
+    double s0;  // deflection of the spring at t0
     double velocity(double t) const {
         const SinCos x = sin_cos(kOmega * (t - t0));
         return u0 * x.cos - kOmega * s0 * x.sin;
@@ -56,10 +56,10 @@ struct Swing {
     }
 };
 
-// When the spring's force reaches f times the normal force. In compression, h = f F - |s| / eta obeys h'' +
-// omega^2 h = f F (omega^2 - 1) > 0 and starts from h = h' = 0 (or h' > 0); since omega (t_c - t0) < pi, h >
-// 0, so the nose breaks away in restitution only. There the first sign change is bracketed on a grid and
-// bisected.
+// Time at which the spring's force reaches f times the normal force. In compression, h = f F - |s| / eta
+// obeys h'' + omega^2 h = f F (omega^2 - 1) > 0 and starts from h = h' = 0 (or h' > 0);
+// since omega (t_c - t0) < pi, h > 0, so the nose breaks away only in restitution. There the first sign
+// change is bracketed on a grid and bisected.
 double release_time(const Swing& swing, const NormalForce& normal, double f) {
     const auto margin = [&](double t) { return f * normal.force(t) - std::abs(swing.deflection(t)) / kEta; };
     const double from = std::max(swing.t0, kCompression), end = normal.end();
@@ -72,7 +72,7 @@ double release_time(const Swing& swing, const NormalForce& normal, double f) {
         }
         low = t;
     }
-    // Either there is a sign change, or the force vanishes with the normal force at the end of the contact.
+    // Either the sign changes, or the force vanishes with the normal force at the end of the contact.
     for (int k = 0; k < 60; ++k) {
         const double middle = low + 0.5 * (high - low);
         if (!(middle > low && middle < high)) break;
@@ -81,14 +81,14 @@ double release_time(const Swing& swing, const NormalForce& normal, double f) {
     return low;
 }
 
-// Tangential velocity after the impact; r: before it, both over the normal approach speed.
+// Tangential velocity after the impact; r: before it; both over the normal approach speed.
 double velocity_after(double r, double e, double f) {
     const NormalForce normal(e);
     const double total = 1.0 + e;
     Swing swing{0.0, r, 0.0};
     if (!(r < f * kEta)) {  // slips at first; the slip of the nose itself is u - eta f F'
         const double excess = r / f - kBeta;
-        double cosine;  // of the phase at which it ends
+        double cosine;  // of the phase at the end of the slip
         if (excess <= 0.0) {
             cosine = excess / (kEta - kBeta);
             swing.t0 = arc_cos(std::min(cosine, 1.0));

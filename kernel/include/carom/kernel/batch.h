@@ -1,4 +1,4 @@
-// Many independent impacts at once, as structures of arrays: the types that all batch kernels share.
+// Many independent impacts, as structures of arrays: the types that all batch kernels share.
 //
 // Lane i of a batch is one impact: element i of every array. Arrays need no alignment, and a batch may have
 // any length, including 0. Results must not overlap inputs. Raw pointers, because files built for one
@@ -18,8 +18,7 @@ struct BallLanes {
     const double* w[3];  ///< angular velocity [rad/s]
 };
 
-/// Input: the parameters of every impact, as in ImpactParams. The sign of the cloth slip is common to the
-/// batch.
+/// Input: the parameters of every impact, as in ImpactParams. The whole batch has one sign of the cloth slip.
 struct ParamLanes {
     const double* R;
     const double* m;
@@ -39,7 +38,6 @@ struct VelocityLanes {
     double* w[3];
 };
 
-/// The impacts of one call.
 struct ImpactBatch {
     std::int64_t count;  ///< lanes; <= 0: none
     BallLanes ball1, ball2;

@@ -10,8 +10,8 @@ void collide_elastic(const Ball& ball1, const Ball& ball2, const ImpactParams& p
                      ImpactResult& result) noexcept;
 
 /// One impulse with kinematic restitution e_b and Coulomb friction mu_b, limited by the impulse that ends the
-/// slip (2/7 of the slip in one ball pair: J_t <= m |slip| / 7). Ignores the cloth. Source: D. Alciatore,
-/// Technical Proof A.14, "The effects of cut angle, speed, and spin on object ball throw".
+/// slip (J_t <= m |slip| / 7). Ignores the cloth. Source: D. Alciatore, Technical Proof A.14, "The effects of
+/// cut angle, speed, and spin on object ball throw".
 void collide_inelastic(const Ball& ball1, const Ball& ball2, const ImpactParams& params,
                        ImpactResult& result) noexcept;
 

@@ -21,7 +21,6 @@ enum class ClothSlip : unsigned char {
     kAsPublished,  ///< u = (v_x + R w_y, v_y - R w_x): the published code; adds energy; for parity only
 };
 
-/// Parameters of one impact.
 struct ImpactParams {
     double R;      ///< radius of ball 1 [m], > 0
     double m;      ///< mass of ball 1 [kg], > 0
@@ -48,7 +47,7 @@ enum class ImpactStatus : unsigned char {
 /// The fault, in words; "" for kOk and kNotApproaching.
 const char* describe(ImpactStatus status) noexcept;
 
-/// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel and if nothing was
+/// How an impact was solved to a tolerance (tolerance.h); kNone from every other kernel, or if nothing was
 /// computed.
 enum class ToleranceMethod : unsigned char {
     kNone,

@@ -15,8 +15,8 @@ namespace carom::kernel {
 /// N). The result has an error of up to about (1 + e_b) v_n / N and is a step function of its input; below
 /// about N = 40 the integration gains energy by construction (hard case H24).
 ///
-/// @param n  substeps N >= 1; fewer is kBadParameter. The number of steps is limited: the status of an impact
-/// that has not ended after kMarchStepLimit * n steps is kStepLimit.
+/// @param n  substeps N; less than 1 is kBadParameter. An impact that has not ended after kMarchStepLimit * n
+/// steps has the status kStepLimit.
 using MarchFunction = void (*)(const Ball& ball1, const Ball& ball2, const ImpactParams& params, int n,
                                ImpactResult& result) noexcept;
 
@@ -25,10 +25,10 @@ MarchFunction march_function(Isa isa) noexcept;
 
 /// The same integration without visiting every step: the Euler sequence is summed exactly over blocks of up
 /// to 1024 steps. Status and step count are those of march_function(). No velocity (including R w) differs by
-/// more than kSummedDifference of the approach speed plus kSummedRounding * n of the largest input speed,
-/// which is the rounding that the published integration may have. If rounding decides (ties of the last step,
-/// chatter near stick), and for few substeps, the result is that of the published integration, bit for bit.
-/// All instruction sets give the same bits.
+/// more than kSummedDifference of the approach speed plus kSummedRounding * n of the largest input speed, the
+/// possible rounding of the published integration. If rounding decides (ties of the last step, chatter near
+/// stick), and for few substeps, the result is that of the published integration, bit for bit. All
+/// instruction sets give the same bits.
 MarchFunction summed_march_function(Isa isa) noexcept;
 
 inline constexpr double kSummedDifference = 1e-10, kSummedRounding = 0x1p-53;

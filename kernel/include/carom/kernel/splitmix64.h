@@ -1,5 +1,4 @@
-// The random generator of everything that is drawn. It is implemented here so that a seed gives the same
-// numbers on every system.
+// The random generator of all draws. Implemented here so that a seed gives the same numbers on every system.
 //
 // SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
 // constants of the variant mix13.
