@@ -68,8 +68,7 @@ TEST(HardRoots, CatchUp) {
         const Record record = run_verified(scene);
         const Event* hit = first(record, EventType::kBallBall);
         const double relative = v - 1.0;
-        if (dv < 1e-14)
-            continue;  // the closing speed is 5 ulp of the speeds; either result is right
+        if (dv < 1e-14) continue;  // the closing speed is 5 ulp of the speeds; either result is right
         ASSERT_NE(hit, nullptr);
         const double error = std::abs(hit->time * relative / gap - 1.0);
         report("H11 relative error of the time, in ulp of v / dv", error * relative / 2.2e-16);
