@@ -1,4 +1,4 @@
-// Every scene of the repository, and seeded breaks, to rest under the checker.
+// Every scene of the repository, and seeded breaks, run to rest under the checker.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST(Scenes, RunToRestUnderTheChecker) {
     }
 }
 
-TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
+TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryRun) {
     for (const std::string& file : scene_files()) {
         SCOPED_TRACE(file);
         const Scene scene = read_scene(file);
@@ -52,7 +52,7 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
     }
 }
 
-// Breaks of random speed, line and gap: none reaches the cap, none breaks a law.
+// Breaks of random speed, line and gap: none reaches the event limit or breaks a law.
 TEST(Scenes, SeededBreaks) {
     reference::Generator rng(20261121);
     std::size_t most = 0;
