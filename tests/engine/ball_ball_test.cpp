@@ -35,7 +35,7 @@ bool same(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
 }
 
 // A model's result depends on exactly the parameters that it declares.
-TEST(BallBall, ModelsReadWhatTheySay) {
+TEST(BallBall, ResultsDependOnExactlyTheDeclaredParameters) {
     for (const BallBallModelInfo* model : kModels) {
         const BallBallModelInfo& info = *model;
         EXPECT_EQ(ball_ball_model(info.name), model);
