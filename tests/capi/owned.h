@@ -1,4 +1,4 @@
-// Scenes and records of the C interface that free themselves, and the calls that make them.
+// Owning pointers for scenes and records of the C interface, and functions that create them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Records made by hand, so that drawing is tested without the rest of the engine.
+// Hand-made records, to test drawing without the rest of the engine.
 #pragma once
 
 #include <unistd.h>
