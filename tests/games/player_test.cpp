@@ -75,7 +75,7 @@ TEST(Player, StraightIn) {
 }
 
 TEST(Player, PlaysACombinationIfThatIsAll) {
-    // The only ball that may be hit blocks a stripe in the corner's jaws: in nine-ball, the 1 drives the 9.
+    // The 9 hangs in the corner behind the 1, the only ball that may be hit first: the 1 drives it in.
     const Advice best =
         ask(turn(Game::kNineBall), table({{"cue", {0.6, 0.6}}, {"1", {0.25, 0.25}}, {"9", {0.1, 0.1}}}))
             .front();

@@ -34,7 +34,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     return Stage(rack_to_redraw(), options);
 }
 
-// Draws from scratch: reading into a foreign image invalidates both targets.
+// Draws from scratch: a first picture from another camera makes both targets worthless.
 Image whole_picture(Renderer& renderer, const DrawList& list) {
     DrawList elsewhere = list;
     elsewhere.table_samples = 1;
