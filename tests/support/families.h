@@ -1,4 +1,4 @@
-// A table of families of seeded scenes: one row each, with its name.
+// A table of seeded scene families: one row each, with its name.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::span<const char* const> names_of() {
     return names;
 }
 
-/// The row of a name, or nullptr.
+/// The row with this name, or nullptr.
 template <class Row, std::size_t kCount>
 const Row* row_of(const Row (&rows)[kCount], std::string_view name) {
     const Row* row = std::find_if(rows, rows + kCount, [&](const Row& r) { return r.name == name; });

@@ -27,7 +27,7 @@ struct ValidationRow {
     double deviation() const;
     bool within() const;
     /// Whether the claim holds: within; or outside, and within a quarter of the uncertainty of the claimed
-    /// value; or, of many shots, within three standard deviations of the claimed value.
+    /// value; or, for many shots, within three standard deviations of the claimed value.
     bool as_claimed() const;
 };
 
