@@ -1,12 +1,13 @@
-// Beyond the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where
-// (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the
-// speed. They are computed
+// Beyond the paper: one impact, every step executed, its reduced state in one register: S = [x, a, |z|, b],
+// where (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit
+// the speed. They are computed
 //
-//   kExact by square root and division
-//   kSeed by linear extrapolation, corrected by a series before they are used
-//   kOneAhead by extrapolation from the last five; they are used at once, and the step is corrected late,
-//               by terms that are linear in the error e
-//   kTwoAhead in the same way from values one step older, so that the extrapolation, too, is off the
+//   kExact      by square root and division
+//   kSeed       by linear extrapolation, corrected by a series before use
+//   kOneAhead   by extrapolation from the last five, used at once; the step is corrected later by terms
+//   linear
+//               in the error e
+//   kTwoAhead   like kOneAhead from values one step older, which also removes the extrapolation from the
 //               critical path
 //
 // A step whose e is too large for its form uses the series, or square root and division (at the start, near
