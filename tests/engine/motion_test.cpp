@@ -17,7 +17,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance, const std::stri
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], tolerance) << what << ", component " << k;
 }
 
-TEST(Motion, StunGoesOverToRolling) {  // T1
+TEST(Motion, StunTurnsIntoRolling) {  // T1
     for (const double mu : {0.2, 0.212}) {
         Scene scene = empty_scene();
         scene.balls.mu_s = mu;
