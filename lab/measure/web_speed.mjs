@@ -2,8 +2,8 @@
 // Compares the speed of shots in WebAssembly and in the native engine: batches of the same shots on one
 // thread, in turn, in the Python module, which calls the engine once per batch, in node, and in headless
 // Chromium. Prints the fewest microseconds of the thread's CPU time per shot, and ratios; the last column is
-// simulate() in node, which a page calls for each change. CAROM_NPM names another package, such as one without
-// SIMD.
+// simulate() in node, which a page calls for each change. CAROM_NPM names another package, such as one
+// without SIMD.
 //
 //   lab/measure/web_speed.mjs [ROUNDS=15]     needs tools/web, build/release/python, chromium
 import {spawn} from "node:child_process";
