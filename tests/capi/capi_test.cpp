@@ -344,7 +344,7 @@ TEST(CApi, TheDefaultCueMatchesSceneFilesAndCpp) {
 }
 
 // Without a cue, whatever the defaults, the ball stays.
-TEST(CApi, WithoutACueNothingIsStruck) {
+TEST(CApi, WithoutACueTheBallStays) {
     Scene scene = parse_scene("[[ball]]\n", "x");
     EXPECT_FALSE(scene.cue);
     scene.cue = Cue{};

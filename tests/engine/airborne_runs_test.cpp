@@ -52,7 +52,7 @@ TEST(Airborne, ADroppedBallBouncesUntilItRests) {
     EXPECT_EQ(r.state_at(0, 1.0).position, Vec3(0.0, 0.0, scene.balls.R));
 }
 
-TEST(Airborne, BouncesWithoutLossRepeatToTheBit) {
+TEST(Airborne, LosslessBouncesRepeatBitForBit) {
     Scene scene = empty_scene();
     scene.balls.e_t = 1.0;
     scene.stop.events = 100000;

@@ -309,7 +309,7 @@ TEST(Effects, LateNeedIsCaught) {
 
 // Two moving balls that cannot meet in time each follow their own segments. If b's first segment lasted, it
 // would pass through a.
-TEST(Effects, VerifyKnowsThatSegmentsEnd) {
+TEST(Effects, VerifyFollowsSegmentsOnlyToTheirEnds) {
     Scene scene = empty_scene();
     scene.table = {};
     scene.balls.mu_s = 0.2;

@@ -12,7 +12,7 @@
 namespace carom::test {
 namespace {
 
-/// @param asks a row's demands beyond the laws
+/// @param asks  a row's demands beyond the laws
 void expect_laws(const Scene& scene, const toml::table& asks) {
     const Plan plan = plan_of(scene);
     const Record record = simulate(plan);

@@ -63,7 +63,7 @@ double across(double speed) {
     return climbs(speed, 0.5 * kHoleG * t * t / kHoleR, kHoleR, kHoleG).value_or(0.0);
 }
 
-TEST(Pocket, AFastBallComesBackOverTheEdge) {
+TEST(Pocket, AFastBallReturnsOverTheEdge) {
     const Record r = run(hole(3.0));
     ASSERT_EQ(count(r, EventType::kBallEdge), 2);
     EXPECT_EQ(r.tracks[0].pocket, -1);

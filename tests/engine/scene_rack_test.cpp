@@ -67,7 +67,7 @@ TEST(EightBall, TouchesExactlyAndMirrorsBitForBit) {
     }
 }
 
-TEST(EightBall, StandsAtTheFootSpotWithRowsUpTheTable) {
+TEST(EightBall, IsOnTheFootSpotWithRowsUpTheTable) {
     const Scene s = rack("gap = 1e-4\n");
     const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
     int at_spot = 0;
@@ -174,7 +174,7 @@ TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
     }
 }
 
-TEST(Racks, RackedBallsComeAfterTheWrittenOnes) {
+TEST(Racks, RackedBallsFollowTheWrittenOnes) {
     const Scene s = parse_scene("[rack]\ngame = \"nine_ball\"\n[[ball]]\nid = \"cue\"\n", "s.toml");
     ASSERT_EQ(s.ball.size(), 10u);
     EXPECT_EQ(s.ball[0].id, "cue");
@@ -195,7 +195,7 @@ Vec2 of(const carom::Scene& scene, const std::string& id) {
 }
 
 // WPBSA rules, section 1: the spots; the reds behind the pink without touching it.
-TEST(SnookerRack, StandsOnItsSpots) {
+TEST(SnookerRack, IsOnItsSpots) {
     const carom::Scene s = carom::parse_scene(
         "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\ngap = "
         "1e-3\n",

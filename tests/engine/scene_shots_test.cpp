@@ -214,7 +214,7 @@ TEST(SceneShots, RaisedBreakArrivesInTheAir) {
     EXPECT_TRUE(is_up(r, 0, hit - 1e-3) || is_up(r, static_cast<int>(r.tracks.size()) - 1, hit - 1e-3));
 }
 
-TEST(SceneShots, SnookerBreakComesBackToBaulk) {
+TEST(SceneShots, SnookerBreakReturnsToBaulk) {
     const Record r = run("snooker_break");
     int cue = -1;
     for (std::size_t i = 0; i < r.tracks.size(); ++i)

@@ -174,7 +174,7 @@ TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
     EXPECT_EQ(outcome.events, kUsualEvents + 1);
 }
 
-TEST(Stop, RestComesBeforeTheTime) {
+TEST(Stop, RestEndsARunBeforeItsTimeLimit) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"p1", {0.5, 0.8}, 0.06, 0.1}};
     scene.stop.time = 1000.0;

@@ -75,7 +75,7 @@ TEST(Aim, TheGhostBallTouchesOnTheFarSideAtTheCutAngle) {
     EXPECT_NEAR(games::cut_angle_deg({1.0 - 0.44, 0.5}, ghost, {0.0, 1.0}), 45.0, 1e-13);
 }
 
-TEST(Aim, LinesIntoPocketsTouchNothing) {
+TEST(Aim, LinesIntoPocketsAreUnobstructed) {
     const Scene scene = pool_scene({0.3, 0.3}, {0.635, 1.27});
     const std::vector<PocketLine> lines = games::pocket_lines(scene, "1");
     ASSERT_EQ(lines.size(), 6u);

@@ -75,7 +75,7 @@ TEST(RuleOptions, SurviveANewRack) {
 }
 
 // The light cue ball of scenes/jump.toml passes over the eight and hits the one.
-TEST(RuleOptions, AJumpIsAFoulIfTheGameSaysSo) {
+TEST(RuleOptions, AJumpIsAFoulIfTheRulesForbidIt) {
     std::string text = read_file(std::string(CAROM_SOURCE_DIR) + "/scenes/jump.toml");
     for (const auto& [from, to] :
          {std::pair{"\"white\"", "\"cue\""}, {"\"red\"", "\"8\""}, {"\"yellow\"", "\"1\""}})

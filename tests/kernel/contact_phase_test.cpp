@@ -221,7 +221,7 @@ TEST(ContactPhase, NeverGainsEnergy) {
 
 // A contact lasts about 2.5 L/V. The phase ends after the last one, and ignores contacts beyond the
 // look-ahead.
-TEST(ContactPhase, StopsWhenNothingCloses) {
+TEST(ContactPhase, StopsWhenNoContactCloses) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;
     const auto three = [](double gap) {

@@ -113,7 +113,7 @@ long peak_memory_kb() {
 
 // Mesa's own memory differs by tens of megabytes between releases, so a sequence's memory is counted from
 // there.
-TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
+TEST(Break, A1080pSequenceUsesUnder240MegabytesBesidesTheDriver) {
 #ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";
 #endif

@@ -222,7 +222,7 @@ TEST_P(Frames, AnEncoderThatKeepsPiecesWritesTheSameFiles) {
     EXPECT_LE(least, in_parts ? 0.3 : 1.0);
 }
 
-TEST_P(Frames, AreAtMostHalfLargerThanThoseOfLibpng) {
+TEST_P(Frames, AreAtMostHalfLargerThanLibpngs) {
     const Stage stage = stage_of(GetParam());
     Renderer renderer;
     Image image;

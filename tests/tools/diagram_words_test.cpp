@@ -47,7 +47,7 @@ TEST(DiagramWords, StatePlacesAndRadiusInTheChosenUnits) {
     EXPECT_EQ(places_words(played_scene("eight_ball_break.toml"), Units::kMetric), "") << "too many";
 }
 
-TEST(DiagramWords, TakeTheTitleFromTheFirstComment) {
+TEST(DiagramWords, UseTheTitleInTheFirstComment) {
     EXPECT_EQ(scene_title("# Stop shot: straight in.\n[table]\n"), "Stop shot");
     EXPECT_EQ(scene_title("# On a table of 2.3 m, as in cafes. More.\n"), "On a table of 2.3 m, as in cafes");
     EXPECT_EQ(scene_title("# Two balls.\n"), "Two balls");

@@ -188,7 +188,7 @@ double constant_of(const std::string& name, const std::string& file) {
     return found ? std::stod(value.str(1)) : std::nan("");
 }
 
-/// The wrong figures of a page. @param run returns a command's output
+/// The wrong figures of a page. @param run  returns a command's output
 std::vector<std::string> figure_faults(const std::string& page,
                                        const std::function<std::string(const std::string&)>& run) {
     std::vector<std::string> faults;
