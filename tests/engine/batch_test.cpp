@@ -235,7 +235,6 @@ TEST(Batch, RandomScenesOfEveryKind) {
     }
 }
 
-// The plan detects a refused effect.
 TEST(Batch, ARefusedEffectIsAStatusWithAReason) {
     Scene scene = shipped("draw");
     scene.effects = {{"squirt", false, {}}};

@@ -136,7 +136,6 @@ TEST(ClusterInSpace, ABallOnThree) {
     EXPECT_GT(worst, 0.0);
 }
 
-// An airborne cue ball reaches a rack.
 TEST(ClusterInSpace, BreaksThroughTheAir) {
     Generator rng(82);
     for (const double gap : {0.0, 1e-4, 3e-4}) {

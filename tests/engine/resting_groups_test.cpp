@@ -170,7 +170,6 @@ TEST(Complementarity, RoundingDoesNotDecide) {
     }
 }
 
-// Redundant contacts share their load evenly.
 TEST(Complementarity, EqualContactsShareEvenly) {
     Complementarity problem;
     problem.resize(3);

@@ -66,7 +66,6 @@ static_assert(members<Table, 1>() == in_rows(kTableFields) + 4);  // the lists; 
 static_assert(members<PocketMeasures>() == in_rows(kPocketMeasureFields));
 static_assert(members<Measures, 1>() == in_rows(kMeasureFields) + 2);  // both kinds of pocket
 
-// A row is found by its key.
 TEST(Rows, KeysOfASectionDiffer) {
     const auto expect_distinct = [](const auto& fields) {
         for (const Files files : {Files::kScene, Files::kRecord}) {

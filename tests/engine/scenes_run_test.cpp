@@ -43,7 +43,6 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryRun) {
             if (!kernel::available(isa)) continue;
             EXPECT_EQ(simulate(make_plan(scene, isa)).hash(), hash) << kernel::name(isa);
         }
-        // Profiling changes no bit.
         SimulateOptions profiled;
         profiled.profile = true;
         const Record record = simulate(make_plan(scene, kernel::best_isa()), profiled);

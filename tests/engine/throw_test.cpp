@@ -93,7 +93,6 @@ TEST(Throw, NoSlipLimit) {
     EXPECT_NEAR(tangent, std::tan(20.0 * kDegree) / 7.0 * 2.0 / 1.9, 1e-12);
 }
 
-// The friction itself.
 TEST(Throw, FrictionFallsWithTheSlip) {
     BallParams p = pool_balls();
     EXPECT_EQ(p.ball_friction()(0.0), p.mu_b);

@@ -37,7 +37,6 @@ class Told {
     }
     Told& strike(const std::string& id) { return add(EventType::kCueStrike, at(id), -1); }
     Told& hit(const std::string& a, const std::string& b) { return add(EventType::kBallBall, at(a), at(b)); }
-    /// Two balls at the same instant.
     Told& hit_both(const std::string& a, const std::string& b, const std::string& c) {
         hit(a, b);
         record_.events.push_back(record_.events.back());
@@ -65,7 +64,6 @@ class Told {
         move(at(id), {-1.0, -1.0, 0.5}, MotionState::kOut);
         return *this;
     }
-    /// The ball comes to rest there.
     Told& rests(const std::string& id, double x, double y) {
         add(EventType::kRollStop, at(id), -1);
         move(at(id), {x, y, record_.balls.R}, MotionState::kStationary);

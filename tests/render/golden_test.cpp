@@ -217,7 +217,6 @@ TEST_P(Golden, OsmesaAndEglGiveTheSamePixels) {
     EXPECT_TRUE(render_test::same_pixels(osmesa, egl));
 }
 
-// The comparison must distinguish similar pictures.
 TEST(GoldenCompare, DetectsABallMovedByTwoPixels) {
     Picture picture = nine_foot_rack();
     const Image before = draw(picture, Backend::kOsmesa);

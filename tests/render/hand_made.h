@@ -60,7 +60,6 @@ inline bool same_pixels(const render::Image& a, const render::Image& b) {
     return a.size == b.size && a.rgbx == b.rgbx;
 }
 
-/// A temporary folder for one test.
 class ScratchFolder {
   public:
     explicit ScratchFolder(const std::string& name)

@@ -173,7 +173,6 @@ TEST(RedrawWork, OnlyMovedBallsAreDrawn) {
     boxes = {rack.balls[5].box};
     const std::vector<bool> all = inside(rack, boxes, size).balls;
     EXPECT_EQ(std::count(all.begin(), all.end(), true), 15);
-    // Another table redraws everything.
     DrawnPicture other = rack;
     other.table = std::make_shared<TableDrawing>();
     EXPECT_EQ(differing_boxes(rack, other, size), (std::vector<PixelBox>{{0, 0, 480, 270}}));

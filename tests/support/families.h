@@ -10,7 +10,6 @@
 
 namespace carom::test {
 
-/// The names of all rows.
 template <const auto& kRows>
 std::span<const char* const> names_of() {
     static const auto names = [] {

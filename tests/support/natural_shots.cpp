@@ -111,7 +111,6 @@ class Shot {
     Cue& cue() { return *scene_.cue; }
     Physics& physics() { return scene_.physics; }
     int balls() const { return static_cast<int>(scene_.ball.size()); }
-    /// Places the cue ball touching this ball.
     bool touch_with_cue(int ball) {
         const SinCos a = sin_cos(uniform(0.0, 2.0 * std::numbers::pi));
         return place("cue", planar(scene_.ball[static_cast<std::size_t>(ball)].position) +

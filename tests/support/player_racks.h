@@ -14,7 +14,6 @@
 
 namespace carom::test {
 
-/// One shot of a rack.
 struct RackShot {
     games::State before;
     Scene table;  ///< before the shot, without what the advice changes

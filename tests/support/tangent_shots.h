@@ -22,7 +22,6 @@ inline Scene scene_of(const std::string& name) {
     return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
 }
 
-/// The shot and its derivatives.
 struct Shot {
     Shot(const Scene& scene, const std::vector<std::string>& inputs)
         : plan(plan_of(scene)), record(simulate(plan)), tangents(plan, record, inputs) {}

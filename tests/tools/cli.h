@@ -23,7 +23,6 @@ inline ProcessResult run_built(const char* program, std::vector<std::string> arg
     return run_process(arguments, options);
 }
 
-/// Runs the built carom.
 inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
     return run_built(CAROM_PROGRAM, std::move(arguments), std::move(options));
 }
@@ -76,7 +75,6 @@ position = [0.6, 1.06]
 time = 1
 )";
 
-/// The scenes shipped with carom.
 inline std::vector<std::string> shipped_scenes() {
     std::vector<std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))

@@ -62,7 +62,6 @@ class Folder {
         return carom(words_of(line), options);
     }
 
-    /// The names and contents of all files.
     std::string contents() const {
         std::string all;
         for (const std::string& file : folder_.names()) all += file + "\n";

@@ -222,7 +222,6 @@ TEST(CliSweep, ExistingPartsAreChecked) {
     signed_again(rows.substr(0, rows.size() - 1) + "9\n" + said);
     refused("its last row is not what this program computes; remove it to start again");
 
-    // A removed part is made again.
     fs::remove(part);
     EXPECT_EQ(interrupted_parts(folder, command), parts);
     EXPECT_EQ(rows_in(parts)[0] + "\n", rows.substr(0, rows.find('\n') + 1));

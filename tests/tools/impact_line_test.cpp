@@ -67,7 +67,6 @@ TEST(ImpactLine, UnequalMasses) {
         EXPECT_FALSE(refused.ok);
         return Json::parse(refused.json)["error"].get<std::string>();
     };
-    // The march agrees within its error.
     const ImpactAnswer marched = answer_impact(line.dump(), settings());
     ASSERT_TRUE(marched.ok) << marched.json;
     EXPECT_NEAR(Json::parse(marched.json)["v2"][0].get<double>(), out["v2"][0].get<double>(), 2e-3);

@@ -8,7 +8,6 @@ const OVER = "caromPlay.state.verdict?.options[0].state.over === true && !caromP
 const YOURS = "caromPlay.state.free && caromPlay.state.level === ''";
 const BALLS = {cue: [0.6, 0.7], 8: [0.9, 1.7], 9: [0.3, 2.0]};
 
-/** Tabs to a button and presses it. */
 async function pressByKeys(player, text) {
   for (let i = 0; i < 90; ++i) {
     const begins = `document.activeElement.textContent.startsWith(${JSON.stringify(text)})`;

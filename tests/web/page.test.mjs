@@ -19,7 +19,6 @@ async function open(fragment = "") {
 }
 const value = (expression) => browser.value(expression);
 const hash = () => value("caromPlay.shot().hash");
-/** Clicks the button with this text. */
 const press = (text) => value(`[...document.querySelectorAll("button")]
   .find((b) => b.textContent === ${JSON.stringify(text)}).click()`);
 const settled = () => player.settled(), placeOf = (x, y) => player.onTable(x, y);

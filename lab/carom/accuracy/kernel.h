@@ -70,7 +70,6 @@ std::string kernel_accuracy_csv(const KernelAccuracy& result);
 Plot kernel_accuracy_plot(const KernelAccuracy& result);
 Report kernel_accuracy_report(const KernelAccuracy& result);
 
-/// Adds `carom-lab accuracy kernel`.
 void add_accuracy_kernel(Options& accuracy);
 
 }  // namespace carom::tools

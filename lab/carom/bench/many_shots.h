@@ -20,7 +20,6 @@ class ManyShots {
     /// The next `shots` shots of an endless sequence, the same in every run. @throws std::runtime_error if
     /// one has no result
     void play(std::size_t shots);
-    /// Restarts the sequence.
     void rewind();
 
     /// Shots in a round of the benchmark: a few milliseconds.

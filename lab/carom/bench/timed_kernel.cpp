@@ -40,7 +40,6 @@ bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
     return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
 }
 
-/// Keeps the requested rows.
 void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only) {
     if (only.empty()) return;
     std::vector<bool> keep(list.size(), false);

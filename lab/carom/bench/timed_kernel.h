@@ -53,7 +53,6 @@ struct TimedKernel : KernelCall {
     std::vector<double> five_ns, random_ns;  ///< per impact, one entry per round
     int five_calls = 1, random_calls = 1;
 
-    /// Runs every impact of the set once.
     void run(const ImpactSet& set, int n, std::vector<ImpactResult>& results) const {
         if (one) {
             for (std::size_t i = 0; i < set.impacts.size(); ++i) one(set.impacts[i], n, results[i]);

@@ -13,12 +13,10 @@ namespace carom::tools {
 /// A table as page/table.js shows it: the columns that have a key. Rows without values keep their note.
 nlohmann::ordered_json sorted_table_json(const std::string& title, const Table& table);
 
-/// Adds --html.
 void add_html(Options& command, std::string& html);
 
 struct Report {
     std::string title, lead;
-    /// Sentences.
     std::vector<std::string> notes;
     /// JSON of chart_json() and sorted_table_json().
     std::vector<std::string> charts, tables;

@@ -1,4 +1,3 @@
-// Reads validation cases.
 #include "validate/case.h"
 
 #include <fmt/format.h>

@@ -58,7 +58,6 @@ enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
 /// first impact with a cushion, when it rolls (again) after its first impact, and when everything is at rest.
 inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
 
-/// One measured number.
 struct Measured {
     Quantity quantity = Quantity::kSpeed;
     Instant when = Instant::kStart;

@@ -1,4 +1,3 @@
-// Reads measured quantities in records.
 #include "validate/measure.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-// Reports of a validation.
 #include "validate/report.h"
 
 #include <fmt/format.h>

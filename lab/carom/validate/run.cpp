@@ -1,4 +1,3 @@
-// Runs validation cases.
 #include "validate/run.h"
 
 #include <fmt/format.h>

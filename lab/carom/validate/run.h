@@ -37,7 +37,6 @@ struct ValidationRow {
 std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
                                     const std::function<void(long)>& progress);
 
-/// Number of runs of a case.
 long runs_of(const ValidationCase& of);
 
 }  // namespace carom::tools
