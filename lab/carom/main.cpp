@@ -1,4 +1,4 @@
-// The program carom-lab: what proves carom, and what measures it.
+// The program carom-lab, which validates and measures carom.
 #include <string>
 #include <vector>
 
@@ -9,10 +9,10 @@
 
 namespace carom::tools {
 
-/// The scripts of pages that only reports use, embedded in the program by the build.
+/// The scripts of pages used only by reports, embedded in the program by the build.
 const std::vector<PageFile>& lab_page_files();
 
-// Each command is a folder, and adds itself to the table of options.
+// Each command is a folder and adds itself to the table of options.
 void add_bench_discs(Options& bench);
 void add_bench_kernel(Options& bench);
 void add_bench_render(Options& bench);

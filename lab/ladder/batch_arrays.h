@@ -27,7 +27,7 @@ inline void store_result(const ImpactBatchResult& out, long i, const ImpactResul
     if (out.method != nullptr) out.method[i] = result.method;
 }
 
-// Reads impact i. Returns false if there is nothing to march with n substeps; its result is then stored.
+// Reads impact i. Returns false if it needs no march with n substeps; its result is then stored.
 inline bool enter_impact(const ImpactBatch& batch, long i, int n, BatchImpact& in,
                          const ImpactBatchResult& out) {
     for (int k = 0; k < 3; ++k) {

@@ -1,6 +1,6 @@
-// Marches a batch in lanes. W * U lanes are filled and marched without a stop test as long as none of them
-// can end, then step by step; each lane is removed when it ends. Lanes that take far longer than the others
-// finish alone, so that one long impact does not delay the rest.
+// Marches a batch in lanes. W * U lanes are filled and marched without a stop test while none can end, then
+// step by step; each lane is removed when it ends. Lanes far longer than the others finish alone, so that one
+// long impact does not delay the rest.
 #pragma once
 
 #include "ladder/lanes.h"
@@ -32,8 +32,8 @@ class BatchMarch {
     const ImpactBatch& batch;
     const int n;
     const ImpactBatchResult& result;
-    // Impacts that stick, or nearly stick, need the slow path of the roots from there on. They share vectors
-    // with each other, not with other impacts.
+    // Impacts that stick, or nearly stick, need the slow root path from then on. They share vectors only with
+    // each other.
     Group groups[2] = {};
 
     static Lanes<W>& lanes_of(Group& g, int i) { return g.lanes[i / W]; }
@@ -52,14 +52,14 @@ class BatchMarch {
         if (g.filled == W * U) march(g);
     }
 
-    // The sum of (v(m) + v(m+1)) / 2 over the steps done.
+    // The sum of (v(m) + v(m+1)) / 2 over the completed steps.
     double work_sum(Group& g, int i) {
         Lanes<W>& s = lanes_of(g, i);
         return s.sum_v[i % W] + 0.5 * (s.v_n[i % W] - g.records[i].start.v_n);
     }
 
-    // Number of steps within which lane i cannot end or change from compression
-    // to restitution. In a step v_n grows by at most (2 + mu_s mu_b) h.
+    // Number of steps within which lane i cannot end or change from compression to restitution. In a step v_n
+    // grows by at most (2 + mu_s mu_b) h.
     long safe_steps(Group& g, int i) {
         const LaneRecord& r = g.records[i];
         const double v = lanes_of(g, i).v_n[i % W], h = r.k.h;

@@ -1,4 +1,4 @@
-// Section 3.3: the baseline's branches with hints. Slip is the normal case; no slip, and zero cloth slip, are
+// Section 3.3: the baseline's branches with hints. Slip is the normal case; no slip and zero cloth slip are
 // exceptions.
 #pragma once
 

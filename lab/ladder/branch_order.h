@@ -1,5 +1,5 @@
-// Section 3.3: another order of the branches. The first branch decides, by the sign of the vertical slip,
-// which ball is pressed onto the cloth; the exceptions (no slip at all) come last.
+// Section 3.3: another order of the branches. The first decides, by the sign of the vertical slip, which ball
+// is pressed onto the cloth; the exceptions (no slip at all) are last.
 #pragma once
 
 #include "ladder/step_loops.h"

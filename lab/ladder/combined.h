@@ -1,4 +1,4 @@
-// The paper's best combination: rsqrt with Newton steps, roots that wait for no branch, two stages,
+// The paper's best combination: rsqrt with Newton steps, roots independent of branches, two stages,
 // precomputed constants.
 #pragma once
 

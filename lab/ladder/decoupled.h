@@ -1,12 +1,12 @@
-// Beyond the paper: every step is done, and no step waits for a root. The state is two pairs, A = [x, a] and
+// Beyond the paper: every step is executed, and none waits for a root. The state is two pairs, A = [x, a] and
 // B = [|z|, b], so that A A + B B is both squares at once; T = [1/c, 1/u] / sqrt(2), so that f = 1/2 - |.|^2
 // T^2 is the relative error of T.
 //
-// The root of a step is extrapolated from the corrected roots of earlier steps and used unchanged. Its error
-// T f corrects the history, and is added to the root of the step kLag later: no step waits for its own
-// correction, and only the corrections of the last steps of a run are lost. The chain from step to step is
+// A step's root is extrapolated from the corrected roots of earlier steps and used unchanged. Its error T f
+// corrects the history, and is added to the root of the step kLag later: no step waits for its own
+// correction, and only the corrections of a run's last steps are lost. The chain from step to step is
 // therefore two sums and a product; the roots are computed beside it. The error is tested once every kBlock
-// steps. A block with too large an error is repeated with slow steps: by the series, or by square root and
+// steps. A block whose error is too large is repeated with slow steps: by the series, or by square root and
 // division (at the start, near u = 0 or c = 0).
 #pragma once
 
@@ -64,7 +64,7 @@ struct DecoupledMarch {
         s.R[0] = R;
     }
 
-    // Values that the fast steps carry besides the state.
+    // Values that fast steps carry besides the state.
     struct Ahead {
         __m128d estimate[kLag], used[kLag];
     };
@@ -92,7 +92,7 @@ struct DecoupledMarch {
     static bool within(__m128d T, __m128d f, double bound) {
         const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), f);
         const __m128d small = _mm_cmp_pd(size, _mm_set1_pd(bound), _CMP_LT_OQ);
-        // A negative T may also have the right square.
+        // A negative T may also have the correct square.
         return _mm_movemask_pd(_mm_and_pd(small, _mm_cmp_pd(T, _mm_setzero_pd(), _CMP_GT_OQ))) == 3;
     }
 
@@ -125,7 +125,7 @@ struct DecoupledMarch {
         const double c_floor = kSlipCutoff * kSlipCutoff * (1.0 - 0x1p-52), u_floor = c.u_floor * c.u_floor;
         const __m128d zero = _mm_setzero_pd();
         State s{_mm_set_pd(in.a, in.x), _mm_set_pd(in.b, in.z), zero, {zero, zero, zero, zero, zero}};
-        // Without a history f is 1/2, and the first steps take the exact roots.
+        // Without a history f is 1/2, and the first steps use exact roots.
         for (long m = 0; m < count;) {
             bool smooth = false;
             for (; m < count && !smooth; ++m) smooth = slow_step(s, k, c_floor, u_floor);

@@ -1,5 +1,5 @@
-// The published march on eight impacts at once, expression by expression: each lane has the bits of the
-// baseline. It is for impacts whose result depends on the rounding of the baseline.
+// The published march on eight impacts at once, expression by expression: each lane has the baseline's bits.
+// For impacts whose result depends on the baseline's rounding.
 #pragma once
 
 #include "march/loop.h"
@@ -13,8 +13,8 @@ using EightMask = Mask<8>;
 
 class ExactLanes {
   public:
-    // Marches `count` states, at most eight. steps[i] is that of march_loop(), which finishes a lane that
-    // takes far longer than the others.
+    // Marches at most eight states. steps[i] equals that of march_loop(), which finishes a lane far longer
+    // than the others.
     template <int kSign>
     static void march(FrameState* const* states, const ImpactParams* params, int count, int n, long* steps) {
         // Idle lanes repeat the last state.
@@ -92,7 +92,7 @@ class ExactLanes {
         const EightMask turns = slips & ~(absolute(c_z) < broadcast<8>(kSlipCutoff));
         const Eight dP1 = select(slips, c.row[kFriction] * c_x / slip, zero);
         const Eight dP2 = select(turns, c.row[kFriction] * c_z / slip, zero);
-        // The same as dP2 > 0, but known before any root.
+        // Equivalent to dP2 > 0, but known before any root.
         const EightMask second = c_z < zero;
         const Eight spin_y = R * select(second, s.w2y, s.w1y), spin_x = R * select(second, s.w2x, s.w1x);
         const Eight v_x = select(second, s.v2x, s.v1x), v_y = select(second, s.v2y, s.v1y);

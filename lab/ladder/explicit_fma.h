@@ -1,4 +1,4 @@
-// Section 3.4: fused multiply-add where the step has a product and a sum. The processor must have FMA.
+// Section 3.4: fused multiply-add wherever the step has a product and a sum. Requires FMA.
 #pragma once
 
 #include "ladder/precomputed.h"

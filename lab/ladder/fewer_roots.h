@@ -1,5 +1,5 @@
-// Section 3.2: fewer square roots. The cutoff is tested on the square
-// of the slip, and no root is taken of a slip whose friction is zero.
+// Section 3.2: fewer square roots. The cutoff is tested on the squared slip, and a slip without friction
+// needs no root.
 #pragma once
 
 #include "ladder/step_loops.h"

@@ -1,5 +1,5 @@
-// The ladder: every kernel variant of the march that the paper built, kept working and correct, and variants
-// beyond it. It serves the benchmark and the tests; simulations use march.h and tolerance.h.
+// The ladder: every variant of the march that the paper built, kept working and correct, and variants beyond
+// it. For the benchmark and the tests; simulations use march.h and tolerance.h.
 #pragma once
 
 #include <span>
@@ -20,15 +20,15 @@ struct Variant {
     MarchFunction march;  ///< one impact per call
     BatchFunction batch;  ///< many impacts per call
     bool portable_bits;   ///< the same bits on scalar, v3 and v4, with gcc and with clang
-    /// Largest difference from the baseline at N = 1000, relative to the approach
-    /// speed, where the step counts agree: on the five states of the paper, and
-    /// on 2000 random impacts (where chatter near stick amplifies rounding).
+    /// Largest difference from the baseline at N = 1000, relative to the approach speed, if the step counts
+    /// agree: on the paper's five states, and on 2000 random impacts (where chatter near stick amplifies
+    /// rounding).
     double bound_five, bound_random;
     const char* idea;
 };
 
-/// All variants, the baseline first, in the order of the paper; each with all instruction sets, including
-/// those that this processor lacks.
+/// All variants, the baseline first, in the paper's order; each for all instruction sets, including those
+/// that this processor lacks.
 std::span<const Variant> ladder() noexcept;
 
 }  // namespace carom::kernel

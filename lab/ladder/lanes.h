@@ -1,7 +1,7 @@
 // Section 3.8 and beyond: independent impacts in the lanes of a vector of W lanes, which fills a register. U
 // vectors are interleaved, so that the latency of one hides behind the others. The step is that of reduced.h,
-// with the slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes its
-// sign swaps them. Lanes share nothing: each result depends on its own impact alone.
+// with the slip (a, b) of the pressed ball and (c, d) of the other; a lane whose vertical slip changes sign
+// swaps them. Lanes share no data: each result depends only on its own impact.
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -67,7 +67,7 @@ inline void lane_step(Lanes<W>& s) {
     constexpr double kKappa = 1.0 - 2.5 * kSign;
     const V zero{};
     const V c2 = A::madd(s.x, s.x, s.size * s.size), u2 = A::madd(s.a, s.a, s.b * s.b);
-    // Everything that needs no root comes first, which leaves only two operations between the roots and the
+    // Everything independent of the roots comes first, leaving only two operations between the roots and the
     // next step.
     const V x1 = s.mu_h * s.x, t1 = s.mu_h * s.size, q1 = s.mu_hs * s.size, a1 = q1 * s.a, b1 = q1 * s.b;
     const V b_pushed = s.b + s.h, d_pushed = s.d + s.h, v_pushed = s.v_n + s.h2;
@@ -105,8 +105,8 @@ struct LaneExactRoots {
     }
 };
 
-// The approximate instruction and two Newton steps. Lanes whose square
-// does not fit into a float, or is zero, take square root and division.
+// The approximate instruction and two Newton steps. Lanes whose square does not fit into a float, or is zero,
+// use square root and division.
 struct LaneRsqrtRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -127,8 +127,8 @@ struct LaneRsqrtRoots {
 };
 
 // No root at all: the reciprocal length is carried from step to step, extrapolated quadratically and
-// corrected by the series of (1 - e)^(-1/2). A lane whose e is above 1e-4 (at the start, near stick, after a
-// change of side) takes square root and division. The error that remains, 35/128 e^4, is below an ulp.
+// corrected by the series of (1 - e)^(-1/2). A lane with e above 1e-4 (at the start, near stick, after a
+// change of side) uses square root and division. The remaining error, 35/128 e^4, is below an ulp.
 struct LaneCarriedRoots {
     template <int W, class A, class S, class V>
     static void take(S& s, V c2, V u2, V& c, V& u) {
@@ -143,7 +143,7 @@ struct LaneCarriedRoots {
         s.c_root = c;
         s.u_root = u;
     }
-    // The extrapolation from the last three values is 3 (last - before) + first.
+    // Extrapolates from the last three values: 3 (last - before) + first.
     template <int W, class A, class V>
     static V carried(V square, V last, V& before, V& first, V& e) {
         const V seed = A::madd(broadcast<W>(3.0), last - before, first);
@@ -155,12 +155,12 @@ struct LaneCarriedRoots {
     }
 };
 
-// The data of a lane besides its vectors.
+// A lane's data besides its vectors.
 struct LaneRecord : BatchImpact {
     Reduced start;
     ReducedConstants k;
-    // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the
-    // end of compression, the work, and the work to reach.
+    // In units of W/h: the sum of (v(m) + v(m+1)) / 2 at the end of compression, the work, and the work to
+    // reach.
     double V_cross, W, W_f;
     bool active, compressing;
 };

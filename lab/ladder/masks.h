@@ -1,4 +1,4 @@
-// Section 3.3: no branches. A condition becomes a bit mask, which clears numbers that do not apply.
+// Section 3.3: no branches. A condition becomes a bit mask that clears inapplicable numbers.
 #pragma once
 
 #include "ladder/step_loops.h"

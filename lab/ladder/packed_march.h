@@ -1,12 +1,13 @@
-// Beyond the paper: one impact, every step done, its reduced state in one register: S = [x, a, |z|, b], where
-// (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit the
-// speed. They are computed
+// Beyond the paper: one impact, every step executed, its reduced state in one register: S = [x, a, |z|, b],
+// where (a, b) is the cloth slip of the pressed ball. The reciprocal lengths R = [1/c, 1/u, 1/c, 1/u] limit
+// the speed. They are computed
 //
-//   kExact by square root and division
-//   kSeed by linear extrapolation, corrected by a series before they are used
-//   kOneAhead by extrapolation from the last five; they are used at once, and the step is corrected late,
-//               by terms that are linear in the error e
-//   kTwoAhead in the same way from values one step older, so that the extrapolation, too, is off the
+//   kExact      by square root and division
+//   kSeed       by linear extrapolation, corrected by a series before use
+//   kOneAhead   by extrapolation from the last five, used at once; the step is corrected later by terms
+//   linear
+//               in the error e
+//   kTwoAhead   like kOneAhead from values one step older, which also removes the extrapolation from the
 //               critical path
 //
 // A step whose e is too large for its form uses the series, or square root and division (at the start, near
@@ -61,8 +62,8 @@ struct PackedMarch {
         const __m256d push = _mm256_set_pd(k.h, 0.0, 0.0, 0.0), mu = _mm256_set1_pd(k.mu_hs);
         const __m256d half = _mm256_set1_pd(0.5);
         __m256d S = _mm256_set_pd(stretch.b, stretch.z, stretch.a, stretch.x), sum_S = _mm256_setzero_pd();
-        // R of the last steps, the newest first. At the start they are
-        // zero, which gives e = 1: the first steps take the exact roots.
+        // R of the last steps, the newest first. Initially zero, which yields e = 1: the first steps use
+        // exact roots.
         __m256d R1 = _mm256_setzero_pd(), R2 = R1, R3 = R1, R4 = R1, R5 = R1, R6 = R1;
         for (long m = 0; m < count; ++m) {
             CAROM_LOOP_BEGIN("packed march");
@@ -88,12 +89,12 @@ struct PackedMarch {
                     T = _mm256_fmadd_pd(_mm256_set1_pd(15.0), R2, T);
                 }
                 // e = 1 - |.|^2 T^2. Both copies of a root must have the same bits: a difference between them
-                // would not be corrected, and extrapolation would let it grow. Therefore the sum is symmetric
+                // would not be corrected, and extrapolation would amplify it. Therefore the sum is symmetric
                 // in the halves.
                 const __m256d ST = _mm256_mul_pd(S, T), rest = _mm256_fnmadd_pd(ST, ST, half);
                 const __m256d e = _mm256_add_pd(rest, swapped_halves(rest));
                 if constexpr (kForm != RootForm::kSeed) {
-                    // The step with T in place of R, and then its change by R - T = T e / 2.
+                    // The step with T in place of R, then its change by R - T = T e / 2.
                     const __m256d xxzz = _mm256_movedup_pd(ST), aabb = _mm256_permute_pd(ST, 0b1111);
                     const __m256d q =
                         _mm256_mul_pd(_mm256_mul_pd(mu, _mm256_permute4x64_pd(ST, 0b10101010)), aabb);

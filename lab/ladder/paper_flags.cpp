@@ -1,6 +1,6 @@
-// The loop of the baseline, compiled with -Ofast -march=znver3 -ffp-contract=fast as in the paper, in a
-// separate file so that nothing else is compiled with these flags. They never reach the linker: with -Ofast
-// it would add start-up code that makes the whole process flush subnormal numbers to zero.
+// The baseline's loop, compiled with -Ofast -march=znver3 -ffp-contract=fast as in the paper, in a separate
+// file so that only it has these flags. The linker never receives them: with -Ofast it would add start-up
+// code that makes the whole process flush subnormal numbers to zero.
 #include "ladder/paper_flags.h"
 #include "ladder/branch_hints.h"
 

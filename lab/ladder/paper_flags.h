@@ -1,13 +1,12 @@
-// Section 4: the compiler flags of the paper. The loop is built in a separate file (paper_flags.cpp) with
-// -Ofast -march=znver3; validation and projection stay outside, because -Ofast assumes that there are no
-// NaNs.
+// Section 4: the paper's compiler flags. The loop is built in a separate file (paper_flags.cpp) with -Ofast
+// -march=znver3; validation and projection stay outside, because -Ofast assumes the absence of NaNs.
 #pragma once
 
 #include "ladder/step_loops.h"
 
 namespace carom::kernel {
 
-// state: v1x, v1y, w1x, w1y, w1z and the same of ball 2. Returns the number of steps, or -1 at the limit.
+// state: v1x, v1y, w1x, w1y, w1z, then those of ball 2. Returns the number of steps, or -1 at the limit.
 long paper_flags_loop(int sign, double* state, const ImpactParams& params, int n) noexcept;
 
 namespace {

@@ -1,5 +1,5 @@
-// Section 3.4: precomputation. Spins are carried as R w and impulses
-// per unit mass, and every product of constants is computed once.
+// Section 3.4: precomputation. Spins are carried as R w and impulses per unit mass, and every product of
+// constants is computed once.
 #pragma once
 
 #include "ladder/step_loops.h"
@@ -7,7 +7,7 @@
 namespace carom::kernel {
 namespace {
 
-// A state in which the step needs no factor R, m or C: w as R w [m/s].
+// A state in which the step needs no factor R, m or C: w becomes R w [m/s].
 inline void spins_to_speeds(FrameState& s, double R) {
     double* const spins[6] = {&s.w1x, &s.w1y, &s.w1z, &s.w2x, &s.w2y, &s.w2z};
     for (double* w : spins) *w *= R;

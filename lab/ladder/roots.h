@@ -1,5 +1,5 @@
-// Reciprocal square roots. rsqrtss takes floats: squares of
-// velocities outside [1e-30, 1e30] take square root and division.
+// Reciprocal square roots. rsqrtss needs floats: squares of velocities outside [1e-30, 1e30] use square root
+// and division.
 #pragma once
 
 #include <immintrin.h>
@@ -28,7 +28,7 @@ struct RawRoot {
     }
 };
 
-// Two Newton steps give 46 bits: 12 -> 23 -> 46. The published code takes one step and has an error of 1e-7.
+// Two Newton steps yield 46 bits: 12 -> 23 -> 46. The published code uses one step and has an error of 1e-7.
 struct NewtonRoot {
     static double inverse(double square) {
         if (!fits_float(square)) return ExactRoot::inverse(square);

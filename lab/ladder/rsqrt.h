@@ -1,5 +1,4 @@
-// Section 3.2: the step of the baseline with reciprocal
-// lengths from rsqrtss instead of square root and division.
+// Section 3.2: the baseline's step with reciprocal lengths from rsqrtss instead of square root and division.
 #pragma once
 
 #include "ladder/roots.h"
@@ -44,9 +43,9 @@ struct InverseStep {
     }
 };
 
-// the unrefined 12 bits: their error is the reason for Newton steps
+// the unrefined 12 bits, whose error is the reason for Newton steps
 using RsqrtRaw = WithStep<InverseStep<RawRoot>>;
-// The published variant gives NaN at zero slip; here a zero slip takes no root.
+// The published variant yields NaN at zero slip; here a zero slip uses no root.
 using RsqrtNewton = WithStep<InverseStep<NewtonRoot>>;
 
 }  // namespace

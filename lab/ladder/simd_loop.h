@@ -1,6 +1,5 @@
 // Section 3.7: SIMD in the whole loop, with one register for each of the vectors v1, w1, v2, w2 (x, y, z, -).
-// Most lanes are idle and every dot product needs shuffles, which is why this variant was slower in the
-// paper.
+// Most lanes are idle and every dot product needs shuffles, so this variant was slower in the paper.
 #pragma once
 
 #include <immintrin.h>
@@ -33,7 +32,7 @@ struct SimdLoop {
         long steps = 0;
         while (v_n < 0.0 || compressing || W < W_f) {
             if (++steps > k.limit) return -1;
-            // The slip at the contact as (c_x, c_z, -, -): R (w_z, w_x).
+            // The slip at the contact as (c_x, c_z, -, -), from R (w_z, w_x).
             const __m256d sum = _mm256_mul_pd(R, _mm256_add_pd(w1, w2));
             const __m256d zx = _mm256_permute4x64_pd(sum, 0b11110010);  // (w_z, w_x, ...)
             const __m256d dv = _mm256_blend_pd(_mm256_sub_pd(v1, v2), _mm256_setzero_pd(), 0b1110);

@@ -1,6 +1,6 @@
-// Section 3.7: SIMD around a scalar loop. Projection and back-projection hold a vector of a ball in one
-// register; the loop is that of the baseline. This can save only the time of the projections, less than one
-// per cent at N = 1000.
+// Section 3.7: SIMD around a scalar loop. Projection and back-projection keep a ball's vector in one
+// register; the loop is the baseline's. This can save only the projections' time, less than one per cent at N
+// = 1000.
 #pragma once
 
 #include <immintrin.h>

@@ -1,6 +1,5 @@
-// Section 3.7: SIMD in the style of static single assignment. A component of
-// both balls shares a register, both sides are computed and one is selected
-// by a mask, every value is assigned once, and only the stop test branches.
+// Section 3.7: SIMD in static single assignment. A component of both balls shares a register, both sides are
+// computed and one is selected by a mask, every value is assigned once, and only the stop test branches.
 #pragma once
 
 #include <immintrin.h>
@@ -15,8 +14,8 @@ struct SimdSsa {
     static long loop(FrameState& s, const ImpactParams& p, int n) {
         const Constants k = constants<kSign>(s, p, n);
         const double h = k.dP / k.m;
-        // vx = (v1x, v2x), vy = (v1y, v2y), wx = (R w1x, R
-        // w2x), wy likewise; z = R (w1z + w2z) is one number.
+        // vx = (v1x, v2x), vy = (v1y, v2y), wx = (R w1x, R w2x), wy likewise; z = R (w1z + w2z) is one
+        // number.
         __m128d vx = _mm_set_pd(s.v2x, s.v1x), vy = _mm_set_pd(s.v2y, s.v1y);
         __m128d wx = _mm_set_pd(k.R * s.w2x, k.R * s.w1x), wy = _mm_set_pd(k.R * s.w2y, k.R * s.w1y);
         double z = k.R * (s.w1z + s.w2z), sum_J1 = 0.0, W = 0.0, v_n = high(vy) - low(vy), W_f = 0.0;
@@ -34,8 +33,7 @@ struct SimdSsa {
             const double c = square_root(c_x * c_x + c_z * c_z);
             const double friction = c < kSlipCutoff ? 0.0 : -k.mu_b * h / c;
             const double J1 = friction * c_x, J2 = absolute(c_z) < kSlipCutoff ? 0.0 : friction * c_z;
-            // Ball 2 where J2 > 0, ball 1 where J2 < 0; a cloth
-            // slip of zero may give 0/0, which its mask clears.
+            // Ball 2 if J2 > 0, ball 1 if J2 < 0; a cloth slip of zero may yield 0/0, which its mask clears.
             const __m128d J = _mm_set1_pd(J2);
             const __m128d pressed = _mm_cmpgt_pd(_mm_mul_pd(J, _mm_set_pd(1.0, -1.0)), zero);
             const __m128d active = _mm_and_pd(pressed, _mm_cmpgt_pd(u, floor));

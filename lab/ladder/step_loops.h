@@ -1,5 +1,5 @@
-// Shared by the kernel variants of the ladder: constants, and loops with the published stop test. A variant
-// contains only what differs: a step, or its own loop.
+// Shared by the ladder's variants: constants, and loops with the published stop test. A variant contains only
+// its differences: a step, or its own loop.
 #pragma once
 
 #include "carom/kernel/march.h"
@@ -69,8 +69,7 @@ long single_loop(FrameState& s, const ImpactParams& p, int n) {
     return steps;
 }
 
-// Section 3.3: the same in two loops, one for compression and one for restitution, so that neither tests
-// which phase it is in.
+// Section 3.3: the same as two loops, for compression and restitution, so that neither tests the phase.
 template <class Step, int kSign>
 long two_stage_loop(FrameState& s, const ImpactParams& p, int n) {
     const Constants k = constants<kSign>(s, p, n);

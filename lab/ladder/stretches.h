@@ -1,8 +1,8 @@
-// Beyond the paper: shared by the variants that do every step of one impact in vectors. The march is divided
-// into stretches in which neither the pressed side nor the phase (compression, restitution) can change. Only
-// the slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed ball are marched there. The
-// slip of the other ball, v_n and the work follow at the end of the stretch from linear invariants. A variant
-// contains only the march of a stretch.
+// Beyond the paper: shared by the variants that execute every step of one impact in vectors. The march is
+// divided into stretches in which neither the pressed side nor the phase (compression, restitution) can
+// change. A stretch marches only the slip between the balls (x, |z|) and the cloth slip (a, b) of the pressed
+// ball. The other ball's slip, v_n and the work follow at its end from linear invariants. A variant contains
+// only the march of a stretch.
 #pragma once
 
 #include <immintrin.h>
@@ -49,7 +49,7 @@ class StretchMarch {
     StopTest stop;
     long steps = 0;
 
-    // Number of steps within which neither the phase can end nor |z| reach zero. In a step v_n grows by at
+    // Number of steps within which the phase cannot end and |z| cannot reach zero. In a step v_n grows by at
     // most (2 + mu_s mu_b) h and |z| falls by at most (5 + 5/2 mu_s) mu_b h.
     long safe_steps() const {
         const int pressed = r.z < 0.0;
@@ -92,7 +92,7 @@ class StretchMarch {
     }
 };
 
-// A variant that marches its stretches by March.
+// A variant that marches its stretches with March.
 template <class March>
 struct InStretches {
     template <int kSign>

@@ -1,6 +1,6 @@
-// A batch, impact by impact with the summed march of the kernel. Where that gives up, the arithmetic of the
-// published march takes over, eight lanes at once and with the same bits: every impact has the bits of the
-// kernel's summed march.
+// A batch, impact by impact with the kernel's summed march. If that gives up, the published march's
+// arithmetic continues on eight lanes at once with the same bits: every impact has the bits of the kernel's
+// summed march.
 #pragma once
 
 #include "ladder/batch_arrays.h"
@@ -47,7 +47,7 @@ class SummedBatch {
             states[i] = &waiting[i].state;
             params[i] = waiting[i].params;
         }
-        // A single lane is slower than no lanes.
+        // A single lane is slower than scalar code.
         if (count == 1) steps[0] = march_loop<kSign>(*states[0], params[0], n);
         if (count > 1) ExactLanes::march<kSign>(states, params, count, n, steps);
         for (int i = 0; i < count; ++i) leave_impact(waiting[i], steps[i], result);

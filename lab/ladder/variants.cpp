@@ -1,5 +1,4 @@
-// The list of kernel variants for one instruction set, in
-// the order of the paper. Built once per instruction set.
+// The list of kernel variants for one instruction set, in the paper's order. Built once per instruction set.
 #include "ladder/variants.h"
 
 #include "kernel_set.h"
@@ -30,8 +29,7 @@
 namespace carom::kernel::CAROM_ISA_NAMESPACE {
 namespace {
 
-// In a function of its own, gcc 12 keeps the state of a loop in registers; listed directly, it is 8 to 17 %
-// slower.
+// In its own function, gcc 12 keeps a loop's state in registers; listed directly, it is 8 to 17 % slower.
 template <auto kImpact>
 void one(const Ball& ball1, const Ball& ball2, const ImpactParams& p, int n, ImpactResult& result) noexcept {
     kImpact(ball1, ball2, p, n, result);

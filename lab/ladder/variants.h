@@ -1,4 +1,4 @@
-// The lists of kernel variants that variants.cpp makes, one for each instruction set.
+// The lists of kernel variants from variants.cpp, one per instruction set.
 #pragma once
 
 #include <span>

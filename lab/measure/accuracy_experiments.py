@@ -84,7 +84,7 @@ def balls(text, line):
     return text + f"[balls]\n{line}\n"
 
 
-# Disturbances of a shot. Everything is compared with the result at the tolerance TIGHT.
+# Disturbances of a shot, compared with the result at the tolerance TIGHT.
 TIGHT = "tolerance = 1e-13"
 NOISE = (
     ("last bit of one coordinate", lambda t: physics(moved(t, 1.2e-16), TIGHT)),
@@ -106,7 +106,7 @@ CLUSTERS = ("compliant", "sequential", "rigid")
 
 
 def measure_noise(program, folder, count):
-    """E5: the final distance that each disturbance causes in a cut and in a break; also compares the cluster
+    """E5: the final distance caused by each disturbance in a cut and in a break; also compares the cluster
     models."""
     scene = folder / "noise.toml"
     rows, clusters = [], []
@@ -172,7 +172,7 @@ def line_fit(x, y):
 
 
 def amplifying(shots):
-    """The shots with a gain above 0; the others end in the pockets whatever happens."""
+    """The shots with a gain above 0; in the others all balls are pocketed anyway."""
     return [s for s in shots if s["gain"] > 0]
 
 
@@ -182,7 +182,7 @@ def fit_of_gain(shots):
 
 
 def collapse(shots):
-    """(gain, tolerance, error / (gain x tolerance x 1 m)) for every error that is resolved."""
+    """(gain, tolerance, error / (gain x tolerance x 1 m)) for every resolved error."""
     points = []
     for s in amplifying(shots):
         for r in s["rows"]:
@@ -209,7 +209,7 @@ def e3(shots):
 
 
 def adaptive_rows(shots):
-    """The recommended setting of every shot for which there is one."""
+    """The recommended setting of every shot that has one."""
     pairs = []
     for s in shots:
         if s["recommended_tolerance"] is not None:

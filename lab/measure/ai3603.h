@@ -1,6 +1,6 @@
 // Eight-ball by the rules of the course AI3603 (SJTU-RL2/AI3603-Billiards, poolenv.py and evaluate.py),
-// written anew from their description: groups are given at the start, nothing is called, and a foul puts the
-// balls back to where they lay and gives the turn away.
+// rewritten from their description: groups are fixed at the start, shots are not called, and a foul restores
+// the balls' places and passes the turn.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Ai3603Shot {
     bool foul = false, keeps_turn = false;
 };
 
-/// @param solids, left  the group of the player who strikes, and how many of its balls lay before
+/// @param solids, left  the striker's group, and the number of its balls before the shot
 inline Ai3603Shot ai3603_shot(const Record& record, bool solids, int left) {
     using games::detail::number_of;
     const games::Shot shot = games::shot_of(record);
@@ -49,8 +49,8 @@ inline Ai3603Shot ai3603_shot(const Record& record, bool solids, int left) {
     return {.keeps_turn = any_own};
 }
 
-/// One rack on the seven-foot table. Both break with the stroke of the player of carom/games/player.h.
-/// @return what the first player gets: 1 for a win, 1/2 for a draw
+/// One rack on the seven-foot table. Both break with the stroke of carom/games/player.h.
+/// @return the first player's points: 1 for a win, 1/2 for a draw
 inline double ai3603_rack(const std::array<test::Adviser, 2>& advisers, std::uint64_t seed, int breaker,
                           bool breaker_has_solids) {
     constexpr int kMostStrikes = 60;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Two ways to aim a pot: that of carom.games.aim_pot, which plays aims between two that bracket the right
-one, and Newton's method with the derivative of the shot. The table of lab/notes/2026-11-tangents.md.
+"""Compares two methods of aiming a pot: carom.games.aim_pot, which plays aims between two that bracket the
+right one, and Newton's method with the shot's derivative. The table of lab/notes/2026-11-tangents.md.
 
-Random places of two balls, speeds and tips; every pocket that is open within 70 degrees of cut is a pot.
-Newton begins at the ghost ball, like aim_pot, and stops at the same distance from the middle of the paths. A
-third way then turns the aim to the middle of the window in which the ball still falls.
+Random places of two balls, speeds and tips; every pocket open within 70 degrees of cut is a pot. Newton
+starts at the ghost ball, like aim_pot, and stops at the same distance from the middle of the paths. A third
+method then turns the aim to the middle of the window in which the ball still falls.
 
     PYTHONPATH=build/release/python lab/measure/aim_refined.py [--pots 200] [--noisy 400] [--seed 1]
 """
@@ -41,7 +41,7 @@ def falls(base, aims, pocket):
 
 
 def newton(base, line, start):
-    """The aim at which ball 1 runs down the middle of its paths, or None; and the shots played."""
+    """The aim that sends ball 1 down the middle of its paths, or None; and the number of shots played."""
     towards, middle = np.array(line.towards), np.array(base["ball"][1]["position"])
     aim, near = start, NEAR * np.radians(line.width_deg)
     for shots in range(1, STEPS + 1):
@@ -51,7 +51,7 @@ def newton(base, line, start):
             return None, shots, "misses the ball"
         stops = [event.time for event in record.event_list()
                  if event.time > met[0] and "1" in (event.a, event.b) and event.type.startswith("ball_")]
-        # Just before it meets the next thing.
+        # Just before its next contact.
         time = met[0] + 0.999 * ((stops[0] if stops else record.duration) - met[0])
         way = record.states(time)[1, 0, :2] - middle
         off = (towards[0] * way[1] - towards[1] * way[0]) / np.hypot(*way)
@@ -67,7 +67,7 @@ def newton(base, line, start):
 
 
 def middle_of_window(base, aim, pocket):
-    """The middle of the aims that pot, by bisection from `aim` outwards."""
+    """The middle of the potting aims, by bisection outwards from `aim`."""
     ends = []
     for side in (-1.0, 1.0):
         inside, outside = 0.0, 0.02

@@ -1,6 +1,6 @@
 // The recipe of BasicAgentPro, the opponent of the course AI3603 (SJTU-RL2/AI3603-Billiards, commit 74e09d9,
-// agents/basic_agent_pro.py), written anew from its description: ghost ball to every pocket, four variants,
-// 30 of them at random, 50 noisy shots by upper confidence bounds, no look at the position that is left.
+// agents/basic_agent_pro.py), rewritten from its description: ghost ball to every pocket, four variants, 30
+// of them at random, 50 noisy shots by upper confidence bounds; the resulting position is not examined.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace carom::lab {
 
-/// The worth of a shot to it, from -500 to 150.
+/// Its value of a shot, from -500 to 150.
 inline double basic_pro_reward(const games::State& state, const Record& record, games::detail::Numbers own) {
     using games::Foul;
     const games::Shot shot = games::shot_of(record);
@@ -40,7 +40,7 @@ inline double basic_pro_reward(const games::State& state, const Record& record, 
     return reward == 0.0 && !cue && !eight && !wrong && !no_rail ? 10.0 : reward;
 }
 
-/// Its ball in hand is placed by the player of carom/games/player.h.
+/// carom/games/player.h places its ball in hand.
 inline games::Advice basic_pro(const games::State& state, const Scene& table, std::uint64_t seed) {
     constexpr games::Noise kSimulated{0.1, 0.15, 0.1, 0.005, 0.005};
     constexpr std::size_t kActions = 30, kShots = 50;

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The outcomes of breaks beside tournament counts: the table of lab/notes/2026-11-breaks.md.
+"""The outcomes of breaks compared with tournament counts: the table of lab/notes/2026-11-breaks.md.
 
 Plays every kind of break with `carom sweep`, varying aim, speed, tip height and rack. Prints a Markdown
-table: how often a ball falls, how many, how often the cue ball falls, how often the break succeeds, with 95 %
-intervals (Wilson). The numbers are the same on every machine.
+table: the shares of breaks in which a ball falls, in which the cue ball falls and which succeed, with 95 %
+intervals (Wilson), and the number of balls that fall. The numbers are the same on every machine.
 
     lab/measure/break_statistics.py [--carom build/release/carom] [--count 2000]
                                     [-o lab/notes/2026-11-breaks.md]
@@ -20,7 +20,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# [m/s] of the cue: 8.1 to 11.2 m/s of the ball, which players reach (D. Alciatore: powerful breaks 11 to 13,
+# [m/s] of the cue; 8.1 to 11.2 m/s of the ball, as players reach (D. Alciatore: powerful breaks 11 to 13,
 # professionals 9.8 to 11.6).
 SPEED = "uniform(6.1,8.4)"
 VARY = ["cue.aim_deg=normal(0.15)", "cue.offset.height=normal(0.05)", "rack.seed=integer(1,1000000)"]

@@ -22,7 +22,7 @@ import subprocess
 import sys
 import tempfile
 
-# The first match counts.
+# The first match applies.
 PARTS = [
     ("cluster", r"carom::Cluster(s|Map)::"),
     ("kernel", r"carom::kernel::"),
@@ -60,7 +60,7 @@ def self_costs(path, counted):
             called = True
         elif function and re.match(r"[+\-*\d]", line):
             if called:
-                called = False  # this line is the inclusive cost of the call
+                called = False  # this line has the call's inclusive cost
             else:
                 fields = line.split()
                 costs[function] += sum(int(fields[c]) for c in columns if c < len(fields))
@@ -108,8 +108,8 @@ def main():
                    stdout=subprocess.DEVNULL)
     with tempfile.TemporaryDirectory() as folder:
         kinds, dumps = measure(build / "tools" / "measure" / "carom_shot_probe", args, pathlib.Path(folder))
-    # One dump is before the first round (set-up, first detection), then one per round; the last has the end
-    # of the run.
+    # One dump precedes the first round (set-up, first detection), then one follows per round; the last also
+    # has the end of the run.
     if len(dumps) < len(kinds) + 1:
         sys.exit(
             f"callgrind_shot.py: {len(kinds)} rounds but {len(dumps)} dumps; is it still Resolver::resolve?")

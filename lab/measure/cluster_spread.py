@@ -4,9 +4,9 @@ rigid, sequential.
 
     lab/measure/cluster_spread.py build/release/carom -o lab/notes/images/cluster_spread.png
 
-Plays the same seeded breaks (aim and speed vary a little) of racks with gaps from 0 to 1e-4 m under each
-model, and stops them before the balls reach a cushion. Compares the balls' positions then: with the touching
-rack under the same model, and with another model. The costs are those of `carom simulate --profile` for the
+Plays the same seeded breaks (aim and speed vary slightly) of racks with gaps from 0 to 1e-4 m under each
+model, and stops them before the balls reach a cushion. Compares the balls' positions then with the touching
+rack under the same model, and with another model. The costs come from `carom simulate --profile` for the
 touching rack to rest, alternating the models. Needs python3-matplotlib.
 """
 
@@ -22,7 +22,7 @@ import tempfile
 MODELS = ("compliant", "rigid", "sequential")
 COLOURS = {"compliant": "#1f6fb4", "rigid": "#d9822b", "sequential": "#888888"}
 GAPS = [0.0] + [10.0**k for k in range(-12, -3)]
-STOP = 0.16  # s: about 0.05 s after the cue ball has met the rack
+STOP = 0.16  # s: about 0.05 s after the cue ball hits the rack
 SCENE = """[table]
 preset = "nine_foot"
 [balls]

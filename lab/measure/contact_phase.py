@@ -2,8 +2,8 @@
 """The cost of the contact phase of a rack: baseline impacts, steps, instructions by part, and the error of
 fewer steps.
 
-A cue ball meets a touching rack of 15 head-on at 8 m/s (pool balls, the engine's defaults). The kernel is
-compiled again for each row, with other constants in its step rule or for callgrind. The baseline impact is
+A cue ball hits a touching rack of 15 head-on at 8 m/s (pool balls, the engine's defaults). The kernel is
+recompiled for each row, with other constants in its step rule or for callgrind. The baseline impact is
 the published march with N = 1000 on the first of the five states, timed in the same run. The error is the
 largest difference in a velocity or R w from steps of at most 1/1280 with an error of 1e-8 [V], over 20 racks
 (gaps to 0.2 mm, off-axis, spin). Needs g++, and valgrind for --parts.
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
 }
 """
 SOURCES = ["contact_phase/contact_phase.cpp", "march/march.cpp"]
-# Functions of the kernel that only move numbers; all functions are inlined into one.
+# Kernel functions that only move numbers; all functions are inlined into one.
 GATHER = {"load", "store", "pack", "transpose", "broadcast", "subtract_add"}
 
 

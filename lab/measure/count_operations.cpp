@@ -1,6 +1,5 @@
 // Counts the operations per step of the kernel variants by compiling their source with a counting number
-// type. It is a separate program that does not link the library, because here every `double` of the kernel is
-// such a number.
+// type. It does not link the library, because here every `double` of the kernel is such a number.
 #include <immintrin.h>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
-// Experiment E5: compares methods to find the time at which two balls meet (a quartic): time per pair, missed
-// and false contacts, gap between the balls at the returned time. The reference is a derivative cascade in
-// __float128. Usage: carom_detectors [pairs of each kind, default 20000]
+// Experiment E5: compares methods that find the time at which two balls meet (a quartic) by time per pair,
+// missed and false contacts, and gap between the balls at the returned time. The reference is a derivative
+// cascade in __float128. Usage: carom_detectors [pairs of each kind, default 20000]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,8 +35,8 @@ std::array<double, 5> quartic(const Pair& pair) {
     return {r.dot(r) - kReach * kReach, 2.0 * r.dot(v), v.dot(v) + r.dot(a), v.dot(a), 0.25 * a.dot(a)};
 }
 
-/// The first real root in (0, T] of complex roots; as usual,
-/// a root with a small imaginary part counts as real.
+/// The first real root in (0, T] of complex roots; as usual, a root with a small imaginary part counts as
+/// real.
 template <typename Roots>
 double first_real(const Roots& roots, int count, double T) {
     double first = kNever;

@@ -16,7 +16,7 @@ def cue(speed, aim_deg, side=0.0, height=0.0):
 
 
 def aim(start, target, radius, cut_deg):
-    """The direction in degrees from start that meets the target at this cut angle."""
+    """The direction in degrees from start that hits the target at this cut angle."""
     dx, dy = target[0] - start[0], target[1] - start[1]
     off = math.asin(2 * radius * math.sin(math.radians(cut_deg)) / math.hypot(dx, dy))
     return math.degrees(math.atan2(dy, dx) + off)

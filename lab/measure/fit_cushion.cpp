@@ -1,7 +1,7 @@
 // Fits the carom cushion to the numbers of validation cases, for lab/notes/2026-11-presets.md: Nelder and
 // Mead over e, c of e_c_fit = [e, c, 0] and a, b, k of f_c_fit = [a, b, k], with Cauchy's loss, which no
-// outlier dominates. Prints the values and how many numbers of each case lie within their uncertainty, also
-// of cases that were left out.
+// outlier dominates. Prints the values, and for each case, including those not fitted, the count of numbers
+// within their uncertainty.
 //   cmake --build --preset release --target carom_fit_cushion
 //   build/release/lab/measure/carom_fit_cushion V3,V4,V5
 #include <fmt/format.h>
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
         if (wanted.find(fmt::format(",{},", of.id)) != std::string::npos) fitted.push_back(of);
     }
     Point p = {0.9, 0.02, 0.19, 0.23, 0.7};
-    // A simplex that has shrunk too early starts anew.
+    // Restart, in case the simplex shrank too early.
     for (int again = 0; again < 3 && !fitted.empty(); ++again) p = least(fitted, p);
     fmt::print("e_c_fit = [{:.3f}, {:.4f}, 0], f_c_fit = [{:.3f}, {:.3f}, {:.2f}], loss {:.2f}\n", p[0], p[1],
                p[2], p[3], p[4], loss_of(all, p));

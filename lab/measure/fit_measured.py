@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Fits numbers of the preset `carom` to measured paths with carom.fit, for lab/notes/2026-11-tangents.md.
 
-V7 of lab/data/validation gives decelerations and V2 speeds right after a snooker cushion, from which places
-follow. V8 to V16 give places of object balls; their times count from the first cushion, whose time is the
-simulated one. A place at rest has no time.
+V7 of lab/data/validation states decelerations and V2 speeds right after a snooker cushion, from which places
+follow. V8 to V16 state places of object balls; their times count from the first cushion, whose time is
+simulated. A place at rest has no time.
 
     PYTHONPATH=build/release/python lab/measure/fit_measured.py
 """
@@ -53,7 +53,7 @@ def first_cushion(record):
 
 
 def snooker():
-    """The fit `e_c_fit` of the variant was made by hand to the same speeds, at the speed of the impact."""
+    """The variant's `e_c_fit` was fitted by hand to the same speeds, as a function of the impact speed."""
     print(f"{'speed, m/s':>10}{'measured at once':>18}{'fitted':>8}{'e_c':>8}{'low':>8}{'high':>8}"
           f"{'by hand':>9}")
     case = read("V02")
@@ -62,7 +62,7 @@ def snooker():
         scene = scene_of(case, shot, "snooker", "e_c = 0.9")
         met = first_cushion(carom.simulate(scene))
         start = carom.simulate(scene).states(met)[0, 0, :2]
-        t = np.linspace(0.0, 0.005, 20)  # friction takes less than 0.01 m/s
+        t = np.linspace(0.0, 0.005, 20)  # friction costs less than 0.01 m/s
         fits = []
         for off in (0.0, -told["uncertainty"], told["uncertainty"]):
             xy = np.column_stack([start[0] + (told["value"] + off) * t, start[1] + 0.0 * t])

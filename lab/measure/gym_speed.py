@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Steps of the environments per CPU second beside plain batches of the same shots, in one process,
+"""Steps of the environments per CPU second compared with plain batches of the same shots, in one process,
 alternating.
 
 A step of a vector with the autoreset mode SameStep plays a shot on every table, judges it, and draws and
@@ -12,7 +12,7 @@ script.
 
     lab/measure/gym_speed.py [--package build/release/python] [--rounds 15] [--pooltool]
 
-Needs gymnasium: run it with build/python-env/bin/python, which tools/test makes.
+Needs gymnasium: run it with build/python-env/bin/python, created by tools/test.
 """
 import argparse
 import json
@@ -66,7 +66,7 @@ def vector(game, tables, rounds):
 
 
 def single(game, rounds):
-    """Steps per second of one environment, each with the reset after it."""
+    """Steps per second of one environment, each including the reset after it."""
     import carom.gym
 
     env = carom.gym.make_env(game)
@@ -84,8 +84,8 @@ def single(game, rounds):
 
 
 def over_pooltool(shots):
-    """Runs inside the environment: prints steps per second of a pooltool environment that does what Pot does,
-    after a warm-up that compiles it."""
+    """Runs inside the environment: prints steps per second of a pooltool environment equivalent to Pot, after
+    a warm-up that compiles it."""
     import numpy as np
     import pooltool as pt
 
@@ -111,7 +111,7 @@ def over_pooltool(shots):
         observed = np.array([ball.state.rvw[0, :2] for ball in system.balls.values()], np.float32)
         return observed, reward
 
-    for _ in range(WARM):  # rare events, such as a pocketed ball, are compiled when they first happen
+    for _ in range(WARM):  # rare events, such as a pocketed ball, are compiled on their first occurrence
         step(layout(), random.uniform(-1, 1, 5))
     cpu = timed(lambda: [step(layout(), random.uniform(-1, 1, 5)) for _ in range(shots)])
     print(json.dumps(shots / cpu))

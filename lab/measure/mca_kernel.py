@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Cycles, bottlenecks and register use of the kernel's loops by llvm-mca.
 
-Compiles one loop per file with gcc (and clang if it is given), cuts its body out of the assembly at the marks
-of kernel/src/loop_marks.h, and simulates it with the jump back to its start. Only the fall-through path is
-simulated: code that the compiler moved out of line (a step that falls back, a lane that flips) is left out.
+Compiles one loop per file with gcc (and clang if given), cuts its body out of the assembly at the marks of
+kernel/src/loop_marks.h, and simulates it with the jump back to its start. Only the fall-through path is
+simulated: code that the compiler moved out of line (a step that falls back, a lane that flips) is excluded.
 llvm-mca 14 supports znver1 to znver3 and, for AArch64, apple-m1.
 
     lab/measure/mca_kernel.py [--cxx g++] [--json FILE]
@@ -50,8 +50,8 @@ probe(const Model& m, State& s, Impulses& t, Stretch& stretch, double root_s) {{
     return ok;
 }} }}
 """
-SHORTEST = 15  # instructions; the shortest complete body, that of the packed march, has 17
-# name, source, level, and the steps of one impact that a pass of the loop takes
+SHORTEST = 15  # instructions; the shortest complete body, of the packed march, has 17
+# name, source, level, and the steps of one impact in a pass of the loop
 LOOPS = [
     ("baseline", PLAIN, "v3", 1),
     ("packed", SINGLE.format(header="ladder/packed_march.h", loop="PackedExact"), "v3", 1),
@@ -99,7 +99,7 @@ def way_back(lines, labels, at, begin, budget=80):
     """The instructions from line `at` to the mark at `begin`, following jumps; None if no short path leads
     there.
 
-    They contain the loop's test, and the register moves that carry a step's result into the next. Without
+    They contain the loop's test, and the register moves that carry a step's result into the next; without
     these, simulated steps would not wait for each other.
     """
     path = []

@@ -4,7 +4,7 @@ and a table.
 
     lab/measure/million_breaks.py FOLDER -o map.png
 
-FOLDER holds the shards that python -m carom.sweep makes from lab/notes/2026-11-million_breaks.json. Needs
+FOLDER contains the shards made by python -m carom.sweep from lab/notes/2026-11-million_breaks.json. Needs
 duckdb and matplotlib from PyPI.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 
 AIM, SPEED = (86.3, 90.9), (2.0, 11.0)
 COLUMNS, ROWS = 92, 45
-# Whether a ball falls but not the cue ball, whether the cue ball falls, and how many other balls fall.
+# Whether a ball but not the cue ball falls, whether the cue ball falls, and the number of other balls.
 BREAKS = """
 SELECT "cue.aim_deg" AS aim, "cue.speed" AS speed, events, duration,
        pocketed <> '' AND "cue.pocket" = '' AS success,

@@ -1,4 +1,4 @@
-// Runs one kernel variant on the five states of the paper, for tools that observe a whole process:
+// Runs one kernel variant on the paper's five states, for tools that observe a whole process:
 // one_variant NAME ISA CALLS [N]. Prints the number of steps and the shortest time of one impact [ns].
 #include <algorithm>
 #include <cstdio>

@@ -4,10 +4,10 @@
     carom_player_games positions league league 4000 eight_ball > positions.txt
     player_fit.py positions.txt
 
-Each line of the file: the rack, the features, and whether the player to shoot won. Logistic regression by
-Newton's method with a small ridge. Calibration is on the racks that a fit has not seen (five folds): ten bins
-of equal size, in each the mean chance and the share of wins. A file of `player_games chances` has a chance in
-place of the features: only its calibration is printed.
+Each line of the file has the rack, the features, and whether the player to shoot won. The fit is a logistic
+regression by Newton's method with a small ridge. Calibration uses racks that the fit has not seen (five
+folds): ten bins of equal size, each with the mean chance and the share of wins. A file of `player_games
+chances` has a chance in place of the features: only its calibration is printed.
 """
 import sys
 

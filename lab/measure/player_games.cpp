@@ -1,15 +1,15 @@
-// Lets the player of carom/games/player.h play racks, and prints what it reaches.
+// Lets the player of carom/games/player.h play racks, and prints its results.
 //
 //     player_games alone LEVEL [RACKS [GAME [FIRST]]]            from the break until the turn is lost
 //     player_games match LEVEL LEVEL [RACKS [GAME [FIRST]]]      the break alternates
 //     player_games positions LEVEL LEVEL [RACKS [GAME [FIRST]]]  the same; prints the features of every
 //         position, and whether the player to shoot wins, for player_fit.py
-//     player_games chances LEVEL LEVEL [RACKS [GAME [FIRST]]]    the same with the chance to win of the shot
-//     that is
-//         played, from fresh shots, in place of the features
+//     player_games chances LEVEL LEVEL [RACKS [GAME [FIRST]]]    the same; in place of the features prints
+//         the played shot's chance to win, from fresh shots
 //
-//     player_games breaks TABLE [RACKS [GAME [FIRST]]]    how often the break of a professional keeps the
-//     turn player_games ai3603 RACKS    against BasicAgentPro by the rules and errors of AI3603
+//     player_games breaks TABLE [RACKS [GAME [FIRST]]]    the share of a professional's breaks that keep the
+//         turn
+//     player_games ai3603 RACKS    against BasicAgentPro by the rules and errors of AI3603
 //
 // FIRST is the seed of the first rack.
 // LEVEL is one of kSkills, or NOISE:LOOK, such as 1:quick (in units of "fastfiz"), or pro: BasicAgentPro with
@@ -67,7 +67,7 @@ Skill skill_of(const std::string& text) {
 /// The printed row of a shot.
 enum class Tell { kNothing, kFeatures, kWins };
 
-/// The chance to win is told from this many fresh ones.
+/// Its chances to win come from 200 fresh shots.
 test::Adviser fresh_adviser(const Skill& skill) {
     return [skill](const State& state, const Scene& scene, std::uint64_t seed) {
         AdviceOptions options;

@@ -64,8 +64,7 @@ def residuals(image):
 
 
 class Counts:
-    """How often each byte occurs outside a run, and the runs: rows of (pixels, bytes per pixel, how
-    often)."""
+    """The count of each byte outside runs, and the runs: rows of (pixels, bytes per pixel, count)."""
 
     def __init__(self, image):
         rest = residuals(image)
@@ -85,8 +84,8 @@ class Counts:
         self.bytes = [pixel & 255, pixel >> 8 & 255, pixel >> 16]
 
     def with_lengths(self, lengths):
-        """How often each code is used if every run takes the shorter of its two forms; the bits that follow
-        the codes."""
+        """The use count of each code if every run has the shorter of its two forms, and the bits after the
+        codes."""
         as_bytes = self.length * sum(lengths[b] for b in self.bytes)
         as_run = lengths[RUNS + CODE_OF_RUN[self.length]] + EXTRA_OF_RUN[self.length] + 1
         written_out = as_bytes < as_run
@@ -125,7 +124,7 @@ def main():
         len(zlib.compress(np.pad(i.reshape(HEIGHT, -1), ((0, 0), (1, 0))).tobytes(), 1)) for _, i in frames]
     counts = [Counts(image) for _, image in frames]
     lengths = np.full(CODES, 8)
-    for _ in range(6):  # which form a run takes depends on the lengths, and they on it
+    for _ in range(6):  # a run's form depends on the lengths, and they on it
         shares = sum(c.with_lengths(lengths)[0] / size for c, size in zip(counts, level_1))
         # Every byte can occur: at least one in a million.
         lengths = code_lengths(np.where(usable, np.maximum(1e6 * shares / shares.sum(), 1), 0), LONGEST)
@@ -133,7 +132,7 @@ def main():
         own = code_lengths(np.where(usable, c.with_lengths(lengths)[0] + 0.01, 0), 15)
         print(f"{name:14} zlib {size:7}  these codes {c.bits(lengths) / 8 / size:.3f}  own "
               f"{c.bits(own) / 8 / size:.3f}")
-    # As the source has them: a length, and how many codes in a row have it.
+    # As in the source: a length, and the number of successive codes with it.
     changes = [0, *(np.flatnonzero(np.diff(lengths)) + 1), CODES]
     print(", ".join(f"{{{lengths[i]}, {j - i}}}" for i, j in zip(changes, changes[1:])))
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""How the shape of a corner pocket decides: share of balls that drop, over its mouth and the angle of its
+"""The effect of a corner pocket's shape: share of balls that drop, over its mouth and the angle of its
 facings, for three speeds. The picture and the table of lab/notes/2026-11-pocket_shape.md.
 
-A ball a metre from the corner is sent at it along its axis, and beside the rail, with an error of the aim.
+A ball a metre from the corner is aimed at it along its axis, and beside the rail, with an aiming error.
 
     lab/measure/pocket_shape.py [--carom build/release/carom] [--count 40000] -o pocket_shape.svg
 
@@ -16,7 +16,7 @@ import tempfile
 
 SPEEDS = (1.0, 2.5, 5.0)
 MOUTHS, ANGLES = (0.100, 0.130), (136.0, 150.0)
-#: The place of the ball, its aim, and the error of the aim [degrees].
+#: The ball's place, its aim, and the aiming error [degrees].
 LINES = {"along the axis": ((0.7071, 0.7071), 225.0, 1.5), "beside the rail": ((0.05, 1.0), 268.5, 1.0)}
 BINS = 7
 

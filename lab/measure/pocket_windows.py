@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How much room a pocket leaves: the tables of lab/notes/2026-11-pockets.md.
+"""The room that a pocket leaves: the tables of lab/notes/2026-11-pockets.md.
 
-A ball rolls at a corner from 0.6 m away, at several speeds and angles to the long rail, and its line is
-shifted sideways until it no longer drops on that visit. The window is the width [mm] of the lines that drop.
-The second table is for balls along the rail: how many of 24 drop (0 to 5 mm from the rail, from 1 degree away
-from it to 2 degrees into it).
+A ball rolls at a corner from 0.6 m away, at several speeds and angles to the long rail; its line is shifted
+sideways until it no longer drops on that visit. The window is the width [mm] of the lines that drop. The
+second table is for balls along the rail: the number of 24 that drop (0 to 5 mm from the rail, from 1 degree
+away from it to 2 degrees into it).
 
     lab/measure/pocket_windows.py [--carom build/release/carom] [--table nine_foot] [--pocket fall]
                                   [--step 1.0]
@@ -24,7 +24,7 @@ def scene(table, pocket, x, y, angle_deg, speed):
     R = RADIUS.get(table, 0.028575)
     vx, vy = -speed * math.sin(math.radians(angle_deg)), -speed * math.cos(math.radians(angle_deg))
     balls = "preset = \"snooker\"" if table == "snooker" else ""
-    # A single visit: the run ends before the ball comes back from another rail.
+    # A single visit: the run ends before the ball returns from another rail.
     return (f'[table]\npreset = "{table}"\n[balls]\n{balls}\n[[ball]]\nposition = [{x!r}, {y!r}]\n'
             f'velocity = [{vx!r}, {vy!r}]\n'
             f'spin = [{-vy / R!r}, {vx / R!r}, 0.0]\n[physics]\npocket = "{pocket}"\n[stop]\n'

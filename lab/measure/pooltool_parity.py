@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Measures how far carom and pooltool 0.6.0 agree on the same Systems, and whether pooltool plays what
-carom.io.pooltool.save writes.
+"""Measures the agreement of carom and pooltool 0.6.0 on the same Systems, and whether pooltool plays files
+written by carom.io.pooltool.save.
 
 Plays random shots of two and three balls with pooltool and saves them as JSON. Then compares, with the Python
 package in the build folder, single impacts (the file has the states before and after each), whole shots after
@@ -47,7 +47,7 @@ def play(folder, count):
 
 
 def continuize(folder):
-    """Runs with pooltool: the largest distance between its dense history and the states that carom wrote."""
+    """Runs with pooltool: the largest distance between its dense history and the states written by carom."""
     import numpy as np
     import pooltool as pt
 
@@ -102,7 +102,7 @@ def impacts(system):
             normal /= np.linalg.norm(normal)
             normal *= np.sign(normal @ (before[0, 0, :2] - [x1, y1]))
             params = agents[0]["initial"]["params"]
-            # pooltool's normal at a jaw points from the centre of its circle, and its ball stands 1e-6 m off.
+            # pooltool's normal at a jaw points from the centre of its circle, and its ball is 1e-6 m away.
             lever = R + 1e-6 + (0.0 if straight else nose["radius"])
             for name, nose_height in (
                 ("cushion", height), ("cushion, normal as in pooltool", R + (height - R) * R / lever)

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Measures again what the lab notes about accuracy and margins show: their figures, and the tables between
+"""Repeats the measurements of the lab notes about accuracy and margins: their figures, and the tables between
 the marks <!-- begin NAME --> and <!-- end NAME -->.
 
-Writes only notes of lab/notes/. To write new notes, copy the old ones and name the copies with --accuracy and
---margins, since a note is not changed later. Best run on an idle machine.
+Writes only notes of lab/notes/. A note is never changed later: for new notes, copy the old ones and name the
+copies with --accuracy and --margins. Best run on an idle machine.
 
     cmake --build --preset release --target carom_lab_program carom_detectors
     lab/measure/renew_reports.py [--quick] [--only NAME ...]
 
-Takes about a quarter of an hour, or about three minutes with --quick, which measures less. Needs
+Runs for about a quarter of an hour, or about three minutes with --quick, which measures less. Needs
 python3-matplotlib.
 """
 import argparse
@@ -26,7 +26,7 @@ NOTE_IMAGES = ROOT / "lab/notes/images"
 
 
 def image(name):
-    """The path of a figure, which is among the images of docs if a page there shows it too."""
+    """The path of a figure, which is among the images of docs if a page there also shows it."""
     folder = DOC_IMAGES if (DOC_IMAGES / name).exists() else NOTE_IMAGES
     return folder / name
 

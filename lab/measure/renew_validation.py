@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Rewrites what docs/reference/validation.md shows of `carom-lab validate`.
+"""Rewrites the results of `carom-lab validate` in docs/reference/validation.md.
 
-That is its table between the marks <!-- begin summary --> and <!-- end summary -->, and its figures in
+These are its table between the marks <!-- begin summary --> and <!-- end summary -->, and its figures in
 docs/images. They are the same on every machine.
 
     cmake --build --preset release --target carom_lab_program
     lab/measure/renew_validation.py [--carom build/release/carom-lab] [--check]
 
---check writes nothing, and fails if the page or a figure differs from what the program prints.
+--check writes nothing, and fails if the page or a figure differs from the program's output.
 """
 import argparse
 import json
@@ -74,7 +74,7 @@ def main():
         for case in FIGURES:
             rows, figure = validate(args.carom, folder, case)
             new[f"docs/images/validation_{case or 'all'}.svg"] = figure
-    # The last ones are all rows.
+    # The last result has all rows.
     page, found = re.subn(r"(<!-- begin summary -->\n).*?(<!-- end summary -->)",
                           lambda m: m[1] + summary(rows) + m[2], (ROOT / PAGE).read_text(), flags=re.S)
     if found != 1:

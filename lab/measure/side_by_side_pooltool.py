@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Times the original in numba beside carom's impact, in one run.
+"""Times the numba original and carom's impact in one run.
 
-Makes a temporary virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with what its
-impact function imports, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the
+Makes a temporary virtual environment, installs pooltool-billiards 0.6.0 (PyPI, --no-deps) with the imports of
+its impact function, and times pooltool.physics.resolve.ball_ball.frictional_mathavan.collide_balls on the
 paper's five states, alternating with `carom-lab bench kernel`. Needs PyPI; neither the build nor a test needs
 this script.
 
@@ -27,9 +27,8 @@ def time_original():
     import time
     import types
 
-    # The package imports its graphical interface, which this one module does not need. So packages are
-    # imported without their __init__, and dummies stand for names that only the classes around the function
-    # use.
+    # The package imports its graphical interface, which this module does not need. So packages are imported
+    # without their __init__, and dummies replace names used only by the classes around the function.
     class Name(type):
         def __getattr__(cls, name):
             if name.startswith("__"):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Times whole shots beside pooltool 0.6.0, in one process, alternating shot by shot.
+"""Times whole shots of carom and pooltool 0.6.0 in one process, alternating shot by shot.
 
 Makes a temporary virtual environment and installs pooltool-billiards 0.6.0 (PyPI, --no-deps: the panda3d that
-it requires is not on PyPI) with what it imports. Plays breaks and random positions of two, 8, 12 and 16 balls
+it requires is not on PyPI) with its imports. Plays breaks and random positions of two, 8, 12 and 16 balls
 with pooltool.simulate and, from the Python package in the build folder, with carom.simulate (plan and record
 each time) and carom.simulate_many (one thread). Both play the same positions, aims and speeds on the
 seven-foot table with the same coefficients and models: inelastic impacts with Alciatore's friction, Stronge's
@@ -78,7 +78,7 @@ def one(shot):
 
 
 def many(shots):
-    """Least seconds a shot of five runs of a batch with all of them, forty times over."""
+    """Least seconds per shot over five runs of a batch with all of them, repeated forty times."""
     import carom
     import numpy as np
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The cost of sharded sweeps: CPU time beside the engine's batch and `carom sweep`, bytes per row, memory of
-the client.
+"""The cost of sharded sweeps: CPU time compared with the engine's batch and `carom sweep`, bytes per row,
+memory of the client.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 

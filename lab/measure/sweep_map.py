@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A map of a sweep: how often a condition holds, over two of the varied values.
+"""A map of a sweep: the share of shots for which a condition holds, over two of the varied values.
 
     lab/measure/sweep_map.py bank.csv cue.aim_deg cue.speed 1.pocket=p2 -o map.png
 

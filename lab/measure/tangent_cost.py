@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Instructions of the derivatives of a shot, in shots: the table of lab/notes/2026-11-tangents.md.
 
-Counted by callgrind, as the difference of eleven rounds and one. Needs valgrind, which knows AVX2 and not
-AVX-512: CAROM_ISA is v3 unless it is set. Builds the target carom_tangent_probe.
+Counted by callgrind, as the difference of eleven rounds and one. Needs valgrind, which supports AVX2 but not
+AVX-512: CAROM_ISA defaults to v3. Builds the target carom_tangent_probe.
 
     lab/measure/tangent_cost.py [--build build/release] [--functions 0]
 """

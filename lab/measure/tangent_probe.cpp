@@ -1,4 +1,4 @@
-// Plays a scene, or plays it and takes its derivatives, for lab/measure/tangent_cost.py:
+// Plays a scene, optionally with its derivatives, for lab/measure/tangent_cost.py:
 // tangent_probe SCENE shot|plan|tangents|margins ROUNDS KEY...
 #include <cstdio>
 #include <cstdlib>

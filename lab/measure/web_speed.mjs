@@ -1,7 +1,7 @@
 #!/usr/bin/env node
-// How much longer shots take in WebAssembly than in the native engine: batches of the same shots on one
+// Compares the speed of shots in WebAssembly and in the native engine: batches of the same shots on one
 // thread, in turn, in the Python module, which calls the engine once per batch, in node, and in headless
-// Chromium. The fewest microseconds of the thread's CPU time per shot, and ratios; the last column is
+// Chromium. Prints the fewest microseconds of the thread's CPU time per shot, and ratios; the last column is
 // simulate() in node, which a page calls for each change. CAROM_NPM names another package, such as one
 // without SIMD.
 //
@@ -78,7 +78,7 @@ for (const [name, shots] of CASES) {
     const before = process.cpuUsage();
     carom.simulateMany(scene, {"cue.aim_deg": aims});
     const {user, system} = process.cpuUsage(before), there = await inChromium(text, shots);
-    if (round < 2) continue;  // all are warm by then
+    if (round < 2) continue;  // warm-up
     [here, (user + system) / 1e6, there].forEach((seconds, k) => times[k].push(seconds));
   }
   let alone = Infinity;

@@ -19,7 +19,7 @@ namespace {
 
 using namespace test;
 
-TEST(LogSlope, IsThatOfAPowerLaw) {
+TEST(LogSlope, IsTheExponentOfAPowerLaw) {
     std::vector<double> x, y;
     for (double n = 10.0; n < 1e6; n *= 3.0) {
         x.push_back(n);
@@ -39,7 +39,7 @@ KernelAccuracyRow row(const char* method, double ns, double median, double worst
     return r;
 }
 
-// The tables of growth, which take minutes to measure.
+// Growth tables, which take minutes to measure.
 TEST(BenchTables, ShowGrowth) {
     ShotBench shots;
     shots.growth = {
@@ -58,13 +58,13 @@ TEST(BenchTables, ShowGrowth) {
         << growth;
 }
 
-TEST(Reach, TakesTheCheapestSettingThatDoes) {
+TEST(Reach, SelectsTheCheapestSufficientSetting) {
     std::vector<KernelAccuracyRow> rows = {row("a", 5.0, 1e-4, 1e-2), row("a", 50.0, 1e-6, 1e-3),
                                            row("a", 40.0, 1e-7, 1e-5), row("b", 9.0, 1e-13, 1e-10),
                                            row("formula", 1.0, 0.0, 0.0)};
     rows.back().other_model = true;
     const std::vector<KernelReach> reach = reach_of(rows);
-    ASSERT_EQ(reach.size(), 8u);  // two methods, four errors; the formula solves something else
+    ASSERT_EQ(reach.size(), 8u);  // two methods, four errors; the formula solves another problem
     EXPECT_EQ(reach[0].error, 1e-3);
     EXPECT_EQ(reach[0].ns_median, 5.0);
     EXPECT_EQ(reach[0].ns_all, 40.0);
@@ -76,7 +76,7 @@ TEST(Reach, TakesTheCheapestSettingThatDoes) {
     EXPECT_TRUE(std::isinf(reach[7].ns_all));
 }
 
-TEST(Box2d, ABallRollsAsFarAsRollingFrictionLetsIt) {
+TEST(Box2d, RollingFrictionLimitsTheDistance) {
     Scene scene = empty_scene();
     add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0, rolling_spin(1.0, 0.0, scene.balls.R));
     const Record record = simulate(plan_of(scene));
@@ -104,7 +104,7 @@ TEST(Box2d, HitsBouncesAndPockets) {
     EXPECT_EQ(run_box2d(simulate(plan_of(pocketed)), 240.0).pockets[0], 0);
 }
 
-TEST(Box2d, NothingMovesWhereNothingMoves) {
+TEST(Box2d, RestingBallsStay) {
     Scene scene = empty_scene();
     add_ball(scene, "1", 0.25, 0.5);
     const Box2dOutcome shot = run_box2d(simulate(plan_of(scene)), 60.0);

@@ -1,4 +1,4 @@
-// The code for hard discs that carom-lab bench discs compares with.
+// The hard-disc code that carom-lab bench discs compares with carom.
 #include "bench/discs.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace carom::tools {
 namespace {
 
-// Two discs whose centres touch at a distance of 0.2 in a box of 2 x 1: they meet in the middle after
-// (1 - 0.2) / 2 s, exchange their velocities, and are at the borders 0.4 + 0.5 s later.
+// Two discs that collide at a centre distance of 0.2 in a box of 2 x 1 meet in the middle after (1 - 0.2) / 2
+// s, exchange their velocities, and reach the borders 0.4 + 0.5 s later.
 TEST(HardDiscs, MeetAndReturn) {
     HardDiscs discs({{0.5, 0.5}, {1.5, 0.5}}, {{1.0, 0.0}, {-1.0, 0.0}}, 0.2, {2.0, 1.0});
     EXPECT_NEAR(discs.run(1), 0.4, 1e-15);
@@ -19,7 +19,7 @@ TEST(HardDiscs, MeetAndReturn) {
     EXPECT_EQ(discs.collisions(), 4);
 }
 
-// The borders of the cells change nothing, and the events come one after the other as in carom.
+// Cell borders change nothing, and the events have the same order as in carom.
 TEST(HardDiscs, PlayTheSameGasAsCarom) {
     for (const int n : {16, 100}) {
         const Plan plan = make_plan(gas_scene(n, 4L * n, 1), kernel::Isa::kFastest);

@@ -1,4 +1,5 @@
-// Which forms of the kernel carom-lab bench kernel times: all, or the requested ones. Nothing is timed here.
+// The forms of the kernel that carom-lab bench kernel times: all, or the requested ones. Nothing is timed
+// here.
 #include "bench/kernel.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ using Form = std::tuple<std::string, std::string, kernel::Isa>;  // name, kind, 
 
 class BenchKernel : public testing::Test {
   protected:
-    // The tests choose the instruction set, not the shell that starts them.
+    // The tests choose the instruction set, not the calling shell.
     void SetUp() override { ::unsetenv("CAROM_ISA"); }
 };
 
@@ -45,7 +46,7 @@ TEST_F(BenchKernel, TimesEveryVariantAndEveryTolerance) {
         EXPECT_TRUE(expected.count({name, "single", kernel::Isa::kScalar})) << name;
 }
 
-TEST_F(BenchKernel, TimesWhatIsAskedFor) {
+TEST_F(BenchKernel, TimesTheRequestedForms) {
     const auto all = forms({});
     const auto those = [&all](auto wanted) {
         std::multiset<Form> some;
@@ -65,7 +66,7 @@ TEST_F(BenchKernel, TimesWhatIsAskedFor) {
     EXPECT_EQ(forms({"tolerance 1e-3"}).size(), 2u);
 }
 
-TEST_F(BenchKernel, ThePrintedFormsHaveTheirNames) {
+TEST_F(BenchKernel, ThePrintedFormsHaveNames) {
     KernelBench bench;
     for (const TimedKernel& s : timed_kernels({})) bench.rows.push_back(s.row);
     for (KernelRow& row : bench.rows) bench.growth.push_back({row.name, row.isa, 100, 1.0, 2.0});

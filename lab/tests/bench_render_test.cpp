@@ -8,7 +8,7 @@
 namespace carom::tools {
 namespace {
 
-TEST(BenchRender, NeedThreeFrames) {
+TEST(BenchRender, NeedsThreeFrames) {
     EXPECT_THROW(bench_render(Record(), 2, render::Backend::kOsmesa), render::RenderError);
 }
 

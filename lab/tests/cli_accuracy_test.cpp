@@ -1,4 +1,4 @@
-// carom-lab accuracy: what it prints and writes. No test asserts a measured time; errors are repeatable.
+// carom-lab accuracy: its output and files. No test asserts a measured time; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ TEST(CliAccuracyKernel, TableCsvAndPlot) {
     EXPECT_EQ(read_file(folder.file("a.svg")).substr(0, 4), "<svg");
 }
 
-TEST(CliLabAccuracy, ASceneBesideBox2dWithPlotAndPage) {
+TEST(CliLabAccuracy, ASceneComparedWithBox2dAsPlotAndPage) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene);
     const ProcessResult result = carom_lab(

@@ -1,4 +1,4 @@
-// carom-lab bench shot: what it prints. No test asserts a measured time; events and bytes are counts.
+// carom-lab bench shot: its output. No test asserts a measured time; events and bytes are counts.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-TEST(CliBenchShot, RowsAreWhole) {
+TEST(CliBenchShot, RowsAreComplete) {
     const ProcessResult result = carom_lab_isa(
         "scalar", {"bench", "shot", "--json", "--seeds", "2", "--repeat", "1", "--events", "200"});
     ASSERT_EQ(result.status, 0) << result.err;
@@ -24,7 +24,7 @@ TEST(CliBenchShot, RowsAreWhole) {
     for (const Json& row : json.at("rows")) {
         names.insert(row.at("name"));
         const auto value = [&row](const char* key) { return row.at(key).get<double>(); };
-        // Relations that hold whatever the times; the median of two seeds is their mean.
+        // Relations that hold for any times; the median of two seeds is their mean.
         EXPECT_LE(value("cost_least"), value("cost_in_impacts"));
         EXPECT_LE(value("cost_in_impacts"), value("cost_most"));
         EXPECT_LE(value("ns_min"), value("ns_median"));
@@ -38,7 +38,7 @@ TEST(CliBenchShot, RowsAreWhole) {
             EXPECT_GT(value("events"), 4.0);
             continue;
         }
-        // Parts of an event that every shot has.
+        // Parts present in every shot's events.
         for (const char* part : {"detect_ns", "resolve_ns", "kernel_ns", "queue_ns"})
             EXPECT_GT(value(part), 0.0) << row.at("name") << " " << part;
         const bool compliant = row.at("name") == "eight_ball_break compliant";

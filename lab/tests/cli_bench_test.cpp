@@ -1,4 +1,4 @@
-// carom-lab bench kernel: what it prints. No test asserts a measured time; counts and differences are the
+// carom-lab bench kernel: its output. No test asserts a measured time; counts and differences are the
 // kernel's.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Two forms; bench_kernel_test checks the names of all.
-TEST(CliBench, KernelRowsAreWhole) {
+TEST(CliBench, KernelRowsAreComplete) {
     const ProcessResult result =
         carom_lab_isa("scalar", {"bench", "kernel", "--json", "--random", "40", "--repeat", "2", "--only",
                                  "march reduced", "--only", "tolerance 1e-6", "--only", "march baseline"});
@@ -32,14 +32,14 @@ TEST(CliBench, KernelRowsAreWhole) {
         const bool march = names.back().rfind("march", 0) == 0;
         EXPECT_EQ(row.at("isa"), "scalar");
         EXPECT_EQ(row.at("portable_bits"), true);
-        // Relations that hold whatever the times.
+        // Relations that hold for any times.
         EXPECT_LE(value(row, "ns_min"), value(row, "ns_median"));
         EXPECT_NEAR(value(row, "ratio") * value(row, "ns_min"), baseline, 1e-9 * baseline);
         EXPECT_NEAR(value(row, "ratio_random") * value(row, "ns_random_min"),
                     value(json, "baseline_random_ns"), 1e-9 * value(json, "baseline_random_ns"));
         EXPECT_NEAR(value(row, "cycles_per_step") * value(row, "steps") * cycle, value(row, "ns_min"),
                     1e-9 * value(row, "ns_min"));
-        // The march is a step of the approach speed / N from the converged solution, plus the effect of
+        // The march is within a step, the approach speed / N, of the converged solution, plus the effect of
         // sticking.
         EXPECT_LT(value(row, "error_five"), march ? 2e-3 : 1e-6);
         EXPECT_LE(value(row, "error_random_median"), value(row, "error_random_max"));
@@ -93,7 +93,7 @@ TEST(CliBench, PrintsATable) {
     EXPECT_EQ(result.out.find("growth"), std::string::npos);
 }
 
-TEST(CliBench, AnUnknownFormIsRefusedWithTheNamesThereAre) {
+TEST(CliBench, AnUnknownFormIsRefusedWithTheKnownNames) {
     for (const char* name : {"march nothing", "march reduced stat", "tolerance 1e-1", "", "fma"}) {
         const ProcessResult result =
             carom_lab_isa("scalar", {"bench", "kernel", "--only", "march baseline", "--only", name});
@@ -114,7 +114,7 @@ TEST(CliBench, RefusesBadUsage) {
     EXPECT_EQ(carom_lab_isa("v5", {"bench", "kernel"}).status, 2);
 }
 
-TEST(CliBenchRender, GivesItsRows) {
+TEST(CliBenchRender, PrintsItsRows) {
     const TemporaryFolder folder;
     const std::string scene_ = folder.write("s.toml", kSmallScene);
     EXPECT_EQ(carom_lab({"bench", "render", scene_, "--frames", "2"}).status, 2);

@@ -1,4 +1,4 @@
-// carom-lab margin: what it prints and writes beyond `carom margin`.
+// carom-lab margin: output and files beyond `carom margin`.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -40,7 +40,7 @@ TEST_F(CliLabMargin, ATraceHasEveryFrameAndEvent) {
     EXPECT_GT(frames, 20);
 }
 
-TEST_F(CliLabMargin, SweepGoesThroughAccuracyAndFrameRate) {
+TEST_F(CliLabMargin, SweepVariesAccuracyAndFrameRate) {
     ProcessResult result =
         carom_lab({"margin", scene_, "--sweep", "--no-render", "--json", "--csv", folder_.file("s.csv")});
     ASSERT_EQ(result.status, 0) << result.err;

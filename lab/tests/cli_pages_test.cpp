@@ -14,7 +14,7 @@ TEST(LabPages, ABrowserShowsReports) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("small.toml", kSmallScene);
     Json reports = Json::array();
-    // `column`: one with numbers, in the last table.
+    // `column`: a column of numbers in the last table.
     const auto make = [&](const std::string& name, int column, std::vector<std::string> command) {
         const std::string file = folder.file(name + ".html");
         command.insert(command.end(), {"--html", file});

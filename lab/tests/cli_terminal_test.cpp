@@ -1,4 +1,4 @@
-// Long measurements at a terminal: a progress line that moves, and Ctrl-C that ends them.
+// Long measurements at a terminal: a moving progress line, and Ctrl-C.
 #include "tools/on_a_terminal.h"
 
 namespace carom::test {
@@ -9,7 +9,7 @@ class LabOnATerminal : public LongWork {
     LabOnATerminal() : LongWork(CAROM_LAB_PROGRAM) {}
 };
 
-TEST_F(LabOnATerminal, EveryMeasurementMoves) {
+TEST_F(LabOnATerminal, EveryMeasurementShowsProgress) {
     moves_and_stops({"margin", kBreak, "--sweep", "--no-render", "--repeat", "1000"}, "margin --sweep: [");
     moves_and_stops({"accuracy", "kernel", "--count", "1000000"}, "accuracy kernel, converged solutions: [");
     moves_and_stops({"bench", "kernel", "--random", "1", "--repeat", "1000", "--no-growth"},

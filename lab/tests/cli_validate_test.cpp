@@ -1,5 +1,4 @@
-// carom-lab validate: what it prints and writes. Whether the
-// numbers are as claimed is tested in validate_test.cpp.
+// carom-lab validate: its output and files. validate_test.cpp checks the claims about the numbers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-TEST(CliValidate, JsonHasARowANumberAndVariant) {
+TEST(CliValidate, JsonHasARowPerNumberAndVariant) {
     const ProcessResult result = carom_lab({"validate", "V2", "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
@@ -44,7 +43,7 @@ TEST(CliValidate, JsonHasARowANumberAndVariant) {
 }
 
 // A number that misses is a finding, not a failure.
-TEST(CliValidate, ForPeople) {
+TEST(CliValidate, TheSummaryIsReadable) {
     const ProcessResult result = carom_lab({"validate", "V2"});
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
@@ -55,14 +54,14 @@ TEST(CliValidate, ForPeople) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
 }
 
-TEST(CliValidate, ASharePlaysItsShotsTheSameWayEachTime) {
+TEST(CliValidate, ASharePlaysTheSameShotsEachTime) {
     const ProcessResult first = carom_lab({"validate", "V19", "--json"});
     ASSERT_EQ(first.status, 0) << first.err;
     EXPECT_EQ(first.out, carom_lab_isa("scalar", {"validate", "V19", "--json"}).out);
     const Json row = Json::parse(first.out).at("cases").at(0);
     EXPECT_TRUE(row.at("ball").is_null());
     EXPECT_EQ(row.at("quantity"), "share");
-    EXPECT_GT(row.at("uncertainty").get<double>(), 0.25);  // that of the count, and that of 300 shots
+    EXPECT_GT(row.at("uncertainty").get<double>(), 0.25);  // of the count, and of 300 shots
 }
 
 TEST(CliValidate, TableAndFiguresAsFiles) {
@@ -81,7 +80,7 @@ TEST(CliValidate, TableAndFiguresAsFiles) {
     }
 }
 
-TEST(CliValidate, AnUnknownCaseListsThem) {
+TEST(CliValidate, AnUnknownCaseListsAllCases) {
     const ProcessResult result = carom_lab({"validate", "V99"});
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(result.out, "");

@@ -18,7 +18,7 @@ Record played(const std::string& text) {
     return simulate(make_plan(parse_scene(text, "a test"), kernel::Isa::kFastest));
 }
 
-/// The paths of some name in a plot, without the dots at their ends.
+/// The named paths in a plot, without the dots at their ends.
 std::vector<Series> ways(const Plot& plot, bool dashed) {
     std::vector<Series> found;
     for (const Series& series : plot.series)
@@ -26,7 +26,7 @@ std::vector<Series> ways(const Plot& plot, bool dashed) {
     return found;
 }
 
-// Up the table, then to the right: on paper that is to the right, then down.
+// Up the table, then right; on paper right, then down.
 TEST(WaysPlot, IsTurnedNotMirroredAndToScale) {
     const std::string up = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0, 0.4]\n",
                       right = "[[ball]]\nid = \"a\"\nposition = [0.3, 0.4]\nvelocity = [0.4, 0]\n";
@@ -47,7 +47,7 @@ TEST(WaysPlot, IsTurnedNotMirroredAndToScale) {
     EXPECT_NEAR(dashed.points.back().first, 0.4, 1e-12);
     EXPECT_NEAR(dashed.points.back().second, -0.3 - length, 1e-12);
     EXPECT_NEAR(kPlotWidth / (*plot.x.high - *plot.x.low), kPlotHeight / (*plot.y.high - *plot.y.low), 1e-9);
-    // The whole table is in the frame, and the marks say x.
+    // The whole table is in the frame, and the marks state x.
     EXPECT_LT(*plot.x.low, 0.0);
     EXPECT_GT(*plot.x.high, 2.54);
     EXPECT_LT(*plot.y.low, -1.27);
@@ -57,7 +57,7 @@ TEST(WaysPlot, IsTurnedNotMirroredAndToScale) {
     EXPECT_EQ(plot_svg(plot).find(">-0<"), std::string::npos);
 }
 
-TEST(WaysPlot, ColoursGoByName) {
+TEST(WaysPlot, ColoursDependOnNames) {
     const auto two = [](const char* first, const char* second) {
         return played(std::string("[[ball]]\nid = \"") + first +
                       "\"\nposition = [0.3, 0.4]\n[[ball]]\nid = \"" + second +
@@ -70,11 +70,11 @@ TEST(WaysPlot, ColoursGoByName) {
     EXPECT_NE(a[0].colour, a[1].colour);
     EXPECT_EQ(a[0].colour, b[1].colour);
     EXPECT_EQ(a[1].colour, b[0].colour);
-    // A ball that A does not have is grey, like the cushions.
+    // A ball missing from A is grey, like the cushions.
     EXPECT_EQ(ways(ways_plot(two("a", "b"), "", two("b", "c"), ""), true).size(), 1u);
 }
 
-TEST(WaysPlot, TakesAnEndlessClothWithOneBallAtRest) {
+TEST(WaysPlot, AcceptsAnEndlessClothWithOneRestingBall) {
     const Record rest = played("[table]\ncushion = []\n[[ball]]\nid = \"a\"\nposition = [3, 4]\n");
     const std::string svg = plot_svg(ways_plot(rest, "a", rest, "b"));
     EXPECT_EQ(svg.find("nan"), std::string::npos);

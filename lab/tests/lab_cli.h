@@ -9,7 +9,6 @@
 
 namespace carom::test {
 
-/// Runs the built carom-lab.
 inline ProcessResult carom_lab(std::vector<std::string> arguments, ProcessOptions options = {}) {
     return run_built(CAROM_LAB_PROGRAM, std::move(arguments), std::move(options));
 }

@@ -1,4 +1,4 @@
-// H22 to H31, and everything else that broke the published code, through every variant on every instruction
+// H22 to H31, and all other inputs that broke the published code, through every variant on every instruction
 // set.
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ void check(const HardImpact& hard, const ImpactResult& out, const ImpactResult& 
             const double before = energy(in.ball1.v, in.ball1.w, in.ball2.v, in.ball2.w, in.params.R);
             const double after = energy(out.v1, out.w1, out.v2, out.w2, in.params.R);
             EXPECT_TRUE(std::isfinite(after));
-            // H24: by construction a march gains energy at small N, x4.7 at N = 1; 1e-6 for the lossy
+            // H24: by construction a march gains energy at small N, x4.7 at N = 1; 1e-6 is for the lossy
             // variant.
             EXPECT_LE(after, before * (1.0 + 5.0 / hard.n + 1e-6));
             break;
@@ -85,7 +85,7 @@ TEST_P(HardVariant, SurvivesEveryHardInput) {
 }
 
 /// Ball 1 spins so fast that friction presses ball 2 onto the cloth during the whole impact. The cloth then
-/// takes mu_s mu_b of the 2 by which a step drives the balls apart.
+/// absorbs mu_s mu_b of the 2 by which a step drives the balls apart.
 Impact held_together(double mu_s) {
     Impact impact{};
     impact.ball1 = {{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {-1e6, 0.0, 0.0}};
@@ -94,8 +94,8 @@ Impact held_together(double mu_s) {
     return impact;
 }
 
-// A long impact outlasts what a batch does in step; one that never ends is stopped by the limit of steps.
-TEST_P(HardVariant, ImpactsThatFrictionProlongsEndOrAreStopped) {
+// A long impact outlasts a batch's common steps; an endless one is stopped by the limit of steps.
+TEST_P(HardVariant, ImpactsProlongedByFrictionEndOrAreStopped) {
     const std::vector<Impact> impacts = {held_together(0.4), held_together(0.6)};
     constexpr int kN = 100;
     const auto expected = run_variant(baseline_variant(), impacts, kN, ClothSlip::kConsistent);
@@ -133,8 +133,8 @@ TEST_P(HardVariant, PowersOfTwoScale) {
     EXPECT_GE(same, 39);
 }
 
-// A lane that cannot be computed is flagged and does not affect the others.
-TEST_P(HardVariant, BadLanesHoldUpNobody) {
+// A lane that cannot be computed is flagged without affecting the others.
+TEST_P(HardVariant, BadLanesDoNotAffectOthers) {
     if (GetParam().batch == nullptr) return;
     const std::vector<Impact> good = reference::random_impacts(8, 40);
     std::vector<Impact> mixed;

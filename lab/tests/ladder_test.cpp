@@ -54,7 +54,7 @@ std::vector<Impact> five_states() {
     return impacts;
 }
 
-TEST_P(EveryVariant, DoesTheBaselinesStepsOnTheFiveStates) {
+TEST_P(EveryVariant, FollowsTheBaselineOnTheFiveStates) {
     const std::vector<Impact> impacts = five_states();
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         const auto expected = run_variant(baseline_variant(), impacts, 1000, slip);
@@ -68,7 +68,7 @@ TEST_P(EveryVariant, DoesTheBaselinesStepsOnTheFiveStates) {
     }
 }
 
-TEST_P(EveryVariant, DoesTheBaselinesStepsOnRandomImpacts) {
+TEST_P(EveryVariant, FollowsTheBaselineOnRandomImpacts) {
     const std::vector<Impact> impacts = random_impacts(1, 2000);
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         const auto expected = run_variant(baseline_variant(), impacts, 1000, slip);
@@ -78,7 +78,7 @@ TEST_P(EveryVariant, DoesTheBaselinesStepsOnRandomImpacts) {
             ASSERT_EQ(got[i].status, ImpactStatus::kOk);
             const double off = difference(got[i], expected[i], impacts[i].params.R) /
                                approach_speed(impacts[i].ball1, impacts[i].ball2);
-            // If the last step differs, the result is off by up to that step.
+            // If the last step differs, the result differs by up to that step.
             EXPECT_LE(off, got[i].steps == expected[i].steps ? GetParam().bound_random : 3e-3)
                 << "impact " << i;
             same += got[i].steps == expected[i].steps;
@@ -99,7 +99,8 @@ TEST_P(EveryVariant, FollowsTheBaselineAtOtherN) {
             ++same;
             EXPECT_LE(
                 difference(got[i], expected[i], impacts[i].params.R),
-                // At small N a step is a large share of the slip, and rounding decisions weigh as much.
+                // At small N a step is a large share of the slip, and so are differences from rounding
+                // decisions.
                 (GetParam().bound_random + 1e-12 * n) * approach_speed(impacts[i].ball1, impacts[i].ball2))
                 << "impact " << i << ", N = " << n;
         }
@@ -107,7 +108,7 @@ TEST_P(EveryVariant, FollowsTheBaselineAtOtherN) {
     }
 }
 
-TEST_P(PortableVariant, GivesTheSameBitsAsScalar) {
+TEST_P(PortableVariant, HasTheBitsOfScalar) {
     const Variant* scalar = nullptr;
     for (const Variant& variant : ladder())
         if (std::string(variant.name) == GetParam().name && variant.isa == Isa::kScalar) scalar = &variant;
@@ -119,8 +120,8 @@ TEST_P(PortableVariant, GivesTheSameBitsAsScalar) {
         EXPECT_TRUE(same_bits(got[i], expected[i])) << "impact " << i;
 }
 
-// Batches of any length, and an impact's result does not depend on its neighbours.
-TEST_P(BatchVariant, BatchesOfAnyLength) {
+// Batches may have any length, and an impact's result does not depend on its neighbours.
+TEST_P(BatchVariant, BatchesMayHaveAnyLength) {
     const std::vector<Impact> impacts = random_impacts(4, 67);
     const auto whole = run_variant(GetParam(), impacts, 200, ClothSlip::kConsistent);
     for (std::size_t length : {0u, 1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 15u, 16u, 17u, 31u, 33u, 66u}) {
@@ -135,7 +136,7 @@ TEST_P(BatchVariant, BatchesOfAnyLength) {
         EXPECT_TRUE(same_bits(got[impacts.size() - 1 - i], whole[i])) << "impact " << i;
 }
 
-// Slows the approach to `share` of the fastest speed: a glancing impact, in which rounding weighs most.
+// Slows the approach to `share` of the fastest speed: a glancing impact, in which rounding matters most.
 void make_glancing(Impact& impact, double share) {
     Ball &b1 = impact.ball1, &b2 = impact.ball2;
     const double dx = b2.r[0] - b1.r[0], dy = b2.r[1] - b1.r[1], d = std::hypot(dx, dy);
@@ -146,7 +147,7 @@ void make_glancing(Impact& impact, double share) {
     for (int k = 0; k < 2; ++k) b1.v[k] += (share * fastest - approach) * n[k];
 }
 
-// In lanes or alone: the bits of the kernel's summed march, whose bound is tested elsewhere.
+// In lanes or alone: the bits of the kernel's summed march, whose bound another test checks.
 TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
     std::vector<Impact> impacts = random_impacts(21, 4000);
     Generator rng(22);
@@ -167,9 +168,9 @@ TEST(Ladder, BatchesHaveTheBitsOfTheSummedMarch) {
     }
 }
 
-// On other processors the table has what needs no x86-64 instruction.
+// Other processors have only the variants without x86-64 instructions.
 #if defined(__x86_64__)
-TEST(Ladder, TheTableIsWhole) {
+TEST(Ladder, TheTableIsComplete) {
     std::set<std::pair<std::string, Isa>> seen;
     std::map<std::string, std::string> sections;
     for (const Variant& variant : ladder()) {
@@ -193,7 +194,7 @@ TEST(Ladder, TheTableIsWhole) {
 }
 #endif
 
-// The one lossy variant states its loss: the difference exists, and is within the bound of the table.
+// The one lossy variant states its loss: the difference is nonzero, and within the table's bound.
 TEST(Ladder, RawRsqrtIsLossy) {
     for (const Variant& variant : ladder()) {
         if (std::string(variant.name) != "rsqrt" || !available(variant.isa)) continue;

@@ -18,7 +18,7 @@ TEST(MarginTrace, ALateFramePushesTheNextOne) {
     std::vector<double> starts;
     for (const auto& event : trace)
         if (event.at("cat") == "frame") starts.push_back(event.at("ts").get<double>());
-    // The first takes 23 ms: the second begins then, and the third is late as well.
+    // The first frame lasts 23 ms: the second begins then, and the third is also late.
     EXPECT_EQ(starts, (std::vector<double>{0.0, 23000.0, 27000.0}));
 }
 

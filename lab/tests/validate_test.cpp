@@ -1,5 +1,4 @@
-// Validation cases: their files, what is read from a record, and that every number is as its case claims,
-// misses included.
+// Validation cases: their files, quantities read from a record, and every number's claim, including misses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +32,7 @@ CaseFile file_of(const std::string& name) {
     throw std::runtime_error(name);
 }
 
-/// Everything known about a row, to see what to write into its case if a claim no longer holds.
+/// All data of a row, to update its case if a claim no longer holds.
 std::string told(const ValidationRow& row) {
     return fmt::format("{}: {}, {} under {}: computed {:.4g}, measured {:.4g} +- {:.2g}, claimed {}",
                        row.of->file, row.shot->name, info(row.measured->quantity).name, row.variant->name,
@@ -43,8 +42,8 @@ std::string told(const ValidationRow& row) {
 
 class Validation : public testing::TestWithParam<std::string> {};
 
-// If a model gets better or worse, the case must say so: a claim is neither a wish nor out of date.
-TEST_P(Validation, IsAsClaimed) {
+// If a model improves or worsens, its case must state it: a claim is neither a wish nor out of date.
+TEST_P(Validation, MatchesItsClaims) {
     const ValidationCase of = read_case(file_of(GetParam()));
     long runs = 0;
     const std::vector<ValidationRow> rows =
@@ -59,7 +58,7 @@ TEST_P(Validation, IsAsClaimed) {
 INSTANTIATE_TEST_SUITE_P(Cases, Validation, testing::ValuesIn(all_files()),
                          [](const auto& param) { return param.param.substr(0, param.param.find('.')); });
 
-TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
+TEST(ValidationCases, MatchTheFolderInOrder) {
     std::vector<std::string> ids;
     for (const CaseFile& file : case_files()) {
         EXPECT_EQ(file.text, test::read_source("lab/data/validation/" + std::string(file.name)));
@@ -71,8 +70,8 @@ TEST(ValidationCases, AreThoseOfTheFolderInTheirOrder) {
     EXPECT_EQ(ids, expected);
 }
 
-// Every case has both the game's preset and the coefficients used before there were measured ones.
-TEST(ValidationCases, HaveThePresetOfTheGameAndTheClassicOne) {
+// Every case has both the game's preset and the coefficients from before the measured ones.
+TEST(ValidationCases, HaveTheGamesPresetAndTheClassicOne) {
     for (const ValidationCase& of : chosen_cases("")) {
         std::set<std::string> plain;
         for (const Variant& variant : of.variants)
@@ -82,7 +81,7 @@ TEST(ValidationCases, HaveThePresetOfTheGameAndTheClassicOne) {
     }
 }
 
-TEST(ValidationCases, AnUnknownOneIsNamedBesideTheKnown) {
+TEST(ValidationCases, AnUnknownOneIsRefusedWithTheKnownNames) {
     EXPECT_EQ(chosen_cases("V17").at(0).id, "V17");
     try {
         chosen_cases("V99");
@@ -142,7 +141,7 @@ TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
         const std::string text = edited(c.from, c.to);
         try {
             read_case({"x.toml", text});
-            // Without its id, the case is otherwise complete.
+            // Only the id is missing.
             ADD_FAILURE() << c.message;
         } catch (const SceneError& error) {
             if (std::string(c.message) == "title")
@@ -163,7 +162,7 @@ TEST(ValidationCases, ATemplateNeedsAValueForEveryName) {
 
 // Every quantity at every instant, on a shot with known numbers: a ball slides, rolls, hits a smooth cushion,
 // slides and rolls.
-TEST(ValidationMeasure, ReadsWhatItSays) {
+TEST(ValidationMeasure, ReadsEveryQuantity) {
     const Record record = simulate(make_plan(
         parse_scene(
             "[table]\n[[table.cushion]]\nfrom = [0, -9]\nto = [0, 9]\n[balls]\nmu_s = 0.2\nmu_r = 0.01\n"
@@ -180,7 +179,7 @@ TEST(ValidationMeasure, ReadsWhatItSays) {
         return measure(record, m);
     };
     // Slides for 2 v/(7 mu_s g) = 0.2 s over 12 v^2/(49 mu_s g) = 0.24 m, rolls at 1 m/s and loses 2 mu_r g x
-    // on the way to the cushion; after it, half of the speed and the earlier spin.
+    // before the cushion; after it, half of the speed and the earlier spin.
     const double in = std::sqrt(1.0 - 0.2 * 1.76), out = 0.5 * in, rolls = out - 2.0 / 7.0 * (out + in);
     EXPECT_NEAR(at(Quantity::kSpeed, Instant::kStart), 1.4, 1e-12);
     EXPECT_NEAR(at(Quantity::kVelocityX, Instant::kStart, 0.1), -1.2, 1e-12);
@@ -200,8 +199,8 @@ TEST(ValidationMeasure, ReadsWhatItSays) {
     EXPECT_THROW(at(Quantity::kSpeed, Instant::kHit), std::runtime_error);  // there is no other ball
 }
 
-// The ball starts with 1 to 20 m/s, so that everything is known in closed form.
-TEST(ValidationMeasure, SharesAndMeansAreOfTheShotsThatCount) {
+// The ball starts at 1 to 20 m/s, so that everything has a closed form.
+TEST(ValidationMeasure, SharesAndMeansCoverTheCountedShots) {
     const std::string text = R"toml(id = "X"
 title = "t"
 source = "s"
@@ -274,13 +273,13 @@ class ValidationClaims : public testing::Test {
     double sampled_ = 0.0;
 };
 
-TEST_F(ValidationClaims, WithinIsWithinTheUncertainty) {
+TEST_F(ValidationClaims, WithinMeansWithinTheUncertainty) {
     EXPECT_TRUE(holds({}, 8.1));
     EXPECT_TRUE(holds({}, 11.9));
     EXPECT_FALSE(holds({}, 12.1));
 }
 
-TEST_F(ValidationClaims, AMissIsAMissAndWhereItIsSaidToBe) {
+TEST_F(ValidationClaims, AClaimedMissMustMissByItsClaim) {
     EXPECT_TRUE(holds(13.0, 13.4));
     EXPECT_FALSE(holds(13.0, 13.6));  // worse than claimed
     EXPECT_FALSE(holds(13.0, 12.4));  // better
@@ -297,7 +296,7 @@ TEST_F(ValidationClaims, ManyShotsHaveTheirSpread) {
     EXPECT_FALSE(holds(1.0, 0.97));
 }
 
-TEST_F(ValidationClaims, TheReportSaysWhatDoesNotHold) {
+TEST_F(ValidationClaims, TheReportListsFailedClaims) {
     std::vector<ValidationCase> cases = chosen_cases("V20");
     std::vector<ValidationRow> rows = run_case(cases[0], kernel::Isa::kScalar, [](long) {});
     EXPECT_NE(validation_text(rows).find("all as claimed\n"), std::string::npos);

@@ -1,4 +1,4 @@
-// Runs any variant of the ladder on a list of impacts, whether it takes one per call or many.
+// Runs any variant of the ladder on a list of impacts, whether it accepts one per call or many.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The C interface in bulk: batches, segments, states, the next scene; each compared with the call for a
-// single one.
+// single item.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST(CApiBatch, HasTheBitsOfCaromSimulate) {
     EXPECT_EQ(carom_batch_duration(cut.get())[1], 0.5);
 }
 
-TEST(CApiBatch, MoreShotsThanArraysHoldAreRefused) {
+TEST(CApiBatch, ShotsBeyondTheArraysAreRefused) {
     const char* const key = "cue.speed";
     const double value = 1.0;
     carom_batch* batch = nullptr;
@@ -125,7 +125,7 @@ TEST(CApiBatch, BadArgumentsAreNamed) {
     carom_batch_free(nullptr);
 }
 
-TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
+TEST(CApiBatch, SegmentsAndStatesMatchTheRecord) {
     const ScenePtr scene = shipped_scene("side_bank");
     const RecordPtr record = played(scene.get());
     std::vector<double> times;
@@ -148,7 +148,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
             const double* bulk = &rvw[(2 * k + ball) * 9];
             for (int c = 0; c < 9; ++c) EXPECT_EQ(bulk[c], one[c]);
             EXPECT_STREQ(names[states[2 * k + ball]], state);
-            // The closed form that the header promises.
+            // The closed form stated in the header.
             const double t = std::min(std::max(times[k], 0.0), carom_record_duration(record.get()));
             const carom_segment* s = &segments.front();
             for (const carom_segment& next : segments)
@@ -172,7 +172,7 @@ TEST(CApiBatch, SegmentsAndStatesAreThoseOfTheRecord) {
     EXPECT_EQ(carom_record_states(record.get(), 0, nullptr, nullptr, nullptr), CAROM_OK);
 }
 
-// A shot from where the last one ended: fallen balls are gone, and the struck ball is chosen again.
+// The next shot starts where the last ended: fallen balls are removed, and the caller sets a new cue.
 TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     const ScenePtr scene = shipped_scene("eight_ball_break");
     const RecordPtr first = played(scene.get());
@@ -194,7 +194,7 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     ASSERT_EQ(carom_scene_set_cue(next, carom_record_ball_id(rest.get(), 0), &cue), CAROM_OK);
     EXPECT_GT(carom_record_duration(played(next).get()), 0.5);
 
-    // Cut in two, the continued run ends where the whole shot does, except for the rounding of the times.
+    // Stopped half-way and continued, the run ends like the whole shot, to the rounding of the times.
     const ScenePtr bank = shipped_scene("side_bank");
     const RecordPtr whole = played(bank.get()), half = played(bank.get(), 0.8);
     ASSERT_EQ(carom_scene_from_record(half.get(), &next), CAROM_OK);
@@ -205,8 +205,8 @@ TEST(CApiBatch, TheNextSceneBeginsWhereTheRecordEnds) {
     EXPECT_EQ(next, nullptr);
 }
 
-// Does in one call what a record and a cue do together, with the same checks.
-TEST(CApiBatch, TheNextSceneWithItsStrike) {
+// One call that does what a record and a cue do together, with the same checks.
+TEST(CApiBatch, TheNextSceneMayIncludeItsStrike) {
     const RecordPtr first = played(shipped_scene("eight_ball_break").get());
     carom_cue cue;
     carom_cue_init(&cue);
@@ -222,7 +222,7 @@ TEST(CApiBatch, TheNextSceneWithItsStrike) {
     ASSERT_EQ(carom_record_hash(played(by_hand).get(), b), CAROM_OK);
     EXPECT_STREQ(a, b);
 
-    // A ball that does not exist, or is not at rest, cannot be struck.
+    // A missing or moving ball cannot be struck.
     EXPECT_EQ(carom_next_scene(first.get(), "nobody", &cue, &next), CAROM_BAD_SCENE);
     EXPECT_EQ(next, nullptr);
     const RecordPtr half = played(shipped_scene("side_bank").get(), 0.1);

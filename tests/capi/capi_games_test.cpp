@@ -1,4 +1,4 @@
-// libcarom.so: rules and noise are those of the library.
+// libcarom.so: rules and noise match the library's.
 #include <gtest/gtest.h>
 #include <climits>
 
@@ -38,7 +38,7 @@ carom_game_state nine_ball() {
     return state;
 }
 
-TEST(CApiGames, AnOptionOfTheRulesIsKept) {
+TEST(CApiGames, RuleOptionsAreKept) {
     carom_game_state state = nine_ball();
     state.may_push_out = 1;
     EXPECT_EQ(carom_game_rule(&state, "nine_on_break=respot"), CAROM_OK);
@@ -130,7 +130,7 @@ TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     EXPECT_EQ(rvw[1], 0.5);
 }
 
-TEST(CApiGames, AVerdictIsOfOneRecord) {
+TEST(CApiGames, AVerdictBelongsToOneRecord) {
     const RecordPtr record = played(parsed(kScratch).get());
     std::string slower = kScratch;
     slower.replace(slower.find("4.0"), 3, "3.9");
@@ -145,7 +145,7 @@ TEST(CApiGames, AVerdictIsOfOneRecord) {
                  "the verdict belongs to another record; give the record that was judged");
 }
 
-TEST(CApiGames, ABallComesBackToItsSpot) {
+TEST(CApiGames, ABallReturnsToItsSpot) {
     const std::string text =
         "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[[ball]]\nid = \"cue\"\nposition = "
         "[1.5, 3.3]\n"
@@ -173,7 +173,7 @@ TEST(CApiGames, ABallComesBackToItsSpot) {
     EXPECT_EQ(carom_verdict_respot(verdict.get(), 0, 1, &ball, place), CAROM_BAD_ARGUMENT);
 }
 
-TEST(CApiGames, NoiseIsThatOfTheLibrary) {
+TEST(CApiGames, NoiseMatchesTheLibrary) {
     double sd[5];
     ASSERT_EQ(carom_noise("fastfiz", 0.025, sd), CAROM_OK);
     EXPECT_EQ(sd[0], 0.075);

@@ -1,4 +1,4 @@
-// libcarom.so: what a game draws and asks, by closed forms and as the library says it.
+// libcarom.so: the data that a game draws and queries, by closed forms and against the library.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     ASSERT_EQ(carom_scene_table(shot.scene, &table), CAROM_OK);
     EXPECT_EQ(table.width, 1.27);
     EXPECT_EQ(table.length, 2.54);
-    EXPECT_EQ(table.cushions, 18u);  // six noses, and the facings of the pockets
+    EXPECT_EQ(table.cushions, 18u);  // six noses, and the pockets' facings
     EXPECT_EQ(table.pockets, 6u);
     carom_part part;
     ASSERT_EQ(carom_scene_part(shot.scene, CAROM_CUSHION, 0, &part), CAROM_OK);
@@ -75,7 +75,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     EXPECT_EQ(carom_scene_spot(shot.scene, "middle", place), CAROM_BAD_ARGUMENT);
 }
 
-TEST(CApiTable, AnEventTellsItsNumbers) {
+TEST(CApiTable, AnEventHasItsNumbers) {
     const PlayedShot shot(kBank);
     carom_event_details d;
     ASSERT_EQ(carom_record_event_details(shot.record, 0, &d), CAROM_OK);
@@ -90,7 +90,7 @@ TEST(CApiTable, AnEventTellsItsNumbers) {
     EXPECT_NEAR(d.lost, 0.0, 1e-12);
     EXPECT_EQ(carom_record_event_details(shot.record, 99, &d), CAROM_BAD_ARGUMENT);
     for (int type = 0; type < kEventTypes; ++type) {
-        // The enumeration is that of the engine.
+        // The enumeration matches the engine's.
         EXPECT_NE(name(static_cast<EventType>(type)), nullptr);
     }
     EXPECT_STREQ(name(static_cast<EventType>(CAROM_BALL_POCKET)), "ball_pocket");
@@ -100,7 +100,7 @@ TEST(CApiTable, AnEventTellsItsNumbers) {
     EXPECT_EQ(static_cast<int>(Partner::kPocket), CAROM_POCKET);
 }
 
-TEST(CApiTable, TheSceneGivesBackWhatItHolds) {
+TEST(CApiTable, TheSceneReturnsItsContents) {
     const PlayedShot shot(kPot);
     carom_cue cue;
     const char* id;
@@ -182,7 +182,7 @@ TEST(CApiTable, AimsPotTheBall) {
     EXPECT_LE(count, 6u);
 }
 
-TEST(CApiTable, TheCueBallMayBePlacedWhereItIsInHand) {
+TEST(CApiTable, TheCueBallMayBePlacedWithinItsArea) {
     const PlayedShot shot(
         "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.3]\n[[ball]]\nid = \"1\"\nposition = [0.2, 0.2]\n"
         "[[ball]]\nid = \"9\"\nposition = [0.7, 1.0]\n[cue]\nspeed = 4.0\naim_deg = 225.0\n"

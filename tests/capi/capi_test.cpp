@@ -1,4 +1,4 @@
-// The C interface: the same results as the C++ one, and a status with a message for whatever cannot be done.
+// The C interface: the results of the C++ one, and a status with a message for every failure.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(CApi, CollidesAsTheKernelDoes) {
             EXPECT_EQ(out1[6 + k], result.w1[k]);
             EXPECT_EQ(out2[6 + k], result.w2[k]);
         }
-        // Outputs may be inputs, crosswise too.
+        // Outputs may be inputs, also crosswise.
         std::vector<double> a = in1, b = in2;
         ASSERT_EQ(carom_collide_balls(a.data(), b.data(), &params, 1e-8, b.data(), a.data()), CAROM_OK);
         EXPECT_EQ(b, out1);
@@ -53,7 +53,7 @@ TEST(CApi, CollidesAsTheKernelDoes) {
     }
 }
 
-// More than one block, a ragged end, parameters one each, in place.
+// More than one block, a ragged end, separate parameters, in place.
 TEST(CApi, ABatchKeepsTheBoundOfSingleImpacts) {
     const auto impacts = random_impacts(4, 131);
     std::vector<double> balls1, balls2;
@@ -122,7 +122,7 @@ TEST(CApi, ABadImpactIsNamedAndTheOthersAreSolved) {
               CAROM_OK);
 }
 
-/// Frees what a test makes.
+/// Frees the objects of a test.
 struct Handles {
     carom_scene* scene = nullptr;
     carom_record* record = nullptr;
@@ -132,7 +132,7 @@ struct Handles {
     }
 };
 
-TEST(CApi, AShotIsTheShotOfTheEngine) {
+TEST(CApi, AShotMatchesTheEngine) {
     const RecordPtr c = played(shipped_scene("eight_ball_break").get());
     const Record record =
         simulate(make_plan(read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml"), kernel::best_isa()));
@@ -167,7 +167,7 @@ TEST(CApi, AShotIsTheShotOfTheEngine) {
     EXPECT_EQ(carom_record_state(c.get(), 0, std::nan(""), rvw, nullptr), CAROM_BAD_ARGUMENT);
 }
 
-TEST(CApi, AStateReadIsAStateThatCanBeSet) {
+TEST(CApi, AStateReadCanBeSet) {
     Handles h, again;
     const double start[9] = {0.6, 0.7, kPoolR, 0.3, 1.5, 0, -20, 3, 11}, other[9] = {0.65, 1.6, kPoolR};
     ASSERT_EQ(carom_scene_create("nine_foot", "pool", &h.scene), CAROM_OK);
@@ -185,7 +185,7 @@ TEST(CApi, AStateReadIsAStateThatCanBeSet) {
     EXPECT_GT(carom_record_event_count(again.record), 3u);
 }
 
-TEST(CApi, SaysWhatIsWrongWithAScene) {
+TEST(CApi, ExplainsABadScene) {
     Handles h;
     EXPECT_EQ(carom_scene_parse("[ball]\n", "x.toml", &h.scene), CAROM_BAD_SCENE);
     EXPECT_EQ(std::string(carom_last_error()).rfind("x.toml:1:1: ", 0), 0u) << carom_last_error();
@@ -225,8 +225,8 @@ TEST(CApi, SaysWhatIsWrongWithAScene) {
     EXPECT_EQ(carom_simulate(h.scene, -1.0, &h.record), CAROM_OK) << carom_last_error();
 }
 
-TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {
-    // No cushion is within reach of one ball; the other ball only spins.
+TEST(CApi, EndlessMotionContinuesToTheCallsTimeLimit) {
+    // No cushion is within reach of one ball; the other only spins.
     for (const char* text : {"[stop]\ntime = 0.2\n[physics]\ngravity = 0\n[[ball]]\nvelocity = [1, 0]\n",
                              "[stop]\nevents = 7\n[balls]\nmu_sp = 0\n[[ball]]\nspin = [0, 0, 5]\n"}) {
         const RecordPtr record = played(parsed(text).get(), 0.1);
@@ -238,7 +238,7 @@ TEST(CApi, MotionWithoutEndGoesOnToTheTimeOfTheCall) {
     }
 }
 
-TEST(CApi, EveryNumberOfTheBallsHasAName) {
+TEST(CApi, EveryBallParameterHasAName) {
     const ScenePtr scene = parsed(
         "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[physics]\nball_ball = \"inelastic\"\n"
         "[[ball]]\nid = \"a\"\nradius = 0.03\nmass = 0.2\n");
@@ -252,12 +252,12 @@ TEST(CApi, EveryNumberOfTheBallsHasAName) {
     EXPECT_EQ(get("mu_b_fall"), 1.088);
     ASSERT_EQ(carom_scene_set_ball_param(scene.get(), "mu_b_more", 0.2), CAROM_OK);
     EXPECT_EQ(get("mu_b_more"), 0.2);
-    // One number replaces the fit, as in a scene file.
+    // A number replaces the fit, as in a scene file.
     ASSERT_EQ(carom_scene_set_ball_param(scene.get(), "mu_b", 0.05), CAROM_OK);
     EXPECT_EQ(get("mu_b"), 0.05);
     EXPECT_EQ(get("mu_b_more"), 0.0);
     EXPECT_EQ(get("mu_b_fall"), 0.0);
-    // Each has its own number: none changes another.
+    // Each parameter is separate: none changes another.
     const char* names[] = {"radius",    "mass",      "mu_s", "mu_r", "mu_sp", "mu_b",
                            "mu_b_more", "mu_b_fall", "e_b",  "e_c",  "f_c"};
     double next = 0.01;
@@ -283,7 +283,7 @@ TEST(CApi, ABallKeepsItsOwnRadiusAndMass) {
     EXPECT_EQ(rvw[2], 0.04);
 }
 
-TEST(CApi, ARunThatCannotGoOnIsAFailureWithAMessage) {
+TEST(CApi, AFailedRunHasAMessage) {
     const ScenePtr scene = parsed(
         "[balls]\nmu_s = 0.6\nmu_b = 4\n[physics]\nsubsteps = 10\n[stop]\ntime = 1\n"
         "[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nspin = [-1e6, 0, 0]\n"
@@ -323,8 +323,8 @@ TEST(CApi, WritesTheSceneAsAFile) {
     EXPECT_EQ(carom_scene_text(nullptr, nullptr, 0), static_cast<std::size_t>(-1));
 }
 
-// A cue with all defaults: in a file, in C++ and in C.
-TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
+// A default cue is the same in a file, in C++ and in C.
+TEST(CApi, TheDefaultCueMatchesSceneFilesAndCpp) {
     carom_cue c;
     carom_cue_init(&c);
     const Cue file = *parse_scene("[[ball]]\n[cue]\n", "x").cue, cpp;
@@ -343,8 +343,8 @@ TEST(CApi, TheCueBeginsAsInASceneFileAndInCpp) {
     }
 }
 
-// Without a cue there is no strike, whatever the defaults: the ball stays.
-TEST(CApi, WithoutACueNothingIsStruck) {
+// Without a cue, whatever the defaults, the ball stays.
+TEST(CApi, WithoutACueTheBallStays) {
     Scene scene = parse_scene("[[ball]]\n", "x");
     EXPECT_FALSE(scene.cue);
     scene.cue = Cue{};
@@ -354,7 +354,7 @@ TEST(CApi, WithoutACueNothingIsStruck) {
     EXPECT_EQ(carom_record_event_count(played(bare.get()).get()), 0u);
 }
 
-TEST(CApi, NullIsAnAnswerNotACrash) {
+TEST(CApi, NullArgumentsAreRefused) {
     carom_cue_init(nullptr);
     carom_scene_free(nullptr);
     carom_record_free(nullptr);

@@ -1,4 +1,4 @@
-// Scenes and records of the C interface that free themselves, and the calls that make them.
+// Owning pointers for scenes and records of the C interface, and functions that create them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,14 +13,12 @@ namespace carom::test {
 using ScenePtr = std::unique_ptr<carom_scene, void (*)(carom_scene*)>;
 using RecordPtr = std::unique_ptr<carom_record, void (*)(carom_record*)>;
 
-/// The scene of a text.
 inline ScenePtr parsed(const std::string& text) {
     carom_scene* scene = nullptr;
     EXPECT_EQ(carom_scene_parse(text.c_str(), "scene", &scene), CAROM_OK) << carom_last_error();
     return {scene, carom_scene_free};
 }
 
-/// A scene of the repository.
 inline ScenePtr shipped_scene(const std::string& name) {
     carom_scene* scene = nullptr;
     const std::string path = CAROM_SOURCE_DIR "/scenes/" + name + ".toml";

@@ -1,5 +1,5 @@
-// Impacts of balls off the cloth: reference values, computed independently of the engine with 30 digits, and
-// the laws they obey (docs/reference/physics.md, "Balls in the air"). Pool balls, mu_s = 0.2, e_t = 0.5.
+// Impacts of balls off the cloth: reference values, computed independently with 30 digits, and conservation
+// laws (docs/reference/physics.md, "Balls in the air"). Pool balls, mu_s = 0.2, e_t = 0.5.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ MotionParams motion(bool spin_decay = false) {
     return m;
 }
 
-/// Both to 1e-13 of the larger one, or of 1.
+/// Equal to 1e-13 of the larger value, or of 1.
 void expect_close(const Vec3& got, const Vec3& want, const char* what) {
     for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(got[k], want[k], 1e-13 * std::max(1.0, std::abs(want[k]))) << what << " [" << k << "]";
@@ -98,8 +98,7 @@ TEST(Cloth, LandingsOfTheReference) {
     EXPECT_EQ(on_cloth({{0.0, 0.0, -2.0}, {0.0, 0.0, -1.0}}, balls(), true).w.z(), 0.0) << "not past 0";
 }
 
-// Conserved by all landings: v - (2/5) R (z x w) and the direction of the slip; and their balance: energy,
-// and the 2/7 of a slip that ends.
+// Every landing conserves v - (2/5) R (z x w) and the direction of the slip, and its energy balances.
 TEST(Cloth, LandingsKeepTheirLaws) {
     Generator random(22);
     int gripped = 0;
@@ -121,7 +120,7 @@ TEST(Cloth, LandingsKeepTheirLaws) {
         gripped += left.norm() < 1e-13;
         const double lost = (energy(b) - energy(a)) / kAirM;
         EXPECT_NEAR(lost, 0.75 * 0.5 * V * V + J * slip.norm() - 1.75 * J * J, 1e-12);
-        // Mirror images and quarter turns, to the bit.
+        // Mirror images and quarter turns agree bit for bit.
         const auto turned = [](const Vec3& x) { return Vec3(-x.y(), x.x(), x.z()); };
         const Velocities quarter = on_cloth({turned(b.v), turned(b.w)});
         EXPECT_EQ(quarter.v, turned(a.v));
@@ -182,8 +181,8 @@ double total_energy(const FreePair& p, const Velocities& one, const Velocities& 
     return energy(one, p.size1.R, p.size1.m) + energy(two, p.size2.R, p.size2.m);
 }
 
-// Momentum, the spins about the line of centres, equal impulses on both surfaces, energy, another observer's
-// speed.
+// Conserved: momentum and spin about the line of centres. Both surfaces receive equal impulses, energy
+// balances, and a moving observer sees the same impact.
 TEST(FreeBalls, KeepTheirLaws) {
     Generator random(5);
     for (int k = 0; k < 20000; ++k) {
@@ -218,8 +217,8 @@ TEST(FreeBalls, KeepTheirLaws) {
     }
 }
 
-// Between balls of one height, and with v_z = 0, the planar closed form is the same law.
-TEST(FreeBalls, InThePlaneTheyAreTheInelasticModel) {
+// For balls at one height with v_z = 0, the planar closed form is the same law.
+TEST(FreeBalls, MatchTheInelasticModelInThePlane) {
     Generator random(9);
     const BallBallModelInfo& model = *ball_ball_model("inelastic");
     for (int k = 0; k < 2000; ++k) {
@@ -242,7 +241,7 @@ TEST(FreeBalls, InThePlaneTheyAreTheInelasticModel) {
     }
 }
 
-TEST(FreeBalls, ASlowContactParts) {
+TEST(FreeBalls, ASlowContactSeparates) {
     const double parting = parting_speed(kAirR, kAirG), up = bounce_end(kAirR, kAirG);
     EXPECT_NEAR(parting, 0.1 * up, 1e-18);
     Velocities top{{0.0, 0.0, -1e-3}, Vec3::Zero()}, low{Vec3::Zero(), Vec3::Zero()};
@@ -253,7 +252,7 @@ TEST(FreeBalls, ASlowContactParts) {
     EXPECT_GT(low.v.x(), 0.0);
 }
 
-// In Han's equations with the vertical speed kept (values of the reference), X into the cushion.
+// Han's equations with the vertical speed kept (reference values), X into the cushion.
 TEST(Noses, HansEquationsWithTheVerticalSpeed) {
     const struct {
         double height, v_X, R_wY;
@@ -263,8 +262,7 @@ TEST(Noses, HansEquationsWithTheVerticalSpeed) {
         {0.9, 2.0, 2.0, {-1.61157142857143, 0.87985317652714, 0.714285714285714}},
     };
     for (const auto& row : kRows) {
-        // han_2005 takes sin = (h - R)/R; with the nose's
-        // cylinder tan = (h - R)/R, so its normal is given here.
+        // han_2005 uses sin = (h - R)/R; for the nose's cylinder tan = (h - R)/R, so the normal is set here.
         const double s = row.height - 1.0, c = std::sqrt(1.0 - s * s);
         Velocities ball{{row.v_X, 0.0, 0.0}, {0.0, row.R_wY / kAirR, 0.0}};
         hit_nose(balls(), kAirR, kHan2005, {-c, 0.0, -s}, 0.0, ball);
@@ -319,7 +317,7 @@ TEST(RaisedCue, AJumpCue) {
     EXPECT_NEAR(placed_at(hop, 0.5 * hop.duration, kAirG).position.z() - kAirR, 0.0950133081121886, 1e-14);
 }
 
-TEST(RaisedCue, TheTipIsEscapedUpToAnElevation) {
+TEST(RaisedCue, TheBallEscapesTheTipUpToAnElevation) {
     for (const auto& [mass, most] : {std::pair{0.567, 35.5886375465806}, std::pair{0.25, 42.7311671880923}}) {
         for (const double off : {-1e-6, 1e-6}) {
             const Cue cue = cue_of(mass, 4.0, most + off, 0.0, 0.0);
@@ -339,8 +337,8 @@ TEST(RaisedCue, AMasse) {
     expect_close(after.w, {-33.9832332068009, 69.8418617914362, -91.8102076746507}, "w");
 }
 
-// Coriolis: all forces of the cloth act at the contact, so the final rolling velocity depends neither on e_t,
-// nor on mu_s, nor on the number of bounces.
+// Coriolis: the cloth's forces all act at the contact point, so the final rolling velocity is independent of
+// e_t, mu_s and the number of bounces.
 TEST(RaisedCue, CoriolisTheorem) {
     const StruckBall struck =
         strike(cue_of(0.567, 3.2, 45.0, 0.4, 0.1), {kAirR, kAirM}, true, Vertical::kKeep);
@@ -361,8 +359,8 @@ TEST(RaisedCue, CoriolisTheorem) {
     }
 }
 
-// Squirt with the cue level turns in the plane as before; with the
-// cue raised it turns away from the offset, by the same angle.
+// With a level cue, squirt turns the path in the plane; with a raised cue it turns it away from the offset,
+// by the same angle.
 TEST(RaisedCue, Squirt) {
     Cue cue = cue_of(0.567, 3.0, 1e-9, 0.3, 0.0);
     cue.end_mass = 0.00567;

@@ -39,8 +39,8 @@ void add_if_valid(Scene& scene, const BallStart& ball) {
     if (!is_valid(scene)) scene.ball.pop_back();
 }
 
-/// Three to six balls that touch or nearly do, and one or two that come down on them; balls without room are
-/// left out.
+/// Adds three to six balls that touch or nearly touch, and one or two that land on them; skips balls that do
+/// not fit.
 void add_pile(Scene& scene, Generator& random) {
     const double R = scene.balls.R, apart = 2.0 * R + (random.next() % 3) * random.uniform(0.0, 2e-4);
     const double x = random.uniform(0.2, scene.table.width - 0.2),
@@ -102,7 +102,7 @@ Scene flying_scene(std::uint64_t seed) {
         }
         add_if_valid(scene, ball);
     }
-    // Sometimes one more ball onto two others.
+    // Sometimes drop one more ball onto two others.
     if (scene.ball.size() >= 2 && chance(0.3)) {
         BallStart top = scene.ball.front();
         top.id = "top";
@@ -116,7 +116,7 @@ Scene flying_scene(std::uint64_t seed) {
     return scene;
 }
 
-/// Flights, pockets anywhere, racks and odd numbers together, which the families of one kind each leave out.
+/// Combines flights, pockets anywhere, racks and odd numbers; each scene family omits some of these.
 Scene mixed_scene(std::uint64_t seed) {
     Scene scene = flying_scene(seed);
     Generator random(seed + 1000000007);
@@ -135,7 +135,7 @@ Scene mixed_scene(std::uint64_t seed) {
     if (chance(0.3))
         scene.table.pockets.push_back(
             {"hole", {random.uniform(0.2, 0.8), random.uniform(0.2, 1.5)}, random.uniform(0.03, 0.2)});
-    // Several balls into one pocket, on the cloth and over it.
+    // Several balls enter one pocket, on the cloth and above it.
     for (int n = 0; n < 4 && !scene.table.pockets.empty() && chance(0.8); ++n) {
         const Pocket& pocket = scene.table.pockets[seed % scene.table.pockets.size()];
         const SinCos from = sin_cos(random.uniform(0.0, 6.28)), way = sin_cos(random.uniform(-0.3, 0.3));
@@ -176,7 +176,7 @@ Scene mixed_scene(std::uint64_t seed) {
     return scene;
 }
 
-// The order in which a scene lists its balls changes no bit.
+// Reordering a scene's balls changes no bit.
 TEST(Airborne, TheOrderOfTheBallsDoesNotMatter) {
     for (std::uint64_t seed = 1; seed <= 120; ++seed) {
         const Scene scene = seed % 2 == 0 ? mixed_scene(seed) : flying_scene(seed);
@@ -195,8 +195,8 @@ TEST(Airborne, TheOrderOfTheBallsDoesNotMatter) {
     }
 }
 
-// If nothing calls for it, forcing the effect on changes no bit.
-TEST(Airborne, ForcedOnWithoutNeedItChangesNothing) {
+// Forcing the effect on where nothing needs it changes no bit.
+TEST(Airborne, ForcingItOnWithoutNeedChangesNothing) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         Scene scene = RandomScene(seed).make();
         const Plan plan = plan_of(scene);
@@ -209,7 +209,7 @@ TEST(Airborne, ForcedOnWithoutNeedItChangesNothing) {
     }
 }
 
-// CAROM_FLYING_SCENES=FROM:COUNT runs others, and CAROM_FLYING_TEXT=1 prints them.
+// CAROM_FLYING_SCENES=FROM:COUNT runs other seeds; CAROM_FLYING_TEXT=1 prints the scenes.
 TEST(Airborne, RandomScenesComeToRest) {
     std::uint64_t from = 1, count = 400;
     if (const char* asked = std::getenv("CAROM_FLYING_SCENES")) {
@@ -239,7 +239,7 @@ TEST(Airborne, RandomScenesComeToRest) {
     }
 }
 
-// CAROM_MIXED_SCENES=FROM:COUNT runs others.
+// CAROM_MIXED_SCENES=FROM:COUNT runs other seeds.
 TEST(Airborne, MixedScenesKeepTheLaws) {
     std::uint64_t from = 1, count = 1000;
     if (const char* asked = std::getenv("CAROM_MIXED_SCENES")) {
@@ -253,7 +253,7 @@ TEST(Airborne, MixedScenesKeepTheLaws) {
         if (!is_valid(scene)) continue;
         ++ran;
         const std::string what = what_breaks(scene);
-        // An exact balance ends with a message.
+        // A ball that balances exactly ends the run with a message.
         if (what.find(" balance") != std::string::npos) continue;
         broken += !what.empty();
         EXPECT_EQ(what, "") << "seed " << seed << "\n" << (count == 1 ? scene_text(scene) : "");
@@ -262,7 +262,7 @@ TEST(Airborne, MixedScenesKeepTheLaws) {
     EXPECT_GT(ran, static_cast<int>(count / 2));
 }
 
-/// Balls in the air over open tables: jaws of any size, posts, single cushions, with a bed or without.
+/// Airborne balls over open tables: jaws of any size, posts and single cushions, with or without a bed.
 Scene walled_scene(std::uint64_t seed) {
     Generator random(seed + 2000000011);
     const auto chance = [&](double p) { return random.uniform(0.0, 1.0) < p; };
@@ -294,9 +294,9 @@ Scene walled_scene(std::uint64_t seed) {
     return scene;
 }
 
-// A ball that flies over a wall is out, and none plays on inside of it. CAROM_WALLED_SCENES=FROM:COUNT runs
-// others.
-TEST(Airborne, NoneComesDownInAWall) {
+// A ball that flies over a wall is out; none plays on inside it. CAROM_WALLED_SCENES=FROM:COUNT runs other
+// seeds.
+TEST(Airborne, NoBallLandsInsideAWall) {
     std::uint64_t from = 1, count = 2000;
     if (const char* asked = std::getenv("CAROM_WALLED_SCENES")) {
         char* rest = nullptr;

@@ -37,7 +37,7 @@ std::vector<double> times_of(const Record& record, EventType type) {
     return times;
 }
 
-TEST(Airborne, ADroppedBallBouncesUntilItLies) {
+TEST(Airborne, ADroppedBallBouncesUntilItRests) {
     Scene scene = empty_scene();
     add_high_ball(scene, "a", 0.0, 0.0, 0.3);
     const Record r = run_verified(scene);
@@ -52,7 +52,7 @@ TEST(Airborne, ADroppedBallBouncesUntilItLies) {
     EXPECT_EQ(r.state_at(0, 1.0).position, Vec3(0.0, 0.0, scene.balls.R));
 }
 
-TEST(Airborne, BouncesWithoutLossRepeatToTheBit) {
+TEST(Airborne, LosslessBouncesRepeatBitForBit) {
     Scene scene = empty_scene();
     scene.balls.e_t = 1.0;
     scene.stop.events = 100000;
@@ -66,7 +66,7 @@ TEST(Airborne, BouncesWithoutLossRepeatToTheBit) {
     }
 }
 
-// The judge allows what a slow contact of this ball adds, not that of a ball of [balls].
+// The checker tolerates the energy that a slow contact of this ball adds, not of a ball of [balls].
 TEST(Airborne, SlowContactsOfLargeBalls) {
     for (const double R : {0.05, 0.06, 0.085725, 0.3}) {
         Scene scene = empty_scene();
@@ -79,9 +79,9 @@ TEST(Airborne, SlowContactsOfLargeBalls) {
     }
 }
 
-// One falls into the pocket while the other comes down on it. They overlapped by 9 mm, because the pair was
-// checked again only when the upper one lay still.
-TEST(Airborne, DownOnABallThatFalls) {
+// One ball falls into the pocket while another lands on it. They once overlapped by 9 mm because the pair was
+// rechecked only when the upper ball lay still.
+TEST(Airborne, ABallLandsOnOneFallingIntoAPocket) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"hole", {0.5, 0.0}, 0.2, 0.08}};
     int met = 0;
@@ -97,8 +97,8 @@ TEST(Airborne, DownOnABallThatFalls) {
     EXPECT_GT(met, 10);
 }
 
-// mathavan_2010 keeps more speed than the law in space that throws the ball up: 15 % came from nowhere.
-TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
+// mathavan_2010 keeps more speed than the law in space that throws the ball up; hops once gained 15 % energy.
+TEST(Airborne, AHopGainsNoEnergy) {
     int hops = 0;
     for (const char* model : {"mathavan_2010", "han_2005", "impulse", "stronge", "smooth"}) {
         for (const double mu_s : {0.0, 0.2}) {
@@ -113,7 +113,7 @@ TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
                 try {
                     validate(scene);
                 } catch (const SceneError&) {
-                    continue;  // mathavan_2010 refuses to jam a ball under a high nose
+                    continue;  // mathavan_2010 refuses a ball that jams under a high nose
                 }
                 const Record record = run_verified(scene);
                 hops += record.state_at(0, record.events.front().time).state == MotionState::kAirborne;
@@ -123,8 +123,8 @@ TEST(Airborne, AHopTakesNoMoreThanTheCushionLost) {
     EXPECT_GT(hops, 10);
 }
 
-// A bouncing ball loses as much speed to the cloth as one that slides all the time, except what throwing it
-// up would take.
+// A bouncing ball loses as much speed to the cloth as one that always slides, less the friction of the throw
+// upwards.
 TEST(Airborne, BouncesBrakeAsSlidingDoes) {
     Scene scene = empty_scene();
     add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R), Vec3(4.0, 0.0, 1.5));
@@ -137,8 +137,8 @@ TEST(Airborne, BouncesBrakeAsSlidingDoes) {
                 2.0 * scene.balls.mu_s * bounce_end(scene.balls.R, 9.81));
 }
 
-// In a fall from this low, rounding the height is a visible share of the energy.
-TEST(Airborne, FallsFromNextToNothingRaiseNoAlarm) {
+// In such a low fall, rounding the height is a visible share of the energy.
+TEST(Airborne, TinyFallsKeepTheEnergyLaw) {
     for (int k = 1; k <= 200; ++k) {
         Scene scene = empty_scene();
         add_high_ball(scene, "a", 0.0, 0.0, 5e-9 * k);
@@ -146,7 +146,7 @@ TEST(Airborne, FallsFromNextToNothingRaiseNoAlarm) {
     }
 }
 
-TEST(Airborne, OnABallThatLies) {
+TEST(Airborne, ABallLandsOnARestingBall) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
     scene.balls.e_b = 0.95;
@@ -197,7 +197,7 @@ TEST(Airborne, AJumpShotClearsABall) {
     EXPECT_EQ(count(flat, EventType::kBallCloth), 0);
 }
 
-TEST(Airborne, TheTipIsMetAgainBeyondAnElevation) {
+TEST(Airborne, ASteeperCueMeetsTheBallAgain) {
     EXPECT_TRUE(plan_of(jump(42.0)).warnings.empty());
     ASSERT_EQ(plan_of(jump(43.0)).warnings.size(), 1u);
     EXPECT_NE(plan_of(jump(43.0)).warnings[0].find("meet the tip again"), std::string::npos);
@@ -240,7 +240,7 @@ TEST(Airborne, ABallThatLeftTheTableComesToRestOnTheFloor) {
         EXPECT_GE(state.position.z(), floor) << t;
         if (state.position.z() == floor) landed = t;
     }
-    // Free fall from where it flew over the rail.
+    // Free fall from the point where it crossed the rail.
     const BallState left = r.state_at(0, out->time);
     const double g = r.gravity, up = left.velocity.z(), height = left.position.z() - floor;
     const double falls = (up + std::sqrt(up * up + 2.0 * g * height)) / g;
@@ -249,8 +249,8 @@ TEST(Airborne, ABallThatLeftTheTableComesToRestOnTheFloor) {
     EXPECT_TRUE(r.orientation_at(0, r.duration).isApprox(r.orientation_at(0, landed), 1e-12));
 }
 
-// An island in the middle: there is no bed, so a ball that flies over one of its cushions is out.
-TEST(Airborne, ABedSaysWhereTheTableEnds) {
+// The cushions are an island without a bed, so a ball that flies over one of them is out.
+TEST(Airborne, TheBedDefinesWhereTheTableEnds) {
     Scene scene = empty_scene();
     scene.table = Table();
     for (const auto& [from, to] : {std::pair(Vec2(1.0, 0.0), Vec2(1.0, 1.0)),
@@ -275,7 +275,7 @@ TEST(Airborne, ABedSaysWhereTheTableEnds) {
     EXPECT_EQ(leaves.state_at(0, leaves.duration).state, MotionState::kOut);
 }
 
-/// A ball that flies from x = 0.2 in this direction, and comes down after 0.2 s.
+/// A ball that flies from x = 0.2 with velocity v and lands after 0.2 s.
 Scene flight_over(const Table& table, const Vec2& v) {
     Scene scene = empty_scene();
     scene.table = table;
@@ -283,9 +283,9 @@ Scene flight_over(const Table& table, const Vec2& v) {
     return scene;
 }
 
-// It came down on cloth inside of the jaw, where the table's box had no surface. Now it is out, as it is over
-// a cushion, wherever it would come down: inside, or beyond.
-TEST(Airborne, OverAJawOrACushionABallIsOut) {
+// It once landed inside the jaw, where the table's box has no cloth. A ball that crosses a jaw or cushion is
+// out, wherever it would land.
+TEST(Airborne, ABallThatCrossesAJawOrCushionIsOut) {
     Table table;
     table.cushions = {{"rail", {0.0, 0.0}, {0.0, 2.0}, 0.036576}};
     table.jaws = {{"post", {0.5, 1.0}, 0.15, 0.036576}};
@@ -297,22 +297,22 @@ TEST(Airborne, OverAJawOrACushionABallIsOut) {
             EXPECT_NEAR(first(r, EventType::kBallOut)->time, 0.15 / speed, 1e-12) << speed;
             EXPECT_EQ(count(r, EventType::kBallCloth), 0) << speed;
         }
-        // Before it lands it meets the nose, from outside.
+        // From outside, it meets the nose before it lands.
         const Record meets = run_verified(flight_over(table, {0.74, 0.0}));
         EXPECT_EQ(meets.events[0].type, EventType::kBallJaw);
-        // With a bed there is cloth on both sides of a cushion.
+        // A bed has cloth on both sides of a cushion.
         const Record over = run_verified(flight_over(table, {-4.0, 0.0}));
         EXPECT_EQ(count(over, EventType::kBallOut), bed ? 0 : 1);
         EXPECT_EQ(first(over, EventType::kBallCloth) != nullptr, bed);
     }
-    // A post without a radius is met, and nothing is behind it.
+    // A post of radius 0 is met, and there is nothing behind it.
     table.jaws[0].radius = 0.0;
     EXPECT_NE(first(run_verified(flight_over(table, {1.4, 0.0})), EventType::kBallJaw), nullptr);
     EXPECT_EQ(first(run_verified(flight_over(table, {2.5, 0.0})), EventType::kBallJaw), nullptr);
 }
 
-// A record of such a flight, as it once was, breaks a law.
-TEST(Airborne, TheJudgeKnowsFlightsIntoWalls) {
+// Records of such flights from before the fix break a law.
+TEST(Airborne, TheCheckerRejectsFlightsIntoWalls) {
     const struct {
         const char* says;
         std::vector<Cushion> cushions;
@@ -342,7 +342,7 @@ TEST(Airborne, ABedNeedsNoCushions) {
     EXPECT_NEAR(first(r, EventType::kBallOut)->time, 0.25, 1e-15);
 }
 
-// Beyond the bed but over a pocket, the pocket's far side decides.
+// Beyond the bed but over a pocket, the pocket's far edge decides.
 TEST(Airborne, APocketReachesBeyondTheBed) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"", Vec2(0.99, 0.5), 0.06, 0.1}};
@@ -357,7 +357,7 @@ TEST(Airborne, APocketReachesBeyondTheBed) {
     EXPECT_EQ(count(low, EventType::kBallPocket), 1);
 }
 
-TEST(Airborne, IntoAPocketThroughTheAir) {
+TEST(Airborne, ABallFliesIntoAPocket) {
     Scene scene = empty_scene();
     scene.table = make_table("nine_foot");
     const Pocket& corner =
@@ -439,7 +439,7 @@ Scene pile(double drop, double off) {
     return scene;
 }
 
-// A ball set gently into the hollow of three, on top of two, and dropped on them: slow contacts end.
+// Balls set gently into the hollow of three, on top of two, or dropped on them: slow contacts end.
 TEST(Airborne, Piles) {
     for (const double drop : {0.0, 1e-6, 0.01, 0.2}) {
         for (const double off : {0.0, 1e-6, 1e-3}) {
@@ -452,7 +452,7 @@ TEST(Airborne, Piles) {
     }
 }
 
-// The energy rises only in marked events: without the marks the record breaks the law.
+// Energy rises only in marked events; the record without the marks breaks the law.
 TEST(Airborne, SlowContactsAreMarked) {
     const Scene scene = pile(0.0, 1e-3);
     Record r = run_verified(scene);
@@ -466,8 +466,8 @@ TEST(Airborne, SlowContactsAreMarked) {
     EXPECT_EQ(violation->law, "U4");
 }
 
-// Exactly above each other, or above a nose, any number of balls trembles forever: an error says so.
-TEST(Airborne, WhatBalancesIsAnError) {
+// Balls exactly above each other or above a nose tremble forever, which is an error.
+TEST(Airborne, EndlessBalancingIsAnError) {
     const double D = 2.0 * scene_radius();
     struct Case {
         const char* words;
@@ -496,14 +496,14 @@ TEST(Airborne, WhatBalancesIsAnError) {
     }
 }
 
-// The result is continuous in the height of a ball: 1e-3 m above the cloth, 1e-6, ... against 0.
-TEST(Airborne, NothingJumpsWithTheHeight) {
+// Results are continuous in a ball's height: compares 1e-3 m, 1e-6 m, ... above the cloth with 0.
+TEST(Airborne, ResultsAreContinuousInTheHeight) {
     const auto after = [](double height) {
         Scene scene = empty_scene();
         scene.physics.ball_ball = ball_ball_model("two_step");
         scene.stop.time = 0.5;
         add_high_ball(scene, "a", 0.0, 0.0, height, Vec3(3.0, 0.0, 0.0), Vec3(0.0, 50.0, 20.0));
-        // So near that it does not fall on the way.
+        // So close that it cannot fall before it arrives.
         const double R = scene_radius();
         add_ball(scene, "b", std::sqrt(4.0 * R * R - 1e-4) + 1e-9, 0.01);
         const Record r = simulate(plan_of(scene));
@@ -519,7 +519,7 @@ TEST(Airborne, NothingJumpsWithTheHeight) {
     }
 }
 
-// Two plastic balls that meet at metres a second have the friction of any restitution: (A5). They had none.
+// Plastic balls that meet at metres per second have the friction of any restitution, (A5); it was once 0.
 TEST(Airborne, PlasticBallsHaveFriction) {
     Scene scene = empty_scene();
     scene.balls.e_b = 0.0;
@@ -530,7 +530,7 @@ TEST(Airborne, PlasticBallsHaveFriction) {
     scene.stop.events = 1;
     const Record record = run_verified(scene);
     ASSERT_EQ(count(record, EventType::kBallBall), 1);
-    // Both fall alike: v_n = 2 m/s, and the slip R w of 2.9 m/s would need more than mu_b J_n to end.
+    // Both fall equally: v_n = 2 m/s, and ending the slip R w of 2.9 m/s would need more than mu_b J_n.
     const Vec3 wa = record.tracks[0].segments.back().w, wb = record.tracks[1].segments.back().w;
     const double turn = 2.5 / R * std::min(0.3 * 0.5 * 2.0, 2.0 / 7.0 * 0.5 * R * 100.0);
     EXPECT_NEAR(wa.z(), 100.0 - turn, 0.02 * turn);

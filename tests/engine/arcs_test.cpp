@@ -45,7 +45,7 @@ double energy_left(const Record& record) {
     return after / before;
 }
 
-// In a circle every chord is alike, so the orbit is known for good: 1000 bounces stay within 1e-9 m.
+// All chords of a circle are equal, so the orbit has a closed form: 1000 bounces stay within 1e-9 m.
 TEST(Arcs, AThousandBouncesInACircle) {
     Scene scene = lossless();
     scene.table.jaws.push_back(arc({0.3, -0.2}, 0.5 + kSmallR, 0.0, 360.0));
@@ -57,7 +57,7 @@ TEST(Arcs, AThousandBouncesInACircle) {
     const Real x = Real(start.x()) - 0.3L, y = Real(start.y()) + 0.2L, speed = std::hypot(Real(v.x()), v.y());
     const Real miss = (x * v.y() - y * v.x()) / speed, chord = 2.0L * std::sqrt(0.25L - miss * miss);
     const Real along = -(x * v.x() + y * v.y()) / speed;
-    // The direction of a hit: that of the path, and the angle of the normal to it.
+    // Direction of the path at the hit, and its angle to the normal.
     const Real first = std::atan2(Real(v.y()), Real(v.x())) - std::asin(miss / 0.5L),
                turn = kPi - 2.0L * std::asin(std::abs(miss) / 0.5L);
     for (std::size_t n = 0; n < record.events.size(); ++n) {
@@ -124,8 +124,8 @@ Scene stadium() {
     return scene;
 }
 
-// A stadium is chaotic: no double keeps a whole orbit. Every bounce of 1000, followed from the one before in
-// 64 bits, is within 1e-9 m (measured: 1e-13), and so a true orbit stays near all of it.
+// A stadium is chaotic, so doubles cannot follow a whole orbit. Each of 1000 bounces, computed from the
+// previous one in 64 bits, is within 1e-9 m (measured: 1e-13), so a true orbit stays close to all of it.
 TEST(Arcs, AThousandBouncesInAStadium) {
     Scene scene = stadium();
     add_ball(scene, "1", 0.3, 0.1, 0.7, 0.45);
@@ -156,8 +156,8 @@ TEST(Arcs, AThousandBouncesInAStadium) {
     EXPECT_NEAR(energy_left(record), 1.0, 1e-12);
 }
 
-// The whole orbit agrees with the reference as long as chaos lets it: every bounce multiplies an error by two
-// or three, from the 1e-16 of the first one.
+// The orbit agrees with the reference until chaos takes over: each bounce multiplies an error by two or
+// three, starting from 1e-16.
 TEST(Arcs, AStadiumKeepsItsOrbitForTwentyBounces) {
     Scene scene = stadium();
     add_ball(scene, "1", 0.3, 0.1, 0.7, 0.45);
@@ -170,7 +170,7 @@ TEST(Arcs, AStadiumKeepsItsOrbitForTwentyBounces) {
     }
 }
 
-/// The first time at which a ball touches an arc, by small steps and bisection.
+/// The first time at which a ball touches an arc, found by small steps and bisection.
 double stepped(const Path& path, const Nose& nose, double R, double until) {
     const auto at = [&](double t) { return Vec2(path.r + t * path.v + 0.5 * t * t * path.a - nose.center); };
     const auto gap = [&](double t) { return nose.sign() * length(at(t)) - nose.radius - R; };
@@ -191,11 +191,11 @@ double stepped(const Path& path, const Nose& nose, double R, double until) {
 }
 
 // From any side, on any path, to any part of a circle.
-TEST(Arcs, AreMetFromAllSides) {
+TEST(Arcs, AreDetectedFromAllSides) {
     reference::Generator random(11);
     const auto draw = [&random](double low, double high) { return random.uniform(low, high); };
     int met = 0, missed = 0;
-    // One draw after another: the order of arguments is the compiler's.
+    // Separate statements: compilers differ in the order of arguments.
     const auto place = [&draw](double most) {
         const double x = draw(-most, most);
         return Vec2(x, draw(-most, most));
@@ -209,13 +209,13 @@ TEST(Arcs, AreMetFromAllSides) {
         path.v = place(1.0);
         if (k % 4 != 0) path.a = place(0.5), path.straight = false;
         const Vec2 out = path.r - nose.center;
-        // Not already in it, nor behind all of it, where no scene puts a ball.
+        // Exclude balls already inside it, or wholly behind it; scenes allow neither.
         if (std::abs(length(out) - std::abs(nose.radius)) < kSmallR) continue;
         if (nose.span.whole && nose.sign() * length(out) < nose.radius) continue;
         const double t = time_to_nose(path, nose, kSmallR),
                      reference = stepped(path, nose, kSmallR, path.horizon);
-        // A short visit between two steps is seen by one of the two only; and so is a ball that comes around
-        // an end, which is what touches it first.
+        // Only one of the two methods sees a short contact between two steps, or a ball that comes around an
+        // end, where it touches the end first.
         if (reference < kNever) {
             EXPECT_NEAR(t, reference, 1e-9)
                 << k << " from " << out.transpose() << ", v " << path.v.transpose() << ", a "
@@ -229,7 +229,7 @@ TEST(Arcs, AreMetFromAllSides) {
     EXPECT_GT(missed, 80);
 }
 
-// A ball that loses speed at a round wall comes to run along it, and leaves it where it ends.
+// A ball that loses speed at a round wall ends up running along it, and leaves it at its end.
 TEST(Arcs, ABallRunsAlongARoundWall) {
     Scene scene = lossless();
     scene.balls.e_c = 0.5;
@@ -239,7 +239,7 @@ TEST(Arcs, ABallRunsAlongARoundWall) {
     add_ball(scene, "1", -0.5, -0.5, 1.0, 0.0);
     scene.stop.time = 3.0;
     const Record record = run_verified(scene);
-    // Half a turn at constant speed, and on along a straight line.
+    // Half a turn at constant speed, then a straight line.
     const BallState end = record.state_at(0, 3.0);
     EXPECT_NEAR(end.velocity.x(), -1.0, 1e-4);
     EXPECT_NEAR(end.velocity.y(), 0.0, 1e-3);
@@ -247,7 +247,8 @@ TEST(Arcs, ABallRunsAlongARoundWall) {
     EXPECT_NEAR(end.position.x(), -(3.0 - 0.5 - 0.5 * std::numbers::pi), 1e-3);
 }
 
-// Derivatives of where a ball is after six bounces, by its start and by the wall, against differences.
+// Derivatives of a ball's place after six bounces, with respect to its start and to the wall, against
+// differences.
 TEST(Arcs, HaveDerivatives) {
     const std::string text =
         "[balls]\nradius = 0.03\nmu_b = 0\n[physics]\nball_ball = \"elastic\"\n[[table.arc]]\ncenter = [0, "
@@ -307,7 +308,7 @@ TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
     EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");
 }
 
-// Code that draws a table sees arcs as short cushions.
+// Code that draws tables receives arcs as short cushions.
 TEST(Arcs, AreDrawnAsShortCushions) {
     const Scene scene = stadium();
     const Table drawn = without_arcs(scene.table);
@@ -320,8 +321,8 @@ TEST(Arcs, AreDrawnAsShortCushions) {
     EXPECT_EQ(drawn.cushions[2].from, Vec2(0.0, 0.5 + kSmallR));
 }
 
-// Balls and pucks that lose speed in round tables and stadiums, some with a round obstacle, until they rest.
-TEST(Arcs, RandomTablesAreLeftInOrder) {
+// Balls and pucks lose speed in round tables and stadiums, some with a round obstacle, until they rest.
+TEST(Arcs, RandomTablesKeepTheLaws) {
     for (int k = 0; k < 16; ++k) {
         SCOPED_TRACE(k);
         reference::Generator random(static_cast<std::uint64_t>(1000 + k));
@@ -391,7 +392,7 @@ TEST(Arcs, AreWrittenAndReadBack) {
     EXPECT_TRUE(parse_record(record_json(record), "r.json").table == record.table);
 }
 
-// Two discs touch at the sum of their radii, where balls of unlike size are nearer.
+// Two discs touch at the sum of their radii; unlike balls touch at a smaller distance.
 TEST(Discs, TouchAtTheSumOfTheirRadii) {
     for (const bool discs : {true, false}) {
         Scene scene = lossless();
@@ -408,7 +409,7 @@ TEST(Discs, TouchAtTheSumOfTheirRadii) {
         if (discs) {
             EXPECT_EQ(details_of(record, 0).cut, 0.0);
         }
-        // Equal masses change their velocities.
+        // Equal masses exchange their velocities.
         EXPECT_NEAR(record.state_at(0, 1.0).velocity.x(), 0.0, 1e-14);
         EXPECT_NEAR(record.state_at(1, 1.0).velocity.x(), 1.0, 1e-14);
     }
@@ -423,7 +424,7 @@ Scene pucks() {
 }
 
 // A puck stops after v^2 / (2 mu g), and never rolls.
-TEST(Pucks, StopWhereFrictionAloneStopsThem) {
+TEST(Pucks, StopAfterTheFrictionDistance) {
     Scene scene = pucks();
     add_ball(scene, "1", 0.0, 0.0, 1.2, 0.9);
     scene.ball[0].spin = {0.0, 0.0, 5.0};
@@ -439,7 +440,7 @@ TEST(Pucks, StopWhereFrictionAloneStopsThem) {
     EXPECT_NEAR(record.events[0].time, 1.5 / mu_g, 1e-14);
 }
 
-// Two that stay together share the momentum, and stop together.
+// Two that stick share the momentum and stop together.
 TEST(Pucks, ThatStickStopTogether) {
     Scene scene = pucks();
     scene.balls.e_b = 0.0;

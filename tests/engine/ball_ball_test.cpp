@@ -34,8 +34,8 @@ bool same(const kernel::ImpactResult& a, const kernel::ImpactResult& b) {
     return true;
 }
 
-// A model's result changes with exactly the parameters that it says it reads.
-TEST(BallBall, ModelsReadWhatTheySay) {
+// A model's result depends on exactly the parameters that it declares.
+TEST(BallBall, ResultsDependOnExactlyTheDeclaredParameters) {
     for (const BallBallModelInfo* model : kModels) {
         const BallBallModelInfo& info = *model;
         EXPECT_EQ(ball_ball_model(info.name), model);
@@ -98,9 +98,7 @@ TEST(Unequal, EqualBallsGiveTheInelasticImpact) {
     }
 }
 
-// Momentum and angular momentum about the contact are conserved, energy falls, and either Coulomb's limit
-// holds or the slip ends.
-TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
+TEST(Unequal, AnImpactWithoutSolutionReturnsItsInput) {
     const kernel::Ball one{{0.0, 0.0, 0.03}, {0.0, 1.0, 0.0}, {1.0, 2.0, 3.0}},
         two{{0.0, 0.06, 0.03}, {0.0, 0.0, 0.0}, {}};
     const kernel::ImpactParams rough{0.03, 0.17, 0.2, 0.2, 0.05, 0.9};
@@ -121,7 +119,7 @@ TEST(Unequal, WhatCannotBeComputedGivesTheInputBack) {
     EXPECT_EQ(status(away, two, 0.03, smooth), kernel::ImpactStatus::kNotApproaching);
 }
 
-TEST(Unequal, MassesOfAnyRatio) {
+TEST(Unequal, AnyMassRatioConservesMomentumAndLosesEnergy) {
     reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
         const reference::Impact x = reference::random_impact(rng);
@@ -153,8 +151,8 @@ Scene scene_of(const std::string& text) {
     return parse_scene(text, "s.toml");
 }
 
-// Two balls on one cloth touch when their centres are 2 sqrt(R1
-// R2) apart; the elastic exchange is that of two masses.
+// Two balls on one cloth touch when their centres are 2 sqrt(R1 R2) apart; an elastic impact exchanges
+// velocities by mass.
 TEST(Unequal, HeadOnElastic) {
     const Scene scene =
         scene_of(std::string(kSequential) +
@@ -179,7 +177,7 @@ TEST(Unequal, HeadOnElastic) {
     EXPECT_NEAR(small.spin.x() * 0.02, -small.velocity.y(), 1e-14);
 }
 
-TEST(Unequal, CushionAndCueTakeTheBallsOwn) {
+TEST(Unequal, CushionAndCueUseTheBallsOwnSize) {
     const std::string table = "[table]\n[[table.cushion]]\nfrom = [-1, 1]\nto = [1, 1]\nheight = 0.03\n";
     const auto contact_y = [&](const std::string& own) {
         const Record record =
@@ -222,15 +220,15 @@ TEST(Unequal, RandomScenesKeepEveryLaw) {
     EXPECT_GT(hits, 250);
 }
 
-// A size that is written out but equals that of all balls changes nothing.
-TEST(Unequal, TheCommonSizeIsNoSizeOfItsOwn) {
+// An explicit size equal to the common one changes nothing.
+TEST(Unequal, AnExplicitCommonSizeChangesNothing) {
     const std::string two = "[[ball]]\nvelocity = [0.1, 2]\n[[ball]]\nid = \"1\"\nposition = [0.64, 1.2]\n";
     const Scene plain = scene_of(two), written = scene_of(two + "radius = 0.028575\nmass = 0.170097\n");
     EXPECT_TRUE(written.alike());
     EXPECT_EQ(simulate(plan_of(plain)).hash(), simulate(plan_of(written)).hash());
 }
 
-// [physics] march: the two forms are close to each other, and each is the kernel's.
+// [physics] march: the two forms nearly agree, and each equals the kernel's.
 TEST(Substeps, AreSummedOrMarchedAsPublished) {
     const std::string two =
         "[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity = [0.3, 2]\n[[ball]]\nid = \"b\"\nposition = "
@@ -245,7 +243,7 @@ TEST(Substeps, AreSummedOrMarchedAsPublished) {
     EXPECT_NEAR(one.duration, other.duration, 1e-8);
 }
 
-TEST(Unequal, ModelsWithAFormulaTakeThem) {
+TEST(Unequal, ModelsWithAFormulaAcceptThem) {
     const std::string big =
         "[[ball]]\nid = \"a\"\nposition = [0.3, 0.5]\n[[ball]]\nid = \"b\"\nradius = 0.03\n";
     const std::string heavy =
@@ -259,14 +257,14 @@ TEST(Unequal, ModelsWithAFormulaTakeThem) {
         EXPECT_EQ(error_of(two + "[balls]\nmu_b = 0\n"), "");
     }
     EXPECT_EQ(error_of(heavy + "[physics]\nball_ball = \"inelastic\"\n"), "");
-    // The overlap is that of two spheres on one cloth.
+    // The overlap is measured between spheres on one cloth.
     EXPECT_EQ(
         error_of("[balls]\nmu_b = 0\n[[ball]]\nposition = [0.3, 0.5]\nradius = 0.04\n[[ball]]\nid = \"b\"\n"
                  "radius = 0.02\nposition = [0.3, 0.5566]\n"),
         "");
 }
 
-// The friction between unlike balls is that of their slip on the tilted line of centres, as a vector in
+// The friction between unlike balls depends on the slip along the tilted line of centres, as a vector in
 // space.
 TEST(Unequal, FrictionFallsWithTheSlipOfBothSurfaces) {
     reference::Generator rng(6);
@@ -294,7 +292,8 @@ TEST(Unequal, FrictionFallsWithTheSlipOfBothSurfaces) {
         const PairImpact one = collide({kMathavan, exact, falls}, size1, size2, r1, r2, a, b);
         const PairImpact two = collide({kMathavan, exact, constant}, size1, size2, r1, r2, a1, b1);
         ASSERT_EQ(one.status, two.status);
-        // Measured: 6.4e-8 m/s, in an impact of many stretches. The slip of equal balls gives 1e-3 m/s.
+        // Measured: 6.4e-8 m/s, in an impact of many stretches. With the slip of equal balls it would be 1e-3
+        // m/s.
         EXPECT_LE((a.v - a1.v).norm() + (b.v - b1.v).norm(), 1e-6);
         EXPECT_LE(size1.R * (a.w - a1.w).norm() + size2.R * (b.w - b1.w).norm(), 1e-6);
     }

@@ -1,5 +1,5 @@
-// Batches: the same bits as shot by shot, whatever the number of threads; failures are statuses; keys of
-// numbers.
+// Batches have the bits of single shots for any number of threads, report failures as statuses, and vary the
+// keys that are numbers.
 #include "carom/engine/batch.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ struct Columns {
     }
 };
 
-/// The ball that a ball meets in an event, or -1; found from the record alone.
+/// The ball that a ball meets in an event, or -1, from the record alone.
 int met_in(const Record& record, const Event& e, int ball) {
     if (e.type != EventType::kBallBall && e.type != EventType::kBallBallHold &&
         e.type != EventType::kBallCluster)
@@ -77,7 +77,7 @@ bool is_cushion(const Event& e) {
            kind == "ball_jaw_hold";
 }
 
-/// The balls that a ball meets, in their order, and its cushions before the second of them.
+/// The balls that a ball meets, in order, and its cushion contacts before the second of them.
 struct Contacts {
     std::vector<int> balls;
     int cushions = 0;
@@ -194,8 +194,8 @@ TEST(Batch, HasTheBitsOfSingleShots) {
     }
 }
 
-// Positions that overlap or are in a cushion, values out of range, speeds of a struck ball.
-TEST(Batch, WhatIsInvalidIsAStatus) {
+// Positions that overlap or lie in a cushion, values out of range, speeds of a struck ball.
+TEST(Batch, InvalidShotsAreStatuses) {
     SplitMix64 random(4);
     const Scene scene = shipped("side_bank");
     const std::string other = scene.ball[1].id;
@@ -235,8 +235,7 @@ TEST(Batch, RandomScenesOfEveryKind) {
     }
 }
 
-// An effect that is refused is found by the plan.
-TEST(Batch, ARefusedEffectIsAStatusWithItsReason) {
+TEST(Batch, ARefusedEffectIsAStatusWithAReason) {
     Scene scene = shipped("draw");
     scene.effects = {{"squirt", false, {}}};
     scene.cue->side = 0.0;
@@ -251,8 +250,8 @@ TEST(Batch, ARefusedEffectIsAStatusWithItsReason) {
               "effects.squirt = false, but the scene needs it: the cue strikes off centre; remove the line");
 }
 
-TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
-    // A ball that comes down exactly on another one balances for ever.
+TEST(Batch, AFailedRunIsAStatusAndTheOthersArePlayed) {
+    // A ball that lands exactly on top of another balances for ever.
     Scene scene = empty_scene();
     add_ball(scene, "a", Vec3(0.0, 0.0, scene.balls.R + 0.1));
     scene.ball[0].height = 0.1;
@@ -267,7 +266,7 @@ TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
     ASSERT_EQ(batch.messages.size(), 1u);
     EXPECT_EQ(batch.messages[0].shot, 1u);
     EXPECT_NE(batch.messages[0].text.find("simulation stopped at t = "), std::string::npos);
-    // Played by itself, it also has the record up to there.
+    // A single run also provides the record up to there.
     try {
         simulate(make_plan(scene, kIsa));
         ADD_FAILURE() << "the run went on";
@@ -280,7 +279,7 @@ TEST(Batch, AFailingRunIsAStatusAndTheOthersArePlayed) {
     }
 }
 
-TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
+TEST(Batch, FillsOnlyTheCallersArrays) {
     const Scene scene = shipped("draw");
     const std::vector<double> speeds = {2.0, -1.0, 3.0};
     const BatchColumn column{"cue.speed", speeds};
@@ -302,7 +301,7 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
         EXPECT_EQ(xy[2 * i], whole.x[i]);
         EXPECT_EQ(xy[2 * i + 1], whole.y[i]);
     }
-    EXPECT_EQ(xy[2 * balls], 0.0);  // of the second shot, which has no result
+    EXPECT_EQ(xy[2 * balls], 0.0);  // second shot: no result
     EXPECT_EQ(pocket, whole.pocket);
     EXPECT_EQ(hash, whole.hash);
     ASSERT_EQ(messages.size(), 1u);
@@ -310,13 +309,13 @@ TEST(Batch, FillsTheArraysOfACallerAndNoOthers) {
     EXPECT_EQ(messages[0].text, whole.messages.at(0).text);
 }
 
-TEST(Batch, BallsThatAreLeftOutAreNotThere) {
+TEST(Batch, AbsentBallsTakeNoPart) {
     SplitMix64 random(11);
     const Scene scene = shipped("eight_ball_break");
     const std::size_t balls = scene.ball.size();
     Columns columns(30);
     columns.add("cue.aim_deg", random, 80.0, 100.0).add("ball.1.position.y", random, 1.85, 1.9);
-    // All balls, some, none but the cue ball, and not even that.
+    // All balls, some, only the cue ball, and none at all.
     std::vector<std::uint8_t> absent(columns.shots * balls);
     for (std::size_t i = 0; i < columns.shots; ++i)
         for (std::size_t b = 0; b < balls; ++b)
@@ -372,8 +371,8 @@ TEST(Batch, BallsThatAreLeftOutAreNotThere) {
     EXPECT_THROW(simulate_many(scene, 1, {}, kIsa, options), std::invalid_argument);
 }
 
-// A judge sees the record of every shot that has a result, with and without all balls; its exceptions end the
-// batch.
+// A judge receives the record of every shot that has a result, with and without all balls; its exceptions end
+// the batch.
 TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     SplitMix64 random(17);
     const Scene scene = shipped("side_bank");
@@ -424,7 +423,7 @@ TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     EXPECT_THROW(simulate_many(scene, columns.shots, list, kIsa, options), std::domain_error);
 }
 
-TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
+TEST(Batch, OnlySelectedShotsAreHashed) {
     const Variation variation =
         Variation::from_text(read_source("scenes/draw.toml"), "draw", {"cue.aim_deg=normal(2)"}, 5);
     constexpr std::size_t kShots = 40, kFirst = 7;
@@ -443,9 +442,9 @@ TEST(Batch, OnlyShotsWithTheseNumbersAreHashed) {
     }
 }
 
-TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
+TEST(Batch, ShotsOfAVariationEqualThoseOfItsScenes) {
     const std::string text = read_source("scenes/draw.toml");
-    // In the second, one value is not a number of the scene.
+    // In the second list, one value is not a number of the scene.
     for (const std::vector<std::string>& rules :
          {std::vector<std::string>{"cue.aim_deg=normal(2)", "cue.speed=uniform(-0.1,4)"},
           std::vector<std::string>{"cue.aim_deg=normal(2)",
@@ -488,7 +487,7 @@ TEST(Batch, ShotsOfAVariationAreThoseOfItsScenes) {
     }
 }
 
-TEST(Batch, StopsWhenAsked) {
+TEST(Batch, CanBeCancelled) {
     SplitMix64 random(1);
     const Scene scene = shipped("draw");
     std::vector<double> speed(1000, 2.0);
@@ -542,8 +541,8 @@ TEST(Batch, BadColumnsSayWhatToDo) {
     EXPECT_THROW(simulate_many(scene, 2, twice, kIsa), std::invalid_argument);
 }
 
-// Each number alone may be in its range, and all of them together be no restitution.
-TEST(SceneNumber, OfAFitLeavesTheOthersAndIsCheckedWithThem) {
+// Each number may be in its range although together they are no valid restitution.
+TEST(SceneNumber, OfAFitKeepsTheOthersAndIsCheckedWithThem) {
     Scene scene;
     scene.balls = make_ball_params("carom");
     const double fall = scene.balls.e_c_fall;
@@ -555,7 +554,7 @@ TEST(SceneNumber, OfAFitLeavesTheOthersAndIsCheckedWithThem) {
     EXPECT_GT(fall, 0.0);
 }
 
-TEST(SceneNumber, IntegersAreWhole) {
+TEST(SceneNumber, IntegersMustBeWhole) {
     Scene scene = shipped("draw");
     const SceneNumber events(scene, "stop.events"), steps(scene, "physics.substeps");
     EXPECT_EQ(events.put(scene, 7.0), Change::kNumbers);
@@ -577,8 +576,8 @@ TEST(SceneNumber, IntegersAreWhole) {
               "stop.events must be an integer, not a number with a decimal point");
 }
 
-// The buffers of a run that failed, or of another scene, change nothing.
-TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
+// Buffers of a failed run, or of another scene, change nothing.
+TEST(RunBuffers, GiveTheSameBitsAfterAnyRun) {
     RunBuffers buffers;
     std::vector<Plan> plans;
     for (const char* name : {"eight_ball_break", "draw", "three_cushion", "side_bank", "hello"})
@@ -595,7 +594,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
             simulate(plan, buffers, of_record, kept, options);
             EXPECT_EQ(of_record, outcome);
             EXPECT_EQ(kept, want);
-            // Nor do the orientations of the previous shot remain.
+            // No orientations of the previous shot remain.
             EXPECT_EQ(kept.orientation_at(0, 1.0).coeffs(), want.orientation_at(0, 1.0).coeffs());
             EXPECT_EQ(fmt::format("{:016x}", outcome.hash), want.hash());
             EXPECT_EQ(outcome.clusters, static_cast<int>(want.clusters.size()));
@@ -607,7 +606,7 @@ TEST(RunBuffers, GiveTheSameBitsAfterAnything) {
     }
 }
 
-// A plan that is remade decides like a new one.
+// A reused planner decides like a new one.
 TEST(Planner, DecidesAsMakePlan) {
     SplitMix64 random(8);
     Scene scene = shipped("side_bank");

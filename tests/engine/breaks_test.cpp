@@ -1,7 +1,7 @@
 // The reference break (tests/data/engine/breaks.json): an eight-ball break with pair-by-pair impacts and
-// mathavan_2010 cushions. Its own simulator moves balls apart by 1e-6 m at every contact; with 1e-9 m its
-// list changes from event 9 on. Up to there the order is comparable, and times to about 1e-6 s; after that
-// nothing is.
+// mathavan_2010 cushions. The reference simulator moves balls apart by 1e-6 m at every contact; with 1e-9 m
+// its event list changes from event 9 on. Up to there the order is comparable, and times to about 1e-6 s;
+// nothing is after that.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-TEST(Breaks, FirstEventsAgreeUpToWhereTheReferenceIsItsOwn) {
+TEST(Breaks, FirstEventsAgreeUntilTheReferenceDiverges) {
     const auto data = read_json("breaks.json");
     int checked = 0;
     for (const auto& c : data.at("cases")) {
@@ -63,7 +63,7 @@ TEST(Breaks, FirstEventsAgreeUpToWhereTheReferenceIsItsOwn) {
             EXPECT_NEAR(got.time, want.at("t").get<double>(), 1e-6) << "event " << i;
             ++checked;
         }
-        // Statistics only for the rest: the same kinds of events, in similar number.
+        // Compare the rest statistically: the same kinds of events, in similar numbers.
         const double share =
             static_cast<double>(record.events.size()) / static_cast<double>(c.at("events").size());
         EXPECT_GT(share, 0.5);

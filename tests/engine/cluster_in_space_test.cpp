@@ -1,4 +1,4 @@
-// Clusters with a ball in the air, or of a model in which balls leave the cloth: the map in space against an
+// Clusters with an airborne ball, or with a model in which balls leave the cloth: the map in space against an
 // independent integration (support/moving_contacts.h), and whole scenes.
 #include <gtest/gtest.h>
 
@@ -62,9 +62,8 @@ Vec3 momentum(const std::vector<ClusterBall>& balls) {
     return sum;
 }
 
-/// Largest difference [V] of a velocity between the map and the integration, at the contact-free instant at
-/// which they agree best: whether a slow contact some 2 L/V after the others counts may be decided either
-/// way.
+/// Largest velocity difference [V] between map and integration, at the contact-free instant where they agree
+/// best: whether a slow contact some 2 L/V after the others counts is ambiguous.
 double error_of(std::vector<ClusterBall> balls, const MovingLaw& law, double V) {
     std::vector<MovingBall> start;
     for (const ClusterBall& b : balls)
@@ -108,7 +107,7 @@ ClusterBall ball(int id, const Vec3& r, const Vec3& v = Vec3::Zero(), const Vec3
     return {id, r, v, w};
 }
 
-// Three balls that touch, and a fourth that comes down beside the middle of their hollow with spin.
+// A fourth ball lands with spin beside the middle of the hollow of three touching balls.
 TEST(ClusterInSpace, ABallOnThree) {
     Generator rng(81);
     double worst = 0.0;
@@ -119,14 +118,14 @@ TEST(ClusterInSpace, ABallOnThree) {
         const double V = rng.uniform(0.3, 4.0), aside = n < 3 ? 0.0 : 0.005;
         Vec3 top(0.5 * side + rng.uniform(-aside, aside), side / (2.0 * root3) + rng.uniform(-aside, aside),
                  0.2);
-        // It touches the first that it meets.
+        // Lower it until it touches the first ball.
         double z = 0.0;
         for (const ClusterBall& b : balls) {
             const Vec2 level = planar(top - b.r);
             z = std::max(z, kPoolR + std::sqrt(4.0 * kPoolR * kPoolR - level.squaredNorm()));
         }
         top.z() = z;
-        // Drawn one after the other: compilers differ in the order of arguments.
+        // Separate statements: compilers differ in the order of arguments.
         const Vec3 w{rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0), rng.uniform(-40.0, 40.0)};
         const Vec3 v{rng.uniform(-0.3, 0.3) * V, rng.uniform(-0.3, 0.3) * V, -V};
         balls.push_back(ball(3, top, v, w));
@@ -137,7 +136,6 @@ TEST(ClusterInSpace, ABallOnThree) {
     EXPECT_GT(worst, 0.0);
 }
 
-// A cue ball that arrives in the air at a rack.
 TEST(ClusterInSpace, BreaksThroughTheAir) {
     Generator rng(82);
     for (const double gap : {0.0, 1e-4, 3e-4}) {
@@ -153,7 +151,7 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
             const double height = rng.uniform(0.001, 0.02), x = rng.uniform(-0.002, 0.002);
             const double y = -std::sqrt(4.0 * kPoolR * kPoolR - height * height - x * x);
             const double V = rng.uniform(6.0, 9.0);
-            // Drawn one after the other: compilers differ in the order of arguments.
+            // Separate statements: compilers differ in the order of arguments.
             const Vec3 w{-rng.uniform(0.0, 2.0) * V / kPoolR, 0.0, rng.uniform(-30.0, 30.0)};
             const Vec3 v{0.0, V, rng.uniform(-0.4, 0.4)};
             balls.push_back(ball(15, {x, y, kPoolR + height}, v, w));
@@ -164,9 +162,9 @@ TEST(ClusterInSpace, BreaksThroughTheAir) {
     }
 }
 
-// If everything is level and nothing presses on the cloth, the map in space equals the one in the plane: both
-// turn the normals, one by positions and one by its own law.
-TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
+// With all balls level and nothing pressing on the cloth, the map in space equals the planar map, although
+// one turns the normals by positions and the other by its own law.
+TEST(ClusterInSpace, LevelBallsWithoutClothMatchThePlanarMap) {
     Generator rng(83);
     double worst = 0.0;
     for (int n = 0; n < 20; ++n) {
@@ -191,8 +189,9 @@ TEST(ClusterInSpace, LevelWithoutClothIsTheMapOnTheCloth) {
     EXPECT_LT(worst, 1e-5);
 }
 
-// Two balls moving together close at the rounding of their speeds, without end: nothing waits for them.
-TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
+// Two balls moving together close at the rounding of their speeds without end; the map must not wait for
+// them.
+TEST(ClusterInSpace, EndsWhenNoContactIsLeft) {
     const double V = 2.0, D = 2.0 * kPoolR;
     std::vector<ClusterBall> balls{ball(0, {0.0, -D, kPoolR}, {0.0, V, 0.0}), ball(1, {0.0, 0.0, kPoolR}),
                                    ball(2, {D, 0.0, kPoolR}, {0.2 * V * (1.0 + 1e-16), 0.0, 0.0}),
@@ -208,7 +207,7 @@ TEST(ClusterInSpace, EndsWhenNothingIsLeftToDo) {
     EXPECT_NEAR(balls[3].v.x(), 0.2 * V, 1e-15 * V);
 }
 
-// As rigid bodies: the ball that comes down goes up again, and nothing passes through the cloth.
+// Rigid model: the landing ball goes up again, and no ball passes through the cloth.
 TEST(ClusterInSpace, RigidKeepsBallsOnTheCloth) {
     const double root3 = std::sqrt(3.0), height = std::sqrt(8.0 / 3.0) * kPoolR;
     for (const double e : {0.0, 0.5, 1.0}) {
@@ -258,16 +257,16 @@ TEST(ClusterInSpace, ADroppedBallPushesAllThreeApart) {
         EXPECT_GT(least, 0.02) << more;
         EXPECT_LT(most, 1.6 * least) << more << "the first of three impacts would take it all";
     }
-    // Pair by pair the three are met one after the other.
+    // Pair by pair, the three are met one after another.
     EXPECT_EQ(count(run_verified(on_three("clusters = \"sequential\"\n")), EventType::kBallCluster), 0);
 }
 
-// A third ball flying by makes it a cluster in space, although the two that meet are on the cloth.
+// A third ball flying by makes it a cluster in space, although the two that collide are on the cloth.
 TEST(ClusterInSpace, TheThirdBallMayFly) {
     Scene scene = empty_scene();
     add_ball(scene, "one", Vec3(0.0, 0.0, kPoolR), Vec3(0.0, 2.0, 0.0));
     add_ball(scene, "two", Vec3(0.0, 2.2 * kPoolR, kPoolR));
-    // Above and between, it comes down on "two" when "one" meets it.
+    // The third ball, above and between the others, lands on "two" when "one" meets it.
     scene.ball.push_back(scene.ball.back());
     BallStart& high = scene.ball.back();
     high.id = "high";
@@ -279,8 +278,8 @@ TEST(ClusterInSpace, TheThirdBallMayFly) {
     EXPECT_EQ(record.clusters.front().size(), 3u);
 }
 
-// 8 m/s along a ball at rest, 0.2 m/s towards it, and a third ball flying within reach: the contact opens in
-// the map as the two pass each other. The same cluster was repeated 10 000 times.
+// A ball passes a resting one at 8 m/s and approaches it at 0.2 m/s while a third flies within reach: the
+// contact opens in the map as the two pass. This cluster was once repeated 10 000 times.
 TEST(ClusterInSpace, AGlancingContactOpensWhereTheBallsStay) {
     const Scene scene = parse_scene(
         "[[ball]]\nposition = [0.240011, 1.994503]\nheight = 0.0001\n"

@@ -1,6 +1,6 @@
 // Clusters whose balls move during the contact: against an independent integration
-// (support/moving_contacts.h), and continuous in the position of a third ball, including where an impact
-// stops being a cluster.
+// (support/moving_contacts.h), and continuous in a third ball's position, also where an impact stops being a
+// cluster.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ using namespace test;
 
 constexpr double kBallR = 0.028575;  // [m] of pool balls
 
-/// The state in which a ball enters an event at `time`, or in which it leaves it: where a cluster lasts, at
-/// its end.
+/// The state in which a ball enters an event at `time`, or leaves it (for a cluster with a duration: at its
+/// end).
 MovingBall state(const Record& record, int ball, double time, bool after) {
     const std::vector<Segment>& list = record.tracks[ball].segments;
     std::size_t k = 0;
@@ -50,9 +50,9 @@ double difference(const MovingBall& a, const MovingBall& b) {
     return std::hypot(a.v[0] - b.v[0], a.v[1] - b.v[1]);
 }
 
-/// Largest difference of a velocity after the first cluster of a break, in units of the cue ball's speed.
-/// Whether a slow contact some 4 L/V after the others belongs to the cluster may be decided either way, so
-/// the integration is taken at the contact-free instant at which it agrees best.
+/// Largest velocity difference after the first cluster of a break [cue-ball speed]. Whether a slow contact
+/// some 4 L/V after the others belongs to the cluster is ambiguous, so the integration is read at the
+/// contact-free instant of best agreement.
 double first_cluster_error(double gap, double speed, double aim_deg) {
     const Scene scene =
         parse_scene("[rack]\ngame = \"eight_ball\"\ngap = " + std::to_string(gap) +
@@ -87,15 +87,15 @@ double first_cluster_error(double gap, double speed, double aim_deg) {
     return least;
 }
 
-// The gaps below count beside the compression of the balls. They were chosen for softer balls, which are
-// compressed more, by this ratio.
+// The gaps below compare with the compression of the balls. They were chosen for softer balls, which compress
+// more by this ratio.
 const double kCompression = std::pow(3.094e9 / 4.736e9, 0.4);
 
-// [V] Largest error of the first cluster of a break, and largest jump of a velocity;
-// docs/design/hard_cases.md states them.
+// [V] Largest error of a break's first cluster, and largest jump of a velocity, as stated in
+// docs/design/hard_cases.md.
 constexpr double kClusterError = 3e-3, kClusterJump = 4e-4;
 
-TEST(MovingCluster, BreaksFollowAnIntegrationOfTheirOwn) {
+TEST(MovingCluster, BreaksFollowAnIndependentIntegration) {
     for (const double gap : {0.0, 1e-4, 3e-4}) {
         std::vector<double> errors;
         for (int k = 0; k < 16; ++k)
@@ -162,13 +162,12 @@ double difference(const Outcome3& a, const Outcome3& b) {
     return most;
 }
 
-// A third ball that nearly touches: from touching to a gap at which the impacts follow one another.
-TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
+// A third ball, from touching to a gap at which the impacts are successive.
+TEST(MovingCluster, AThirdBallFollowsAnIndependentIntegration) {
     struct Case {
         double angle, gap, error;
     };
-    // Far balls are met as the pair kernel meets them, which
-    // takes no time: that costs the errors of the last rows.
+    // Far balls are met in zero time, as the pair kernel does; this causes the errors of the last rows.
     for (const Case& c :
          {Case{0.4, 0.0, 1e-3}, Case{0.4, 5e-4, 5e-4}, Case{0.9, 1e-4, 1e-3}, Case{0.9, 5e-4, 1.1e-4},
           Case{1.4, 1e-4, 5e-4}, Case{1.4, 0.16235795638398e-3, 0.0170}, Case{0.9, 1.0264e-3, 0.0120},
@@ -198,7 +197,7 @@ TEST(MovingCluster, AThirdBallFollowsAnIntegrationOfItsOwn) {
     }
 }
 
-/// The change of the outcome between neighbouring doubles, found by bisection of the half that changes more.
+/// Change of the outcome between neighbouring doubles, found by bisecting the half that changes more.
 double jump(const Three& from, const Three& to) {
     Three a = from, b = to;
     Outcome3 at_a = outcome(a), at_b = outcome(b);
@@ -217,8 +216,7 @@ double jump(const Three& from, const Three& to) {
     }
 }
 
-/// The largest jump on a line of shots: bisects where the
-/// kinds of the impacts change, and the three steepest parts.
+/// Largest jump on a line of shots: bisects where the kinds of impacts change, and the three steepest parts.
 double largest_jump(Three from, const Three& to, int parts) {
     struct Part {
         double steep;
@@ -244,9 +242,9 @@ double largest_jump(Three from, const Three& to, int parts) {
     return most;
 }
 
-// Where a third ball gets out of reach, and where its contact becomes a separate impact, one formula takes
-// over from another. The rest comes from the step of the one and the regularisation of its friction.
-TEST(MovingCluster, NothingJumpsInTheGapAndTheAngle) {
+// One formula replaces another where a third ball gets out of reach and where its contact becomes a separate
+// impact. The rest is the step size of one and the regularised friction of the other.
+TEST(MovingCluster, ResultsAreContinuousInGapAndAngle) {
     for (const double mu_b : {0.0, 0.05}) {
         double worst = 0.0;
         for (const double cut : {0.1, 0.6}) {

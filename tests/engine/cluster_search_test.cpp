@@ -1,5 +1,5 @@
-// Which balls take part in an impact: the boxes find the same balls as a plain search of all, in whatever
-// order, and an impact among thousands examines no more balls than one among a hundred.
+// Cluster members: the boxes find the same balls as a full scan, in any order, and an impact among thousands
+// examines no more balls than one among a hundred.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -16,7 +16,8 @@ namespace {
 
 using namespace test;
 
-/// A crowd: n balls (n a square) with gaps of about a third of a radius, some fast, some slow, some at rest.
+/// A crowd of n balls (n a square) with gaps of about a third of a radius; some fast, some slow, some at
+/// rest.
 Scene crowd(int n, long events, std::uint64_t seed, bool friction) {
     Scene scene = friction ? empty_scene() : frictionless();
     scene.stop.events = events;
@@ -44,12 +45,12 @@ struct Comer {
     bool collides;  ///< in an earlier cluster, which still lasts
 };
 
-/// The rule of the cluster model as in docs/reference/physics.md, applied by examining every ball.
+/// The cluster rule of docs/reference/physics.md, applied by examining every ball.
 class FullScan {
   public:
     FullScan(const Record& record, double R) : R_(R), now_(record.tracks.size()), tracks_(record.tracks) {}
 
-    /// Moves on to `time`; calls come in the order of the events.
+    /// Advances to `time`; call it in the order of events.
     void go_to(double time) {
         balls_.clear();
         for (std::size_t i = 0; i < now_.size(); ++i) {
@@ -108,12 +109,12 @@ class FullScan {
     std::vector<Comer> balls_;
 };
 
-TEST(ClusterSearch, FindsWhomAFullScanFinds) {
+TEST(ClusterSearch, FindsTheBallsOfAFullScan) {
     for (const bool friction : {false, true}) {
         for (const int n : {25, 400, 3969}) {
             const Scene scene = crowd(n, 2000, 17, friction);
             Plan plan = plan_of(scene);
-            plan.box_travel = 0.1;  // boxes that say next to nothing about where a ball is going
+            plan.box_travel = 0.1;  // boxes that hardly predict a ball's path
             const Record record = simulate(plan);
             FullScan scan(record, scene.balls.R);
             std::size_t pairs = 0, clusters = 0, joined = 0;
@@ -121,14 +122,14 @@ TEST(ClusterSearch, FindsWhomAFullScanFinds) {
                 const Event& e = record.events[k];
                 const bool cluster = e.type == EventType::kBallCluster;
                 if (!cluster && e.type != EventType::kBallBall) continue;
-                // The record does not say what came first at one instant.
+                // The record does not order events at one instant.
                 if (k > 0 && record.events[k - 1].time == e.time) continue;
                 scan.go_to(e.time);
                 std::vector<int> took_part{std::min(e.a, e.b), std::max(e.a, e.b)};
                 if (cluster) took_part = record.clusters[e.detail];
                 std::sort(took_part.begin(), took_part.end());
                 const std::vector<int> found = scan.members(e.a, e.b);
-                // Balls that one of a cluster would meet while it lasts join it.
+                // Balls that a cluster member would meet during the cluster join it.
                 if (took_part.size() > found.size() && found.size() > 2) {
                     ASSERT_TRUE(std::includes(took_part.begin(), took_part.end(), found.begin(), found.end()))
                         << n << " balls, event " << k;
@@ -145,7 +146,7 @@ TEST(ClusterSearch, FindsWhomAFullScanFinds) {
     }
 }
 
-TEST(ClusterSearch, EveryWayGivesTheSameBits) {
+TEST(ClusterSearch, EverySearchGivesTheSameBits) {
     for (const int n : {25, 400, 900}) {
         const Scene scene = crowd(n, 2000, 3, true);
         Plan plan = plan_of(scene);
@@ -160,7 +161,7 @@ TEST(ClusterSearch, EveryWayGivesTheSameBits) {
     }
 }
 
-// Ties are decided by place: the same balls in another order are the same shot.
+// Ties are decided by place, so reordered balls give the same shot.
 TEST(ClusterSearch, TheOrderOfTheBallsDoesNotMatter) {
     Scene scene = crowd(900, 2000, 5, false);
     const Record one = simulate(plan_of(scene));
@@ -183,8 +184,8 @@ TEST(ClusterSearch, TheOrderOfTheBallsDoesNotMatter) {
     }
 }
 
-// Equal balls may have their size from [balls] or each from its own.
-TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
+// Equal balls may share the size of [balls] or each have their own.
+TEST(ClusterSearch, UsesTheSizeOfTheBallsThemselves) {
     Scene scene = empty_scene();
     const BallSize large{0.035, 0.2};
     scene.balls.R = large.R;
@@ -201,7 +202,7 @@ TEST(ClusterSearch, TheSizeIsThatOfTheBallsThemselves) {
     EXPECT_EQ(other.hash(), one.hash());
 }
 
-/// Balls that an impact examines besides its own two, on average.
+/// Average number of balls that an impact examines besides its own two.
 double looks_per_impact(const Scene& scene) {
     const Plan plan = plan_of(scene);
     const SimulateOptions options;
@@ -223,7 +224,7 @@ TEST(ClusterSearch, WorkPerImpactDoesNotGrowWithTheBalls) {
         thin.push_back(looks_per_impact(scene));
         report("looks an impact, dense", dense.back());
         report("looks an impact, thin", thin.back());
-        // A ball that fits in has six neighbours, and a pair eight; boxes are wider than balls.
+        // A fitting ball has six neighbours, a pair eight; boxes are wider than balls.
         EXPECT_LT(dense.back(), 60.0) << n;
         EXPECT_LT(thin.back(), 4.0) << n;
     }

@@ -1,5 +1,5 @@
-// The cluster maps against the test values of the design notes
-// (clusters, section 9): racks, three-ball hits, cradles.
+// The cluster maps against the test values of the design notes (clusters, section 9): racks, three-ball hits,
+// cradles.
 #include "physics/cluster.h"
 
 #include <gtest/gtest.h>
@@ -68,8 +68,8 @@ Result run(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
     return {balls, energy_of(balls) / before, steps};
 }
 
-// The limit of a slow impact, whose balls do not move during the contact, so the normals stay. The power of 2
-// changes only the bits of the turning, which is 1e-10.
+// The limit of a slow impact: the balls do not move during the contact, so the normals stay fixed. The power
+// of 2 changes only the bits of their turning, which is 1e-10.
 Result run_slow(std::vector<ClusterBall> balls, const ClusterSettings& s, double V) {
     constexpr double kSlow = 0x1p-30;
     for (ClusterBall& b : balls) b.v *= kSlow, b.w *= kSlow;
@@ -82,7 +82,7 @@ ClusterBall ball(int id, double x, double y, double vx = 0.0, double vy = 0.0, c
     return {id, Vec3(x, y, kR), Vec3(vx, vy, 0.0), w};
 }
 
-// Cue behind the apex, then rows 1 to 5, from left to right.
+// The cue ball behind the apex, then rows 1 to 5 from left to right.
 std::vector<ClusterBall> rack(double V) {
     std::vector<ClusterBall> balls{ball(0, 0.0, -2.0 * kR, 0.0, V)};
     int id = 1;
@@ -154,7 +154,7 @@ TEST(Cluster, ScalesWithTheSpeed) {
     EXPECT_NEAR(moved, 4.2e-3, 5e-4) << "what the moving normals change at 8 m/s";
 }
 
-// The pair that touches first may be a slow one; the fastest sets the scale of friction and of the steps.
+// The pair that touches first may be slow; the fastest pair sets the scale of friction and steps.
 TEST(Cluster, SlowPairFirst) {
     const Result slow = run(rack(1.0), settings(0.05, 0.2, 0.95), 1e-6),
                  fast = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0);
@@ -163,8 +163,8 @@ TEST(Cluster, SlowPairFirst) {
     EXPECT_LE(fast.steps, 310) << "of a touching rack";
 }
 
-// Large friction is stiff while it sticks: there, steps have six or eight stages and reach further. With four
-// stages these racks took 483, 1233 and 2747.
+// Large friction is stiff while it sticks; steps then have six or eight stages and are longer. With four
+// stages these racks needed 483, 1233 and 2747.
 TEST(Cluster, LargeFriction) {
     const double mu_b[] = {0.2, 0.4, 0.8};
     const long most[] = {366, 600, 970};
@@ -212,7 +212,7 @@ TEST(Cluster, ThreeBalls) {  // H2
     EXPECT_NEAR(with_friction.balls[2].v.x(), .32120, 1e-4);
     EXPECT_NEAR(with_friction.balls[2].v.y(), .58362, 1e-4);
     EXPECT_NEAR(kR * with_friction.balls[2].w.z(), -.0341,
-                1e-4);  // clockwise, as the pair kernel has it; the notes print the magnitude
+                1e-4);  // clockwise, as in the pair kernel; the notes print the magnitude
     EXPECT_NEAR(with_friction.energy_ratio, .91646, 2e-4);
 }
 
@@ -274,8 +274,8 @@ TEST(Cluster, SqueezedBallStays) {  // H6
     EXPECT_EQ(result.balls[0].v.x(), -result.balls[2].v.x());
 }
 
-// Two balls through the map are the pair kernel's impact, up to the bias of the regularisation.
-TEST(Cluster, TwoBallsAreThePairKernel) {
+// Two balls through the map match the pair kernel, up to the bias of the regularisation.
+TEST(Cluster, TwoBallsMatchThePairKernel) {
     reference::Generator rng(7);
     std::vector<double> differences;
     for (int k = 0; k < 60; ++k) {
@@ -309,7 +309,7 @@ TEST(Cluster, TwoBallsAreThePairKernel) {
     EXPECT_LT(differences.back(), 1e-2) << "worst";
 }
 
-TEST(Cluster, NeverGainsEnergyAndLeavesNothingClosing) {
+TEST(Cluster, NeverGainsEnergyAndLeavesNoContactClosing) {
     reference::Generator rng(11);
     for (int k = 0; k < 60; ++k) {
         std::vector<ClusterBall> balls = rack(1.0);
@@ -349,8 +349,8 @@ TEST(Cluster, AContactHasALengthAtEverySpeed) {
     EXPECT_EQ(contact_length(0.0), 0.0);
 }
 
-// Alciatore, TP B.29: 2270 N at a compression of 0.1995 mm, and 284 us at 2.06 m/s. By Hertz (Landau and
-// Lifshitz, section 9), a contact lasts 2.943 times the largest compression over the speed.
+// Alciatore, TP B.29: 2270 N at a compression of 0.1995 mm, and 284 us at 2.06 m/s. Hertz (Landau and
+// Lifshitz, section 9): a contact lasts 2.943 times its largest compression over the speed.
 TEST(Cluster, AContactLastsAsLongAsPublished) {
     const double m = 0.170097, speed = 2.06;
     EXPECT_NEAR(kContactStiffness * m * std::pow(0.1995e-3, 1.5), 2270.0, 1.0);
@@ -359,8 +359,8 @@ TEST(Cluster, AContactLastsAsLongAsPublished) {
     EXPECT_NEAR(2.943 * compression / speed, 284e-6, 2e-6);
 }
 
-// Every shipped model reads both e_b and mu_b, or neither.
-TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
+// Every shipped model reads both e_b and mu_b, or neither, so this one is made up.
+TEST(Cluster, AModelMayReadRestitutionButNoFriction) {
     Scene scene = empty_scene();
     scene.balls.e_b = 0.9;
     scene.balls.mu_b = 0.0;
@@ -379,7 +379,7 @@ TEST(Cluster, AModelMayReadRestitutionAndNoFriction) {
     EXPECT_NE(simulate(plan).hash(), with_both.hash());
 }
 
-// Only where a third ball can take part, and only the model with a least restitution.
+// Warns only if a third ball can take part, and only for the model with a least restitution.
 TEST(Cluster, APlanSaysWhichRestitutionCounts) {
     const auto warnings = [](int balls, double e_b, ClusterModel model) {
         Scene scene = empty_scene();
@@ -397,7 +397,8 @@ TEST(Cluster, APlanSaysWhichRestitutionCounts) {
 }
 
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {
-    // Scene files refuse speeds below 1e-60 m/s, but balls may reach them. Below 1e-100 m/s they are at rest.
+    // Scene files refuse speeds below 1e-60 m/s, but balls may reach them. Below 1e-100 m/s they count as
+    // resting.
     for (const double speed : {1e-60, 5e-77, 1e-80, 1e-100, 1e-150}) {
         Scene scene = parse_scene(
             "[[ball]]\n[[ball]]\nid = \"b1\"\nposition = [0.15715, 0.5]\n"

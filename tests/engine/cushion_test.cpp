@@ -37,7 +37,7 @@ Case case_from(const nlohmann::json& c) {
         vec3(c.at("in").at("w"))};
 }
 
-// The largest difference of v and R w from the reference, and how many cases there were.
+// The largest difference of v and R w from the reference, and the number of cases.
 struct Worst {
     double off = 0.0;
     int id = -1, checked = 0;
@@ -50,8 +50,8 @@ Worst compare(const CushionModelInfo* model, const char* key, Skip skip) {
     for (const auto& c : data.at("cases")) {
         Case x = case_from(c);
         if (skip(x.contact)) continue;
-        // The reference takes the inclined normal of these
-        // two models from a jaw's centre instead of its nose.
+        // For jaws, the reference derives the inclined normal of these two models from the jaw's centre
+        // instead of its nose.
         const bool from_nose = model == cushion_model("impulse") || model == cushion_model("stronge");
         if (from_nose && c.at("cushion").at("type") == "circular") {
             const double R = x.contact.R;
@@ -86,8 +86,8 @@ TEST(Cushion, ReferenceVectorsOfStronge) {
     EXPECT_EQ(worst.checked, 40);
 }
 
-// If f_c > tan(theta), the reference lets the cloth pull (its load is not clamped), so those cases mean
-// nothing.
+// If f_c > tan(theta), the reference does not clamp the cloth's load and lets the cloth pull, so those cases
+// are excluded.
 TEST(Cushion, ReferenceVectorsOfMathavan2010) {
     const Worst worst =
         compare(cushion_model("mathavan_2010"), "mathavan_2010_fine", [](const CushionContact& p) {
@@ -155,11 +155,11 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
             SCOPED_TRACE(std::string(name(model)) + " " + std::to_string(i));
             ASSERT_TRUE(v.allFinite() && w.allFinite());
             EXPECT_LE(energy(x.contact, v, w), energy(x.contact, x.v, x.w) * (1.0 + 1e-13));
-            // Han's restitution along the inclined normal does not include what strong topspin adds; the ball
-            // may keep moving into the cushion a little.
+            // Han's restitution along the inclined normal ignores the speed that strong topspin adds; the
+            // ball may keep moving into the cushion slightly.
             EXPECT_GE(v.x(), model == &kHan2005 ? -0.1 * x.v.norm() : 0.0);
             EXPECT_EQ(v.z(), 0.0);
-            // Mirror in x: a polar vector turns its y, an axial one its x and z.
+            // Mirror in x: a polar vector's y changes sign, an axial vector's x and z.
             Vec3 vm(x.v.x(), -x.v.y(), 0.0), wm(-x.w.x(), x.w.y(), -x.w.z());
             model->resolve(x.contact, x.normal, vm, wm);
             EXPECT_EQ(vm, Vec3(v.x(), -v.y(), 0.0));
@@ -168,7 +168,7 @@ TEST(Cushion, EnergyFallsTheBallLeavesAndMirrorsAgree) {
     }
 }
 
-// Doubling all velocities doubles them afterwards: no model has a speed scale.
+// Doubling all velocities doubles the results: no model has a speed scale.
 TEST(Cushion, EveryModelIsHomogeneous) {
     reference::Generator rng(8);
     for (int i = 0; i < 400; ++i) {
@@ -183,7 +183,7 @@ TEST(Cushion, EveryModelIsHomogeneous) {
     }
 }
 
-// One row per model, and a scene file may select each.
+// Each model has one row, and a scene file can select it.
 TEST(Cushion, TheTableHasEveryModelOnce) {
     EXPECT_GE(kCushionModels.size(), 5u);
     for (const CushionModelInfo* model : kCushionModels) {
@@ -194,8 +194,8 @@ TEST(Cushion, TheTableHasEveryModelOnce) {
     }
 }
 
-// A model that does not read the cloth or the height does not change with them.
-TEST(Cushion, ModelsReadWhatTheySay) {
+// A model's result does not change with the cloth or height if the model does not read them.
+TEST(Cushion, ResultsDependOnlyOnDeclaredParameters) {
     reference::Generator rng(9);
     for (const CushionModelInfo* model : kCushionModels) {
         const CushionModelInfo& info = *model;
@@ -232,8 +232,8 @@ TEST(Cushion, ModelsReadWhatTheySay) {
     }
 }
 
-// With the nose at ball height and no friction every model
-// is the smooth one (T17), with its own meaning of e_c.
+// With the nose at ball height and no friction, every model reduces to the smooth one (T17), with its own
+// meaning of e_c.
 TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
     reference::Generator rng(10);
     for (int i = 0; i < 400; ++i) {
@@ -251,7 +251,7 @@ TEST(Cushion, WithoutFrictionAtBallHeightEveryModelReflects) {
     }
 }
 
-// The closed forms then have the bits of the smooth model, along any direction of the nose.
+// The closed forms then equal the smooth model bit for bit, for any nose direction.
 TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
     reference::Generator rng(14);
     for (int i = 0; i < 4000; ++i) {
@@ -275,8 +275,8 @@ TEST(Cushion, WithoutFrictionAtBallHeightTheClosedFormsAreSmoothBitForBit) {
     }
 }
 
-// Signs that every model with friction must have (tests/README.md): running side widens the rebound, check
-// side narrows it; topspin keeps a rolling ball from coming straight back as fast as e.
+// Signs for every model with friction (tests/README.md): running side widens the rebound, check side narrows
+// it; topspin keeps a rolling ball from returning at e times its speed.
 TEST(Cushion, RunningAndCheckSide) {
     for (const CushionModelInfo* model : kCushionModels) {
         if (!model->reads_friction) continue;
@@ -288,8 +288,8 @@ TEST(Cushion, RunningAndCheckSide) {
             model->resolve(contact, Vec2(1.0, 0.0), v, w);
             return v.y() / v.x();  // tangent of the angle from the normal
         };
-        // At the nose the surface of a ball with w_z > 0 moves
-        // towards -y there: its reaction drives the ball to +y.
+        // At the nose the surface of a ball with w_z > 0 moves towards -y; the reaction drives the ball to
+        // +y.
         EXPECT_GT(rebound(30.0), rebound(0.0) * 1.02) << name(model) << " running side";
         EXPECT_LT(rebound(-30.0), rebound(0.0) * 0.98) << name(model) << " check side";
         Vec3 v(-1.0, 0.0, 0.0), w(0.0, -1.0 / R, 0.0);
@@ -301,7 +301,7 @@ TEST(Cushion, RunningAndCheckSide) {
 }
 
 // An independent integration of the 2010 equations: Euler steps as in the published code, ten times finer
-// than its default, agrees to its own first-order error and converges towards ours.
+// than its default. It agrees to its first-order error and converges towards ours.
 TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
     const auto march = [](const Case& x, int n, Vec3& v, Vec3& w) {
         const CushionContact& p = x.contact;
@@ -336,8 +336,7 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
     reference::Generator rng(11);
     for (int i = 0; i < 60; ++i) {
         Case x = random_case(rng, i % 3);
-        // Beyond f = tan(theta) a stuck nose and a clamped load of the cloth have no common limit
-        // (data/README).
+        // Beyond f = tan(theta) a stuck nose and a clamped cloth load have no common limit (data/README).
         const double s = x.contact.height / x.contact.R - 1.0;
         x.contact.f_c = std::min(x.contact.f_c, 0.95 * s);
         Vec3 v = x.v, w = x.w, v_c, w_c, v_f, w_f;
@@ -350,8 +349,8 @@ TEST(Cushion, Mathavan2010IsTheLimitOfTheMarch) {
     }
 }
 
-// Errors of the 2010 model at its tolerance, over impacts whose load on the cloth has a limit (as above): the
-// same impact solved ten thousand times finer. Every impact ends.
+// Errors of the 2010 model at its tolerance, against the same impact solved ten thousand times finer, for
+// impacts whose cloth load has a limit (as above). Every impact ends.
 TEST(Cushion, Mathavan2010KeepsItsTolerance) {
     reference::Generator rng(12);
     std::vector<double> off;
@@ -367,7 +366,7 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
                       -x.v.x());
     }
     std::sort(off.begin(), off.end());
-    // Half of these impacts are straight in or hardly approaching: their forces are constant, their errors 0.
+    // Half of these impacts are straight in or hardly approaching: constant forces, no error.
     std::printf("mathavan_2010: error of 75 %% below %.2g, 99 %% %.2g, 99.9 %% %.2g, worst %.2g\n",
                 off[15000], off[19800], off[19980], off.back());
     EXPECT_LE(off[15000], 2e-8);
@@ -375,8 +374,8 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
     EXPECT_LE(off.back(), 5e-5);
 }
 
-// For any scene that the reader accepts, the model ends or says that it did not (and then changes nothing).
-TEST(Cushion, Mathavan2010EndsOrSaysSo) {
+// For any scene that the reader accepts, the model ends or reports failure and changes nothing.
+TEST(Cushion, Mathavan2010EndsOrReportsFailure) {
     reference::Generator rng(13);
     int solved = 0, refused = 0;
     for (int i = 0; i < 30000; ++i) {

@@ -1,4 +1,4 @@
-// The detector alone: no impact is resolved, no shot simulated. Positions of balls are set by hand.
+// The detector alone: no impact is resolved and no shot simulated; ball positions are set by hand.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-/// The parts of a run that a detector reads, with the balls of a scene at their start.
+/// The parts of a run that a detector reads, with a scene's balls at their start.
 struct Parts {
     explicit Parts(const Scene& scene, Search search = Search::kDirect)
         : plan(plan_by(scene, search)),
@@ -34,7 +34,7 @@ struct Parts {
         plan.ball_search = plan.table_search = search;
         return plan;
     }
-    /// The ball moves differently from now on.
+    /// Gives the ball a new motion from now on.
     void turn(int ball, const Vec3& v, const Vec3& w) {
         log.begin(ball, start_segment(balls.now(), balls.position(ball), v, w, balls.motion(ball)));
         detector.update(log.touched());
@@ -61,7 +61,7 @@ Scene gliding_scene() {
     return scene;
 }
 
-TEST(Detector, NothingMovesAndNothingComes) {
+TEST(Detector, RestingBallsHaveNoNextEvent) {
     Scene scene = gliding_scene();
     add_gliding(scene, "a", 0.0, 0.0, 0.0, 0.0);
     add_gliding(scene, "b", 0.0, 1.0, 0.0, 0.0);
@@ -77,11 +77,11 @@ TEST(Detector, FindsTheContactOfTwoBalls) {
     const PredictedEvent next = parts.detector.next();
     EXPECT_NEAR(next.time, (1.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
     EXPECT_EQ(next.contact, (Contact{0, With::kBall, 1}));
-    // Asked again without an event, it gives the same answer.
+    // Asked again without an event, it returns the same result.
     EXPECT_EQ(parts.detector.next().time, next.time);
 }
 
-TEST(Detector, LooksAgainWhereAPartnerHasTurned) {
+TEST(Detector, SearchesAgainWhenAPartnerTurns) {
     Scene scene = gliding_scene();
     add_gliding(scene, "a", 0.0, 0.0, 0.0, 2.0);
     add_gliding(scene, "b", 0.0, 1.0, 0.0, 0.0);
@@ -95,14 +95,14 @@ TEST(Detector, LooksAgainWhereAPartnerHasTurned) {
     EXPECT_NEAR(next.time, (3.0 - 2.0 * scene.balls.R) / 2.0, 1e-15);
 }
 
-// Events at one instant have an order: pocket, transition, ball, cushion. All numbers here are exact.
+// Simultaneous events have an order: pocket, transition, ball, cushion. All numbers here are exact.
 TEST(Detector, OrderAtOneInstant) {
     Scene scene = gliding_scene();
     scene.balls.R = 0.03125;
     scene.table.width = scene.table.length = 8.0;
     scene.table.cushions = {{"c", {3.0, 1.0}, {5.0, 1.0}, 1.25 * scene.balls.R}};
     scene.table.pockets = {{"p", {0.0, 1.0}, 0.0625, 0.125}};
-    // A quarter of a second from now "c" meets the cushion, "a" meets "b" and "p" falls.
+    // In a quarter of a second "c" meets the cushion, "a" meets "b" and "p" falls.
     add_gliding(scene, "c", 4.0, 0.96875 - 0.25, 0.0, 1.0);
     add_gliding(scene, "a", 2.0, -1.0, 0.0, 1.0);
     add_gliding(scene, "b", 2.0, -1.0 + 0.25 + 0.0625, 0.0, 0.0);
@@ -113,12 +113,12 @@ TEST(Detector, OrderAtOneInstant) {
         EXPECT_EQ(next.time, 0.25);
         EXPECT_EQ(next.contact.with, with);
         parts.balls.advance_to(next.time);
-        parts.turn(next.contact.ball, Vec3::Zero(), Vec3::Zero());  // it stops: that was its part
+        parts.turn(next.contact.ball, Vec3::Zero(), Vec3::Zero());  // it stops; its part is over
     }
     EXPECT_EQ(parts.detector.next().time, kNever);
 }
 
-/// The first contact or transition by the closed forms alone: every ball with every other and every part.
+/// The first contact or transition by closed forms alone: every ball against every ball and part.
 PredictedEvent by_hand(const Parts& parts) {
     PredictedEvent first;
     const auto offer = [&](double time, const Contact& contact) {
@@ -157,7 +157,7 @@ PredictedEvent by_hand(const Parts& parts) {
     return first;
 }
 
-TEST(Detector, AgreesWithEveryPairTakenByHand) {
+TEST(Detector, AgreesWithTestingEveryPair) {
     int moving = 0, ties = 0;
     for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
         const Scene scene = RandomScene(seed).make();
@@ -167,7 +167,7 @@ TEST(Detector, AgreesWithEveryPairTakenByHand) {
             ASSERT_EQ(next.time, expected.time) << "seed " << seed;
             if (next.time == kNever) continue;
             ++moving;
-            // At equal times the detector has its own order (OrderAtOneInstant).
+            // The detector orders simultaneous events itself (OrderAtOneInstant).
             ties += !(next.contact == expected.contact);
         }
     }
@@ -175,7 +175,7 @@ TEST(Detector, AgreesWithEveryPairTakenByHand) {
     EXPECT_LT(ties, moving / 20);
 }
 
-TEST(Detector, LeavesOutRestingContacts) {
+TEST(Detector, SkipsRestingContacts) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
     add_ball(scene, "a", {0.0, 0.0, R}, {0.0, 0.1, 0.0}, {-0.1 / R, 0.0, 0.0});
@@ -183,7 +183,7 @@ TEST(Detector, LeavesOutRestingContacts) {
     Parts parts(scene);
     const Contact contact{0, With::kBall, 1};
     ContactKinematics approach = kinematics_of(parts.plan, parts.balls, 0, 1);
-    approach.a_c = 1.0;  // pressed together, and not closing: no bounce
+    approach.a_c = 1.0;  // pressed together but not closing: no bounce
     EXPECT_FALSE(parts.resting.has(contact));
     ASSERT_TRUE(parts.resting.try_hold(approach, scene.balls.e_b));
     EXPECT_TRUE(parts.resting.has(contact));

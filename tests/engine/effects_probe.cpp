@@ -26,7 +26,7 @@ void add(Scene& scene, const char* id, double x, double y, double vx, double vy)
     scene.ball.push_back(ball);
 }
 
-// Two balls that roll without resistance, elastic impacts, reflecting cushions: straight lines only.
+// Two balls that roll without resistance, with elastic impacts and reflecting cushions: straight lines only.
 Scene bare() {
     Scene scene;
     scene.file = "(probe)";

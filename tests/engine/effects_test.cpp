@@ -1,5 +1,5 @@
-// Only the effects a scene needs: decisions, refusals, late need, and proofs that a skipped effect changes no
-// bit.
+// Only the effects that a scene needs: decisions, refusals, late need, and proof that a skipped effect
+// changes no bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ void strike_instead(Scene& scene, reference::Generator& rng) {
     scene.cue = cue;
 }
 
-// Every effect, and what makes it unnecessary in a random scene.
+// Every effect, and a change that makes it unnecessary in a random scene.
 struct Zero {
     const char* keyword;
     void (*make)(Scene&, reference::Generator&);
@@ -148,7 +148,7 @@ const Zero kZeros[] = {
      }},
 };
 
-// Skipped, or forced on with nothing to do: the same record, bit for bit.
+// Skipped, or forced on with nothing to do, the record is the same bit for bit.
 TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
     for (const Zero& zero : kZeros) {
         reference::Generator rng(20261121);
@@ -174,7 +174,7 @@ TEST(Effects, SkippedAndZeroGiveTheSameRecordOver1000Scenes) {
     }
 }
 
-// Everything forced on, in scenes that need only some of it: the plan skips nothing that matters.
+// Everything forced on, in scenes that need only part of it: the plan skips nothing that matters.
 TEST(Effects, PlanAndEverythingOnGiveTheSameRecord) {
     reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {
@@ -199,14 +199,14 @@ TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
                                   ", but the scene needs it: ";
         EXPECT_EQ(message.rfind(place, 0), 0u) << message;
         EXPECT_NE(message.find("; remove the line"), std::string::npos) << message;
-        // Where it is not needed, both are accepted.
+        // A scene that does not need it accepts both.
         const std::string still = "table.cushion = []\n[[ball]]\n";
         EXPECT_EQ(plan_error("[effects]\n" + line + "\n[table]\ncushion = []\n[[ball]]\n"), "") << keyword;
         EXPECT_EQ(plan_error("[effects]\n" + keyword + " = true\n" + kBreak), "") << keyword;
     }
 }
 
-TEST(Effects, ListsHoldWhatIsNeeded) {
+TEST(Effects, ListsContainTheNeededParts) {
     const Plan full = plan_of_text(kBreak);
     EXPECT_EQ(full.geometry.cushions.size(), 18u);
     EXPECT_EQ(full.geometry.pockets.size(), 6u);
@@ -224,7 +224,7 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     EXPECT_EQ(decision(alone, "cushions").reason,
               "none within reach: ball cue, the only one that moves, goes no farther than 0.459 m");
     EXPECT_EQ(verify(simulate(alone), alone), std::nullopt);
-    // With another ball in its path nothing bounds the shot; beyond its reach that ball changes nothing.
+    // With another ball in its path nothing bounds the shot; beyond its reach the other ball changes nothing.
     const std::string other = "[[ball]]\nid = \"1\"\nposition = [0.635, ";
     const Plan hit = plan_of_text(slow + other + "1.6]\n");
     EXPECT_TRUE(hit.pairs);
@@ -232,15 +232,15 @@ TEST(Effects, ListsHoldWhatIsNeeded) {
     const Plan miss = plan_of_text(slow + other + "1.8]\n");
     EXPECT_FALSE(miss.pairs);
     EXPECT_TRUE(miss.geometry.cushions.empty());
-    // Until a stop, energy bounds what can be reached: 0.355 m/s for 0.1 s.
+    // Until a stop, energy bounds the reach: 0.355 m/s for 0.1 s.
     EXPECT_TRUE(plan_of_text(slow + other + "1.6]\n[stop]\ntime = 0.1\n").geometry.cushions.empty());
     // A ball that rests inside a pocket's circle falls.
     EXPECT_EQ(plan_of_text("[[ball]]\nposition = [0.005, 0.005]\n").geometry.pockets.size(), 6u);
     EXPECT_TRUE(plan_of_text("[[ball]]\nposition = [0.6, 0.6]\n").geometry.pockets.empty());
 }
 
-// Scenes near the limit of their reach: what is skipped is never met.
-TEST(Effects, ReachIsNeverTooShort) {
+// Scenes near the limit of their reach never meet a skipped part.
+TEST(Effects, ReachIsNeverUnderestimated) {
     reference::Generator rng(99);
     int skipped = 0, met = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -265,7 +265,7 @@ TEST(Effects, ReachIsNeverTooShort) {
     EXPECT_GT(met, 500);
 }
 
-// A plan with a wrong skip: the checker of verified runs finds each.
+// The checker of verified runs finds each wrong skip of a plan.
 TEST(Effects, LateNeedIsCaught) {
     Scene scene = empty_scene();
     scene.table = box(1.2, 2.4, 0.036576);
@@ -307,9 +307,9 @@ TEST(Effects, LateNeedIsCaught) {
               std::string::npos);
 }
 
-// Two balls that move and cannot meet in time: each continues along its own segments. The first segment of b
-// would lead through a, if it lasted.
-TEST(Effects, VerifyKnowsThatSegmentsEnd) {
+// Two moving balls that cannot meet in time each follow their own segments. If b's first segment lasted, it
+// would pass through a.
+TEST(Effects, VerifyFollowsSegmentsOnlyToTheirEnds) {
     Scene scene = empty_scene();
     scene.table = {};
     scene.balls.mu_s = 0.2;

@@ -1,4 +1,4 @@
-// Where events happen, how fast and how hard: against closed forms, and for every event of every scene.
+// Place, speed and strength of events: against closed forms, and for every event of every scene.
 #include "carom/engine/event_details.h"
 
 #include <gtest/gtest.h>
@@ -48,14 +48,14 @@ TEST(EventDetails, AHalfBallHitHasItsCutAngleSpeedAndImpulse) {
         EXPECT_NEAR(d.impulse, scene.balls.m * speed * std::cos(cut), 1e-12);
         EXPECT_NEAR(d.lost, 0.0, 1e-13);
         EXPECT_TRUE(std::isnan(d.diamond));
-        // The point of contact is in the middle of equal balls, on the line of centres.
+        // Equal balls touch in the middle, on the line of centres.
         const Vec3 middle = 0.5 * (d.balls[0].after.position + d.balls[1].after.position);
         EXPECT_LT((d.point - middle).norm(), 1e-12);
         EXPECT_NEAR(d.normal.x(), -std::cos(cut), 1e-9);
     }
 }
 
-TEST(EventDetails, ABankKnowsItsDiamondItsNoseAndWhatItLost) {
+TEST(EventDetails, ABankReportsDiamondNoseAndLostEnergy) {
     Scene scene = ideal();
     scene.table = box(1.0, 2.0, 0.036);
     scene.balls.e_c = 0.5;
@@ -92,7 +92,7 @@ TEST(EventDetails, EveryEventOfEverySceneJoinsItsStates) {
             if (kind(event.type).phase == EventPhase::kImpact && !falls) {
                 EXPECT_NEAR(d.normal.norm(), 1.0, 1e-12);
                 EXPECT_FALSE(d.lost < -1e-9) << d.lost;
-                // The clusters of a break begin where gaps have closed, and the pair that met may part.
+                // A break's clusters begin at closed gaps, and the pair that met may be parting.
                 EXPECT_FALSE(event.type != EventType::kBallCluster && d.closing < -1e-9) << d.closing;
             }
             event_row(record, i, row);
@@ -102,7 +102,7 @@ TEST(EventDetails, EveryEventOfEverySceneJoinsItsStates) {
     }
 }
 
-TEST(EventDetails, EventsOfOneInstantAreToldApart) {
+TEST(EventDetails, SimultaneousEventsAreDistinguished) {
     // Two balls reach a third one from both sides at the same time.
     Scene scene = ideal();
     add_ball(scene, "left", -0.5, 0.0, 1.0);

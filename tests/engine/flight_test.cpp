@@ -1,4 +1,4 @@
-// When balls in the air meet something: reference values, and 100 000 random flights against dense sampling.
+// Impact times of airborne balls: reference values, and 100 000 random flights against dense sampling.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Nose round_nose(const Vec2& center, double radius, double height) {
 
 TEST(Flight, TimesOfTheReference) {
     const double height = 1.28 * kFlyR;
-    // A straight nose x = 0.3 m ahead, from the cloth; the line is long.
+    // A long straight nose at x = 0.3 m, approached from the cloth.
     const double nose = flight_to_line(flight({-0.3, 0.0, kFlyR}, {2.5, 0.0, 0.75}, kDown),
                                        {{0.0, -9.0}, {0.0, 1.0}, 18.0, height}, kFlyR);
     EXPECT_NEAR(nose, 0.109808536582193, 1e-13);
@@ -68,7 +68,7 @@ struct Found {
         if (t < kNever) {
             ++contacts;
             worst = std::max(worst, std::abs(gap(t)));
-            // Nothing is deep before the contact, and the motion continues inwards after it.
+            // The gap is not deep before the contact, and the motion continues inwards after it.
             if (seen < t) ++missed;
             if (!(gap(t + 1e-7) < gap(t))) ++false_ones;
         } else if (seen < kNever) {
@@ -111,13 +111,13 @@ TEST(Flight, RandomFlightsAgainstSampling) {
         const Vec3 to = from + Vec3(0.0, 0.3, 0.0);
         if (to_line(0.0) > 0.0 && length3(r - from) > reach && length3(r - to) > reach) {
             const double t = flight_to_line(f, {planar(from), {0.0, 1.0}, 0.3, height}, kFlyR);
-            // The ends are separate points: a path that comes in over one of them meets that end.
+            // The ends are separate points: a path that enters over one meets that end.
             const double end1 = flight_to_nose(f, round_nose(planar(from), 0.0, height), kFlyR),
                          end2 = flight_to_nose(f, round_nose(planar(to), 0.0, height), kFlyR);
             const double end = std::min(end1, end2);
             if (t < end || end == kNever) line.judge(t, to_line, std::min(f.horizon, end));
         }
-        // A jaw, and a point. Over the disc nothing is met.
+        // A jaw, and a point. Over the disc there is no contact.
         const auto to_circle = [&](double t) {
             const Vec3 x = at(t);
             const double level = length(planar(x)) - 0.02;

@@ -20,7 +20,7 @@ using namespace test;
 
 constexpr double kReach = 2.0 * 0.028575;
 
-TEST(Graze, OracleKnowsAStraightLine) {
+TEST(Graze, OracleSolvesAStraightLine) {
     const GrazeOracle oracle({0, 0}, {0, 0}, {0, 0}, {kReach + 1.0, 0}, {-2.0, 0}, {0, 0}, kReach, 1.0);
     EXPECT_TRUE(oracle.meet().hit);
     EXPECT_NEAR(oracle.meet().time, 0.5, 1e-15);
@@ -63,7 +63,7 @@ TEST(Graze, HundredThousandPairs) {
         const double gap = length(r) - kReach;
         worst_gap = std::max(worst_gap, std::abs(gap));
         EXPECT_LE(std::abs(gap), 1e-13) << k;
-        // Not a later root: the oracle's time, as well as the closing speed defines it.
+        // The time must be the oracle's, not a later root, as precisely as the closing speed defines it.
         if (hit == want.hit && std::abs(depth) > 1e-10) {
             EXPECT_NEAR(got, want.time, 1e-7) << k;
         }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-// H38: seeded eight-ball breaks: none explodes. Four tests, so that they run side by side.
+// In four tests that can run side by side.
 class Breaks : public testing::TestWithParam<double> {};
 
 TEST_P(Breaks, NoneExplodes) {

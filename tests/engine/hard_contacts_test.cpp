@@ -1,4 +1,4 @@
-// Hard cases of several contacts at once, through the engine: H1 to H3, H6 of tests/README.md.
+// Hard cases of simultaneous contacts, through the engine: H1 to H3, H6 of tests/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Scene axis_break(double gap, double cue_x, double speed) {
     return scene;
 }
 
-// H1: left and right agree, the cue ball stays on the axis.
+// H1: left and right agree, and the cue ball stays on the axis.
 TEST(HardContacts, HeadOnBreakOnTheAxis) {
     for (const double gap : {0.0, 1e-12, 1e-6, 1e-4}) {
         SCOPED_TRACE(gap);
@@ -58,8 +58,8 @@ TEST(HardContacts, HeadOnBreakOnTheAxis) {
     }
 }
 
-// H1: the mirror image of an off-axis break gives the mirror image of its result, to rounding: a ball on the
-// axis of the rack adds the forces of its two sides one after the other.
+// H1: mirroring an off-axis break mirrors its result, to rounding: a ball on the rack's axis adds the forces
+// of its two sides one after the other.
 TEST(HardContacts, MirroredBreak) {
     for (const double gap : {0.0, 1e-4}) {
         const Scene scene = axis_break(gap, 0.0123, 8.0);
@@ -91,14 +91,14 @@ TEST(HardContacts, ThreeBallsInTableCoordinates) {
             const double R = scene.balls.R, x = 0.635, y = 1.486;
             add_ball(scene, "a", x - R, y);
             add_ball(scene, "b", x + R, y);
-            // The values are those of balls that do not move during the contact: of slow ones.
+            // The values assume balls that do not move during the contact, so the speed is low.
             const double V = model == ClusterModel::kCompliant ? 0x1p-17 : 1.0;
             add_ball(scene, "cue", x, y - 0.3, 0.0, V);
             const Record record = run_verified(scene);
             ASSERT_EQ(record.events.size(), 1u);
             ASSERT_EQ(record.events[0].type, EventType::kBallCluster);
             const double tolerance = model == ClusterModel::kRigid ? 1e-12 : 1e-6;
-            // The motion after a cluster that lasts is the last one, too.
+            // The motion after a cluster that lasts is also the final one.
             const auto after = [&](std::size_t ball) {
                 return Vec3(record.tracks[ball].segments.back().v / V);
             };
@@ -161,7 +161,7 @@ TEST(HardContacts, SqueezedBall) {
         const Vec3 b = record.state_at(0, 0.1).velocity, a = record.state_at(1, 0.1).velocity,
                    c = record.state_at(2, 0.1).velocity;
         if (model == ClusterModel::kSequential)
-            continue;  // pair by pair: a convention, symmetric for neither order
+            continue;  // pair by pair: a convention; neither order is symmetric
         EXPECT_LE(std::abs(a.x()), 1e-15);
         EXPECT_EQ(b.x(), -c.x());
         EXPECT_NEAR(b.x(), -0.95, 1e-6);

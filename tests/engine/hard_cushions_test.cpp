@@ -1,4 +1,4 @@
-// Cushions at the limits of scenes: extreme spins, and noses that a ball does not leave at once.
+// Cushions at the limits of scenes: extreme spins, and noses that do not release a ball at once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace carom::test {
 namespace {
 
-/// How deep a ball is in a cushion of the table, at the worst of many times.
+/// The greatest depth of a ball in a cushion, over many sampled times.
 double deepest(const Record& record, const Plan& plan) {
     double depth = 0.0;
     constexpr int kTimes = 2000;
@@ -33,7 +33,7 @@ double deepest(const Record& record, const Plan& plan) {
     return depth;
 }
 
-// A ball an ulp from a cushion, driven into it by its spin: the touch is slower than the rounding of its
+// A ball an ulp from a cushion is driven into it by its spin; the contact is slower than the rounding of its
 // surface speed.
 TEST(ExtremeSpin, DrivesNoBallThroughACushion) {
     Scene scene = empty_scene();
@@ -68,7 +68,7 @@ TEST(ExtremeSpin, DrivesNoBallThroughACushionFromAnyGap) {
     report("depth in a cushion, 3000 spins to 1e9 rad/s [m]", worst);
 }
 
-// Four balls on a slow cloth, one of them at 170 km/s: one ended 6 mm deep in a cushion.
+// Four balls on a slow cloth, one at 170 km/s: one once ended 6 mm deep in a cushion.
 TEST(ExtremeSpin, KeepsABoxShut) {
     Scene scene = empty_scene();
     BallParams& b = scene.balls;
@@ -104,7 +104,7 @@ Scene high_nose(double height, double e_c, double f_c) {
     return scene;
 }
 
-// If e_c < 1 / c^2 - 1, han_2005 leaves a ball that still closes. It was hit again at the same instant, 2 to
+// If e_c < 1 / c^2 - 1, the ball still closes after han_2005. It was once hit again at the same instant, 2 to
 // 15 times.
 TEST(HighNose, IsOneEvent) {
     for (const double height : {1.28, 1.45, 1.55, 1.6, 1.8, 1.99}) {
@@ -137,8 +137,8 @@ Table corner() {
     return table;
 }
 
-// A ball straight into two jaws comes straight back; once it left at 33 degrees.
-TEST(TwoAtOnce, BetweenTwoJawsAndBackOnTheAxis) {
+// A ball straight into two jaws returns straight; it once left at 33 degrees.
+TEST(TwoAtOnce, TwoJawsReturnABallOnTheAxis) {
     Scene scene = empty_scene();
     scene.table = two_jaws(0.05, 0.03);
     add_ball(scene, "cue", 0.0, 0.5, 0.0, -2.0);
@@ -150,7 +150,7 @@ TEST(TwoAtOnce, BetweenTwoJawsAndBackOnTheAxis) {
 }
 
 // Along the diagonal into a corner, and onto a ball that is frozen there.
-TEST(TwoAtOnce, IntoACornerAndBackOnTheDiagonal) {
+TEST(TwoAtOnce, ACornerReturnsABallOnTheDiagonal) {
     for (const bool frozen : {false, true}) {
         Scene scene = empty_scene();
         scene.table = corner();
@@ -165,8 +165,7 @@ TEST(TwoAtOnce, IntoACornerAndBackOnTheDiagonal) {
     }
 }
 
-// Without friction, each of two walls at right angles reverses its own component of the velocity, as if it
-// were alone.
+// Without friction, two walls at right angles each reverse their component of the velocity, as if alone.
 TEST(TwoAtOnce, RightAnglesDoNotDisturbEachOther) {
     Scene scene = frictionless();
     scene.balls.e_c = 0.8;
@@ -179,7 +178,7 @@ TEST(TwoAtOnce, RightAnglesDoNotDisturbEachOther) {
     EXPECT_NEAR(v.y(), 0.8, 1e-14);
 }
 
-/// In x = 0.
+/// Mirrored in x = 0.
 Scene mirrored(Scene scene) {
     for (Jaw& jaw : scene.table.jaws) jaw.center.x() = -jaw.center.x();
     for (BallStart& ball : scene.ball) {
@@ -191,8 +190,8 @@ Scene mirrored(Scene scene) {
     return scene;
 }
 
-/// A ball that touches two jaws, struck by another from anywhere
-/// above; friction, heights and restitutions at random.
+/// A ball that touches two jaws, struck by another from anywhere above; random friction, heights and
+/// restitutions.
 Scene frozen_between_jaws(reference::Generator& random) {
     Scene scene = empty_scene();
     const double R = scene.balls.R, radius = random.uniform(0.0, 0.05);
@@ -209,7 +208,7 @@ Scene frozen_between_jaws(reference::Generator& random) {
     add_ball(scene, "frozen", 0.0, y);
     const double from = random.uniform(-1.2, 1.2), away = 2.0 * R + random.uniform(0.0, 0.2),
                  speed = random.uniform(0.5, 6.0);
-    // Each in a separate statement: the compiler chooses the order in which a call's arguments are drawn.
+    // Separate statements: compilers differ in the order of arguments.
     const double aside = random.uniform(-0.1, 0.1);
     Vec3 spin;
     for (int k = 0; k < 3; ++k) spin[k] = random.uniform(-80.0, 80.0);
@@ -218,9 +217,9 @@ Scene frozen_between_jaws(reference::Generator& random) {
     return scene;
 }
 
-// The mirror image of a scene has the mirror image of its run, for 1e-4 s after the first jaw: velocities
-// differed by metres per second. In a few of the 500 two resting contacts begin one after the other at that
-// instant: they leave up to 3.1e-4 m/s.
+// Mirroring a scene mirrors its run, for 1e-4 s after the first jaw; velocities once differed by metres per
+// second. In a few of the 500, two resting contacts begin one after the other at that instant, which leaves
+// up to 3.1e-4 m/s.
 TEST(TwoAtOnce, MirrorImagesAgree) {
     reference::Generator random(18);
     int with_two = 0, more_than_rounding = 0;

@@ -13,8 +13,8 @@ namespace {
 
 using namespace test;
 
-// H32: 1e6 events of 16 elastic discs: energy and distances are conserved. In ten parts, each from where the
-// last one stopped.
+// H32: 1e6 events of 16 elastic discs conserve energy and distances. Run in ten parts, each from the end of
+// the last.
 TEST(HardLong, AMillionEvents) {
     Scene scene = frictionless();
     scene.table = box(1.0, 2.0, 0.036576);
@@ -46,7 +46,7 @@ TEST(HardLong, AMillionEvents) {
             ASSERT_FALSE(violation) << violation->law << ": " << violation->message;
         }
         events += static_cast<long>(record.events.size());
-        // Where two balls meet they are 2 R apart.
+        // Balls that meet are 2 R apart.
         for (const Event& e : record.events) {
             if (e.type != EventType::kBallBall) continue;
             const Vec3 p = record.state_at(e.a, e.time).position, q = record.state_at(e.b, e.time).position;

@@ -18,7 +18,7 @@ namespace {
 
 using namespace test;
 
-// H10: a rolling ball that grazes: hit or miss by the sign of h, the gap to ulps.
+// H10: a rolling ball grazes: the sign of h decides the hit, the gap holds to ulps.
 TEST(HardRoots, Graze) {
     const double depths[] = {1e-4,  1e-5,  1e-6,  1e-7, 1e-8,   1e-9,   1e-10,  1e-11,  1e-12,  1e-13,
                              1e-14, 1e-15, 1e-16, 0.0,  -1e-16, -1e-15, -1e-14, -1e-12, -1e-10, -1e-8};
@@ -34,7 +34,7 @@ TEST(HardRoots, Graze) {
             const Record record = run_verified(scene);
             ASSERT_EQ(record.events.size(), 1u);
             const bool hit = record.events[0].type == EventType::kBallBall;
-            const double depth = 2.0 * R - x;  // as the doubles have it
+            const double depth = 2.0 * R - x;  // as rounded
             if (std::abs(depth) > 4e-16) {
                 EXPECT_EQ(hit, depth > 0.0);
             }
@@ -46,7 +46,7 @@ TEST(HardRoots, Graze) {
             worst_gap = std::max(worst_gap, std::abs(gap));
             const double y = 1.0 - std::sqrt(std::max(0.0, depth * (4.0 * R - depth))), a = 0.01 * 9.81;
             const double want = 2.0 * y / (v + std::sqrt(v * v - 2.0 * a * y));
-            // The time is as well defined as the gap over the closing speed.
+            // The time is only as precise as the gap over the closing speed.
             const double closing = std::max(1e-9, v * std::sqrt(std::max(0.0, depth) / R));
             EXPECT_NEAR(t, want, 1e-15 / closing + 1e-14);
             worst_time = std::max(worst_time, std::abs(t - want));
@@ -56,7 +56,7 @@ TEST(HardRoots, Graze) {
     report("H10 time", worst_time);
 }
 
-// H11: both roll with one deceleration; the quartic is a line.
+// H11: both roll with the same deceleration, so the quartic reduces to a line.
 TEST(HardRoots, CatchUp) {
     for (const double dv : {1e-9, 1e-12, 1e-15}) {
         SCOPED_TRACE(dv);
@@ -68,8 +68,7 @@ TEST(HardRoots, CatchUp) {
         const Record record = run_verified(scene);
         const Event* hit = first(record, EventType::kBallBall);
         const double relative = v - 1.0;
-        if (dv < 1e-14)
-            continue;  // the closing speed is 5 ulp of the speeds: rounding, either answer is right
+        if (dv < 1e-14) continue;  // the closing speed is 5 ulp of the speeds; either result is right
         ASSERT_NE(hit, nullptr);
         const double error = std::abs(hit->time * relative / gap - 1.0);
         report("H11 relative error of the time, in ulp of v / dv", error * relative / 2.2e-16);
@@ -78,7 +77,7 @@ TEST(HardRoots, CatchUp) {
     }
 }
 
-// H12: powers of two in length and time change only exponents.
+// H12: scaling length and time by powers of two changes only exponents.
 TEST(HardRoots, ScalesBitwise) {
     const auto scaled = [](double L, double T) {
         Scene scene = empty_scene();
@@ -107,14 +106,14 @@ TEST(HardRoots, ScalesBitwise) {
                 << i;
         }
     }
-    // A tiny leading coefficient is never divided by.
+    // The solver never divides by a tiny leading coefficient.
     const Path slow{{0.0, 0.0}, {0.0, 40.0}, {0.0, -1e-11}, 1e3, true, true},
         rest{{0.0, 2 * 0.0286 + 1e-12}, {0, 0}, {0, 0}, kNever, true, false};
     const double t = time_to_ball(slow, rest, 2 * 0.0286);
     EXPECT_NEAR(t, (rest.r.y() - 2 * 0.0286) / 40.0, 1e-18);
 }
 
-// H13: rolls just far enough to touch.
+// H13: a ball rolls just far enough to touch.
 TEST(HardRoots, StopsAtContact) {
     for (const double factor : {1.0, 1.0 + 1e-12, 1.0 - 1e-12}) {
         Scene scene = empty_scene();
@@ -136,7 +135,7 @@ TEST(HardRoots, StopsAtContact) {
     }
 }
 
-// H14: the stun turns into roll at the instant of the hit.
+// H14: stun turns into roll at the instant of the hit.
 TEST(HardRoots, SlideRollAtContact) {
     const double g = 9.81, mu = 0.2, d = 12.0 / (49.0 * mu * g);
     std::vector<Vec3> after;
@@ -159,7 +158,7 @@ TEST(HardRoots, SlideRollAtContact) {
     }
 }
 
-// H15: whatever is due at the start happens at the start.
+// H15: events due at the start happen at the start.
 TEST(HardRoots, EventsAtTheStart) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
@@ -177,8 +176,8 @@ TEST(HardRoots, EventsAtTheStart) {
     EXPECT_EQ(record.state_at(3, 0.0).state, MotionState::kStationary);
 }
 
-// Two balls at rest touch, and accelerations of 2.6e-7 m/s^2, almost along each other, close their contact by
-// 2.7e-10 m/s^2, while the spin of one rounds speeds to 3e-14 m/s.
+// Two touching balls at rest have accelerations of 2.6e-7 m/s^2, almost along each other, that close the
+// contact at 2.7e-10 m/s^2; one ball's spin rounds speeds to 3e-14 m/s.
 TEST(HardRoots, SlowTouch) {
     const double R = 0.007997277000662361;
     const Path a{{0.0, 0.006429872458811686},
@@ -198,13 +197,13 @@ TEST(HardRoots, SlowTouch) {
     const double t = time_to_ball(a, b, 2.0 * R);
     EXPECT_GT(t, 1e-4);
     EXPECT_LT(t, 1e-3);
-    // It opens if they point the other way.
+    // The contact opens if they point the other way.
     Path from = b;
     from.a = -3.0 * a.a;
     EXPECT_EQ(time_to_ball(Path{a.r, a.v, -a.a, a.horizon, true, true, a.surface}, from, 2.0 * R), kNever);
 }
 
-// H16: on the end of a cushion there is neither a gap nor a second normal.
+// H16: the end of a cushion has neither a gap nor a second normal.
 TEST(HardRoots, CushionEnd) {
     for (const bool joined : {false, true}) {
         std::vector<Vec3> after;
@@ -241,7 +240,7 @@ TEST(HardRoots, Corner) {
     EXPECT_NEAR(after.y(), e * v, 1e-14);
 }
 
-// H18: between two jaws that converge at 20 degrees, a finite number of bounces.
+// H18: between two jaws converging at 20 degrees, bounces are finite.
 TEST(HardRoots, JawRattle) {
     const SinCos ten = sin_cos_deg(10.0);
     for (const double e : {1.0, 0.85}) {
@@ -291,7 +290,7 @@ TEST(HardRoots, Ties) {
         std::vector<Pocket> pockets{{"left", {-0.25, 0.5 + R}, 0.25, 0.08},
                                     {"right", {0.25, 0.5 + R}, 0.25, 0.08}};
         add_ball(scene, "a", 0.0, 1.0 + R, 0.0, -1.0);
-        // Its path is tangent to neither: both circles are entered at their common point's height.
+        // Its path is tangent to neither: it enters both circles at the height of their common point.
         pockets[0].radius = pockets[1].radius = 0.3125;
         if (reversed) std::swap(pockets[0], pockets[1]);
         scene.table.pockets = pockets;
@@ -311,7 +310,7 @@ TEST(HardRoots, Ties) {
     }
 }
 
-// H21: slow, but still a ball that rolls and stops.
+// H21: a slow ball still rolls and stops.
 TEST(HardRoots, SlowBall) {
     Scene scene = empty_scene();
     add_ball(scene, "a", 1.0, 1.0, 1e-8, 0.0, rolling_spin(1e-8, 0.0, scene.balls.R));

@@ -32,8 +32,7 @@ Table centred_box(double half_w, double half_l) {
     return table;
 }
 
-/// A break that ends in chaos: 15 racked balls 1e-4 m apart
-/// and a cue ball off the axis, on a table around the origin.
+/// A chaotic break: 15 racked balls 1e-4 m apart and a cue ball off the axis, on a table around the origin.
 Scene centred_break(ClusterModel clusters = ClusterModel::kCompliant) {
     Scene scene = empty_scene();
     scene.table = centred_box(0.635, 1.27);
@@ -46,7 +45,7 @@ Scene centred_break(ClusterModel clusters = ClusterModel::kCompliant) {
     return scene;
 }
 
-// H33: the shot's time in the caller's clock enters no computation.
+// H33: the shot's time on the caller's clock enters no computation.
 TEST(HardRuns, TimeFarFromZero) {
     const Plan plan = plan_of(centred_break());
     SimulateOptions late;
@@ -58,7 +57,7 @@ TEST(HardRuns, TimeFarFromZero) {
 
 using Map = std::function<Vec3(const Vec3&)>;
 
-/// Maps a scene; w is an axial vector: under reflections it takes the sign of the determinant.
+/// Maps a scene; w is an axial vector, so a reflection multiplies it by the determinant.
 Scene mapped(const Scene& scene, const Map& map, double determinant) {
     Scene other = scene;
     for (BallStart& b : other.ball) {
@@ -75,7 +74,7 @@ Scene mapped(const Scene& scene, const Map& map, double determinant) {
     return other;
 }
 
-// H34: mirrors in x and y, the quarter turn, and their products change signs and names only.
+// H34: mirrors in x and y, the quarter turn and their products change only signs and names.
 TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
     struct Case {
         const char* name;
@@ -107,7 +106,7 @@ TEST(HardRuns, MirrorsAndQuarterTurnBitwise) {
     }
 }
 
-// H35: frictionless and elastic, reversed: back to the start.
+// H35: reversed frictionless, elastic motion returns to the start.
 TEST(HardRuns, TimeReversal) {
     for (const int events : {10, 30, 50}) {
         Scene scene = frictionless();
@@ -126,7 +125,7 @@ TEST(HardRuns, TimeReversal) {
         scene.stop.events = events;
         const Record forth = run_verified(scene);
         ASSERT_EQ(forth.events.size(), static_cast<std::size_t>(events));
-        // From half-way to the next event, so that no contact is due at the start.
+        // Reverse half-way to the next event, so that no contact is due at the start.
         Scene longer = scene;
         longer.stop.events = events + 1;
         const Record next = simulate(plan_of(longer));
@@ -150,7 +149,7 @@ TEST(HardRuns, TimeReversal) {
     }
 }
 
-// H36: another order of the balls, the same bits.
+// H36: reordered balls give the same bits.
 TEST(HardRuns, PermutedIdsBitwise) {
     for (const ClusterModel model :
          {ClusterModel::kSequential, ClusterModel::kCompliant, ClusterModel::kRigid}) {
@@ -173,8 +172,8 @@ TEST(HardRuns, PermutedIdsBitwise) {
     }
 }
 
-// H39: a run that stops is the beginning of the whole one, also in the middle of resting contacts, and its
-// record survives its file.
+// H39: a stopped run is the beginning of the whole run, also during resting contacts, and its record survives
+// its file.
 TEST(HardRuns, StoppedRunsAreTheBeginning) {
     std::vector<Scene> scenes;
     for (const ClusterModel model : {ClusterModel::kCompliant, ClusterModel::kSequential})
@@ -211,8 +210,8 @@ TEST(HardRuns, StoppedRunsAreTheBeginning) {
     EXPECT_GE(stops_in_hold, 3);
 }
 
-// Three of the million breaks of lab/notes/2026-11-million_breaks.md in
-// which a held ball was left with 1e-13 m/s, and took days to stop.
+// Three of the million breaks of lab/notes/2026-11-million_breaks.md in which a held ball kept 1e-13 m/s and
+// took days to stop.
 TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     const struct {
         const char *aim, *speed, *seed;
@@ -233,20 +232,20 @@ TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
     }
 }
 
-// Without friction, runs reach times at which a position has no digits left: balls were then in cushions, or
-// past them.
-TEST(HardRuns, EndWhereTheDigitsEnd) {
+// Without friction, runs reach times at which positions have no digits left; balls were once in or past
+// cushions.
+TEST(HardRuns, EndWhenPositionsRunOutOfDigits) {
     const auto cushion = [](const char* from, const char* to, const char* height) {
         return std::string("[[table.cushion]]\nfrom = ") + from + "\nto = " + to + "\nheight = " + height +
                "\n";
     };
     const char *corner = "[1.2824842797119858, 0.9884300685668194]", *low = "0.001", *high = "0.040005";
     const std::string scenes[] = {
-        // a fast ball with much spin in a wedge, left with 1e-12 m/s
+        // a fast ball with strong spin in a wedge, left with 1e-12 m/s
         cushion("[1.6, 1.4]", "[0.0, 1.9]", low) + cushion("[0.46, -0.35]", "[1.6, 1.4]", low) +
             "[balls]\nmu_s = 0.0\nf_c = 0.0\n[[ball]]\nvelocity = [197.9, 29.0, 0.0]\n"
             "spin = [-9872.7, -88722.9, 66775.8]\n",
-        // between cushions that take all of the speed towards them
+        // between cushions that absorb all normal speed
         cushion("[0, 0]", "[0, 1.0]", high) + cushion("[0, 0.9884300685668194]", corner, high) +
             cushion(corner, "[1.2824842797119858, 0]", high) + cushion("[1.3, 0]", "[0, 0]", high) +
             "[balls]\npreset = \"carom\"\nmu_s = 0.0\nmu_sp = 1e-05\ne_b = 1.0\ne_c = 0.0\nf_c = 1.0\n"
@@ -255,7 +254,7 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
             "position = [0.2454020237721765, 0.786055119107232]\nheight = 0.001\nvelocity = [11.4, 3.8]\n"
             "[[ball]]\nid = \"b3\"\nposition = [0.27530022344626703, 0.83785]\n"
             "height = 0.015375\n",
-        // one that creeps at less than the rounding of its surface, and meets nothing, while another goes on
+        // one creeps at less than the rounding of its surface and meets nothing, while another moves
         cushion("[0.2, 0.1]", "[0.2, 0.9]", low) + cushion("[0.0, 0.0]", "[1e6, 0.0]", low) +
             cushion("[0.0, 2.0]", "[1e6, 2.0]", low) +
             "[physics]\ncushion = \"smooth\"\n[balls]\nmu_s = 0.0\nmu_r = 0.0\nmu_sp = 0.0\ne_c = 1.0\nf_c = "
@@ -273,20 +272,21 @@ TEST(HardRuns, EndWhereTheDigitsEnd) {
     }
 }
 
-// The same where nothing more happens, and only time continues to the end of the run.
-TEST(HardRuns, NoneCreepsUnseenToTheEndOfTheTime) {
+// The same where no event follows and only time continues to the end of the run.
+TEST(HardRuns, NoBallCreepsThroughACushionUntilTheTimeLimit) {
     const std::string scene =
         "[[table.cushion]]\nfrom = [0.2, 0.1]\nto = [0.2, 0.9]\n[balls]\nmu_s = 0.0\nmu_r = 0.0\nmu_sp = "
         "0.0\n[[ball]]\n"
         "position = [0.2286, 0.5]\nvelocity = [-4e-13, 0.0]\nspin = [100, 0, 1e4]\n[stop]\ntime = ";
     EXPECT_EQ(run_verified(parse_scene(scene + "1e6\n", "s.toml")).stopped, StopReason::kTime);
     EXPECT_THROW(simulate(plan_of(parse_scene(scene + "1e9\n", "s.toml"))), SimulationError);
-    // On an endless cloth it has nothing to pass through.
+    // On an endless cloth there is nothing to pass through.
     const std::string endless = "[table]\ncushion = []\n" + scene.substr(scene.find("[balls]"));
     EXPECT_EQ(run_verified(parse_scene(endless + "1e9\n", "s.toml")).stopped, StopReason::kTime);
 }
 
-// Far from the origin coordinates are rounded by more than balls may overlap elsewhere: the judge allows it.
+// Far from the origin, coordinates are rounded by more than balls may overlap elsewhere; the checker allows
+// it.
 TEST(HardRuns, TurnedTablesFarAway) {
     for (const double angle : {0.0, 17.0, 45.0, 203.0}) {
         const SinCos turn = sin_cos_deg(angle);
@@ -304,7 +304,7 @@ TEST(HardRuns, TurnedTablesFarAway) {
         }
         run_verified(scene);
     }
-    // A table of 10 km on its corner, where it is the rounding of the cushion's own ends that counts.
+    // A table of 10 km on its corner, where the rounding of the cushion's own ends dominates.
     Scene scene = empty_scene();
     scene.balls.mu_s = 0.0;
     scene.stop.time = 1e9;
@@ -319,7 +319,7 @@ TEST(HardRuns, TurnedTablesFarAway) {
     run_verified(scene);
 }
 
-// H40: one seed, one hash; another seed, another rack.
+// H40: one seed has one hash; another seed has another rack.
 TEST(HardRuns, SeededRacks) {
     const auto run = [](int seed) {
         const std::string text =

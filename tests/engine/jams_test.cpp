@@ -1,5 +1,4 @@
-// Scenes that once went wrong, each with the laws that must hold now: the rows of
-// tests/data/engine/jams.toml.
+// Scenes that once failed, each with the laws that now hold: the rows of tests/data/engine/jams.toml.
 #include <gtest/gtest.h>
 
 #include <toml++/toml.h>
@@ -13,7 +12,7 @@
 namespace carom::test {
 namespace {
 
-/// @param asks  what a row asks for beyond the laws
+/// @param asks  a row's demands beyond the laws
 void expect_laws(const Scene& scene, const toml::table& asks) {
     const Plan plan = plan_of(scene);
     const Record record = simulate(plan);

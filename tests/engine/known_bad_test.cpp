@@ -57,7 +57,7 @@ int ball(const Record& record, const std::string& id) {
     return -1;
 }
 
-// Every contact at 2 R, and no ball ever jumps between segments.
+// Every contact is at 2 R, and no ball jumps between segments.
 void expect_no_jumps(const Record& record) {
     for (const Event& e : record.events) {
         if (e.type != EventType::kBallBall) continue;
@@ -85,13 +85,13 @@ TEST(KnownBad, EqualAccelerationFalseCollision) {
 
 TEST(KnownBad, TouchingSameVelocity) {
     const Record record = run_verified(scene_named("touching_same_velocity_crash"));
-    // 1 m/s would carry them 5 m: the first event is the leading ball's at the cushion.
+    // At 1 m/s the pair would travel 5 m: the first event is the leading ball at the cushion.
     ASSERT_FALSE(record.events.empty());
     EXPECT_EQ(record.events[0].type, EventType::kBallCushion);
     for (double t = 0.0; t < record.events[0].time; t += 0.05)
         EXPECT_NEAR((record.state_at(0, t).position - record.state_at(1, t).position).norm(),
                     2.0 * record.balls.R, 1e-15);
-    // On an endless cloth: only the two stops, after v / (mu_r g), with the same relative position.
+    // On an endless cloth only the two stops happen, after v / (mu_r g), at the same relative position.
     Scene endless = scene_named("touching_same_velocity_crash");
     endless.table = Table();
     const Record alone = run_verified(endless);
@@ -125,7 +125,7 @@ TEST(KnownBad, SymmetricDoubleHit) {
     EXPECT_NEAR(l.y(), r.y(), 1e-12);
 }
 
-// The line between the two balls, and the first cushion not yet hit.
+// The line of the two balls, and the first cushion not yet hit.
 TEST(KnownBad, StraightFollowAt45Degrees) {
     const Record record = run_verified(scene_named("straight_follow_45deg"));
     EXPECT_EQ(record.events[0].type, EventType::kCueStrike);

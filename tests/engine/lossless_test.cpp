@@ -1,4 +1,4 @@
-// Balls that lose nothing: a run keeps their energy, however fast they bounce, and the checker asks for it.
+// Lossless balls keep their energy however fast they bounce, and the checker requires it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,9 +24,9 @@ double speed(const Record& record, int ball) {
     return record.state_at(ball, record.duration).velocity.norm();
 }
 
-// Pi from collisions (G. Galperin, "Playing pool with pi", 2003): a ball between a wall and one of 100^n
-// times its mass meets the two floor(pi 10^n) times. Up to 1100 times in 1e-5 s it was taken for a ball that
-// comes to rest, after 5094 events of 31415.
+// Pi from collisions (G. Galperin, "Playing pool with pi", 2003): a ball between a wall and a ball of 100^n
+// times its mass meets the two floor(pi 10^n) times. Up to 1100 contacts in 1e-5 s once counted as coming to
+// rest, after 5094 of 31415 events.
 TEST(Lossless, PiFromCollisions) {
     for (const auto& [ratio, collisions] :
          {std::pair{1.0, 3}, {1e2, 31}, {1e4, 314}, {1e6, 3141}, {1e8, 31415}}) {
@@ -42,7 +42,7 @@ TEST(Lossless, PiFromCollisions) {
     }
 }
 
-// The same where the cloth would stop the balls some time: then it is the closing speed that has not fallen.
+// The same on a cloth that would stop the balls: here the closing speed has not fallen.
 TEST(Lossless, PiFromCollisionsOnACloth) {
     Scene scene = lossless_scene(0.03);
     scene.balls.mu_s = scene.balls.mu_r = 1e-12;
@@ -56,9 +56,9 @@ TEST(Lossless, PiFromCollisionsOnACloth) {
     EXPECT_EQ(count(record, EventType::kBallBall) + count(record, EventType::kBallCushion), 31415);
 }
 
-// Straight into a wedge whose noses it meets at once, and the table turned anyhow: back with all its speed. A
-// wedge of 1 degree gave 0.913 of it, in silence.
-TEST(Lossless, AWedgeGivesEverythingBack) {
+// Straight into a wedge, meeting both noses at once, at any table angle: the ball returns with all its speed.
+// A wedge of 1 degree silently returned 0.913 of it.
+TEST(Lossless, AWedgeReturnsAllSpeed) {
     for (const double wedge : {0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0}) {
         for (int turn = 0; turn < 72; ++turn) {
             const double half = 0.5 * wedge * kDegree, angle = 5.0 * turn * kDegree + 0.001 * turn;
@@ -74,13 +74,13 @@ TEST(Lossless, AWedgeGivesEverythingBack) {
             scene.stop.time = 1.0;
             const Record record = run_verified(scene);
             EXPECT_NEAR(speed(record, 0), 1.0, 1e-12) << wedge << " degrees, turned by " << angle;
-            // It met both at once where rounding of its place allows it.
+            // It meets both at once if rounding of its place allows it.
             EXPECT_GE(record.events.size(), 2u);
         }
     }
 }
 
-// Any direction into any wedge: as many reflections as it takes, and no loss.
+// Any direction into any wedge: all necessary reflections, no loss.
 TEST(Lossless, AWedgeFromAnySide) {
     reference::Generator rng(31);
     for (int n = 0; n < 300; ++n) {
@@ -95,7 +95,7 @@ TEST(Lossless, AWedgeFromAnySide) {
     }
 }
 
-// A grain between two posts that touch bounces faster and faster, and comes back out.
+// A grain between two touching posts bounces faster and faster, and comes back out.
 TEST(Lossless, TouchingPostsReturnABall) {
     for (const double y : {0.0, 1e-15, 1e-9, 1e-7, 1e-5}) {
         Scene scene = lossless_scene(2e-6);
@@ -109,7 +109,7 @@ TEST(Lossless, TouchingPostsReturnABall) {
     }
 }
 
-// Between near walls for ever: ten thousand bounces a second, until the run is stopped.
+// Ten thousand bounces a second between near walls, until the run is stopped.
 TEST(Lossless, AGrainBetweenNearWalls) {
     Scene scene = lossless_scene(1e-3);
     scene.table.cushions.push_back({"left", {0.0, -1.0}, {0.0, 1.0}, 1e-3});
@@ -122,8 +122,9 @@ TEST(Lossless, AGrainBetweenNearWalls) {
     EXPECT_NEAR(speed(record, 0), std::hypot(1.0, 1e-3), 1e-12);
 }
 
-// Between two heavy balls a light one leaves them their energy. From a mass ratio of 3e4 on they lost half.
-TEST(Lossless, AHeavyLineHandsItsMotionOn) {
+// A light ball between two heavy ones passes their energy on. From a mass ratio of 3e4 on, half was once
+// lost.
+TEST(Lossless, AHeavyLinePassesItsMotionOn) {
     for (const double ratio : {1e4, 1e5, 1e6}) {
         for (const int light : {1, 2}) {
             Scene scene = lossless_scene(0.03);
@@ -141,7 +142,7 @@ TEST(Lossless, AHeavyLineHandsItsMotionOn) {
     }
 }
 
-TEST(Lossless, TheCheckerAsksForTheEnergy) {
+TEST(Lossless, TheCheckerRequiresTheEnergy) {
     Scene scene = lossless_scene(0.03);
     scene.table.cushions.push_back({"wall", {0.0, -1.0}, {0.0, 1.0}, 0.03});
     add_ball(scene, "ball", 0.5, 0.0, -1.0, 0.1);
@@ -154,13 +155,13 @@ TEST(Lossless, TheCheckerAsksForTheEnergy) {
     ASSERT_TRUE(violation);
     EXPECT_EQ(violation->law, "U4");
     EXPECT_NE(violation->message.find("nothing takes any"), std::string::npos) << violation->message;
-    // With a little less restitution the same record keeps the laws.
+    // With slightly less restitution the same record keeps the laws.
     scene.balls.e_c = 0.99;
     EXPECT_FALSE(verify(record, plan_of(scene)));
 }
 
-// Only the steps of a cluster may lose some. Half of the energy of a cluster was lost in silence.
-TEST(Lossless, TheCheckerAsksForTheEnergyOfAClusterToo) {
+// Only the steps of a cluster may lose energy. A cluster once lost half of it unnoticed.
+TEST(Lossless, TheCheckerRequiresTheEnergyOfAClusterToo) {
     for (const double share : {1.0, 1.0 - 1e-4}) {
         Scene scene = lossless_scene(0.03);
         for (int k = 0; k < 3; ++k)
@@ -173,7 +174,7 @@ TEST(Lossless, TheCheckerAsksForTheEnergyOfAClusterToo) {
         const auto violation = verify(record, plan);
         EXPECT_EQ(violation.has_value(), share < 1.0);
         if (violation) {
-            // The momentum is less, too.
+            // The momentum is also reduced.
             EXPECT_TRUE(violation->law == "U4" || violation->law == "U5") << violation->message;
         }
     }

@@ -1,4 +1,4 @@
-// Heap allocations of the event loop: operator new is replaced here and counts.
+// Heap allocations of the event loop, counted by a replaced operator new.
 #include <box2d/b2_dynamic_tree.h>
 
 #include <algorithm>
@@ -37,8 +37,7 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
     return counted(size);
 }
-// The buffers of std::stable_partition come from here. A sanitizer has its own form, which would not match
-// free().
+// std::stable_partition allocates its buffers here. A sanitizer's own version would not match free().
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     try {
         return counted(size);
@@ -82,7 +81,7 @@ namespace {
 
 using namespace test;
 
-// Counts at the end of the first and of the last round of the loop: the difference is the loop alone.
+// Counts after the first and the last round of the loop: their difference is the loop alone.
 struct LoopCount {
     long first = -1, last = 0, first_bytes = 0;
     std::size_t events = 0;
@@ -108,7 +107,7 @@ struct LoopCount {
 Scene eight_ball_break(ClusterModel clusters) {
     Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
     scene.physics.clusters = clusters;
-    // No two balls stay in contact.
+    // No two balls stay in contact at this aim.
     scene.cue->aim_deg = 90.08;
     return scene;
 }
@@ -119,7 +118,7 @@ TEST(Memory, NoAllocationInTheLoopOfABreak) {
     EXPECT_EQ(count.in_loop(), 0);
 }
 
-// The first cluster of a rack is the largest; later ones find its scratch memory.
+// A rack's first cluster is the largest; later ones reuse its scratch memory.
 TEST(Memory, NoAllocationInTheLoopOfABreakWithClusters) {
     const LoopCount count(plan_of(eight_ball_break(ClusterModel::kCompliant)));
     EXPECT_GT(count.events, 50u);
@@ -138,7 +137,7 @@ bool has_resting_contacts(const Record& record) {
                        [](const Event& e) { return kind(e.type).phase == EventPhase::kHold; });
 }
 
-// In a batch, what the first shots took is enough for the others, unless balls rest against something.
+// In a batch, the memory of the first shots suffices for the others, unless balls rest against something.
 TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
     for (const char* file : {"draw", "three_cushion", "side_bank", "eight_ball_break"}) {
         const Scene scene = shipped(file);
@@ -163,8 +162,8 @@ TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
             if (shot < 20) continue;
             without_memory += allocations == before;
             if (allocations == before) continue;
-            // A shot that is longer, or has a larger cluster, than all before needs longer lists, but not
-            // when it is played again.
+            // A shot that is longer, or has a larger cluster, than all before needs longer lists, but only
+            // the first time.
             const long once_more = allocations;
             simulator.play(change, options);
             const long more = allocations - once_more;
@@ -175,18 +174,18 @@ TEST(Memory, NoAllocationInABatchAfterTheFirstShots) {
     }
 }
 
-// A long run doubles the log of segments and the list of events, and takes nothing else.
+// A long run only doubles the log of segments and the list of events.
 TEST(Memory, ALongRunOnlyDoublesItsLog) {
     for (const int n : {16, 100, 900}) {
         const LoopCount count(plan_of(gas(n, 20000, 3)));
         EXPECT_EQ(count.events, 20000u);
-        // Three lists that start with room for 256 or more: at most log2(40000 / 256) + 1 doublings each.
+        // Three lists start with room for 256 or more, so each doubles at most log2(40000 / 256) + 1 times.
         EXPECT_LE(count.in_loop(), 3 * 9) << n;
         EXPECT_GT(count.in_loop(), 0) << n;
     }
 }
 
-// Set-up is linear in the balls. Counted is what operator new gave out, even if it was given back; the nodes
+// Set-up is linear in the balls. Counted is all that operator new allocated, even if freed since; the nodes
 // of Box2D's tree come from malloc and are added: at most four per block of 64 boxes, because its list
 // doubles.
 TEST(Memory, UnderAKilobyteABall) {

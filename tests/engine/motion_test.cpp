@@ -17,7 +17,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance, const std::stri
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(a[k], b[k], tolerance) << what << ", component " << k;
 }
 
-TEST(Motion, StunGoesOverToRolling) {  // T1
+TEST(Motion, StunTurnsIntoRolling) {  // T1
     for (const double mu : {0.2, 0.212}) {
         Scene scene = empty_scene();
         scene.balls.mu_s = mu;
@@ -95,9 +95,9 @@ TEST(Motion, SlowBallComesToRestInOneEvent) {  // H21
     EXPECT_NEAR(record.duration, 1e-8 / 0.0981, 1e-20);
 }
 
-// Seed 145147 of the other family of random scenes: a thousand impacts at one instant, each with half the
-// speed of the last. Spin about the vertical counts for nothing: zigzag/wide 31974.
-TEST(Motion, SpeedsThatFrictionCannotBeDividedByAreRest) {
+// Seed 145147 of the other family of random scenes: a thousand simultaneous impacts, each at half the speed
+// of the last. Spin about the vertical must not matter: zigzag/wide 31974.
+TEST(Motion, SpeedsTooSmallToDivideFrictionByAreRest) {
     const MotionParams params{.R = 0.028575, .slide = 1.962, .roll = 0.0981, .spin = 10.9};
     for (const double speed : {1e-310, 5e-309, 1e-260, 1e-163}) {
         for (const Vec3& spin :
@@ -149,8 +149,8 @@ TEST(Motion, ReferenceVectors) {
     }
 }
 
-// Orientation: a small-step integration of dq/dt = w q / 2
-// against orientation_at, with English so that the axis turns.
+// Orientation: a small-step integration of dq/dt = w q / 2 against orientation_at, with side spin so that the
+// axis turns.
 TEST(Motion, OrientationFollowsTheSpin) {
     Scene scene = empty_scene();
     add_ball(scene, "a", 0, 0, 1.5, 0.4, Vec3(-60.0, 20.0, 35.0));
@@ -167,7 +167,7 @@ TEST(Motion, OrientationFollowsTheSpin) {
     EXPECT_LT(q.angularDistance(got), 1e-6);
 }
 
-// Straight rolling has a fixed axis: the angle is the distance over R.
+// Straight rolling has a fixed axis; the angle is the distance over R.
 TEST(Motion, RollingTurnsByDistanceOverRadius) {
     Scene scene = empty_scene();
     add_ball(scene, "a", 0, 0, 1.0, 0.0, rolling_spin(1.0, 0.0, scene.balls.R));

@@ -1,5 +1,5 @@
-// Breaks off the middle against an integration in which the balls move (support/moving_contacts.h): 5 ms
-// after the hit, when most contacts are over.
+// Off-centre breaks against an integration in which the balls move (support/moving_contacts.h), 5 ms after
+// the hit, when most contacts are over.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ namespace {
 using namespace test;
 
 constexpr double kAfter = 5e-3;  // [s]
-constexpr double kSlow = 0.05;   // [V] the direction of a slower ball is not compared
+constexpr double kSlow = 0.05;   // [V] directions of slower balls are not compared
 constexpr int kBreaks = 40;
 
 MovingBall moving(const BallState& s) {
@@ -51,7 +51,7 @@ Hit hit_of(const Record& record) {
     return hit;
 }
 
-// Friction is regularised as in the model; what this costs is measured in cluster_moving_test.cpp.
+// Friction is regularised as in the model; cluster_moving_test.cpp measures the cost.
 MovingContacts contacts_of(const Hit& hit, const Scene& scene) {
     MovingLaw law;
     law.R = scene.balls.R;
@@ -84,7 +84,7 @@ Scene break_of(const std::string& game, reference::Generator& rng) {
                        "s.toml");
 }
 
-/// Of many breaks: the largest error of a ball's velocity [V] and direction [degrees], the median error of a
+/// Over many breaks: largest error of a ball's velocity [V] and direction [degrees], and median error of a
 /// place [m].
 struct Errors {
     std::vector<double> velocity, direction, place;
@@ -98,8 +98,7 @@ std::set<std::string> potted(const Record& record) {
     return balls;
 }
 
-/// The balls in pockets at the end of a shot that begins with balls as they are; nothing if it cannot begin,
-/// because two balls still overlap.
+/// The balls in pockets after a shot from these states, or nothing if two balls still overlap.
 std::optional<std::set<std::string>> potted_from(Scene scene, const std::vector<MovingBall>& balls) {
     scene.cue.reset();
     for (std::size_t b = 0; b < balls.size(); ++b) {

@@ -1,4 +1,4 @@
-// Which name a mistyped one resembles.
+// Suggestions for mistyped names.
 #include "base/nearest.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using carom::did_you_mean;
 const std::vector<std::string_view> kCueKeys = {"ball",          "speed",  "aim_deg",
                                                 "elevation_deg", "offset", "mass"};
 
-TEST(DidYouMean, NamesWhatIsNear) {
+TEST(DidYouMean, SuggestsNearNames) {
     const struct {
         const char *word, *says;
     } kCases[] = {
@@ -25,7 +25,7 @@ TEST(DidYouMean, NamesWhatIsNear) {
         {"speeed", "; did you mean speed?"},     // one too many
         {"spead", "; did you mean speed?"},      // a different one
         {"psede", "; did you mean speed?"},      // two swapped pairs
-        {"blal", "; did you mean ball?"},        // of four letters only one may be wrong: a swap is one
+        {"blal", "; did you mean ball?"},        // with four letters only one may be wrong: a swap is one
         {"Speed", "; did you mean speed?"},      // keys are lower case
         {"aim", "; did you mean aim_deg?"},      // the unit is missing
         {"speed_mps", "; did you mean speed?"},  // or one too many
@@ -34,8 +34,8 @@ TEST(DidYouMean, NamesWhatIsNear) {
     for (const auto& c : kCases) EXPECT_EQ(did_you_mean(c.word, kCueKeys), c.says) << c.word;
 }
 
-TEST(DidYouMean, IsSilentWhereNothingIsNear) {
-    // "bats" shares two of four letters with ball, "a" begins nothing, and "mass" exists: the word is wrong
+TEST(DidYouMean, SuggestsNothingForDistantWords) {
+    // "bats" shares two of four letters with ball, "a" begins no key, and "mass" exists: the word is wrong
     // for another reason.
     for (const char* word : {"", "a", "wind", "bats", "colour", "mass", "sxxxd"})
         EXPECT_EQ(did_you_mean(word, kCueKeys), "") << word;
@@ -43,7 +43,7 @@ TEST(DidYouMean, IsSilentWhereNothingIsNear) {
     EXPECT_EQ(did_you_mean("speed", {}), "");
 }
 
-TEST(DidYouMean, NamesAllThatAreEquallyNear) {
+TEST(DidYouMean, SuggestsAllEquallyNearNames) {
     EXPECT_EQ(did_you_mean("mu_x", {"mu_s", "mu_r", "mass", "mu_b"}), "; did you mean mu_s, mu_r or mu_b?");
     EXPECT_EQ(did_you_mean("mu_bb", {"mu_s", "mu_b"}), "; did you mean mu_b?");
 }

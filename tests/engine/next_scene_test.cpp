@@ -1,4 +1,4 @@
-// The scene of the next shot: lost balls are gone, and the others are where they rest, to the bit.
+// The scene of the next shot: lost balls are removed, and the others lie where they stopped, bit for bit.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -26,9 +26,8 @@ Cue strike(const std::string& ball, double speed, double aim_deg) {
     return cue;
 }
 
-/// Plays `shots` shots one after the other; every scene has the remaining balls of the previous one, to the
-/// bit.
-TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
+/// Plays `shots` shots in a row; each scene has the remaining balls of the previous one, bit for bit.
+TEST(NextScene, KeepsRestingBallsBitForBitOverManyShots) {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     std::size_t gone = 0;
     int shot = 0;
@@ -43,7 +42,7 @@ TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
             EXPECT_TRUE(end.velocity.isZero(0.0) && end.spin.isZero(0.0));
         }
         if (rest.size() < 2) break;
-        // Every third cue is raised, so that balls fly as well.
+        // Every third cue is raised, so that some balls fly.
         Cue cue = strike(rest[0].id, 4.0 + 0.1 * shot, 37.0 * shot);
         if (shot % 3 == 0) cue.elevation_deg = 12.0;
         const Scene next = next_scene(scene, record, cue);
@@ -52,7 +51,7 @@ TEST(NextScene, KeepsWhatRestsToTheBitOverManyShots) {
         EXPECT_EQ(next.table, scene.table);
         EXPECT_EQ(next.balls, scene.balls);
         EXPECT_EQ(next.physics, scene.physics);
-        // Written to a file it is the same scene, and the same shot.
+        // Written to a file, it is the same scene and the same shot.
         EXPECT_EQ(played(next).hash(), played(parse_scene(scene_text(next), "next")).hash());
         scene = next;
     }
@@ -76,7 +75,7 @@ TEST(NextScene, ABallThatLeftTheTableIsGone) {
     EXPECT_THROW(next_scene(scene, record, strike("a", 2.0, 90.0)), SceneError);
 }
 
-TEST(NextScene, IsRefusedWhereTheBallMovesOrIsNotThere) {
+TEST(NextScene, IsRefusedIfTheBallMovesOrIsMissing) {
     const Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/side_bank.toml");
     const Record half = played(scene, 0.1);
     EXPECT_THROW(next_scene(scene, half, strike("cue", 2.0, 90.0)), SceneError);

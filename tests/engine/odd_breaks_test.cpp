@@ -1,5 +1,5 @@
-// Breaks with balls that differ in size end at rest, and keep every law. With CAROM_ODD_BREAKS=from:to in the
-// environment, the seeds of that range, one line for each that fails.
+// Breaks with balls of different sizes come to rest and keep every law. CAROM_ODD_BREAKS=from:to runs that
+// range of seeds and prints one line for each that fails.
 #include <gtest/gtest.h>
 
 #include <cstdint>

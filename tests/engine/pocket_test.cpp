@@ -1,4 +1,4 @@
-// Pockets: a ball whose centre passes the edge falls, and comes back over it if it has not sunk too far
+// Pockets: a ball whose centre passes the edge falls, and returns over the edge if it has not sunk too far
 // (docs/reference/physics.md, "Pockets").
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using reference::Generator;
 
 constexpr double kHoleR = 0.028575, kHoleG = 9.81, kHole = 0.062;
 
-/// A hole in an endless cloth, with a ball that slides over its middle without friction.
+/// A hole in an endless cloth; a ball slides over its middle without friction.
 Scene hole(double speed) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"p1", {0.0, 0.0}, kHole, 0.08}};
@@ -47,7 +47,7 @@ TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
     EXPECT_EQ(r.events[1].type, EventType::kBallPocket);
     EXPECT_NEAR(r.events[1].time - r.events[0].time, std::sqrt(2.0 * kHoleR / kHoleG), 1e-15);
     EXPECT_EQ(r.tracks[0].pocket, 0);
-    // On the way it falls freely and keeps moving.
+    // Meanwhile it falls freely and keeps moving.
     const double tau = 0.05;
     const BallState s = r.state_at(0, r.events[0].time + tau);
     EXPECT_EQ(s.state, MotionState::kFalling);
@@ -57,13 +57,13 @@ TEST(Pocket, ASlowBallFallsForTheTimeOfItsRadius) {
     EXPECT_NEAR(energy_at(r, r.events[0].time + tau), energy_at(r, 0.0), 1e-15);
 }
 
-/// [m/s] After a ball has crossed the middle of the hole; 0 if it falls.
+/// [m/s] Speed after crossing the middle of the hole; 0 if the ball falls.
 double across(double speed) {
     const double t = 2.0 * kHole / speed;
     return climbs(speed, 0.5 * kHoleG * t * t / kHoleR, kHoleR, kHoleG).value_or(0.0);
 }
 
-TEST(Pocket, AFastBallComesBackOverTheEdge) {
+TEST(Pocket, AFastBallReturnsOverTheEdge) {
     const Record r = run(hole(3.0));
     ASSERT_EQ(count(r, EventType::kBallEdge), 2);
     EXPECT_EQ(r.tracks[0].pocket, -1);
@@ -77,7 +77,7 @@ TEST(Pocket, AFastBallComesBackOverTheEdge) {
     EXPECT_GT(left, 1.5);
 }
 
-// Above some speed the ball crosses the hole, below it stays; there is no gap between.
+// Above some speed the ball crosses the hole, below it falls; nothing lies between.
 TEST(Pocket, TheSpeedThatCrosses) {
     double falls = 0.5, crosses = 4.0;
     while (crosses - falls > 1e-9) {
@@ -89,8 +89,8 @@ TEST(Pocket, TheSpeedThatCrosses) {
     EXPECT_NEAR(crosses, 1.9636, 1e-4);
 }
 
-// A ball that cuts across the rim has fallen little and moves outwards slowly: its speed decides, sqrt(2 g
-// radius), not how far in it is. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
+// A ball that cuts across the rim has fallen little and moves outwards slowly: whether it falls depends on
+// its speed, sqrt(2 g radius), not on its depth. Source of the limit: v_n > g t with t = 2 v_n radius / v^2.
 TEST(Pocket, OverTheRim) {
     for (const double depth : {1e-4, 1e-3, 3e-3}) {
         for (const auto& [speed, pocket] : {std::pair{0.9, 0}, {1.4, -1}}) {
@@ -102,7 +102,7 @@ TEST(Pocket, OverTheRim) {
 }
 
 // A hole in the middle of a table, as in golf: the ball meets the far rim with its centre, not earlier with
-// its sunken side (physics.md, "Not modelled"), and stays in if it is then too slow to climb its depth.
+// its sunken side (physics.md, "Not modelled"), and stays in if too slow to climb back.
 TEST(Pocket, ABallMeetsTheFarRimOfAHoleInTheMiddleWithItsCentre) {
     Generator rng(17);
     int in = 0, over = 0;
@@ -158,8 +158,8 @@ Scene at_corner(double speed, double angle_deg, double gap) {
     return scene;
 }
 
-// A pocket at the edge of the table has a back, and a ball that reaches it is in.
-TEST(Pocket, TheBackOfACorner) {
+// A pocket at the table's edge has a back; a ball that reaches it is pocketed.
+TEST(Pocket, TheBackOfACornerStopsABall) {
     Scene scene = at_corner(7.0, 45.0, 0.571425);
     const Record r = run(scene);
     EXPECT_EQ(r.tracks[0].pocket, 0);
@@ -168,7 +168,8 @@ TEST(Pocket, TheBackOfACorner) {
     EXPECT_LT(r.events[1].time - r.events[0].time, 0.03);
 }
 
-// Along the rail and a little into it: rail, far jaw, and in; a hard shot rattles out. Once all of them fell.
+// A ball along the rail and slightly into it meets rail and far jaw and falls; a hard shot rattles out. Once
+// all fell.
 TEST(Pocket, AHardShotBesideTheRailRattles) {
     int slow = 0, hard = 0, at_once = 0;
     for (int gap = 0; gap < 6; ++gap) {
@@ -189,8 +190,9 @@ TEST(Pocket, AHardShotBesideTheRailRattles) {
     EXPECT_EQ(at_once, 24);
 }
 
-// Hard shots into all pockets, on the cloth and above it: they rattled through between a jaw's end and the
-// pocket, or flew over its side, and went on behind the rails as on cloth (one of some 500 random matches).
+// Hard shots into all pockets, on the cloth and above it. They once rattled through between a jaw's end and
+// the pocket, or flew over its side, and continued behind the rails as on cloth (one of some 500 random
+// matches).
 TEST(Pocket, NoBallComesOutBehindTheRails) {
     int pocketed = 0, out = 0;
     for (std::uint64_t seed = 0; seed < 4000; ++seed) {
@@ -216,7 +218,7 @@ TEST(Pocket, NoBallComesOutBehindTheRails) {
     EXPECT_GT(out, 100);
 }
 
-// Crowds that push each other into a corner and out of it.
+// Crowds push each other into a corner and out again.
 TEST(Pocket, CrowdsKeepTheLaws) {
     int edges = 0, back = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -250,7 +252,7 @@ TEST(Pocket, CrowdsKeepTheLaws) {
 TEST(PocketEdge, TimeToTheFarEdge) {
     EXPECT_NEAR(time_to_edge({-0.05, 0.0}, {2.0, 0.0}, {0.0, 0.0}, 0.05), 0.05, 1e-16);
     EXPECT_NEAR(time_to_edge({0.01, 0.03}, {0.0, -1.0}, {0.0, 0.0}, 0.05), 0.03 + std::sqrt(0.0024), 1e-16);
-    // On the edge, and outside of it by rounding.
+    // On the edge, and outside it by rounding.
     EXPECT_EQ(time_to_edge({0.05, 0.0}, {1.0, 0.0}, {0.0, 0.0}, 0.05), 0.0);
     EXPECT_NEAR(time_to_edge({-0.05 - 1e-17, 0.0}, {1.0, 0.0}, {0.0, 0.0}, 0.05), 0.1, 1e-15);
     EXPECT_EQ(time_to_edge({0.01, 0.0}, {0.0, 0.0}, {0.0, 0.0}, 0.05), kNever);

@@ -1,6 +1,5 @@
-// Presets of balls, cloths and cues: what they set, what a file overrides, and how they compare with
-// measurements on real tables (docs/reference/physics.md, "Where the numbers come from"), including the
-// models' known misses.
+// Presets of balls, cloths and cues: their values, overrides by a file, and comparison with measurements on
+// real tables (docs/reference/physics.md, "Where the numbers come from"), including the models' known misses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -35,8 +34,8 @@ const carom::Event& first(const Record& r, EventType type) {
     throw std::runtime_error("there is no such event");
 }
 
-/// Speeds after a ball that rolls straight into a cushion at `v`
-/// [m/s]: at once, and when it rolls again. `keys` of [balls].
+/// Speeds of a ball that rolled straight into a cushion at `v` [m/s]: just after it, and once rolling again.
+/// `keys` go to [balls].
 std::pair<double, double> rebound(const std::string& preset, double v, const std::string& keys = "") {
     const bool snooker = preset.rfind("snooker", 0) == 0;
     const double R = carom::make_ball_params(preset).R, height = snooker ? 0.03675 : 0.037;
@@ -56,24 +55,25 @@ std::pair<double, double> rebound(const std::string& preset, double v, const std
     return {at_once, 0.0};
 }
 
-// Rolling again over before, of 68 impacts of a three-cushion match; a median is known to 0.012.
-TEST(Presets, CaromCushionIsTheMeasuredOne) {
+// Ratio of the speed when rolling again to the speed before, from 68 impacts of a three-cushion match; each
+// median is known to 0.012.
+TEST(Presets, CaromCushionMatchesTheMeasurement) {
     const double measured[][2] = {{0.54, 0.598}, {0.70, 0.589}, {0.85, 0.583},
                                   {1.12, 0.581}, {1.44, 0.568}, {1.86, 0.573}};
     for (const auto& [v, ratio] : measured) EXPECT_NEAR(rebound("carom", v).second / v, ratio, 0.012) << v;
     EXPECT_LT(rebound("carom_classic", 0.54).second / 0.54, 0.598 - 0.024);
 }
 
-// Mathavan, Jackson, Parkin (2009), speeds at once, each within 0.05 m/s.
-TEST(Presets, SnookerCushionIsTheMeasuredOne) {
+// Mathavan, Jackson, Parkin (2009): speeds just after the impact, each within 0.05 m/s.
+TEST(Presets, SnookerCushionMatchesTheMeasurement) {
     for (const auto& [v, speed] :
          {std::pair{1.0, 0.948}, {1.5, 1.404}, {2.0, 1.816}, {2.5, 2.184}, {3.0, 2.508}, {3.5, 2.789}})
         EXPECT_NEAR(rebound("snooker", v).first, speed, 0.05) << v;
-    // The impulse of a free ball loses a quarter of the speed to the slate.
+    // The free-ball impulse model loses a quarter of the speed to the slate.
     EXPECT_LT(rebound("snooker_classic", 1.0).first, 0.948 - 0.2);
 }
 
-/// [degrees] How far a cue ball without spin throws the object ball.
+/// [degrees] Throw of the object ball by a cue ball without spin.
 double throw_at(const std::string& keys, double v, double cut_deg) {
     const double R = carom::make_ball_params("pool").R, cut = cut_deg * std::numbers::pi / 180.0;
     const double x = 2.0 * R * std::sin(cut), y = 2.0 * R * std::cos(cut) + 1e-7;
@@ -90,14 +90,14 @@ TEST(Presets, PoolBallsThrowAsMeasured) {
     for (const double v : {0.447, 1.341, 3.129}) EXPECT_NEAR(throw_at("", v, 10.0), 1.5, 0.5) << v;
     EXPECT_NEAR(throw_at("", 0.447, 35.0), 5.5, 0.5);
     EXPECT_LT(throw_at("", 3.129, 30.0), 0.5 * throw_at("", 0.447, 30.0));
-    // A single friction for all speeds throws half as much, and the same at every speed.
+    // A single friction halves the throw and makes it the same at every speed.
     EXPECT_LT(throw_at("preset = \"pool_classic\"", 0.447, 35.0), 3.0);
     EXPECT_NEAR(throw_at("preset = \"pool_classic\"", 3.129, 35.0),
                 throw_at("preset = \"pool_classic\"", 0.447, 35.0), 0.01);
 }
 
-// The laws themselves: friction at the slip of the nose, restitution at the speed along the normal.
-TEST(Presets, CushionFitsAreTheirFormulas) {
+// The laws themselves: friction depends on the slip at the nose, restitution on the normal speed.
+TEST(Presets, CushionFitsFollowTheirFormulas) {
     carom::BallParams p = carom::make_ball_params("pool");
     p.f_c = 0.1, p.f_c_more = 0.2, p.f_c_fall = 0.5;
     p.e_c = 0.9, p.e_c_fall = 0.1, p.e_c_above = 1.0;
@@ -105,14 +105,14 @@ TEST(Presets, CushionFitsAreTheirFormulas) {
     const auto contact = [&](double v, double w_z) {
         return cushion_contact(p, p.size(), p.R, normal, {0.3, v, 0.0}, {0.0, 0.0, w_z});
     };
-    // At a nose as high as the centre the slip is that along the cushion, v_x - R w_z.
+    // With the nose at centre height the slip is the speed along the cushion, v_x - R w_z.
     EXPECT_NEAR(contact(0.5, -40.0).f_c, 0.1 + 0.2 * std::exp(-0.5 * (0.3 + 40.0 * p.R)), 1e-15);
     EXPECT_EQ(contact(0.5, 0.0).e_c, 0.9);
     EXPECT_NEAR(contact(3.0, 0.0).e_c, 0.7, 1e-15);
     EXPECT_EQ(contact(20.0, 0.0).e_c, 0.0);
 }
 
-// A ball that rests against a nose above its equator has its centre nearer than R to the nose line.
+// Against a nose above its equator, a resting ball's centre is less than R from the nose line.
 TEST(Presets, CushionTouch) {
     const std::string table =
         "[table]\n[[table.cushion]]\nfrom = [-1, 1]\nto = [1, 1]\nheight = 0.03675\n"
@@ -131,7 +131,7 @@ TEST(Presets, CushionTouch) {
     EXPECT_NEAR(met("radius"), R, 1e-14);
     EXPECT_NEAR(met("nose"), near, 1e-14);
     EXPECT_NEAR(R - near, 0.00219, 5e-6);
-    // It may also start there, and stay.
+    // A ball may also start there and stay.
     EXPECT_NO_THROW(run(fmt::format(fmt::runtime(table), "nose") +
                         fmt::format("[[ball]]\nposition = [0, {}]\nvelocity = [1, 0]\n", 1.0 - near)));
     EXPECT_THROW(run(fmt::format(fmt::runtime(table), "radius") +
@@ -139,8 +139,8 @@ TEST(Presets, CushionTouch) {
                  carom::SceneError);
 }
 
-// A leather tip gives the ball 1.73 / 2 of what a lossless one gives.
-TEST(Presets, TheTipTakesItsShare) {
+// A leather tip gives the ball 1.73 / 2 of the speed from a lossless tip.
+TEST(Presets, ALeatherTipLosesSpeed) {
     const auto speed = [](const std::string& keys) {
         return run("[[ball]]\n[cue]\nspeed = 2\n" + keys).state_at(0, 0.0).velocity.norm();
     };
@@ -152,7 +152,7 @@ std::vector<double> cushion_of(const carom::BallParams& p) {
     return {p.e_c, p.e_c_fall, p.e_c_above, p.f_c, p.f_c_more, p.f_c_fall};
 }
 
-// The measured coefficients, and the cushion model of the game.
+// The measured coefficients, and the game's cushion model.
 TEST(Presets, BallPresets) {
     const Scene snooker = parse_scene("[balls]\npreset = \"snooker\"\n" + kBall, "preset.toml");
     EXPECT_EQ(snooker.balls.R, 0.02625);
@@ -170,7 +170,7 @@ TEST(Presets, BallPresets) {
     EXPECT_THROW(carom::make_ball_params("marble"), std::invalid_argument);
 }
 
-TEST(Presets, WhatIsWrittenComesBeforeThePreset) {
+TEST(Presets, ExplicitKeysOverrideThePreset) {
     const Scene s = parse_scene(
         "[balls]\npreset = \"snooker\"\nmu_r = 0.02\ne_c = 0.9\n[physics]\ncushion = \"han_2005\"\n" + kBall,
         "preset.toml");
@@ -179,7 +179,7 @@ TEST(Presets, WhatIsWrittenComesBeforeThePreset) {
     EXPECT_STREQ(name(s.physics.cushion), "han_2005");
 }
 
-// The coefficients used before there were measured ones: sizes differ, the rest is one set.
+// The coefficients from before the measured ones: sizes differ, the rest is shared.
 TEST(Presets, ClassicPresets) {
     for (const char* game : {"pool", "snooker", "carom"}) {
         const Scene s =
@@ -192,8 +192,8 @@ TEST(Presets, ClassicPresets) {
     }
 }
 
-// One number replaces the preset's fit, and a fit replaces the preset's number.
-TEST(Presets, OneFrictionReplacesTheOtherOfThePreset) {
+// A number replaces the preset's fit, and a fit the preset's number.
+TEST(Presets, OneFormOfFrictionReplacesTheOther) {
     const Scene number = parse_scene("[balls]\nmu_b = 0.05\n" + kBall, "preset.toml");
     EXPECT_EQ(number.balls.mu_b, 0.05);
     EXPECT_EQ(number.balls.mu_b_more, 0.0);
@@ -229,7 +229,7 @@ TEST(Presets, CuesByKind) {
               (std::vector<double>{0.5, 0.00844, 0.7}));
 }
 
-TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
+TEST(Presets, SomeCueBallsHaveTheirOwnSize) {
     const std::string balls =
         "[[ball]]\nposition = [0.6, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.6, 1.0]\n";
     const auto scene = [&](const std::string& text) {
@@ -250,7 +250,7 @@ TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
     EXPECT_NEAR(pub.balls.R, 0.0508 / 2.0, 1e-12);
     EXPECT_NEAR(pub.size_of(pub.ball[0]).R, 0.0476 / 2.0, 2e-5);
     EXPECT_LT(pub.size_of(pub.ball[0]).m, pub.balls.m);
-    // Any preset may have one, and of this one a part.
+    // Any preset may have one, and this preset's may be overridden in part.
     const Scene own = scene("[balls]\npreset = \"pool\"\n[balls.cue]\nmass = 0.2\n");
     EXPECT_EQ(own.size_of(own.ball[0]), (carom::BallSize{own.balls.R, 0.2}));
     const Scene part = scene("[balls]\npreset = \"bar_box_oversized\"\ncue = { mass = 0.21 }\n");
@@ -259,7 +259,7 @@ TEST(Presets, SomeCueBallsHaveASizeOfTheirOwn) {
     const Scene other = scene("[balls]\npreset = \"bar_box_heavy\"\n[cue]\nball = \"1\"\n");
     EXPECT_FALSE(other.ball[0].own);
     EXPECT_TRUE(other.ball[1].own);
-    // The size of the ball itself wins, even if it equals the common one.
+    // The ball's own size wins, even if it equals the common one.
     const Scene plain = parse_scene(
         "[[ball]]\nradius = 0.028575\nmass = 0.170097\n"
         "[balls]\npreset = \"bar_box_oversized\"\n",

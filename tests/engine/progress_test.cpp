@@ -1,4 +1,4 @@
-// How often a run reports its progress, and so how soon it can be stopped.
+// Frequency of a run's progress reports, and so how soon it can be stopped.
 #include "support/gas.h"
 
 #include <stdexcept>
@@ -33,7 +33,7 @@ std::size_t count_of(const Record& record, EventType type) {
     return count;
 }
 
-TEST(Progress, IsToldEverySixtyFourthRound) {
+TEST(Progress, IsReportedEverySixtyFourthRound) {
     const Scene scene = gas(100, 6400, 7);
     const Calls every = calls_of(scene, 1);
     EXPECT_EQ(every.count, 6400u);
@@ -41,13 +41,13 @@ TEST(Progress, IsToldEverySixtyFourthRound) {
     EXPECT_EQ(calls_of(scene, 100).count, every.count / 100);
 }
 
-TEST(Progress, AShortRunTellsNothing) {
+TEST(Progress, AShortRunReportsNothing) {
     EXPECT_EQ(calls_of(gas(16, 63, 7), 64).count, 0u);
     EXPECT_EQ(calls_of(gas(16, 64, 7), 64).count, 1u);
 }
 
-// Sixty-four marches of ten million steps would be a minute without checking for the signal.
-TEST(Progress, IsToldAfterEveryLongRound) {
+// Otherwise sixty-four marches of ten million steps would run for a minute without a check for signals.
+TEST(Progress, IsReportedAfterEveryLongRound) {
     Scene scene = read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml");
     const Calls compliant = calls_of(scene, 1000000);
     ASSERT_GT(compliant.record.clusters.size(), 0u);
@@ -62,10 +62,10 @@ TEST(Progress, IsToldAfterEveryLongRound) {
     EXPECT_GT(march.count, short_ones + 10);
 }
 
-TEST(Progress, IsToldOfBallsThatAreHeld) {
+TEST(Progress, IsReportedForRestingContacts) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
-    // Spins against its neighbour, and pushes it along.
+    // Its spin pushes its neighbour along.
     add_ball(scene, "a", 0.0, 0.0, 0.0, 0.0, Vec3(0.0, 100.0, 0.0));
     add_ball(scene, "b", 2.0 * R, 0.0);
     const Calls calls = calls_of(scene, 1000000);
@@ -73,7 +73,7 @@ TEST(Progress, IsToldOfBallsThatAreHeld) {
     EXPECT_GT(calls.count, 0u);
 }
 
-TEST(Progress, WhatItThrowsEndsTheRun) {
+TEST(Progress, AnExceptionOfTheCallbackEndsTheRun) {
     SimulateOptions options;
     options.progress = [](std::size_t events, double) {
         if (events > 1000) throw std::out_of_range("enough");

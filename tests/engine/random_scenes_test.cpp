@@ -1,6 +1,6 @@
-// 30 000 seeded scenes of two families to rest without a violation, the regressions they revealed
-// (support/random_scenes.h), and some scenes of crowded families and natural shots. With CAROM_RANDOM_SCENES
-// in the environment, a scan of other seeds instead (support/scene_scan.h).
+// 30 000 seeded scenes of two families come to rest without a violation; regressions they revealed
+// (support/random_scenes.h); some scenes of crowded families and natural shots. If CAROM_RANDOM_SCENES is
+// set, scans other seeds instead (support/scene_scan.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 using namespace test;
 
-// Sanitizers take thirty times as long, and look for errors that many scenes share.
+// Sanitizers are thirty times slower, and look for errors that many scenes share.
 #ifdef CAROM_SANITIZED
 constexpr int kScenes = 2000, kOtherScenes = 1000;
 #else
@@ -52,7 +52,8 @@ TEST_P(RandomScenes, ComeToRest) {
                  DrawOrder::kFirstFirst);
 }
 
-// The same shots with cushions whose friction and restitution fall, touched where the sphere meets the nose.
+// The same shots with cushions whose friction and restitution fall with speed, touched where the sphere meets
+// the nose.
 TEST(RandomScenes, WithFitsAndNoses) {
     for (std::uint64_t seed = 0; seed < kScenes / 40; ++seed) {
         Scene scene = RandomScene(seed).make();
@@ -67,7 +68,7 @@ TEST(RandomScenes, WithFitsAndNoses) {
 
 INSTANTIATE_TEST_SUITE_P(Part, RandomScenes, testing::Range(0, kParts));
 
-/// Scenes in which contacts do not end well yet (lab/notes/2026-11-jams.md): if you fix one, remove it here.
+/// Scenes whose contacts still end badly (lab/notes/2026-11-jams.md); remove an entry here when you fix it.
 struct Open {
     const char* family;
     std::uint64_t seed;
@@ -82,11 +83,11 @@ bool is_open(const std::string& family, std::uint64_t seed) {
                        [&](const Open& open) { return open.family == family && open.seed == seed; });
 }
 
-/// A small share of the families for long campaigns (lab/measure/campaign).
+/// A small sample of the families of long campaigns (lab/measure/campaign).
 class Families : public testing::TestWithParam<std::string> {};
 
-// A glancing contact of a cluster opened in the map and kept closing in the loop: one raised break in thirty
-// stood still at an instant. tools/slow runs 20 000.
+// One raised break in thirty once stopped advancing: a glancing contact of a cluster opened in the map and
+// kept closing in the loop. tools/slow runs 20 000.
 std::uint64_t seeds_of(const std::string& family) {
     if (family == "raised_break") return kScenes / 20;
     return natural_shot(family, 0) ? 50 : 10;
@@ -100,7 +101,7 @@ TEST_P(Families, KeepTheLaws) {
         try {
             validate(scene);
         } catch (const SceneError&) {
-            continue;  // the numbers left no room
+            continue;  // the balls do not fit
         }
         EXPECT_EQ(what_breaks(scene), "") << GetParam() << ", seed " << seed << "\n" << scene_text(scene);
     }
@@ -121,14 +122,15 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Crowded, Families, testing::ValuesIn(families()), test_name);
 
-// The mean friction of an interval reversed a slip and drove balls: their energy doubled between two events.
+// An interval's mean friction once reversed a slip and drove balls: their energy doubled between two events.
 TEST(FoundScenes, FrictionBetweenBallsDrivesNone) {
     for (const auto& [family, seed] : {std::pair{"rack_in_box", 9000059}, {"rack_in_box/wide", 9000242}})
         EXPECT_EQ(what_breaks(*family_scene(family, seed)), "") << family;
 }
 
-// A ball of a cluster was met by another, and overlapped its partner by 1.6e-6 m until the cluster's end.
-TEST(FoundScenes, WhoLeavesAClusterEarlyMayOverlap) {
+// Another ball met a ball of a cluster, which then overlapped its partner by 1.6e-6 m until the cluster's
+// end.
+TEST(FoundScenes, ABallThatLeavesAClusterEarlyMayOverlap) {
     EXPECT_EQ(what_breaks(*family_scene("tray", 920956)), "");
 }
 
@@ -161,8 +163,8 @@ void order_changes_nothing(const std::string& family, std::uint64_t seed) {
                 << family << ", seed " << seed;
 }
 
-// The first of several events at one instant depended on matches played with earlier motions, and so on the
-// list of balls: in seed 33 of rack_in_box the order of events changed.
+// The first of several simultaneous events once depended on matches played with earlier motions, and so on
+// the list of balls: in seed 33 of rack_in_box the order of events changed.
 TEST(SceneFamilies, TheOrderOfTheBallsChangesNothing) {
     for (const char* family : {"rack_in_box", "narrow_channel", "rings", "touching", "between_frozen",
                                "eight_ball_break", "raised_break"})
@@ -170,7 +172,7 @@ TEST(SceneFamilies, TheOrderOfTheBallsChangesNothing) {
     order_changes_nothing("rack_in_box", 33);
 }
 
-TEST(SceneFamilies, AreKnownByName) {
+TEST(SceneFamilies, AreFoundByName) {
     EXPECT_EQ(families().size(), 7u + 3u * 15u);
     EXPECT_FALSE(family_scene("rings/huge", 0));
     EXPECT_FALSE(family_scene("ring", 0));
@@ -180,7 +182,7 @@ TEST(SceneFamilies, AreKnownByName) {
 }  // namespace
 }  // namespace carom
 
-// ctest passes the name of the test to run: then it is a test, whatever the environment says.
+// ctest passes the test's name; then run that test, whatever the environment says.
 int main(int count, char** arguments) {
     const char* wanted = std::getenv("CAROM_RANDOM_SCENES");
     if (wanted != nullptr && count == 1) return carom::test::scan_scenes(wanted);

@@ -46,7 +46,7 @@ TEST(RestingContacts, TopspinPushesALine) {
         EXPECT_NEAR(record.state_at(0, roll->time).position.y(), row.x, 1e-6) << label;
         EXPECT_NEAR(record.state_at(0, 0.3).velocity.y() / 0.3, row.a, 1e-8) << label;
         EXPECT_LE(record.events.size(), 20u) << label;
-        // Afterwards all roll alike, still touching.
+        // From then on all roll equally, still touching.
         for (int i = 1; i <= row.pushed; ++i)
             EXPECT_NEAR(record.state_at(i, 0.9).position.y() - record.state_at(i - 1, 0.9).position.y(),
                         2.0 * R, 1e-11)
@@ -54,7 +54,7 @@ TEST(RestingContacts, TopspinPushesALine) {
     }
 }
 
-// H5: spin into the cushion from rest: held until the slip is gone, after R w / (2.5 mu_s g).
+// H5: spin into the cushion from rest: the contact lasts until the slip ends, R w / (2.5 mu_s g).
 TEST(RestingContacts, SpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 2.0, 0.036576);
@@ -69,8 +69,8 @@ TEST(RestingContacts, SpinIntoACushion) {
     EXPECT_LE(record.events.size(), 6u);
 }
 
-// H5, oblique: 1 m/s along the cushion and 50 rad/s into
-// it. Reference values of the notes: 0.328069 s, v_y = 5/7.
+// H5, oblique: 1 m/s along the cushion and 50 rad/s into it. The notes' reference values: 0.328069 s, v_y =
+// 5/7.
 TEST(RestingContacts, ObliqueSpinIntoACushion) {
     Scene scene = empty_scene();
     scene.table = box(1.0, 20.0, 0.036576);
@@ -85,9 +85,9 @@ TEST(RestingContacts, ObliqueSpinIntoACushion) {
     EXPECT_LE(record.events.size(), 12u);
 }
 
-// A ball held at a cushion by its spin is struck along the cushion: the contact continues. Struck into the
-// cushion, it ends in a bounce.
-TEST(RestingContacts, GoesOnThroughAnImpactThatHardlyMovesIt) {
+// Spin presses a ball to a cushion. Struck along the cushion, the ball stays in contact; struck into it, it
+// bounces.
+TEST(RestingContacts, ContinueThroughAnImpactAlongTheCushion) {
     for (const bool oblique : {false, true}) {
         Scene scene = empty_scene();
         scene.table = box(1.0, 4.0, 0.036576);
@@ -110,7 +110,7 @@ TEST(RestingContacts, GoesOnThroughAnImpactThatHardlyMovesIt) {
     }
 }
 
-// H4: at the cushion exactly, moving into it: an immediate rebound.
+// H4: a ball exactly at the cushion, moving into it, rebounds at once.
 TEST(RestingContacts, BallAtTheCushionRebounds) {
     for (const double offset : {0.0, -1e-12, 1e-12, 1e-9}) {
         Scene scene = empty_scene();

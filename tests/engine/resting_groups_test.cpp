@@ -1,5 +1,5 @@
-// Groups of balls in resting contacts: one small scene for each class of failure that the random scenes
-// revealed, and the solver of their forces.
+// Groups of balls in resting contacts: one small scene for each class of failure from the random scenes, and
+// the solver of their forces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ Scene on_box() {
     return scene;
 }
 
-// A ball at rest between a cushion and one that pushes it there and passes along: it leans on the cushion and
-// stays, instead of starting, stopping and letting go again and again.
+// A passing ball pushes a resting ball against a cushion: it stays there, instead of repeatedly starting,
+// stopping and separating.
 TEST(RestingGroups, SqueezedAgainstACushionStaysAtRest) {
     Scene scene = on_box();
     const double R = scene.balls.R;
@@ -37,7 +37,7 @@ TEST(RestingGroups, SqueezedAgainstACushionStaysAtRest) {
     EXPECT_NEAR(record.state_at(0, 1e-3).position.x(), 1.0 - R, 1e-12);
 }
 
-// A ball pressed into the narrow wedge between a cushion and a ball, whose normals are nearly opposite.
+// A ball pressed into the narrow wedge of a cushion and a ball, whose normals are nearly opposite.
 TEST(RestingGroups, WedgeOfNearlyOppositeNormals) {
     for (const double tilt : {0.3, 0.03, 1e-3, 1e-5}) {
         Scene scene = on_box();
@@ -52,8 +52,8 @@ TEST(RestingGroups, WedgeOfNearlyOppositeNormals) {
     }
 }
 
-// A pair begins to touch at 1e-12 m/s while a third ball is about to arrive at 1 m/s: the map of the cluster
-// is scaled by the fast one. Scaled by the slow one it blew up.
+// A pair begins to touch at 1e-12 m/s just before a third ball arrives at 1 m/s. The fast ball must scale the
+// cluster's map; scaled by the slow one, it blew up.
 TEST(RestingGroups, SlowTouchNextToAFastApproach) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;
@@ -65,7 +65,7 @@ TEST(RestingGroups, SlowTouchNextToAFastApproach) {
         for (int i = 0; i < 3; ++i) EXPECT_LE(record.state_at(i, t).velocity.norm(), 1.0 + 1e-9);
 }
 
-// A contact that rounding closes is held without an impact, and one without force stays without events.
+// A contact that closes only by rounding is held without an impact; one without force causes no events.
 TEST(RestingGroups, BallsThatRestTogetherStayTogether) {
     Scene scene = on_box();
     const double R = scene.balls.R;
@@ -79,7 +79,7 @@ TEST(RestingGroups, BallsThatRestTogetherStayTogether) {
         EXPECT_NEAR(record.state_at(i, record.duration).position.x(), 1.0 - R - 2.0 * R * i, 2e-12);
 }
 
-// Two cushions and a corner: into both at once, with and without spin, every restitution.
+// Into both cushions of a corner at once, with and without spin, at every restitution.
 TEST(RestingGroups, CornerComesToRest) {
     for (const double e_c : {0.0, 0.5, 0.85, 1.0}) {
         for (const double spin : {0.0, 100.0}) {
@@ -93,7 +93,7 @@ TEST(RestingGroups, CornerComesToRest) {
     }
 }
 
-// By rows; the problem wants them by columns.
+// Converts rows to the columns that the problem needs.
 void set_matrix(Complementarity& problem, const std::vector<double>& rows) {
     const std::size_t n = problem.size;
     for (std::size_t c = 0; c < n; ++c) {
@@ -134,8 +134,8 @@ TEST(Complementarity, RandomProblemsWithRedundantContacts) {
     }
 }
 
-// A wedge whose normals differ by `tilt`: the softness is no small part of its smallest eigenvalue, tilt^2,
-// and what it leaves has to be refined away.
+// A wedge whose normals differ by `tilt`: compared with its smallest eigenvalue, tilt^2, the softness is
+// large, and refinement must remove its effect.
 TEST(Complementarity, NarrowWedgeIsSolvedToRounding) {
     for (const double tilt : {1e-3, 1e-4, 1e-5, 5e-6}) {
         const double cosine = std::sqrt(1.0 - tilt * tilt);
@@ -151,8 +151,8 @@ TEST(Complementarity, NarrowWedgeIsSolvedToRounding) {
     }
 }
 
-// Two balls between two walls, one of which comes back: the three rates
-// add up to nothing, so that only rounding says which contacts press.
+// Two balls between two walls, one of which returns: the three rates sum to zero, so only rounding says which
+// contacts press.
 TEST(Complementarity, RoundingDoesNotDecide) {
     Complementarity problem;
     problem.resize(3);
@@ -170,7 +170,6 @@ TEST(Complementarity, RoundingDoesNotDecide) {
     }
 }
 
-// Redundant contacts share their load evenly.
 TEST(Complementarity, EqualContactsShareEvenly) {
     Complementarity problem;
     problem.resize(3);

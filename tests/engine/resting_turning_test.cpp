@@ -1,4 +1,4 @@
-// Resting contacts whose normals turn: closed forms, and an independent reference with small time steps.
+// Resting contacts with turning normals: closed forms, and an independent reference with small time steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ Scene plastic() {
     return scene;
 }
 
-/// A ball at rest whose spin would roll at `s`.
+/// A ball at rest whose spin is that of rolling at `s`.
 void add_spinning(Scene& scene, const Vec2& r, const Vec2& s = Vec2::Zero()) {
     add_ball(scene, std::to_string(scene.ball.size()), r.x(), r.y(), 0.0, 0.0,
              Vec3(-s.y() / scene.balls.R, s.x() / scene.balls.R, 0.0));
@@ -37,7 +37,7 @@ Vec2 direction(double degrees) {
     return {std::cos(degrees * kDegree), std::sin(degrees * kDegree)};
 }
 
-/// [m] The largest distance between a ball of the run and of the reference when all have come to rest.
+/// [m] The largest distance between a ball of the run and of the reference once all rest.
 double error_of(const Scene& scene, double step, double frequency) {
     const Record record = run_verified(scene);
     const std::vector<SteppedBall> reference = RestingSteps(scene, step, frequency).run();
@@ -49,8 +49,8 @@ double error_of(const Scene& scene, double step, double frequency) {
     return worst;
 }
 
-// A smooth round wall does no work, so a ball that rolls along it stops after v / (mu_r g). It stopped up to
-// a tenth late, because every re-contact took the rolling resistance of an interval away.
+// A smooth round wall does no work, so a ball that rolls along it stops after v / (mu_r g). It once stopped
+// up to a tenth late, because every re-contact skipped an interval's rolling resistance.
 TEST(RestingContacts, AWallRunnerStopsWhereRollingResistanceStopsIt) {
     for (const double v : {0.2, 0.5, 1.0}) {
         for (const double mu_r : {0.008, 0.02, 0.05}) {
@@ -74,7 +74,7 @@ TEST(RestingContacts, AWallRunnerStopsWhereRollingResistanceStopsIt) {
     }
 }
 
-// Topspin that pushes a ball obliquely. The places were wrong by 5 to 26 mm.
+// Topspin that pushes a ball obliquely; places were once wrong by 5 to 26 mm.
 TEST(RestingContacts, TopspinPushesObliquely) {
     for (const double degrees : {5.0, 20.0, 45.0}) {
         Scene scene = plastic();
@@ -109,7 +109,7 @@ TEST(RestingContacts, TopspinPushesABallAlongARail) {
     report("rail and ball, m", off);
 }
 
-/// Two to five balls in a tray of 0.6 m that touch each other or a rail; one of them pushes with its spin.
+/// Two to five balls in a tray of 0.6 m, touching each other or a rail; the spin of one pushes.
 Scene small_tray(reference::Generator& rng) {
     Scene scene = plastic();
     const double R = scene.balls.R;
@@ -147,7 +147,7 @@ Scene small_tray(reference::Generator& rng) {
     return scene;
 }
 
-// The median was 1 mm, one in ten ended 11 mm away.
+// The median error was once 1 mm, and one ball in ten ended 11 mm away.
 TEST(RestingContacts, SmallTraysEndWhereSmallStepsEnd) {
     reference::Generator rng(64);
     std::vector<double> errors;

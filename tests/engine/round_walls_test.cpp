@@ -1,4 +1,4 @@
-// Round walls around balls: nothing leaves, nothing gains energy, and nothing loses any without a reason.
+// Round walls around balls: no ball leaves, none gains energy, and none loses any without a cause.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ Jaw wall(const Vec2& center, double radius, double from_deg = 0.0, double to_deg
     return {"w", center, radius, 0.028575, "", "inside", from_deg, to_deg};
 }
 
-/// A table, and the distance of a point inside from its walls.
+/// A table, and the distance from a point inside to its walls.
 struct Round {
     Table table;
     Vec2 size;  ///< half of its box
@@ -107,8 +107,9 @@ void nothing_leaves(int count, std::uint64_t seed) {
     }
 }
 
-// 5 % of balls with spin rolled through the wall, and 22 % of those that slid along a plastic one flew out.
-TEST(RoundWalls, NothingLeaves) {
+// 5 % of spinning balls once rolled through the wall, and 22 % of those sliding along a plastic wall flew
+// out.
+TEST(RoundWalls, NoBallLeaves) {
     nothing_leaves(300, 1);
 }
 
@@ -120,8 +121,8 @@ TEST_P(RoundTables, NothingLeavesTwoThousand) {
 
 INSTANTIATE_TEST_SUITE_P(Part, RoundTables, testing::Range(0, 5));
 
-// The cloth bends the path outwards: only the coefficient of t^4 says that the ball meets the wall.
-TEST(RoundWalls, AreMetByABallThatStartsWithSpinAlone) {
+// The cloth bends the path outwards: only the coefficient of t^4 reveals the contact.
+TEST(RoundWalls, AreDetectedForABallThatStartsWithSpinAlone) {
     for (const bool whole : {true, false}) {
         Scene scene = empty_scene();
         constexpr double kRadius = 0.20385982484290271;
@@ -139,7 +140,7 @@ TEST(RoundWalls, AreMetByABallThatStartsWithSpinAlone) {
     }
 }
 
-// After its impact the ball touches the wall and moves along it, a rounding outside of the circle.
+// After its impact the ball touches the wall and moves along it, outside the circle by rounding.
 TEST(RoundWalls, KeepAPlasticBall) {
     for (const bool whole : {true, false}) {
         Scene scene = frictionless();
@@ -156,7 +157,7 @@ TEST(RoundWalls, KeepAPlasticBall) {
     }
 }
 
-// 13 of 24 such orbits lost the speed at which they met the wall.
+// 13 of 24 such orbits once lost the speed at which they met the wall.
 TEST(RoundWalls, ALosslessGrazeBounces) {
     for (int k = 0; k < 24; ++k) {
         Scene scene = frictionless();
@@ -167,17 +168,17 @@ TEST(RoundWalls, ALosslessGrazeBounces) {
         scene.stop.events = 50;
         scene.stop.time = 10.0;
         const Record record = run_verified(scene);
-        // Within an interval the velocity of a runner is that of the chord.
+        // Within an interval, the velocity of a ball on the wall is along the chord.
         EXPECT_NEAR(record.tracks[0].segments.back().v.norm(), 3.0, 3e-12) << graze;
         if (graze < 1e-6) continue;
         ASSERT_EQ(count(record, EventType::kBallJaw), 50) << graze;
-        // The first place is rounded, and so is the square of the angle.
+        // The first place and the square of the angle are both rounded.
         const double chord = 2.0 * orbit * std::sin(graze) / 3.0;
         EXPECT_NEAR(record.events.back().time / (50.0 * chord), 1.0, 5e-15 / (graze * graze)) << graze;
     }
 }
 
-// A ball that is laid against a lossless wall and set moving along it keeps its speed, and its wall.
+// A ball laid against a lossless wall and set moving along it keeps its speed and stays at the wall.
 TEST(RoundWalls, ALosslessRunnerKeepsItsSpeed) {
     for (const double off : {0.0, -1e-15, -1e-12, -1e-9, -1e-6}) {
         Scene scene = frictionless();
@@ -190,7 +191,7 @@ TEST(RoundWalls, ALosslessRunnerKeepsItsSpeed) {
     }
 }
 
-// Balls that run along a round wall and lean on each other. Their energy rose in every such scene.
+// Balls that run along a round wall and lean on each other. Their energy once rose in every such scene.
 TEST(RoundWalls, GroupsGainNoEnergy) {
     reference::Generator rng(6);
     for (int k = 0; k < 20; ++k) {

@@ -1,4 +1,4 @@
-// Aims as people say them, and numbers with units.
+// Aims in players' terms, and numbers with units.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,12 +50,12 @@ TEST(SceneAim, PlacesAndBalls) {
                 std::atan2(2.04, 2.5 / 4.0 * 1.27 - 0.4) / kDegree, 1e-12);
 }
 
-TEST(SceneAim, AHitIsAsFullAsItSays) {
+TEST(SceneAim, AHitHasItsStatedFullness) {
     EXPECT_NEAR(first_contact("aim_hit = [\"1\", 1]\n").cut, 0.0, 1e-6);
     for (const double full : {0.75, 0.5, 0.25, -0.25, -0.5, -0.75}) {
         const EventDetails d = first_contact("aim_hit = [\"1\", " + std::to_string(full) + "]\n");
         EXPECT_NEAR(std::sin(d.cut), 1.0 - std::abs(full), 1e-6) << full;
-        // The cue ball passes on the side that is hit: to its left the z of v x n is positive.
+        // The cue ball passes on the hit side: if that is left, the z of v x n is positive.
         const Vec3 v = d.balls[0].before.velocity, to_object = -d.normal;
         EXPECT_EQ(v.cross(to_object).z() < 0.0, full > 0.0) << full;
     }
@@ -69,7 +69,7 @@ TEST(SceneAim, AGhostBallSendsTheBallToThePocket) {
     EXPECT_NEAR(planar(d.normal).dot(line), -1.0, 1e-9);
 }
 
-TEST(SceneAim, TheBallGetsItsSpeed) {
+TEST(SceneAim, BallSpeedIsTheBallsSpeed) {
     const Scene scene = parse_scene(scene_with("ball_speed = 3.5\naim_at = \"1\"\n"), "aim.toml");
     const Record record = simulate(plan_of(scene));
     EXPECT_NEAR(details_of(record, 0).balls[0].after.velocity.norm(), 3.5, 1e-12);
@@ -77,7 +77,7 @@ TEST(SceneAim, TheBallGetsItsSpeed) {
                 1e-15);
 }
 
-TEST(SceneAim, UnitsGiveTheNumberWrittenOut) {
+TEST(SceneAim, UnitsConvertToPlainNumbers) {
     const auto radius = [](const std::string& text) {
         return parse_scene("[balls]\nradius = " + text + "\n[[ball]]\n", "r.toml").balls.R;
     };
@@ -91,8 +91,8 @@ TEST(SceneAim, UnitsGiveTheNumberWrittenOut) {
     EXPECT_EQ(cue_of("speed = \"9 km/h\"\n").speed, 2.5);
 }
 
-TEST(SceneAim, WordsFollowTheBallsThatVary) {
-    // Quick and slow shots alike: the aim is at the ball where it lies.
+TEST(SceneAim, AimsFollowVaryingBalls) {
+    // Fast and slow path agree: the aim follows the ball.
     const Variation places = Variation::from_text(scene_with("aim_at = \"1\"\n"), "v.toml",
                                                   {"ball.1.position.x=uniform(0.5,1.1)"}, 1);
     for (std::uint64_t i = 0; i < 20; ++i) {
@@ -103,7 +103,7 @@ TEST(SceneAim, WordsFollowTheBallsThatVary) {
         Scene quick = places.base();
         EXPECT_FALSE(places.put(shot.values, quick));
     }
-    // A rule for the aim takes its place.
+    // A rule for the aim replaces it.
     const Variation aims =
         Variation::from_text(scene_with("aim_at = \"1\"\n"), "v.toml", {"cue.aim_deg=normal(0.5)"}, 1);
     EXPECT_NEAR(aims.shot(0).scene.value().cue->aim_deg, aims.base().cue->aim_deg, 3.0);
@@ -115,8 +115,8 @@ Scene from_the_rail(const std::string& cue) {
                        "aim.toml");
 }
 
-// The cue's axis runs through the centre, at a height R sin(e) - (h - R) cos(e) above the nose, measured
-// across it: as much as the cue is thick there.
+// The cue's axis passes through the centre at R sin(e) - (h - R) cos(e) above the nose, measured across it;
+// that equals the cue's radius there.
 TEST(CueRoom, ACueClearsTheNoseThatItCrosses) {
     const Scene scene = from_the_rail("offset = [0, 0]\n");
     const double R = scene.balls.R, h = scene.table.cushions.front().height;
@@ -140,7 +140,7 @@ TEST(CueRoom, ACueClearsTheNoseThatItCrosses) {
               "");
 }
 
-TEST(CueRoom, ABallBehindIsInTheWay) {
+TEST(CueRoom, ABallBehindBlocksTheCue) {
     const std::string balls =
         "[table]\ncushion = []\n[[ball]]\nposition = [0, 0]\n[[ball]]\nid = \"7\"\nposition = [-0.1, "
         "0]\n[cue]\naim_deg = 0\noffset = [0, 0]\n";
@@ -151,7 +151,7 @@ TEST(CueRoom, ABallBehindIsInTheWay) {
     const double R = scene.balls.R;
     ASSERT_TRUE(room.clears_deg);
     EXPECT_NEAR(0.1 * std::sin(*room.clears_deg * kDegree), R + 0.0065 + 0.008 / 1.473 * (0.1 - R), 3e-4);
-    // A jaw and a round wall are in the way, too.
+    // A jaw and a round wall also block the cue.
     const std::string wall =
         "[table]\ncushion = []\n[[table.arc]]\ncenter = [0, 0]\nradius = 0.05\n[[ball]]\nposition = [0, "
         "0]\n[physics]\nvertical = \"drop\"\n[cue]\n";
@@ -162,7 +162,7 @@ TEST(CueRoom, ABallBehindIsInTheWay) {
         "= 0\n",
         "aim.toml");
     EXPECT_EQ(room_for(post, *post.cue).in, "jaw j1");
-    // A ball of 60 cm leaves no room at any elevation.
+    // A ball of 60 cm blocks the cue at any elevation.
     const std::string giant =
         "[table]\ncushion = []\n[balls]\nmu_b = 0\n[physics]\nball_ball = \"elastic\"\n[[ball]]\nposition = "
         "[0, 0]\n"

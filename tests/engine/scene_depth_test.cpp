@@ -1,5 +1,5 @@
-// Keys with thousands of parts, and brackets within brackets, are refused before they overflow a stack, even
-// a small one; nothing else is refused.
+// Keys with thousands of parts and deeply nested brackets are refused before they overflow even a small
+// stack; nothing else is refused.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -47,7 +47,7 @@ void in_small_thread(const std::function<void()>& work) {
     pthread_attr_destroy(&attributes);
 }
 
-TEST(SceneDepth, AKeyOfManyPartsIsRefusedWhereverItStands) {
+TEST(SceneDepth, AKeyOfManyPartsIsRefusedAnywhere) {
     const std::string want = "this key has more than 16 parts, more than any key of a scene";
     for (const int parts : {kMaxKeyParts + 1, 2000, 40000, 300000}) {
         const std::vector<std::string> keys = {dotted(parts), dotted(parts, "\"a\""), dotted(parts, "'.'"),
@@ -57,7 +57,7 @@ TEST(SceneDepth, AKeyOfManyPartsIsRefusedWhereverItStands) {
                 EXPECT_NE(error_of(text).find(want), std::string::npos) << text.substr(0, 200);
         }
     }
-    // The message about a key that is only wrong says just that.
+    // A key that is only wrong causes no message about parts.
     for (const std::string& text : all_places(dotted(kMaxKeyParts))) {
         EXPECT_EQ(error_of(text).find("parts"), std::string::npos) << error_of(text);
         EXPECT_NE(error_of(text), "");
@@ -67,7 +67,7 @@ TEST(SceneDepth, AKeyOfManyPartsIsRefusedWhereverItStands) {
 TEST(SceneDepth, TheMessageNamesThePlace) {
     EXPECT_EQ(error_of("[cue]\n  " + dotted(40) + " = 1\n"),
               "s.toml:2:34: this key has more than 16 parts, more than any key of a scene; remove some dots");
-    // Columns count characters, not bytes, like those of toml++.
+    // Columns count characters, not bytes, as in toml++.
     EXPECT_EQ(error_of("x = [\"\u00e4\u00f6\", " + std::string(40, '[')).substr(0, 14), "s.toml:1:27: b");
     EXPECT_EQ(error_of("x = " + std::string(40, '[')),
               "s.toml:1:21: brackets are nested more than 16 deep here; close some above, or nest fewer");
@@ -86,7 +86,7 @@ TEST(SceneDepth, NestedValuesAreRefused) {
     }
 }
 
-// Both limits at once are the deepest.
+// Reaching both limits at once uses the most stack.
 TEST(SceneDepth, SmallStacksAreEnough) {
     const auto nested = [](int parts, int deep) {
         const std::string key = dotted(parts);
@@ -136,7 +136,7 @@ TEST(SceneDepth, OtherDotsAndBracketsAreAllowed) {
     for (const std::string& text : texts) {
         const auto deep = detail::too_deep(text);
         EXPECT_FALSE(deep) << text << "\n" << (deep ? deep->what : "");
-        // Valid TOML: the only fault is that the keys are unknown.
+        // Valid TOML, except that the keys are unknown.
         if (text[0] != '#') {
             EXPECT_NE(error_of(text).find("unknown section or key"), std::string::npos) << text << "\n"
                                                                                         << error_of(text);
@@ -148,14 +148,14 @@ TEST(SceneDepth, OtherDotsAndBracketsAreAllowed) {
     EXPECT_TRUE(detail::too_deep(lists + std::string(kMaxNesting, '[')));
 }
 
-// toml++ describes their fault better.
-TEST(SceneDepth, SectionsThatAreNotClosedAreNotCounted) {
+// toml++ describes their error better.
+TEST(SceneDepth, UnclosedSectionsAreNotCounted) {
     std::string text;
     for (int i = 0; i < 100; ++i) text += "[table\n[[ball\n";
     EXPECT_NE(error_of(text).find("s.toml:1:7: not valid TOML"), std::string::npos) << error_of(text);
 }
 
-TEST(SceneDepth, ValuesThatVaryAreReadWithTheSameLimits) {
+TEST(SceneDepth, VaryingValuesHaveTheSameLimits) {
     std::vector<std::string> errors;
     in_small_thread([&] {
         for (const std::string& values :

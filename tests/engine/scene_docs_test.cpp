@@ -1,5 +1,5 @@
-// docs/reference/scene_format.md and docs/reference/scene.schema.json against the reader: the same keys, and
-// the defaults that they state are those that the reader uses.
+// docs/reference/scene_format.md and docs/reference/scene.schema.json against the reader: the same keys and
+// the same defaults.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 using test::code;
 using test::error_of;
 
-// A section as it is opened in a file, and its name in the reader's messages.
+// A section as a file opens it, and as the reader's messages name it.
 struct Place {
     const char* open;
     const char* name;
@@ -56,7 +56,7 @@ struct Row {
     std::vector<std::string> cells;
 };
 
-// The table rows of the document under each heading "## [name]" or "## [[name]]".
+// The document's table rows under each heading "## [name]" or "## [[name]]".
 std::map<std::string, std::vector<Row>> rows_of_document() {
     std::map<std::string, std::vector<Row>> rows;
     for (auto& [heading, list] : test::table_rows(test::read_source("docs/reference/scene_format.md"))) {
@@ -68,13 +68,13 @@ std::map<std::string, std::vector<Row>> rows_of_document() {
     return rows;
 }
 
-TEST(SceneDocs, EveryKeyOfTheReaderIsDescribedAndNoOther) {
+TEST(SceneDocs, DescribeExactlyTheKeysOfTheReader) {
     const auto rows = rows_of_document();
     for (const Place& place : kSections) {
         std::set<std::string> described;
         const std::string name = place.name;
         if (name.rfind("table.", 0) == 0) {
-            bool here = false;  // a list names itself in its first row
+            bool here = false;  // a list's first row names the list
             for (const Row& row : rows.at("table")) {
                 const auto list = code(row.cells[0]);
                 if (!list.empty() || row.cells[0].find("list") != std::string::npos)
@@ -97,7 +97,7 @@ TEST(SceneDocs, EveryKeyOfTheReaderIsDescribedAndNoOther) {
     }
 }
 
-// A scene from a text, without the source locations, which an extra line would move.
+// A scene from a text, without source locations, which an extra line would move.
 Scene without_places(const std::string& text) {
     Scene scene = parse_scene(text, "s.toml");
     for (BallStart& ball : scene.ball) ball.where = {};
@@ -106,7 +106,7 @@ Scene without_places(const std::string& text) {
     return scene;
 }
 
-// An empty section, and one key at the stated default: the same scene.
+// An empty section and one with a key at its stated default must be the same scene.
 void expect_default(const std::string& section, const std::string& key, const std::string& value) {
     std::string before, after;
     if (section == "rack")
@@ -122,7 +122,7 @@ void expect_default(const std::string& section, const std::string& key, const st
     EXPECT_TRUE(without_places(with) == without_places(before)) << section << "." << key << " = " << value;
 }
 
-TEST(SceneDocs, DefaultsOfTheDocumentAreThoseOfTheReader) {
+TEST(SceneDocs, DefaultsMatchTheReader) {
     int checked = 0;
     for (const auto& [section, rows] : rows_of_document()) {
         if (section == "effects" || section == "table") continue;
@@ -142,7 +142,7 @@ TEST(SceneDocs, DefaultsOfTheDocumentAreThoseOfTheReader) {
     EXPECT_GE(checked, 30);
 }
 
-TEST(SceneDocs, BallPresetsAreThoseOfTheDocument) {
+TEST(SceneDocs, BallPresetsMatchTheReader) {
     const auto all = rows_of_document();
     int checked = 0;
     for (const Row& row : all.at("balls")) {
@@ -161,11 +161,11 @@ TEST(SceneDocs, BallPresetsAreThoseOfTheDocument) {
             ++checked;
         }
     }
-    // Fourteen keys, for three presets, one of them the friction between balls in either form.
+    // Fourteen keys of three presets; one of them, the friction between balls, in either form.
     EXPECT_EQ(checked, 42);
 }
 
-TEST(SceneDocs, EffectsNameKeysThatExist) {
+TEST(SceneDocs, EffectsNameExistingKeys) {
     std::set<std::string> known;
     for (const Place& place : kSections)
         for (const std::string& key : keys_of_reader(place)) known.insert(key);
@@ -199,8 +199,7 @@ std::set<std::string> choices_of_reader(const std::string& section, const std::s
     return choices;
 }
 
-// The JSON Schema: the same keys as the reader, every default and every choice accepted, and all scenes
-// described by it.
+// The JSON Schema has the reader's keys, accepts every default and choice, and describes all scenes.
 TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
     const Json schema = Json::parse(test::read_source("docs/reference/scene.schema.json"));
     for (const Place& place : kSections) {
@@ -217,13 +216,13 @@ TEST(SceneSchema, HasTheKeysDefaultsAndChoicesOfTheReader) {
             keys.insert(key);
             const bool custom = name.rfind("table", 0) == 0;
             if (value.contains("default") && !custom) expect_default(name, key, value.at("default").dump());
-            // The side of an arc is tested with the other rules of arcs.
+            // The other rules of arcs test their side.
             if (!value.contains("enum") || name == "table.jaw") continue;
             EXPECT_EQ(value.at("enum").get<std::set<std::string>>(), choices_of_reader(name, key))
                 << name << "." << key;
             for (const Json& choice : value.at("enum")) {
                 const std::string head = name == "ball" ? "" : "[" + name + "]\n";
-                // The one choice that asks for another key.
+                // One choice needs another key.
                 const char* needs = key == "march" ? "substeps = 100\n" : "";
                 const std::string line = head + needs + key + " = " + choice.dump() + "\n";
                 EXPECT_EQ(error_of(line + (name == "ball" ? "" : "[[ball]]\nposition = [0.3, 0.3]\n")), "")
@@ -247,7 +246,7 @@ std::string digits(double x, bool integer) {
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
-// Whether the reader refuses a value because it is out of range; other rules may still refuse it.
+// Whether the value is in range; other rules may still refuse it.
 bool in_range(const std::string& head, const std::string& key, const std::string& value) {
     const std::string message = error_of(head + key + " = " + value + "\n");
     EXPECT_EQ(message.find("not valid TOML"), std::string::npos) << message;
@@ -255,7 +254,7 @@ bool in_range(const std::string& head, const std::string& key, const std::string
     return message.find("is out of range") == std::string::npos;
 }
 
-// The lines that must precede a key for it to be read at all.
+// The lines that must precede a key for the reader to reach it.
 std::string opening(const std::string& name, const std::string& key) {
     for (const Place& place : kSections) {
         if (name != place.name) continue;
@@ -272,8 +271,8 @@ std::string opening(const std::string& name, const std::string& key) {
     return "";
 }
 
-// The value at a bound is accepted and the next one beyond it is not; without a bound anything is accepted.
-// `wrap` turns a number into the value of the key (an array, where only one element is tried).
+// The value at a bound is accepted, the next one beyond is not; without a bound any is accepted. `wrap` turns
+// a number into the key's value (for an array, only one element varies).
 template <class Wrap>
 void expect_range(const std::string& head, const std::string& key, const Json& range, Wrap wrap) {
     const bool integer = range.at("type") == "integer";
@@ -299,7 +298,7 @@ void expect_range(const std::string& head, const std::string& key, const Json& r
     try_side("maximum", "exclusiveMaximum", 1.0);
 }
 
-TEST(SceneSchema, RangesAreThoseOfTheReader) {
+TEST(SceneSchema, RangesMatchTheReader) {
     const Json schema = Json::parse(test::read_source("docs/reference/scene.schema.json"));
     int numbers = 0, arrays = 0;
     for (const Place& place : kSections) {
@@ -311,7 +310,7 @@ TEST(SceneSchema, RangesAreThoseOfTheReader) {
             object = object.at(name);
         if (object.at("type") == "array") object = object.at("items");
         for (const auto& [key, value] : object.at("properties").items()) {
-            // A number that may carry a unit is a string, too.
+            // A number that may have a unit may also be a string.
             const nlohmann::json& types = value.at("type");
             const std::string head = opening(name, key), type = types.is_array() ? types[0] : types;
             if (type == "number" || type == "integer") {
@@ -320,7 +319,7 @@ TEST(SceneSchema, RangesAreThoseOfTheReader) {
             }
             if (type != "array" || !value.at("items").contains("type") || name == "table") continue;
             const Json& item = value.at("items");
-            // The last number of a velocity may be omitted.
+            // A velocity's last number may be omitted.
             const std::size_t count = value.at("maxItems"), least = value.at("minItems");
             EXPECT_EQ(least, count - (key == "velocity" ? 1 : 0)) << key;
             for (std::size_t k = 0; k < count; ++k) {

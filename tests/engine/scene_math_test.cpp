@@ -1,4 +1,4 @@
-// The engine's own sine and cosine, against the C library in extended precision.
+// The engine's own sine and cosine against the C library in extended precision.
 #include "carom/engine/math.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ double next_random(std::uint64_t& state) {
     return static_cast<double>(state >> 11) * 0x1p-53;
 }
 
-/// Distance from the true value in units of the last place of the result.
+/// Error in units of the last place of the result.
 double ulps(double got, long double truth) {
     const double near = std::abs(static_cast<double>(truth));
     const double ulp = std::nextafter(near, std::numeric_limits<double>::infinity()) - near;
@@ -42,7 +42,7 @@ TEST(Math, RadiansWithinOneUlp) {
 }
 
 TEST(Math, RadiansNearWholeQuadrants) {
-    // The doubles next to k pi/2 lose most bits in the reduction.
+    // The doubles next to k pi/2 lose the most bits in the reduction.
     double worst = 0.0;
     for (int k = -636000; k <= 636000; k += 7) {
         const double x = static_cast<double>(k * (std::numbers::pi_v<long double> / 2));
@@ -121,8 +121,8 @@ TEST(Math, DegreesWithinOneUlp) {
         const long double rad =
             std::fmod(static_cast<long double>(x), 360.0L) * (std::numbers::pi_v<long double> / 180);
         const SinCos a = sin_cos_deg(x);
-        // The reference loses bits near its zeros; leave those to
-        // WholeQuadrantsInDegreesAreExact and RadiansNearWholeQuadrants.
+        // The reference loses bits near its zeros, which WholeQuadrantsInDegreesAreExact and
+        // RadiansNearWholeQuadrants cover.
         if (std::abs(a.sin) > 1e-2) worst = std::fmax(worst, ulps(a.sin, std::sin(rad)));
         if (std::abs(a.cos) > 1e-2) worst = std::fmax(worst, ulps(a.cos, std::cos(rad)));
     }

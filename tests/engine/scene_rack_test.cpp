@@ -1,4 +1,4 @@
-// Racks: which ball is where, how exactly, and that seeds reproduce.
+// Racks: the ball at each place, its precision, and reproducible seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ TEST(EightBall, TouchesExactlyAndMirrorsBitForBit) {
     }
 }
 
-TEST(EightBall, StandsAtTheFootSpotWithRowsUpTheTable) {
+TEST(EightBall, IsOnTheFootSpotWithRowsUpTheTable) {
     const Scene s = rack("gap = 1e-4\n");
     const Vec2 spot(1.27 / 2, 3 * 2.54 / 4);
     int at_spot = 0;
@@ -139,7 +139,7 @@ TEST(Racks, SeedsReproduceAndDiffer) {
     EXPECT_TRUE(differs);
 }
 
-// Fixed values: a change of the generator, or of the order of its draws, would change everybody's racks.
+// Fixed values: changing the generator, or the order of its draws, would change all users' racks.
 TEST(Racks, SeedOneIsThisRack) {
     const Scene s = rack("gap = 0\n");
     const double pitch = 2 * kRackR, row = pitch * std::sqrt(0.75);
@@ -160,7 +160,7 @@ TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
                 rack(std::string("jitter = 1e-4\ngap = ") + gap + "\nseed = " + std::to_string(seed) + "\n");
             EXPECT_GE(closest_pair(s), 2 * kRackR - 1e-15);
             for (std::size_t i = 0; i < 15; ++i) {
-                // The seed decides which ball is where: compare with the nearest place.
+                // The seed decides which ball is where, so compare with the nearest place.
                 double best = 1e9;
                 for (std::size_t j = 0; j < 15; ++j) {
                     best = std::fmin(best, (at(s, i) - at(still, j)).cwiseAbs().maxCoeff());
@@ -174,7 +174,7 @@ TEST(Racks, JitterStaysInItsBoxAndNeverOverlaps) {
     }
 }
 
-TEST(Racks, RackedBallsComeAfterTheWrittenOnes) {
+TEST(Racks, RackedBallsFollowTheWrittenOnes) {
     const Scene s = parse_scene("[rack]\ngame = \"nine_ball\"\n[[ball]]\nid = \"cue\"\n", "s.toml");
     ASSERT_EQ(s.ball.size(), 10u);
     EXPECT_EQ(s.ball[0].id, "cue");
@@ -195,7 +195,7 @@ Vec2 of(const carom::Scene& scene, const std::string& id) {
 }
 
 // WPBSA rules, section 1: the spots; the reds behind the pink without touching it.
-TEST(SnookerRack, StandsOnItsSpots) {
+TEST(SnookerRack, IsOnItsSpots) {
     const carom::Scene s = carom::parse_scene(
         "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\ngap = "
         "1e-3\n",
@@ -240,7 +240,7 @@ TEST(ThreeCushionRack, IsTheOpeningPosition) {
 }
 
 // The 1 at the apex, the 10 in the middle of the third row.
-TEST(TenBall, OneAndTenHaveTheirPlaces) {
+TEST(TenBall, TheOneAndTheTenHaveTheirPlaces) {
     std::set<std::string> second_rows;
     for (const char* seed : {"1", "2", "3", "4", "5"}) {
         const Scene s = rack(std::string("game = \"ten_ball\"\ngap = 0\nseed = ") + seed + "\n");
@@ -263,8 +263,8 @@ TEST(Rack, NineOnTheSpot) {
     EXPECT_EQ(at(one, 0), Vec2(0.635, 1.905));
 }
 
-// Turned about its place, the rack keeps all distances; a quarter turn counter-clockwise takes the rows from
-// +y to -x.
+// Turning a rack about its place keeps all distances; a quarter turn counter-clockwise turns the rows from +y
+// to -x.
 TEST(Rack, PlaceAndAngle) {
     const Scene s = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\n"),
                 turned = rack("game = \"eight_ball\"\ngap = 0\nposition = [0.5, 0.7]\nangle_deg = 90\n");
@@ -281,8 +281,7 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
     const auto scatter = [&](const std::string& keys, int seed, const std::string& more = "") {
         return rack("game = \"scatter\"\nseed = " + std::to_string(seed) + "\n" + keys, more);
     };
-    // The moments of a uniform distribution between the cushions: its mean, and a twelfth of the squared
-    // side.
+    // Moments of a uniform distribution between the cushions: its mean, and a twelfth of the squared side.
     constexpr double kWidth = 1.27, kLength = 2.54;
     constexpr int kRacks = 4000;
     double x = 0.0, y = 0.0, xx = 0.0, yy = 0.0;
@@ -296,7 +295,7 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
     const double across = kWidth - 2 * kRackR, along = kLength - 2 * kRackR;
     EXPECT_NEAR(x, 0.5 * kWidth, 4 * across / std::sqrt(12.0 * kRacks));
     EXPECT_NEAR(y, 0.5 * kLength, 4 * along / std::sqrt(12.0 * kRacks));
-    // The jaws and pockets take a little from the corners.
+    // Jaws and pockets exclude a little of the corners.
     EXPECT_NEAR(xx, across * across / 12, 0.05 * across * across / 12);
     EXPECT_NEAR(yy, along * along / 12, 0.05 * along * along / 12);
 
@@ -317,7 +316,7 @@ TEST(Rack, AScatterIsUniformAndTouchesNothing) {
     EXPECT_NE(scatter("", 7).ball, scatter("", 8).ball);
 }
 
-/// [m] Between two balls that lie on the cloth.
+/// [m] Gap between two balls on the cloth.
 double gap_between(const Scene& s, std::size_t i, std::size_t j) {
     return (at(s, i) - at(s, j)).norm() -
            carom::contact_distance(s.size_of(s.ball[i]).R, s.size_of(s.ball[j]).R, false);
@@ -327,8 +326,8 @@ std::string unlike(const std::string& sd, const std::string& rack) {
     return "[balls]\nradius_sd = " + sd + "\n[rack]\n" + rack;
 }
 
-// N balls pressed together have 2N - 3 ways to move against each other, so that many contacts close;
-// nine-ball has one contact more, ten-ball one, fifteen balls three.
+// N balls pressed together have 2N - 3 degrees of freedom against each other, so that many contacts close;
+// nine-ball and ten-ball have one contact more, fifteen balls three.
 TEST(Template, OnlyRedundantContactsOpen) {
     struct Case {
         const char* rack;
@@ -361,7 +360,7 @@ TEST(Template, OnlyRedundantContactsOpen) {
     }
 }
 
-TEST(Template, OfAlikeBallsIsTheTouchingRack) {
+TEST(Template, OfEqualBallsIsTheTouchingRack) {
     for (const std::string game : {"eight_ball", "nine_ball", "ten_ball"}) {
         const std::string keys = "game = \"" + game + "\"\n";
         EXPECT_EQ(rack(keys + "method = \"template\"\n").ball, rack("gap = 0\n" + keys).ball);
@@ -372,8 +371,8 @@ TEST(Template, OfAlikeBallsIsTheTouchingRack) {
     EXPECT_EQ(rack("method = \"triangle\"\ngap = 1e-5\njitter = 0\n").ball, rack("gap = 1e-5\n").ball);
 }
 
-// A normal distribution cut at 2.5 standard deviations has 0.9546 of the deviation: 1 - 2 c phi(c) / (2
-// Phi(c) - 1) is its variance.
+// A normal distribution cut at c = 2.5 standard deviations has 0.9546 of the deviation: its variance is 1 - 2
+// c phi(c) / (2 Phi(c) - 1).
 TEST(Rack, RadiiVaryAndMassesFollow) {
     constexpr double kSd = 2e-5;
     double sum = 0.0, squares = 0.0, most = 0.0;
@@ -397,7 +396,7 @@ TEST(Rack, RadiiVaryAndMassesFollow) {
     EXPECT_NEAR(std::sqrt(squares / n), 0.9546, 0.03);
     EXPECT_LE(most, 2.5 + 1e-9);
     EXPECT_GT(most, 2.4);
-    // The other methods and games know them, too.
+    // The other methods and games also accept it.
     for (const char* keys : {"method = \"triangle\"\n", "gap = 0\njitter = 1e-4\n", "game = \"snooker\"\n",
                              "game = \"three_cushion\"\n", "game = \"line\"\ncount = 7\n",
                              "game = \"scatter\"\ncount = 30\n", "game = \"triangle\"\nrows = 10\n"}) {

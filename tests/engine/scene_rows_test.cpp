@@ -1,5 +1,5 @@
-// Every member of a struct that a scene describes has a row, or is named here as one that no file has: a new
-// member breaks the build until it has one or the other.
+// Every member of a struct that a scene describes has a row, or is listed here as absent from files: a new
+// member breaks the build until it is one or the other.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace carom {
 /// Converts to any type in an initializer.
 struct Anything {
     template <class T>
-    requires(!detail::kIsOptional<T>) operator T() const;  // NOLINT: the conversion is what it is for
+    requires(!detail::kIsOptional<T>) operator T() const;  // NOLINT: an implicit conversion is the purpose
 };
 
 namespace {
@@ -34,7 +34,8 @@ constexpr bool has_members(std::index_sequence<kFirst...>, std::index_sequence<k
     };
 }
 
-/// Members of an aggregate. Optional Eigen vectors and texts must come last, and their number must be given.
+/// Number of members of an aggregate. Optional Eigen vectors and texts must come last, and their number must
+/// be given.
 template <class T, std::size_t kOptional = 0, std::size_t kMost = 24>
 constexpr std::size_t members() {
     if constexpr (has_members<T>(std::make_index_sequence<kMost>(), std::make_index_sequence<kOptional>()))
@@ -65,7 +66,6 @@ static_assert(members<Table, 1>() == in_rows(kTableFields) + 4);  // the lists; 
 static_assert(members<PocketMeasures>() == in_rows(kPocketMeasureFields));
 static_assert(members<Measures, 1>() == in_rows(kMeasureFields) + 2);  // both kinds of pocket
 
-// A row is found by its key.
 TEST(Rows, KeysOfASectionDiffer) {
     const auto expect_distinct = [](const auto& fields) {
         for (const Files files : {Files::kScene, Files::kRecord}) {
@@ -83,7 +83,7 @@ TEST(Rows, KeysOfASectionDiffer) {
     expect_distinct(kPocketMeasureFields);
 }
 
-/// Values to try for a key: the first that is allowed and is not the default shows that the key is read.
+/// Values to try for a key: the first allowed one that is not the default shows that the key is read.
 std::vector<FieldValue> values_for(const Key& row) {
     std::vector<FieldValue> values;
     for (const char* name : row.names()) values.emplace_back(std::string(name));
@@ -106,7 +106,7 @@ std::string toml_of(const FieldValue& value) {
     return fmt::format("[{}]", fmt::join(std::get<std::vector<double>>(value), ", "));
 }
 
-/// Lines that a key needs beside it.
+/// Lines that a key also needs.
 std::string beside(const std::string& key) {
     if (key == "[rack] count") return "game = \"line\"\n";
     if (key == "[rack] rows") return "game = \"triangle\"\n";

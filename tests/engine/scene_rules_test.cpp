@@ -1,4 +1,4 @@
-// Every rule of the scene format: bad scenes and their exact messages, defaults, limits.
+// All rules of the scene format: bad scenes and their exact messages, defaults, limits.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -30,8 +30,8 @@ using carom::test::toml_files;
 
 const std::string kOneBall = "[[ball]]\nposition = [0.6, 0.5]\n";
 
-// A scene is refused in the words of its row, and at a place in its text.
-TEST(BadScenes, OfTheTableGiveTheirExactMessage) {
+// A scene is refused with the message of its row, at a place in its text.
+TEST(BadScenes, OfTheTableCauseTheirExactMessage) {
     const toml::table table = toml::parse_file(CAROM_TEST_DATA "/scene_messages.toml");
     std::size_t rows = 0;
     for (const toml::node& scene : *table["scene"].as_array()) {
@@ -45,10 +45,10 @@ TEST(BadScenes, OfTheTableGiveTheirExactMessage) {
     EXPECT_EQ(error_of(kOneBall + "[cue]\nspeed = 1000000\n"), "");
 }
 
-// The first line of each file is a comment with the whole message. `*` stands for what toml++ words or counts
-// differently from version to version (syntax errors), and for lists of keys or choices, which
-// scene_docs_test compares with the schema. The list of sections is complete in unknown_section.toml.
-TEST(BadScenes, GiveTheirExactMessage) {
+// The first line of each file is a comment with the whole message. `*` replaces text that depends on the
+// version of toml++ (syntax errors) and lists of keys or choices, which scene_docs_test compares with the
+// schema. unknown_section.toml lists all sections.
+TEST(BadScenes, CauseTheirExactMessage) {
     const auto files = toml_files(std::filesystem::path(CAROM_TEST_DATA) / "bad_scenes");
     ASSERT_GE(files.size(), 25u);
     for (const auto& path : files) {
@@ -91,12 +91,12 @@ std::string message(const std::string& path) {
     return "";
 }
 
-TEST(Scenes, FilesThatCannotBeRead) {
+TEST(Scenes, UnreadableFilesAreRefused) {
     EXPECT_EQ(message("no/such.toml"), "no/such.toml: cannot be read: there is no such file; check the path");
     const std::string folder = CAROM_TEST_DATA;
     EXPECT_EQ(message(folder), folder + ": cannot be read: it is a directory; name a scene file in it");
-    // A file that exists but is out of reach is not reported as missing. (A folder without permissions does
-    // not stop root.)
+    // A file that exists but is out of reach is not reported as missing. (Removing a folder's permissions
+    // would not stop root.)
     const auto loop =
         std::filesystem::temp_directory_path() / ("carom_loop_" + std::to_string(::getpid()) + ".toml");
     std::filesystem::create_symlink(loop, loop);
@@ -106,7 +106,7 @@ TEST(Scenes, FilesThatCannotBeRead) {
     std::filesystem::remove(loop);
 }
 
-TEST(Scenes, TooLargeFile) {
+TEST(Scenes, ATooLargeFileIsRefused) {
     const std::string large = "#" + std::string(carom::kMaxFileSize, 'x');
     EXPECT_EQ(error_of(large), "s.toml: is larger than 4 MiB; check that it is a scene file");
     EXPECT_EQ(error_of(kOneBall + "#" + std::string(carom::kMaxFileSize - kOneBall.size() - 1, 'x')), "");
@@ -127,7 +127,7 @@ TEST(Scenes, FilesAreReadAsAWhole) {
     EXPECT_EQ(message(path), path + ": is larger than 4 MiB; check that it is a scene file");
 }
 
-TEST(Scenes, TooManyPartsOfATable) {
+TEST(Scenes, TooManyPartsOfATableAreRefused) {
     const auto with_pockets = [](int count) {
         std::string text = kOneBall;
         for (int i = 0; i < count; ++i) text += "[[table.pocket]]\ncenter = [9, 9]\nradius = 0.06\n";
@@ -138,7 +138,7 @@ TEST(Scenes, TooManyPartsOfATable) {
               "s.toml:3:1: table.pocket has 4097 entries; at most 4096 are allowed");
 }
 
-// The defaults of every section are those of the file, which scene_text wrote.
+// The defaults of every section equal the file written by scene_text.
 TEST(Scenes, DefaultsAreWrittenOut) {
     const Scene s = parse_scene("[[ball]]\n[cue]\n", "s.toml");
     EXPECT_EQ(scene_text(s), read_file(CAROM_TEST_DATA "/default_scene.toml"));
@@ -146,7 +146,7 @@ TEST(Scenes, DefaultsAreWrittenOut) {
     EXPECT_FALSE(parse_scene("[[ball]]\n", "s.toml").cue);
 }
 
-TEST(Scenes, BallsAndCueSayWhereTheyStand) {
+TEST(Scenes, BallsAndCueHaveSourceLocations) {
     const Scene s = parse_scene("[[ball]]\nid = \"1\"\n  [[ball]]\nposition = [0.3, 0.4]\n[cue]\n", "s.toml");
     EXPECT_EQ(s.ball[1].where.line, 3);
     EXPECT_EQ(s.ball[1].where.column, 3);
@@ -181,7 +181,7 @@ TEST(Scenes, TouchingFarFromTheOrigin) {
     EXPECT_NE(error_of(far + "[100000.0571499, 1e5]\n"), "");
 }
 
-TEST(Scenes, BallsMayStandInAPocketMouthOrOffTheTable) {
+TEST(Scenes, BallsMayLieInAPocketMouthOrOffTheTable) {
     EXPECT_EQ(error_of("[[ball]]\nposition = [0.01, 0.01]\n"), "");
     EXPECT_EQ(error_of("[[ball]]\nposition = [-3, 1e5]\n"), "");
 }
@@ -252,12 +252,12 @@ TEST(Scenes, ManyBallsUpToTheLimit) {
     EXPECT_NE(error_of(line + "4097\n"), "");
 }
 
-TEST(Rest, NothingThatMovesNeedsNoStop) {
+TEST(Rest, AMotionlessSceneNeedsNoStop) {
     EXPECT_EQ(error_of("[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[physics]\ngravity = 0\n" + kOneBall), "");
     EXPECT_EQ(error_of("[balls]\nmu_r = 0\n" + kOneBall + "[cue]\nspeed = 0\n"), "");
 }
 
-TEST(Rest, AnyStopWillDo) {
+TEST(Rest, AnyStopSuffices) {
     const std::string endless = "[balls]\nmu_s = 0\n[[ball]]\nvelocity = [0, 1]\n";
     EXPECT_NE(error_of(endless), "");
     EXPECT_EQ(error_of(endless + "[stop]\ntime = 1\n"), "");
@@ -265,7 +265,7 @@ TEST(Rest, AnyStopWillDo) {
     EXPECT_NE(error_of(endless + "[stop]\n"), "");
 }
 
-TEST(Rest, OnlyWhatCanHappenCounts) {
+TEST(Rest, OnlyPossibleMotionsNeedAStop) {
     const std::string cloth = "[table]\ncushion = []\n";
     // A rolling ball with nothing to hit never slides; with a second ball it may.
     const std::string rolling =
@@ -283,7 +283,7 @@ TEST(Rest, OnlyWhatCanHappenCounts) {
     EXPECT_EQ(error_of("[balls]\nmu_r = 0\n[[ball]]\nspin = [0, 0, 5]\n"), "");
 }
 
-// Any file is read, or refused with a location; it never crashes and nothing else is thrown.
+// Any file is read, or refused with a location; reading never crashes or throws anything else.
 TEST(Scenes, BrokenTextIsRefusedInTheSameForm) {
     const std::string good =
         read_file(std::filesystem::path(CAROM_SOURCE_DIR) / "scenes" / "eight_ball_break.toml");

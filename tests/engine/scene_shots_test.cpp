@@ -1,4 +1,4 @@
-// The scenes of the repository do what their comments say.
+// The repository's scenes do what their comments say.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using carom::Record;
 using carom::Scene;
 using carom::Vec2;
 
-/// The portable instruction set: the records are the same on all.
+/// The portable instruction set; records are the same on all.
 Record run(const std::string& text, const std::string& name) {
     return simulate(make_plan(carom::parse_scene(text, name), carom::kernel::Isa::kScalar));
 }
@@ -38,7 +38,7 @@ double first(const Record& r, EventType type) {
     return -1.0;
 }
 
-/// How far the cue ball ends in front of its position when the balls met, along the diagonal of the three
+/// Distance by which the cue ball ends beyond its position at the hit, along the diagonal of the three
 /// straight-in shots.
 double advance_after_contact(const Record& r) {
     const double hit = first(r, EventType::kBallBall);
@@ -93,9 +93,9 @@ TEST(SceneShots, NineBallBreakHitsTheOneFirst) {
     EXPECT_EQ(r.stopped, carom::StopReason::kAtRest);
 }
 
-// The wing ball is at the end of the third row on the side of the cue ball; only the model that treats the
-// contacts of a rack as one impact of elastic bodies sends it into the nearby corner.
-TEST(SceneShots, TheWingBallFallsAndTellsTheModelsApart) {
+// The wing ball is at the end of the third row on the cue ball's side. Only the model that treats a rack's
+// contacts as one impact of elastic bodies sends it into the nearby corner.
+TEST(SceneShots, TheWingBallDistinguishesTheModels) {
     const auto falls = [](ClusterModel model) {
         Scene scene = carom::read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/wing_ball.toml");
         scene.physics.clusters = model;
@@ -141,7 +141,7 @@ TEST(SceneShots, CaromOpeningsScore) {
     }
 }
 
-TEST(SceneShots, BreaksPotWhatTheySay) {
+TEST(SceneShots, BreaksPotTheStatedBalls) {
     const auto pocketed = [](const std::string& name) {
         std::string ids;
         for (const carom::BallTrack& track : run(name).tracks)
@@ -168,7 +168,7 @@ TEST(SceneShots, MasseGoesAroundYellow) {
     for (double t = 0.0; t < hit; t += 0.01) most = std::max(most, place(r, 0, t).x());
     EXPECT_GT(most, 0.80);
     EXPECT_LT(place(r, 0, hit).x(), 0.72);
-    // Red hides behind yellow: the straight line passes it by less than two radii.
+    // Red hides behind yellow: the straight line passes yellow at less than two radii.
     const Vec2 to_red = (place(r, 2, 0.0) - place(r, 0, 0.0)).normalized();
     EXPECT_LT(std::abs(carom::cross(to_red, place(r, 1, 0.0) - place(r, 0, 0.0))), 2.0 * r.balls.R);
 }
@@ -210,11 +210,11 @@ TEST(SceneShots, SwerveGoesAroundYellow) {
 
 TEST(SceneShots, RaisedBreakArrivesInTheAir) {
     const Record r = run("raised_break");
-    const double hit = first(r, EventType::kBallCluster);  // the rack and a ball in the air together
+    const double hit = first(r, EventType::kBallCluster);  // rack and airborne ball together
     EXPECT_TRUE(is_up(r, 0, hit - 1e-3) || is_up(r, static_cast<int>(r.tracks.size()) - 1, hit - 1e-3));
 }
 
-TEST(SceneShots, SnookerBreakComesBackToBaulk) {
+TEST(SceneShots, SnookerBreakReturnsToBaulk) {
     const Record r = run("snooker_break");
     int cue = -1;
     for (std::size_t i = 0; i < r.tracks.size(); ++i)

@@ -26,8 +26,8 @@ bool same(const Vec2& a, const Vec2& b) {
     return (a - b).cwiseAbs().maxCoeff() <= 1e-15;
 }
 
-// tests/data/seven_foot_table.json holds the numbers and their sources. Its ids number the cushions and jaws
-// by position; a straight cushion N and our c<N> are the same.
+// tests/data/seven_foot_table.json contains the numbers and their sources. It numbers cushions and jaws by
+// position; its straight cushion N is our c<N>.
 TEST(SevenFoot, AgreesWithTheReferenceTable) {
     std::ifstream in(std::string(CAROM_TEST_DATA) + "/seven_foot_table.json");
     const nlohmann::json want = nlohmann::json::parse(in);
@@ -67,7 +67,7 @@ TEST(SevenFoot, AgreesWithTheReferenceTable) {
     }
 }
 
-/// Smallest distance from a point to the ends of the cushions, of those whose index passes.
+/// Smallest distance from a point to the ends of the cushions whose index passes.
 double nearest_end(const Table& t, const Vec2& p) {
     double best = 1e9;
     for (const carom::Cushion& c : t.cushions) {
@@ -83,7 +83,7 @@ TEST(PocketTables, RailsAndFacingsMeetTheirJaws) {
         ASSERT_EQ(t.jaws.size(), 12u);
         ASSERT_EQ(t.pockets.size(), 6u);
         for (const carom::Jaw& j : t.jaws) {
-            // Two cushion ends lie on each jaw circle: the rail's and the facing's.
+            // Each jaw circle has two cushion ends on it: the rail's and the facing's.
             int on_circle = 0;
             for (const carom::Cushion& c : t.cushions) {
                 for (const Vec2& end : {c.from, c.to}) {
@@ -113,11 +113,11 @@ TEST(NineFoot, FacingsAreTangentToTheirJaws) {
     EXPECT_EQ(facings, 12);
 }
 
-TEST(NineFoot, MouthsAndAnglesAreThoseOfTheSpecification) {
+TEST(NineFoot, MouthsAndAnglesFollowTheSpecification) {
     const Table t = make_table("nine_foot");
     EXPECT_EQ(t.width, 1.27);
     EXPECT_EQ(t.length, 2.54);
-    // Where the line of a facing meets the nose lines x = 0 and y = 0.
+    // The points where a facing's line meets the nose lines x = 0 and y = 0.
     const auto on_axis = [](const carom::Cushion& c, int axis) {
         const double s = -c.from[axis] / (c.to[axis] - c.from[axis]);
         return Vec2(c.from + s * (c.to - c.from));
@@ -136,7 +136,7 @@ TEST(NineFoot, MouthsAndAnglesAreThoseOfTheSpecification) {
     EXPECT_LE(nose, 0.645);
 }
 
-// The surface is two inches longer than that of seven_foot, the corners wider, the sides narrower.
+// The surface is two inches longer than seven_foot's, the corners wider, the sides narrower.
 TEST(SevenFootBar, HasItsSurfaceAndMouths) {
     const Table t = make_table("seven_foot_bar");
     EXPECT_EQ(t.preset, "seven_foot_bar");
@@ -194,7 +194,7 @@ TEST(PocketTables, ABallFitsIntoEveryPocket) {
     for (const char* preset : {"seven_foot", "seven_foot_bar", "eight_foot", "nine_foot"}) {
         const Table t = make_table(preset);
         for (const carom::Pocket& p : t.pockets) {
-            // Straight from the middle of the table (or of its half) to where the pocket takes the ball.
+            // Straight from the middle of the table (or of its half) into the pocket.
             const Vec2 middle(t.width / 2, std::abs(p.center.y() - t.length / 2) < 0.1 ? t.length / 2
                                            : p.center.y() < 0                          ? t.width / 2
                                                               : t.length - t.width / 2);
@@ -230,7 +230,7 @@ TEST(Tables, UnknownPresetIsRefused) {
     EXPECT_THROW(make_table(""), std::invalid_argument);
 }
 
-// Published sizes; table_presets.cpp says which sizes are not published.
+// Published sizes; table_presets.cpp names the unpublished ones.
 TEST(Tables, PublishedSizes) {
     EXPECT_NEAR(make_table("eight_foot").length, 2.3368, 1e-12);
     EXPECT_NEAR(make_table("eight_foot").width, 1.1684, 1e-12);
@@ -239,9 +239,9 @@ TEST(Tables, PublishedSizes) {
     EXPECT_NEAR(make_table("snooker").cushions[0].height, 1.4 * 0.02625, 1e-15);
 }
 
-// Every pocket takes a ball rolling at its middle, and none takes one that rolls along a rail past a corner's
-// jaw.
-TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
+// Every pocket captures a ball that rolls at its middle, and none captures one that rolls along a rail past a
+// corner's jaw.
+TEST(Tables, NewTablesHaveSixPocketsThatFitABall) {
     for (const char* preset : {"eight_foot", "snooker"}) {
         const Table t = make_table(preset);
         const double R = preset == std::string("snooker") ? 0.02625 : 0.028575;
@@ -265,8 +265,8 @@ TEST(Tables, NewTablesHaveSixPocketsThatABallFits) {
     }
 }
 
-// The BCA's middle, 1 3/4 in, from the line between the two points to the edge over which a ball falls.
-TEST(Tables, ShelvesAreThoseOfTheSpecification) {
+// The BCA's middle value, 1 3/4 in, from the line between the two points to the edge over which a ball falls.
+TEST(Tables, ShelvesFollowTheSpecification) {
     for (const char* preset : {"nine_foot", "eight_foot", "seven_foot_bar"}) {
         const Table t = make_table(preset);
         const double mouth = (preset == std::string("seven_foot_bar") ? 4.875 : 4.5625) * 0.0254;

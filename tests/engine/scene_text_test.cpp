@@ -1,4 +1,4 @@
-// A written-out scene reads back to the same scene, and scenes built in code are checked like files.
+// A written scene reads back as the same scene, and scenes built in code are checked like files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every key that a written-out scene may contain, none at its default.
+/// Every key that a written scene may contain, none at its default.
 constexpr char kEveryKey[] = R"([table]
 cloth = "tournament"
 bed = [-1, -2, 7, 8]
@@ -111,12 +111,12 @@ TEST(SceneText, ReadsBackToTheSameScene) {
 TEST(SceneText, EveryExampleSceneReadsBackToTheSameShot) {
     for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR "/scenes")) {
         Scene scene = read_scene(entry.path().string());
-        scene.stop.events = 60;  // enough to tell them apart
+        scene.stop.events = 60;  // enough to distinguish them
         EXPECT_EQ(hash_of(parse_scene(scene_text(scene), "b.toml")), hash_of(scene)) << entry.path();
     }
 }
 
-/// All keys of the schema, except those of a rack, which is written out as balls.
+/// All keys of the schema, except those of a rack, which is written as balls.
 void collect_keys(const nlohmann::json& node, std::set<std::string>& keys) {
     if (!node.is_structured()) return;
     if (node.is_object() && node.contains("properties") && node["properties"].is_object()) {
@@ -130,8 +130,7 @@ void collect_keys(const nlohmann::json& node, std::set<std::string>& keys) {
         if (key != "properties") collect_keys(value, keys);
 }
 
-// Guards against a key that is added to the format and forgotten here.
-// "-0" was read as an integer, which has no sign: the shot from the text had other bits.
+// "-0" was once read as an integer, which has no sign: the shot from the text had other bits.
 TEST(SceneText, KeepsTheSignOfZero) {
     const Scene scene = parse_scene(
         "[[ball]]\nposition = [0.4, 0.5]\nvelocity = [-0.0, 1]\nspin = [-0.0, -0.0, -0.0]\n[[ball]]\nid = "
@@ -146,7 +145,7 @@ TEST(SceneText, KeepsTheSignOfZero) {
     EXPECT_EQ(scene_text(again), scene_text(scene));
 }
 
-TEST(SceneText, WritesEveryKeyOfTheFormat) {
+TEST(SceneText, WritesEveryKey) {
     std::ifstream file(CAROM_SOURCE_DIR "/docs/reference/scene.schema.json");
     std::set<std::string> keys;
     collect_keys(nlohmann::json::parse(file), keys);
@@ -173,8 +172,8 @@ TEST(SceneText, WritesEveryKeyOfTheFormat) {
                                "center = [0, 0]\nradius = 1\n[[ball]]\nposition = [0, 0]\n",
                                "a.toml"));
     for (const EffectInfo& effect : effect_table())
-        text += std::string(effect.keyword) + " = true\n";  // one stands for all
-    // The balls of a rack are written one by one. The words below stand for aim_deg and speed.
+        text += std::string(effect.keyword) + " = true\n";  // one represents all
+    // A rack's balls are written one by one, and the words below as aim_deg and speed.
     keys.erase("radius_sd");
     for (const char* word : {"aim_at", "aim_hit", "ghost", "aim_diamond", "ball_speed"}) keys.erase(word);
     for (const std::string& key : keys) {

@@ -1,4 +1,4 @@
-// Every scene of the repository, and seeded breaks, to rest under the checker.
+// Every scene of the repository, and seeded breaks, run to rest under the checker.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST(Scenes, RunToRestUnderTheChecker) {
     }
 }
 
-TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
+TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryRun) {
     for (const std::string& file : scene_files()) {
         SCOPED_TRACE(file);
         const Scene scene = read_scene(file);
@@ -43,7 +43,6 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
             if (!kernel::available(isa)) continue;
             EXPECT_EQ(simulate(make_plan(scene, isa)).hash(), hash) << kernel::name(isa);
         }
-        // Profiling changes no bit.
         SimulateOptions profiled;
         profiled.profile = true;
         const Record record = simulate(make_plan(scene, kernel::best_isa()), profiled);
@@ -52,7 +51,7 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryTime) {
     }
 }
 
-// Breaks of random speed, line and gap: none reaches the cap, none breaks a law.
+// Breaks of random speed, line and gap: none reaches the event limit or breaks a law.
 TEST(Scenes, SeededBreaks) {
     reference::Generator rng(20261121);
     std::size_t most = 0;

@@ -1,4 +1,4 @@
-// Boxes, tournament and rejects only skip: the events are the same to the last bit whichever search is used.
+// Boxes, tournament and rejects only skip: events are the same bit for bit with every search.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -30,7 +30,7 @@ bool overlap(const Box& a, const Box& b) {
     return a.low_x <= b.high_x && b.low_x <= a.high_x && a.low_y <= b.high_y && b.low_y <= a.high_y;
 }
 
-// Moves, removals and rebuilds; every overlap in double is found, and direct loop and tree find the same.
+// Moves, removals and rebuilds: every overlap in double is found, and direct loop and tree agree.
 TEST(BoxSearch, FindsEveryOverlap) {
     for (const int count : {1, 5, 64, 65, 300}) {
         BoxSearch direct, tree;
@@ -79,7 +79,7 @@ TEST(BoxSearch, FindsEveryOverlap) {
     }
 }
 
-TEST(EventQueue, TheFirstOnesAreTheLeast) {
+TEST(EventQueue, TheFirstEventsAreTheEarliest) {
     for (const int count : {0, 1, 2, 3, 16, 17, 100, 300, 5000}) {
         EventQueue queue;
         queue.set_up(count);
@@ -106,8 +106,8 @@ TEST(EventQueue, TheFirstOnesAreTheLeast) {
     }
 }
 
-// Random paths, many of them aimed to pass at about the reach.
-TEST(Rejects, NeverLeaveOutAContact) {
+// Random paths, many aimed to pass at about the reach.
+TEST(Rejects, NeverMissAContact) {
     Generator rng(11);
     int rejected = 0, contacts = 0;
     const double R = 0.028575;
@@ -118,7 +118,7 @@ TEST(Rejects, NeverLeaveOutAContact) {
                   rolls,    true};
         Path other{vec(0.5), Vec2::Zero(), Vec2::Zero(), kInfinity, true, false};
         if (rng.uniform() < 0.5) {
-            // The position of the first ball at some time, and from there about a diameter to any side.
+            // The first ball's position at some time, then about a diameter in any direction.
             const double t = rng.uniform() * ball.horizon, share = 1.0 + 1e-7 * rng.uniform(-5.0, 5.0);
             const SinCos side = sin_cos_deg(rng.uniform(0.0, 360.0));
             other.r = ball.r + t * (ball.v + 0.5 * t * ball.a) + 2.0 * R * share * Vec2(side.cos, side.sin);
@@ -158,7 +158,7 @@ Record run(const Scene& scene, const Way& way) {
     return simulate(plan);
 }
 
-TEST(Search, EveryWayGivesTheSameBitsInAGas) {
+TEST(Search, EverySearchGivesTheSameBitsInAGas) {
     for (const int n : {4, 100, 900}) {
         const Scene scene = gas(n, 3000, 5);
         const std::string hash = run(scene, kWays[0]).hash();
@@ -167,7 +167,7 @@ TEST(Search, EveryWayGivesTheSameBitsInAGas) {
     }
 }
 
-TEST(Search, EveryWayGivesTheSameBitsInRandomScenes) {
+TEST(Search, EverySearchGivesTheSameBitsInRandomScenes) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         Scene scene = RandomScene(seed).make();
         if (!scene.stop.time) scene.stop.events = 400;
@@ -176,14 +176,14 @@ TEST(Search, EveryWayGivesTheSameBitsInRandomScenes) {
     }
 }
 
-// Balls that fly apart forever have no next event, and the search must say so.
-TEST(Search, BallsThatPartForGoodEndTheRun) {
+// For balls that separate forever the search must report no next event.
+TEST(Search, BallsThatSeparateForeverEndTheRun) {
     Scene scene = frictionless();
     for (int i = 0; i < 6; ++i) {
         const SinCos away = sin_cos_deg(60.0 * i);
         add_ball(scene, std::to_string(i), away.cos, away.sin, away.cos, away.sin);
     }
-    // Two side by side, near each other forever.
+    // Two side by side stay near each other forever.
     add_ball(scene, "left", 0.0, 0.0, 0.1, 0.1);
     add_ball(scene, "right", 0.05, -0.05, 0.1, 0.1);
     for (const Way& way : kWays) {

@@ -54,7 +54,7 @@ std::string describe(const nlohmann::json& e) {
     return type + " " + agents[0] + " " + (agents.size() > 1 ? agents[1] : "");
 }
 
-// The other way round, for a pair named in the other order.
+// Swapped, for a pair named in the other order.
 std::string swapped(const nlohmann::json& e) {
     nlohmann::json copy = e;
     if (copy.at("agents").size() == 2) std::swap(copy["agents"][0], copy["agents"][1]);

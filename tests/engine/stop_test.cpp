@@ -1,4 +1,4 @@
-// How a run ends: at rest, at its time limit, at its event limit, or because nothing more can happen.
+// A run ends at rest, at its time limit, at its event limit, or when no event can follow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Endless {
     Scene scene;
 };
 
-/// Endless motion in which nothing more happens from some time before kStop on.
+/// Endless motion without further events from some time before kStop.
 std::vector<Endless> endless_scenes() {
     std::vector<Endless> all;
     const auto add = [&all](const char* name, MotionState state, const std::function<void(Scene&)>& build) {
@@ -80,7 +80,7 @@ std::vector<Endless> endless_scenes() {
     return all;
 }
 
-TEST(Stop, MotionWithoutEndGoesOnToTheStopTime) {
+TEST(Stop, EndlessMotionContinuesToTheStopTime) {
     for (const Endless& c : endless_scenes()) {
         const Record record = run_verified(c.scene);
         EXPECT_EQ(record.duration, kStop) << c.name;
@@ -95,7 +95,7 @@ TEST(Stop, MotionWithoutEndGoesOnToTheStopTime) {
     }
 }
 
-TEST(Stop, TheTimeOfTheCallStopsItToo) {
+TEST(Stop, TheCallsTimeLimitAlsoStopsARun) {
     for (Endless& c : endless_scenes()) {
         c.scene.stop.time = 100.0;
         const Plan plan = plan_of(c.scene);
@@ -108,8 +108,8 @@ TEST(Stop, TheTimeOfTheCallStopsItToo) {
     }
 }
 
-// Events that never come: the run ends, and does not claim to be at rest.
-TEST(Stop, ANumberOfEventsThatIsNotReachedEndsTheRunAtTheLastEvent) {
+// If the events never come, the run ends without claiming to be at rest.
+TEST(Stop, AnUnreachedEventLimitEndsTheRunAtTheLastEvent) {
     for (Endless& c : endless_scenes()) {
         if (!c.scene.table.cushions.empty()) continue;
         c.scene.stop.time.reset();
@@ -126,7 +126,7 @@ TEST(Stop, ANumberOfEventsThatIsNotReachedEndsTheRunAtTheLastEvent) {
     }
 }
 
-TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
+TEST(Stop, AReachedEventLimitEndsTheRun) {
     Scene scene = empty_scene();
     scene.table = box(10.0, 10.0, 0.0365);
     scene.physics.gravity = 0.0;
@@ -137,7 +137,7 @@ TEST(Stop, ANumberOfEventsThatIsReachedIsTheEnd) {
     EXPECT_EQ(record.events.size(), 3u);
 }
 
-// A ball that almost never stops bouncing. The size of a run is limited, even if the scene sets no limit or a
+// A ball that almost never stops bouncing. A run's size is limited even if the scene sets no limit or a
 // larger one.
 TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
     Scene scene = empty_scene();
@@ -174,7 +174,7 @@ TEST(Stop, ARunWithoutEndHasALimitOfEvents) {
     EXPECT_EQ(outcome.events, kUsualEvents + 1);
 }
 
-TEST(Stop, RestComesBeforeTheTime) {
+TEST(Stop, RestEndsARunBeforeItsTimeLimit) {
     Scene scene = empty_scene();
     scene.table.pockets = {{"p1", {0.5, 0.8}, 0.06, 0.1}};
     scene.stop.time = 1000.0;
@@ -186,7 +186,7 @@ TEST(Stop, RestComesBeforeTheTime) {
     EXPECT_EQ(record.duration, record.events.back().time);
 }
 
-TEST(Stop, MotionWithoutEndIsNoRest) {
+TEST(Stop, EndlessMotionIsNotRest) {
     const Plan plan = plan_of(endless_scenes().front().scene);
     Record record = simulate(plan);
     record.stopped = StopReason::kAtRest;

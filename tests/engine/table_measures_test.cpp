@@ -1,4 +1,4 @@
-// A preset with measures of its own.
+// Presets with changed measures.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -39,8 +39,8 @@ const Cushion& named(const Table& table, const std::string& name) {
 const char* const kFacing = "head-left corner, facing of the head rail";
 const char* const kOther = "head-left corner, facing of the left rail";
 
-// All that a preset says of itself, written out, is the preset bit for bit.
-TEST(Measures, OfAPresetAreThePreset) {
+// A preset's own measures, written out, reproduce it bit for bit.
+TEST(Measures, OfAPresetReproduceIt) {
     for (const char* preset : kTablePresets) {
         const Table plain = make_table(preset);
         Measures all = measures_of(preset);
@@ -63,7 +63,7 @@ TEST(Measures, OfAPresetAreThePreset) {
     EXPECT_NE(hash_of("[table]\nsize = [1.2, 2.4]\n" + std::string(kShot)), hash_of(kShot));
 }
 
-TEST(Measures, AreThoseOfTheTable) {
+TEST(Measures, AppearInTheTable) {
     const Scene scene = parse_scene(
         "[table]\nrail_width = 0.045\ncushion_height = 0.036\nsize = [1.25, 2.5]\n"
         "[table.corner_pockets]\nmouth = 0.11\nangle_deg = 140\nshelf = 0.03\n"
@@ -90,7 +90,7 @@ TEST(Measures, AreThoseOfTheTable) {
     const Cushion& side = named(t, "left side pocket, facing of the head half");
     EXPECT_NEAR(side.from.y(), (2.5 - 0.12) / 2.0 + 0.045 * std::tan(10.0 * M_PI / 180.0), 1e-14);
     EXPECT_NEAR(-t.pockets[1].center.x() - t.pockets[1].radius, 0.005, 1e-15);
-    // The throat is what the back ends leave, and gives the facing back.
+    // The throat follows from the back ends, and determines the facing.
     const Measures all = measures_of("nine_foot", t.measures);
     EXPECT_NEAR((facing.from - other.from).norm(), *all.corner_pockets.throat, 1e-14);
     const Table again =
@@ -101,8 +101,8 @@ TEST(Measures, AreThoseOfTheTable) {
     EXPECT_NEAR((named(again, kFacing).from - named(again, kOther).from).norm(), 0.08, 1e-14);
 }
 
-// A tighter mouth leaves the shelf as it is.
-TEST(Measures, KeepWhatIsNotChanged) {
+// A tighter mouth keeps the shelf.
+TEST(Measures, KeepTheOthers) {
     const Measures plain = measures_of("nine_foot"),
                    tight = measures_of("nine_foot", {.corner_pockets = {.mouth = 0.108}});
     EXPECT_EQ(*tight.corner_pockets.mouth, 0.108);
@@ -111,7 +111,7 @@ TEST(Measures, KeepWhatIsNotChanged) {
 }
 
 // The messages for refused texts are in tests/data/scene_messages.toml.
-TEST(Measures, BuiltInCodeMeetTheSameRules) {
+TEST(Measures, BuiltInCodeObeyTheSameRules) {
     Scene scene = parse_scene(kShot, "s.toml");
     scene.table = make_table("nine_foot", {.corner_pockets = {.mouth = 0.05}});
     EXPECT_THROW(validate(scene), SceneError);
@@ -119,7 +119,7 @@ TEST(Measures, BuiltInCodeMeetTheSameRules) {
     EXPECT_THROW(validate(scene), SceneError);
 }
 
-TEST(Measures, StayInTextsAndRecords) {
+TEST(Measures, SurviveTextsAndRecords) {
     const Scene scene = parse_scene(with_corner("mouth = 0.108\nthroat = 0.09"), "s.toml");
     const std::string text = scene_text(scene);
     EXPECT_NE(text.find("[table.corner_pockets]\nmouth = 0.108\nthroat = 0.09\n"), text.npos) << text;
@@ -150,7 +150,7 @@ TEST(Measures, VaryInSweeps) {
                  VariationError);
 }
 
-/// The outline of a preset as a person would write it.
+/// A preset's outline as a person would write it.
 std::string outline_of(const Table& table, double dx, double dy) {
     const auto at = [&](const Vec2& p) { return fmt::format("[{}, {}]", p.x() + dx, p.y() + dy); };
     std::string text;
@@ -169,8 +169,8 @@ constexpr char kBreak[] =
     "[balls]\npreset = \"pool\"\n[rack]\ngame = \"nine_ball\"\n[[ball]]\nposition = [0.5, 0.4]\n[cue]\nspeed "
     "= 6\naim_deg = 86\n";
 
-// The facings reach behind the noses; they moved the rack.
-TEST(Outlines, LieByTheirNoses) {
+// Facings extend behind the noses; they once moved the rack.
+TEST(Outlines, ArePlacedByTheirNoses) {
     for (const char* preset : {"nine_foot", "seven_foot", "english_pool"}) {
         const Table table = make_table(preset);
         EXPECT_EQ(hash_of(outline_of(table, 0.0, 0.0) + kBreak),
@@ -182,7 +182,7 @@ TEST(Outlines, LieByTheirNoses) {
         EXPECT_NEAR(moved.length, table.length, 1e-15);
         EXPECT_NEAR((foot_spot(moved) - foot_spot(table) - Vec2(0.25, -0.5)).norm(), 0.0, 1e-15);
     }
-    // An outline without straight rails has the box around it.
+    // An outline without straight rails uses its bounding box.
     const Table turned =
         parse_scene(
             "[[table.cushion]]\nfrom = [0, 1]\nto = [1, 0]\n[[table.cushion]]\nfrom = [1, 0]\n"
@@ -193,7 +193,7 @@ TEST(Outlines, LieByTheirNoses) {
     EXPECT_EQ(turned.length, 1.0);
 }
 
-// The balls of each game fit its mouths, and a break ends at rest.
+// Each game's balls fit its mouths, and a break ends at rest.
 TEST(Presets, AreRackedAndBroken) {
     const struct {
         const char *table, *balls, *game;
@@ -220,7 +220,7 @@ TEST(Presets, AreRackedAndBroken) {
         if (c.corner > 0.0) {
             EXPECT_NEAR(*all.corner_pockets.mouth, c.corner, 1e-15) << c.table;
             EXPECT_NEAR(*all.side_pockets.mouth, c.side, 1e-15) << c.table;
-            // The rules that measures of one's own meet hold for the preset.
+            // The preset meets the rules for a user's measures.
             Scene same = scene;
             same.table =
                 make_table(c.table, {.cushion_height = all.cushion_height, .rail_width = all.rail_width});
@@ -232,8 +232,8 @@ TEST(Presets, AreRackedAndBroken) {
     }
 }
 
-// Fifteen balls at the foot spot; one of them rolled straight at a corner falls through a mouth that leaves
-// 2.25 mm at either side.
+// Fifteen balls at the foot spot; one rolled straight at a corner falls through a mouth that leaves 2.25 mm
+// on either side.
 TEST(Presets, APyramidBallFallsThroughItsMouth) {
     const Scene rack = parse_scene(
         "[table]\npreset = \"pyramid\"\n[balls]\npreset = \"pyramid\"\n[rack]\ngame = \"pyramid\"\ngap = 0\n",
@@ -265,7 +265,7 @@ class Draw {
     std::uint64_t state_ = 1;
 };
 
-// Every table either plays until rest, with its balls on it or in a pocket, or is refused with a line.
+// Every table either plays to rest, with its balls on it or in a pocket, or is refused with a line number.
 TEST(Measures, AtRandomPlayOrAreRefused) {
     Draw draw;
     int played = 0;

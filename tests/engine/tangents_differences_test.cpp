@@ -1,4 +1,4 @@
-// Derivatives of shots against differences of whole shots, in every model, and what margins are worth.
+// Derivatives of shots against differences of whole shots, in every model, and the accuracy of margins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,11 +50,11 @@ TEST(Tangents, ScenesAgainstDifferences) {
                             "ball.white.position.x", "ball.red.position.y"})
         carom.push_back(key);
     Scene three = scene_of("three_cushion");
-    three.cue->aim_deg = -7.0;  // the shipped shot only just touches a ball at its end
+    three.cue->aim_deg = -7.0;  // the shipped shot barely touches a ball at its end
     compare(three, carom, "three_cushion");
 }
 
-// In the air no contact parts more slowly than at a least speed, which then sets the restitution.
+// In the air every contact separates at some least speed, which then sets the restitution.
 TEST(Tangents, PlasticBallsInTheAir) {
     Scene scene = empty_scene();
     scene.balls.e_b = 0.0;
@@ -65,7 +65,7 @@ TEST(Tangents, PlasticBallsInTheAir) {
     compare(scene, {"ball.a.position.y", "ball.b.position.x", "balls.radius"}, "plastic");
 }
 
-/// A stroke at one of two balls, of which something may fall.
+/// A stroke at one of two balls; some may fall.
 Scene random_shot(std::uint64_t seed, const char* ball_ball, const char* cushion) {
     reference::Generator rng(seed);
     Scene scene;
@@ -95,7 +95,7 @@ struct Tally {
     double worst = 0.0;
     std::string where;
 };
-/// Compares random shots until `wanted` of them keep the order of their events.
+/// Compares random shots until `wanted` of them keep their order of events.
 template <class Change>
 Tally compare_random(int wanted, const char* ball_ball, const char* cushion, Change change) {
     const std::vector<std::string> inputs{"cue.speed", "cue.aim_deg", "balls.e_c", "ball.1.position.x"};
@@ -176,7 +176,7 @@ void unlike_balls_fits_and_flights(int wanted) {
     });
 }
 
-// Sanitizers take thirty times as long.
+// Sanitizers are thirty times slower.
 #ifdef CAROM_SANITIZED
 constexpr int kMany = 100;
 #else
@@ -227,8 +227,8 @@ TEST(Tangents, Clusters) {
     const Shot shot(broken, kStroke);
     ASSERT_EQ(shot.record.clusters.size(), 1u);
     for (std::size_t k : {0u, 1u}) {
-        // Of a cluster with steps as usual, or with the shorter ones that derivatives take where choices of
-        // steps change the result.
+        // The differences use a cluster with usual steps, or with the shorter steps of derivatives where the
+        // choice of steps changes the result.
         double least = 1.0;
         for (const double step : {1.0, 1.0 / 8.0}) {
             const double h = 1e-6;
@@ -280,8 +280,8 @@ Record moved(const Scene& scene, const char* key, double by) {
 
 constexpr int kShots = 40;
 
-// Margins are of first order, and shots are not: most hold at nine tenths of them, and half have changed a
-// tenth beyond.
+// Margins are linear, shots are not: most shots survive nine tenths of a margin, and half have changed a
+// tenth beyond it.
 TEST(Tangents, Margins) {
     int all = 0, held = 0, changed = 0;
     for (int seed = 0; seed < kShots; ++seed) {

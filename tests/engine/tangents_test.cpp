@@ -1,4 +1,4 @@
-// Derivatives and margins of shots in closed form, where derivatives jump, and what has none.
+// Derivatives and margins of shots in closed form, jumps of derivatives, and shots without derivatives.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -85,7 +85,7 @@ TEST(Tangents, NimblesImpact) {
     }
 }
 
-// Exact for what is linear: a ball passes another, and stops short of a third.
+// Exact in linear cases: a ball passes another, and stops short of a third.
 TEST(Tangents, MarginsInClosedForm) {
     Scene scene = empty_scene();
     scene.balls.mu_s = 0.2;
@@ -104,8 +104,8 @@ TEST(Tangents, MarginsInClosedForm) {
     EXPECT_NEAR(margins[2].down, 0.01, 1e-9);
 }
 
-// Trap 1: balls that roll or rest lie on a corner of the impact's map. Trap 2: a little vertical spin of a
-// ball that has none is gone at once.
+// Trap 1: rolling or resting balls lie on a corner of the impact's map. Trap 2: a little vertical spin on a
+// ball without any ends at once.
 TEST(Tangents, CornerAndDeadZone) {
     Scene scene = scene_of("draw");
     scene.cue->speed = 0.9;
@@ -127,7 +127,7 @@ TEST(Tangents, CornerAndDeadZone) {
     }
 }
 
-// Trap 3: the thinner a hit, the larger its derivatives; the margin says how near the miss is. Without
+// Trap 3: the thinner a hit, the larger its derivatives; the margin states the distance to a miss. Without
 // friction, ball 2 leaves along the line of centres.
 TEST(Tangents, Graze) {
     double last = 0.0;
@@ -135,7 +135,7 @@ TEST(Tangents, Graze) {
         Scene scene = nimble(0.2 - thin, 1.0);
         const Shot shot(scene, {"ball.2.position.y"});
         const double across = std::abs(shot.tangents.at_end(0, 0).velocity.x());
-        // v_x of ball 1 after it is sin^2 of the angle of the line of centres, whose sine is y / 0.2.
+        // After it, v_x of ball 1 is sin^2 of the angle of the line of centres, whose sine is y / 0.2.
         EXPECT_NEAR(across, 2.0 * (0.2 - thin) / 0.04, 1e-6);
         const double angle = std::abs(shot.tangents.at_end(1, 0).velocity.y());
         EXPECT_GT(angle, last);
@@ -145,7 +145,7 @@ TEST(Tangents, Graze) {
     }
 }
 
-TEST(Tangents, WhatHasNoDerivative) {
+TEST(Tangents, ShotsWithoutDerivativesSayWhy) {
     const Scene draw = scene_of("draw");
     EXPECT_NE(why_not(scene_of("snooker_break"), {"cue.speed"}).find("it is a resting contact"),
               std::string::npos);
@@ -162,7 +162,7 @@ TEST(Tangents, WhatHasNoDerivative) {
     frozen.ball.resize(1);
     frozen.ball[0].position = {frozen.balls.R + 1e-6, 0.5, frozen.balls.R};
     frozen.ball[0].velocity = {-1e-4, 0.1, 0.0};
-    frozen.ball[0].spin = {0.0, -40.0, 0.0};  // drives it on into the cushion
+    frozen.ball[0].spin = {0.0, -40.0, 0.0};  // drives it further into the cushion
     EXPECT_NE(why_not(frozen, {"ball.cue.velocity.y"}).find("resting contact"), std::string::npos);
     Scene fit = draw;
     fit.balls.mu_b = 0.009951, fit.balls.mu_b_more = 0.108, fit.balls.mu_b_fall = 1.088;
@@ -175,7 +175,7 @@ TEST(Tangents, WhatHasNoDerivative) {
               "balls.e_b = 1 is at the end of its range, where it has no derivative; move it inwards");
     EXPECT_THROW(Shot(draw, {"cue.spede"}), std::invalid_argument);
     EXPECT_THROW(Shot(draw, {"table.size.0"}), std::invalid_argument);
-    // A record from a file may be of another scene, or of none.
+    // A record from a file may belong to another scene.
     Scene bare = draw;
     bare.table = Table();
     EXPECT_THROW(Tangents(plan_of(bare), simulate(plan_of(draw)), {"cue.speed"}), std::invalid_argument);
@@ -183,7 +183,7 @@ TEST(Tangents, WhatHasNoDerivative) {
     Record wrong = simulate(plan_of(three));
     std::erase(wrong.clusters[0], 1);
     EXPECT_THROW(Tangents(plan_of(three), wrong, {"cue.speed"}), std::invalid_argument);
-    // Until an event that has none.
+    // The time before an event without derivatives still has them.
     const Plan plan = plan_of(scene_of("snooker_break"));
     const Record record = simulate(plan);
     const double first = record.events[1].time;

@@ -1,5 +1,5 @@
-// Throw, spin transfer and curved paths in whole shots
-// (tests/README.md: T10, T11, the throw table 7b, masse).
+// Throw, spin transfer and curved paths in whole shots (tests/README.md: T10, T11, the throw table 7b,
+// masse).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ using namespace test;
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-// One impact at cut angle phi [degrees] of a ball with speed
-// v and spin (about the line of motion's left, and vertical).
+// One impact at cut angle phi [degrees] of a ball with speed v and spin (about the left of its path, and
+// vertical).
 double throw_deg(double phi, double v, bool rolls, double w_z, double fall, double e_b = 1.0) {
     Scene scene = empty_scene();
     scene.balls.mu_b = 9.951e-3;
@@ -37,7 +37,7 @@ double throw_deg(double phi, double v, bool rolls, double w_z, double fall, doub
     return (phi * kDegree - std::atan2(u.y(), u.x())) / kDegree;
 }
 
-// T10: Alciatore, TP A.14. Positive: towards the side from which the cue ball came.
+// T10: Alciatore, TP A.14. Positive towards the side from which the cue ball came.
 double formula_deg(double phi, double v, bool rolls, double R_wz) {
     const double s = std::sin(phi * kDegree), c = std::cos(phi * kDegree);
     const double along = v * s - R_wz, up = rolls ? v * c : 0.0;
@@ -83,8 +83,8 @@ TEST(Throw, Table7b) {
     }
 }
 
-// T11: without slip at the end, throw = atan(tan(phi) / 7); with e_b < 1 the normal speed is smaller: 2 / (1
-// + e_b) times that.
+// T11: without slip at the end, throw = atan(tan(phi) / 7); e_b < 1 reduces the normal speed, so multiply by
+// 2 / (1 + e_b).
 TEST(Throw, NoSlipLimit) {
     EXPECT_NEAR(throw_deg(10.0, 0.1, false, 0.0, 0.0), 1.44295, 1e-5);
     EXPECT_NEAR(throw_deg(20.0, 0.1, false, 0.0, 0.0), 2.97646, 1e-5);
@@ -93,7 +93,6 @@ TEST(Throw, NoSlipLimit) {
     EXPECT_NEAR(tangent, std::tan(20.0 * kDegree) / 7.0 * 2.0 / 1.9, 1e-12);
 }
 
-// The friction itself.
 TEST(Throw, FrictionFallsWithTheSlip) {
     BallParams p = pool_balls();
     EXPECT_EQ(p.ball_friction()(0.0), p.mu_b);
@@ -104,14 +103,14 @@ TEST(Throw, FrictionFallsWithTheSlip) {
     EXPECT_EQ(p.ball_friction()(0.0), 9.951e-3 + 0.108);
     for (const double u : {0.1, 1.0, 10.0})
         EXPECT_NEAR(p.ball_friction()(u), 9.951e-3 + 0.108 * std::exp(-1.088 * u), 1e-16);
-    // Marlow's points, as TP A.14 quotes them.
+    // Marlow's points, as quoted in TP A.14.
     EXPECT_NEAR(p.ball_friction()(0.07), 0.11, 0.01);
     EXPECT_NEAR(p.ball_friction()(0.71), 0.06, 0.001);
     EXPECT_NEAR(p.ball_friction()(7.1), 0.01, 0.0001);
 }
 
-// In the model mathavan the fit enters through the friction of the impact.
-TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
+// In the model mathavan the fit sets the friction of the impact.
+TEST(Throw, MathavanUsesTheFrictionOfItsSlip) {
     Scene fit = empty_scene();
     fit.stop.events = 1;
     fit.balls.mu_b = 0.01;
@@ -128,9 +127,8 @@ TEST(Throw, MathavanTakesTheFrictionOfItsSlip) {
     EXPECT_LE((a.tracks[1].segments.back().w - b.tracks[1].segments.back().w).norm(), 1e-12);
 }
 
-// Masse (T2, Coriolis): a raised cue with side curves the path; the final
-// direction is that of v - (2/7) u, from the point where the cue's line meets
-// the cloth. Without elevation the path of a ball struck with side is straight.
+// Masse (T2, Coriolis): a raised cue with side curves the path; the final direction is v - (2/7) u, from the
+// point where the cue's line meets the cloth. Without elevation, a ball struck with side goes straight.
 TEST(Masse, ElevationAndSideCurveThePath) {
     const auto shot = [](double elevation, double side) {
         Scene scene = empty_scene();
@@ -158,11 +156,11 @@ TEST(Masse, ElevationAndSideCurveThePath) {
             const Vec2 want = start.v.head<2>() - (2.0 / 7.0) * u;
             EXPECT_LE((end.velocity.head<2>() - want).norm(), 1e-13);
             EXPECT_GT(end.velocity.y() * side, 0.0) << "left side curves to the left";
-            // Halfway the ball has bent less than it will: a parabola, not a corner.
+            // Halfway the ball has bent less than half: a parabola, not a corner.
             const BallState middle = record.state_at(0, 0.5 * roll->time);
             EXPECT_NEAR(middle.position.y(), 0.25 * end.position.y(), 1e-12);
-            // The Coriolis construction: w = (5 v / 2R)(-a sin(th) t - a cos(th) z), so the final angle is
-            // known in closed form.
+            // The Coriolis construction: w = (5 v / 2R)(-a sin(th) t - a cos(th) z), so the final angle has a
+            // closed form.
             const SinCos th = sin_cos_deg(elevation);
             EXPECT_NEAR(end.velocity.y() / end.velocity.x(), side * th.sin / th.cos, 1e-12);
         }

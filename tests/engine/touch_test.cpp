@@ -1,5 +1,5 @@
-// Contacts with every kind of part: gap and normal in closed form, and speed and acceleration against
-// differences of the gap along a motion.
+// Contacts with every kind of part: gap and normal in closed form; speed and acceleration against differences
+// of the gap along a motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(Touch, BallsInSpaceAndOnTheCloth) {
     const Touch<Vec3> space = touch_ball(ball_at({0.1, 0.2, 0.3}), ball_at({0.3, 0.3, 0.5}, true, 0.02));
     expect_near(space.n, Vec3(2.0, 1.0, 2.0) / 3.0);
     EXPECT_NEAR(space.gap, 0.3 - 0.05, 1e-15);
-    // On the cloth unlike balls touch at 2 sqrt(R1 R2), discs at R1 + R2, and heights are not read.
+    // On the cloth unlike balls touch at 2 sqrt(R1 R2), discs at R1 + R2; heights are not read.
     const Ball small = ball_at({0.1, 0.2, 0.7}, false, 0.01), large = ball_at({0.4, 0.6, 0.1}, false, 0.04);
     for (const bool discs : {false, true}) {
         const Touch<Vec3> level = touch_level(small, large, discs);
@@ -69,7 +69,7 @@ TEST(Touch, RoundNosesFromOutsideAndInside) {
         expect_near(level.n, -sign * Vec3(0.6, 0.8, 0.0));
         EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kTouchR - kInset), 1e-15) << radius;
     }
-    // 0.05 outside of the circle and 0.12 above it, 0.13 away.
+    // 0.05 outside the circle and 0.12 above it, 0.13 away.
     const Touch<Vec3> space = touch_round(nose(0.05), at(kHeight + 0.12, true));
     expect_near(space.n, Vec3(-0.6 * 5.0, -0.8 * 5.0, -12.0) / 13.0);
     EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
@@ -113,7 +113,7 @@ std::vector<Kind> kinds() {
     return kinds;
 }
 
-TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
+TEST(Touch, SpeedAndAccelerationMatchTheGap) {
     reference::Generator random(5);
     const auto vec = [&random](double size) {
         Vec3 v;
@@ -126,7 +126,7 @@ TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
             Ball ball{vec(0.15) + Vec3(0.3, 0.0, 0.3), vec(0.1), kTouchR};
             Vec3 a = vec(1.0);
             if (!kind.flies) ball.v.z() = a.z() = 0.0;
-            // On the cloth the bend is that of a touching ball: move it there.
+            // On the cloth the second derivative is for a touching ball, so move it there.
             for (int i = 0; i < 100; ++i) {
                 const Touch<Vec3> touch = kind.touch(ball);
                 ball.r += touch.gap * touch.n;
@@ -150,7 +150,7 @@ TEST(Touch, SpeedAndAccelerationAreThoseOfTheGap) {
     }
 }
 
-TEST(Touch, DualNumbersGiveTheGradient) {
+TEST(Touch, DualNumbersYieldTheGradient) {
     using tangent::Dual, tangent::Dual3;
     struct Line {
         tangent::Dual2 from, direction;
@@ -184,7 +184,7 @@ TEST(Touch, DualNumbersGiveTheGradient) {
         const Touch<Dual3> pair = flies ? touch_ball(ball, dual_other) : touch_level(ball, dual_other, false);
         compare(pair, flies ? touch_ball(numbers, ball_at(other, false, 0.02))
                             : touch_level(numbers, ball_at(other, false, 0.02), false));
-        // Of unlike balls on the cloth, 2 sqrt(R1 R2).
+        // Unlike balls on the cloth: 2 sqrt(R1 R2).
         EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kTouchR), 1e-15);
     }
 }
@@ -196,7 +196,7 @@ TEST(Touch, ABallIsBesideAPartBetweenItsEnds) {
     Geometry table;
     table.cushions = {line};
     const Contact cushion{0, With::kCushion, 0};
-    // Exactly at an end the direction of motion decides.
+    // Exactly at an end, the direction of motion decides.
     for (const double speed : {-1.0, 1.0})
         for (const double end : {0.0, 0.5})
             EXPECT_EQ(touches_part(table, cushion, {{end, kTouchR, kTouchR}, {speed, 0.0, 0.0}, kTouchR}),
@@ -217,13 +217,13 @@ TEST(Touch, ABallIsBesideAnArcOnItsOwnSide) {
         EXPECT_TRUE(beside(arc, ball(0.6 * there, 0.8 * there))) << wall;
         EXPECT_FALSE(beside(arc, ball(0.6 * there, -0.8 * there))) << wall << ": past its end";
         EXPECT_FALSE(beside(arc, ball(0.6 * behind_it, 0.8 * behind_it))) << wall << ": behind it";
-        // The gap behind it is negative, and nothing touches there.
+        // Behind it the gap is negative, and nothing touches there.
         const Contact contact{0, With::kNose, wall};
         EXPECT_LT(touch_part(table, contact, ball(0.6 * behind_it, 0.8 * behind_it)).gap, 0.0);
         EXPECT_FALSE(touches_part(table, contact, ball(0.6 * behind_it, 0.8 * behind_it)));
         EXPECT_TRUE(touches_part(table, contact, ball(0.6 * there, 0.8 * there)));
     }
-    // Over the disc of a jaw a ball meets nothing; on the cloth it would be deep inside.
+    // Above the disc of a jaw a ball touches nothing; on the cloth it would be deep inside.
     EXPECT_FALSE(beside(table.noses[2], ball(0.1, 0.0, true)));
     EXPECT_TRUE(beside(table.noses[2], ball(0.1, 0.0)));
 }

@@ -1,4 +1,4 @@
-// Statements of tests/README.md in whole shots: T6 to T9, and how a cushion affects a ball that then rolls
+// Statements of tests/README.md in whole shots: T6 to T9, and a cushion's effect on a ball that then rolls
 // again.
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ struct Hit {
     double time;  // of the impact
     Vec3 cue(double t) const { return record.state_at(0, t).velocity; }
     Vec3 object(double t) const { return record.state_at(1, t).velocity; }
-    // After both have begun to roll.
+    // Both roll from then on.
     double settled() const {
         double t = time;
         for (const Event& e : record.events)
@@ -76,7 +76,7 @@ TEST(Truth, T8ThirtyDegreeRule) {
     EXPECT_NEAR(turned_deg(hit(30.0, 1.0, 0.95).cue(hit(30.0, 1.0, 0.95).settled())), 32.265, 1e-3);
 }
 
-// Draw: the path back is at about three times the cut angle. The numbers are exact; the rule is a rule of
+// Draw: the return path is at about three times the cut angle. The numbers are exact, the rule is a rule of
 // thumb.
 TEST(Truth, T9TrisectRule) {
     const double table[][3] = {{10.0, 30.5, 24.8}, {20.0, 57.7, 48.6}, {30.0, 80.8, 70.9}};
@@ -89,8 +89,8 @@ TEST(Truth, T9TrisectRule) {
     }
 }
 
-// Section 8: a ball that rolls into a cushion leaves it sliding, and its remaining topspin bends its path
-// back towards the cushion before it rolls again; straight in, it returns slower than e_c.
+// Section 8: a rolling ball leaves a cushion sliding, and its remaining topspin bends its path back towards
+// the cushion before it rolls again; straight in, it returns slower than e_c.
 TEST(Truth, AfterACushionTheBallSlidesThenRollsAndTopspinBendsItBack) {
     for (const CushionModelInfo* model :
          {&kHan2005, cushion_model("mathavan_2010"), cushion_model("impulse"), cushion_model("stronge")}) {

@@ -1,4 +1,4 @@
-// Scenes in which one ball differs from the others: equal ones may still rest on each other.
+// Scenes in which one ball differs from the others; equal balls may still rest on each other.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -24,9 +24,9 @@ Scene two_that_rest(const BallSize& size) {
     return scene;
 }
 
-// A ball with topspin pushes the one in front of it, a metre from a heavier one: the error was that "there
-// are balls of different size".
-TEST(UnlikeBalls, AlikeOnesRestOnEachOther) {
+// A ball with topspin pushes the one before it, a metre from a heavier ball. It was once the error "there are
+// balls of different size".
+TEST(UnlikeBalls, EqualOnesRestOnEachOther) {
     const Scene alone = two_that_rest(empty_scene().balls.size());
     Scene scene = alone;
     add_ball(scene, "cue", 1.0, 0.0);
@@ -39,7 +39,7 @@ TEST(UnlikeBalls, AlikeOnesRestOnEachOther) {
 }
 
 // Two balls with an explicit size rest on each other as if all balls had it.
-TEST(UnlikeBalls, AGroupHasTheSizeOfItsBalls) {
+TEST(UnlikeBalls, AGroupUsesTheSizeOfItsBalls) {
     Scene common = two_that_rest(kLarge);
     common.balls.R = kLarge.R;
     common.balls.m = kLarge.m;
@@ -53,8 +53,8 @@ TEST(UnlikeBalls, AGroupHasTheSizeOfItsBalls) {
         EXPECT_EQ(record.tracks[ball].segments, wanted.tracks[ball].segments);
 }
 
-// The push of a sliding ball a moves two balls that touch with one acceleration: masses and inertia add up.
-// (It was an error that the two differ in size.)
+// A sliding ball pushes another, and both move with one acceleration: masses and inertia add up. (Different
+// sizes were once an error.)
 TEST(UnlikeBalls, OfDifferentMassRestOnEachOther) {
     for (const double ratio : {0.5, 1.0, 2.0}) {
         Scene scene = two_that_rest(empty_scene().balls.size());
@@ -71,7 +71,7 @@ TEST(UnlikeBalls, OfDifferentMassRestOnEachOther) {
     }
 }
 
-// Two radii: the tilt loads the cloth under the smaller ball, which hardly shows, and they roll on together.
+// Two radii: the tilt slightly loads the cloth under the smaller ball, and both roll on together.
 TEST(UnlikeBalls, OfDifferentRadiusRestOnEachOther) {
     for (const double R : {0.8, 0.95, 1.05, 1.25}) {
         Scene scene = two_that_rest(empty_scene().balls.size());
@@ -105,8 +105,7 @@ Scene odd_break(std::uint64_t seed, bool large) {
     return scene;
 }
 
-// Of 500 breaks each, 97 with the heavy cue ball and 483 with the large one ended with that error. 2 and 42
-// remain, in which the cue ball itself stays in contact with another ball.
+// 97 of 500 breaks with the heavy cue ball and 483 of 500 with the large one once ended with that error.
 TEST(UnlikeBalls, BreaksWithAnOddCueBallEndAtRest) {
     for (const bool large : {false, true}) {
         for (std::uint64_t seed = 1; seed <= 500; ++seed) {
@@ -118,7 +117,7 @@ TEST(UnlikeBalls, BreaksWithAnOddCueBallEndAtRest) {
     }
 }
 
-// Break shots into pressed racks of unlike balls, each other than the one before, follow the laws.
+// Break shots into pressed racks of balls that all differ keep the laws.
 TEST(UnlikeBalls, TemplateBreaks) {
     constexpr int kBreaks = 500;
     constexpr const char* kGames[] = {"nine_ball", "ten_ball", "eight_ball"};

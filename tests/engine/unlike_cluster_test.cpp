@@ -1,4 +1,4 @@
-// The compliant cluster of balls that differ in size, on the cloth.
+// The compliant cluster of balls of different sizes, on the cloth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ ClusterBall ball(double x, double y, double R = kR, double mass = 1.0, const Vec
     return {0, Vec3(x, y, R), v, w, R, mass};
 }
 
-// A ball that touches another one, in the direction of an angle.
+// A ball that touches another in the given direction.
 ClusterBall beside(const ClusterBall& at, double angle, double R, double mass, double gap = 0.0) {
     const double apart = contact_distance(at.R, R, false) + gap;
     return ball(at.r.x() + apart * std::cos(angle), at.r.y() + apart * std::sin(angle), R, mass);
@@ -72,7 +72,7 @@ double difference(const std::vector<ClusterBall>& a, const std::vector<ClusterBa
     return most;
 }
 
-// The cue ball and a rack of the rows 1 to 5; with a size of its own for some balls, which then leave gaps.
+// The cue ball and a rack of rows 1 to 5; some balls have their own size and then leave gaps.
 std::vector<ClusterBall> rack(double V, double gap = 0.0) {
     const double apart = 2.0 * kR + gap;
     std::vector<ClusterBall> balls{ball(0.0, -apart, kR, 1.0, {0.0, V, 0.0})};
@@ -82,9 +82,9 @@ std::vector<ClusterBall> rack(double V, double gap = 0.0) {
     return balls;
 }
 
-// Alike balls take the path of those that differ: the result is today's, up to the steps of either. 6e-4 V is
-// what the regularisation costs in racks that touch, whichever path.
-TEST(UnlikeCluster, AlikeBallsAsOnTheirOwnPath) {
+// With equal balls, the code for unlike balls matches today's result up to the steps of either. The
+// regularisation costs 6e-4 V in touching racks on either path.
+TEST(UnlikeCluster, EqualBallsMatchTheirOwnPath) {
     double frictionless = 0.0, rough = 0.0;
     for (const double mu_b : {0.0, 0.05}) {
         for (const double gap : {0.0, 1e-5}) {
@@ -103,8 +103,8 @@ TEST(UnlikeCluster, AlikeBallsAsOnTheirOwnPath) {
     EXPECT_LT(rough, 1.5e-3);
 }
 
-// Two balls through the map are the pair kernel's impact. Odd ones are as near to it as alike ones.
-TEST(UnlikeCluster, TwoBallsAreThePairKernel) {
+// Two balls through the map match the pair kernel, unlike balls as closely as equal ones.
+TEST(UnlikeCluster, TwoBallsMatchThePairKernel) {
     for (const bool odd : {false, true}) {
         reference::Generator rng(7);
         std::vector<double> differences;
@@ -157,7 +157,7 @@ TEST(UnlikeCluster, TwoBallsAreThePairKernel) {
     }
 }
 
-// Momentum where the cloth takes nothing, energy always, and no contact is left closing.
+// Momentum is conserved where the cloth has no friction, energy always, and no contact is left closing.
 TEST(UnlikeCluster, MomentumAndEnergy) {
     reference::Generator rng(12);
     for (int k = 0; k < 200; ++k) {
@@ -188,8 +188,8 @@ TEST(UnlikeCluster, MomentumAndEnergy) {
     }
 }
 
-// Lines of any masses up to the allowed ratio. Two heavy balls with a light one in between lost half of their
-// energy from a ratio of 3e4 on, because the contacts of heavy balls outlast those of light ones.
+// Lines of any masses up to the allowed ratio. From a ratio of 3e4 on, two heavy balls with a light one
+// between them once lost half of their energy, because contacts of heavy balls outlast those of light ones.
 TEST(UnlikeCluster, LinesOfAnyMassesLoseNothing) {
     std::vector<std::vector<double>> lines{
         {1e5, 1.0, 1e5}, {1e6, 1.0, 1e6}, {1.0, 1e-6, 1.0}, {6e4, 1.0, 1.0, 6e4}, {1e6, 1.0, 1e3, 1.0, 1e6}};
@@ -217,7 +217,7 @@ TEST(UnlikeCluster, LinesOfAnyMassesLoseNothing) {
     }
 }
 
-// A row of balls whose masses fall hands on the impulse pair by pair, nearly, where they have gaps.
+// With gaps, a row of balls of falling mass passes the impulse on pair by pair, nearly.
 TEST(UnlikeCluster, ARowWithGapsIsAChainOfPairs) {
     std::vector<ClusterBall> balls{ball(0.0, 0.0, kR, 1.5, {1.0, 0.0, 0.0})};
     for (const double mass : {1.2, 0.9, 0.7})
@@ -255,7 +255,7 @@ TEST(UnlikeCluster, MirrorImagesHaveMirrorResults) {
     EXPECT_NEAR(balls[1].w.z(), -balls[2].w.z(), 1e-12);
 }
 
-// In a scene, an odd ball beside alike ones changes nothing for those that it does not touch.
+// In a scene, an odd ball beside equal ones changes nothing for balls that it does not touch.
 TEST(UnlikeCluster, AnOddBallOutOfReachChangesNothing) {
     Scene scene = empty_scene();
     add_ball(scene, "cue", 0.0, -0.5, 0.02, 3.0);

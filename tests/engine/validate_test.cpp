@@ -1,5 +1,5 @@
-// Scenes built in code are refused with the same words as files: for every bad scene that a struct can hold,
-// and for random mistakes, compared with the route through a text.
+// Scenes built in code are refused with the same messages as files: for every bad scene that a struct can
+// represent, and for random mistakes, compared with the route through a text.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ std::string by_struct(const Scene& scene) {
     return message_of([&] { validate(scene); });
 }
 
-/// The route through a text, whose locations belong to a text that nobody wrote.
+/// The route through a text, without its locations, since nobody wrote that text.
 std::string by_text(const Scene& scene) {
     try {
         parse_scene(scene_text(scene), scene.file);
@@ -192,7 +192,7 @@ const std::map<std::string, Mistake>& mistakes() {
     return all;
 }
 
-/// Mistakes in the form of a file, which a struct cannot have: syntax, types, keys, names of models, racks.
+/// Mistakes only possible in a file: syntax, types, keys, names of models, racks.
 const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "ball_single_brackets",
                                         "camera_and_eye",
@@ -232,11 +232,11 @@ const std::set<std::string> kOfFiles = {"ball_not_a_table",
                                         "wrong_type_integer",
                                         "wrong_type_number",
                                         "wrong_type_string"};
-/// The same rule as another file's, in a place that only the route through the text can show: see
+/// Same rule as another file's, at a place that only the route through the text reports: see
 /// OfRandomMistakes.
 const std::set<std::string> kSameRule = {"in_jaw", "above_jaw", "in_own_cushion", "rack_does_not_fit"};
 
-TEST(Validate, SaysOfEveryBadSceneWhatTheReaderSays) {
+TEST(Validate, GivesTheReadersMessageForEveryBadScene) {
     for (const auto& path : toml_files(std::filesystem::path(CAROM_TEST_DATA) / "bad_scenes")) {
         const std::string name = path.stem().string();
         if (kOfFiles.count(name) + kSameRule.count(name) != 0) continue;
@@ -254,7 +254,7 @@ TEST(Validate, SaysOfEveryBadSceneWhatTheReaderSays) {
     }
 }
 
-/// A scene of some balls on some table, with some wrong numbers.
+/// Some balls on some table, with some wrong numbers.
 Scene random_scene(SplitMix64& random) {
     static const char* const kTables[] = {"seven_foot", "nine_foot", "snooker", "carom"};
     Scene s;
@@ -327,7 +327,7 @@ void spoil(Scene& s, SplitMix64& random) {
     }
 }
 
-TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
+TEST(Validate, GivesTheTextsMessageForRandomMistakes) {
     SplitMix64 random(7);
     int refused = 0;
     std::set<std::string> kinds;
@@ -335,7 +335,7 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
         Scene scene = random_scene(random);
         for (int k = random.below(4); k > 0; --k) spoil(scene, random);
         for (BallStart& ball : scene.ball) ball.position.z() = scene.size_of(ball).R + ball.height;
-        if (std::isnan(scene.balls.R)) continue;  // no height is such a radius: a rule of its own
+        if (std::isnan(scene.balls.R)) continue;  // a separate rule: no height is such a radius
         const std::string want = by_text(scene);
         ASSERT_EQ(by_struct(scene), want) << scene_text(scene);
         refused += !want.empty();
@@ -347,7 +347,7 @@ TEST(Validate, SaysOfRandomMistakesWhatTheTextSays) {
 }
 
 // Values that no file can express.
-TEST(Validate, RefusesWhatNoFileCanSay) {
+TEST(Validate, RefusesValuesThatNoFileCanExpress) {
     Scene scene = good();
     scene.physics.ball_ball = nullptr;
     EXPECT_EQ(by_struct(scene), "physics.ball_ball is not a model; choose one");

@@ -1,4 +1,4 @@
-// Many scenes from one file: keys, distributions, and that a shot depends only on what it should.
+// Many scenes from one file: keys, distributions, and a shot's independence of all else.
 #include "carom/engine/variation.h"
 #include "carom/engine/cushion.h"
 
@@ -22,7 +22,7 @@ namespace {
 
 class VariationTest : public testing::Test {
   protected:
-    /// The value of one key in a shot, as tables write it.
+    /// A key's value in a shot, as tables write it.
     static std::string drawn(const VariedShot& shot, std::size_t key) { return text_of(shot.values[key]); }
     Variation vary(const std::vector<std::string>& rules, std::uint64_t seed = 1) {
         return Variation(folder_.write("s.toml", text_), rules, seed);
@@ -40,7 +40,7 @@ class VariationTest : public testing::Test {
     std::string text_ = kSmallScene;
 };
 
-TEST_F(VariationTest, OfATextIsThatOfAFileWithIt) {
+TEST_F(VariationTest, OfATextEqualsThatOfAFile) {
     const std::vector<std::string> rules = {"cue.speed=uniform(1,5)"};
     const Variation file = vary(rules), text = Variation::from_text(kSmallScene, "a text", rules, 1);
     EXPECT_EQ(file.fingerprint(), text.fingerprint());
@@ -97,7 +97,7 @@ TEST_F(VariationTest, AShotDependsOnSeedNumberAndKeyAlone) {
     EXPECT_EQ(std::stod(drawn(alone.shot(7), 0)), alone.shot(7).scene->cue->speed);
 }
 
-TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
+TEST_F(VariationTest, UnitsFollowTheKeys) {
     const Variation v =
         vary({"cue.speed=uniform(1,2)", "cue.aim_deg=normal(90,1)", "balls.mu_s=uniform(0.1,0.2)",
               "physics.cushion=list(\"stronge\")", "table.pocket.p1.radius=uniform(0.05,0.06)",
@@ -111,14 +111,14 @@ TEST_F(VariationTest, UnitsAreThoseOfTheKeys) {
     EXPECT_EQ(breaks.unit(1), "");
 }
 
-TEST_F(VariationTest, NormalIsAroundTheNumberOfTheScene) {
+TEST_F(VariationTest, NormalIsCentredOnTheScenesNumber) {
     const Variation v = vary({"cue.speed=normal(0.1)"});
     double sum = 0.0;
     for (std::uint64_t i = 0; i < 400; ++i) sum += v.shot(i).scene->cue->speed;
     EXPECT_NEAR(sum / 400.0, 4.0, 4.0 * 0.1 / 20.0);
 }
 
-TEST_F(VariationTest, InvalidValuesAreNoScene) {
+TEST_F(VariationTest, InvalidValuesYieldNoScene) {
     const Variation v = vary({"ball.cue.position.y=uniform(1.5,2.5)"});  // the other ball is at (0.6, 2)
     int bad = 0;
     for (std::uint64_t i = 0; i < 200; ++i) {
@@ -133,14 +133,14 @@ TEST_F(VariationTest, InvalidValuesAreNoScene) {
     EXPECT_GT(bad, 5);
 }
 
-/// Scenes of shot() have no places in a file: toml++ does not copy them.
+/// shot() drops source locations: toml++ does not copy them.
 Scene without_places(Scene scene) {
     for (BallStart& ball : scene.ball) ball.where = {};
     if (scene.cue) scene.cue->where = {};
     return scene;
 }
 
-// The fast route makes the scene that the file would, or says that it cannot.
+// The fast path makes the same scene as the file, or reports that it cannot.
 TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     const auto expect_same = [&](const std::vector<std::string>& rules, int quick) {
         const Variation v = vary(rules);
@@ -200,7 +200,7 @@ TEST_F(VariationTest, PutMakesTheSceneOfTheFile) {
     expect_same({"rack.seed=integer(1,100)"}, 60);
 }
 
-TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {
+TEST_F(VariationTest, PutLeavesInvalidScenesToTheReader) {
     text_ = "[[ball]]\nposition = [0.6, 0.5]\n[rack]\ngame = \"eight_ball\"\n[cue]\n";
     for (const char* rule : {"rack.seed=integer(-50,50)", "rack.gap=uniform(-0.001,0.001)",
                              "stop.events=list(5, 1.5)", "cue.speed=list(1, \"fast\")"}) {
@@ -221,7 +221,7 @@ TEST_F(VariationTest, PutLeavesWhatTheReaderHasToRefuse) {
     }
 }
 
-TEST_F(VariationTest, GridsMakeAProductWhoseLastIsFastest) {
+TEST_F(VariationTest, GridsFormAProductAndTheLastVariesFastest) {
     const Variation v = vary({"cue.speed=grid(1,4,7)", "cue.aim_deg=uniform(0,90)",
                               "physics.cushion=grid(list(\"stronge\",\"han_2005\"))"});
     EXPECT_EQ(v.grid(), 14u);
@@ -233,7 +233,7 @@ TEST_F(VariationTest, GridsMakeAProductWhoseLastIsFastest) {
         EXPECT_EQ(shot.scene->cue->speed, 1.0 + 0.5 * static_cast<double>(i / 2 % 7)) << i;
         EXPECT_EQ(drawn(shot, 2), i % 2 == 0 ? "stronge" : "han_2005");
     }
-    // Keys beside a grid are drawn anew in its second round.
+    // Keys beside a grid are redrawn in its second round.
     EXPECT_NE(drawn(v.shot(0), 1), drawn(v.shot(14), 1));
     EXPECT_EQ(vary({"cue.speed=uniform(1,2)"}).grid(), 0u);
     // The ends are exact, and whole steps are whole numbers.
@@ -347,7 +347,7 @@ TEST(StandardNormal, HasTheMomentsAndTailsOfTheNormalDistribution) {
     EXPECT_NEAR(beyond_three / n, 0.0026998, 5.0 * std::sqrt(0.0027 / n));
 }
 
-TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
+TEST(Distribution, DrawsCoverTheirRanges) {
     SplitMix64 random(1);
     const auto uniform = detail::parse_distribution("uniform(-1, 3)", nullptr);
     const auto integer = detail::parse_distribution("integer(-2,2)", nullptr);
@@ -366,7 +366,7 @@ TEST(Distribution, DrawsLieInTheirRangesAndReachTheirEnds) {
     EXPECT_EQ(seen, (std::set<std::int64_t>{-2, -1, 0, 1, 2}));
 }
 
-TEST(NewValues, StandInTheFileAsIfTheyHadBeenWrittenThere) {
+TEST(NewValues, ReadAsIfWrittenInTheFile) {
     const std::string text = with_values(kSmallScene, "s.toml",
                                          {{"cue.speed", "0.1"},
                                           {"cue.offset.side", "-0.25"},
@@ -384,7 +384,7 @@ TEST(NewValues, StandInTheFileAsIfTheyHadBeenWrittenThere) {
     EXPECT_EQ(scene_text(parse_scene(with_values(kSmallScene, "s.toml", {}), "s.toml")), scene_text(before));
 }
 
-TEST(NewValues, SayWhatIsWrong) {
+TEST(NewValues, ExplainErrors) {
     const auto error_of = [](const std::string& key, const std::string& value) -> std::string {
         try {
             return with_values(kSmallScene, "s.toml", {{key, value}});

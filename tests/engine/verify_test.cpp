@@ -1,4 +1,4 @@
-// The judge judged: a record that breaks a law is caught, and the law named.
+// The checker catches a record that breaks a law, and names the law.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,18 +16,18 @@
 namespace carom::test {
 namespace {
 
-/// Two balls rolling behind one another on a table; the second is hit, and both come to rest.
+/// Two balls roll one behind the other on a table; the second is hit, and both come to rest.
 Plan roll_and_hit() {
     Scene scene = empty_scene();
     scene.table = make_table("nine_foot");
-    scene.balls.mu_s = 0.0;  // no cloth in the impact: U5 and U6 are exact
+    scene.balls.mu_s = 0.0;  // no cloth in the impact, so U5 and U6 are exact
     scene.stop.time = 2.0;
     add_ball(scene, "a", {0.5, 0.5, scene.balls.R}, {0.0, 0.8, 0.0}, {-0.8 / scene.balls.R, 0.0, 0.0});
     add_ball(scene, "b", {0.52, 0.9, scene.balls.R});
     return plan_of(scene);
 }
 
-TEST(Verify, NamesTheLawThatARecordBreaks) {
+TEST(Verify, NamesTheBrokenLaw) {
     const Plan plan = roll_and_hit();
     const Record good = simulate(plan);
     ASSERT_EQ(verify(good, plan), std::nullopt);
@@ -60,7 +60,7 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
          }},
         {"U3", "deep in a jaw",
          [&](Record& r) {
-             // Just beyond the end of a cushion, where its round end is but the cushion is not.
+             // Just beyond the end of a cushion: inside its round end but not the cushion.
              const CushionLine& line = plan.geometry.cushions.front();
              for (Segment& s : r.tracks[1].segments) s.r.head<2>() = line.from - 0.005 * line.direction;
          }},
@@ -69,7 +69,7 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
         {"U6", "turns a ball about the line of centres", [&](Record& r) { after_hit(r).w *= 0.5; }},
         {"U7", "rolls and slips",
          [&](Record& r) {
-             Segment& s = r.tracks[0].segments.back();  // less energy than there was
+             Segment& s = r.tracks[0].segments.back();  // less energy than before
              s.state = MotionState::kRolling;
              s.w = Vec3::Zero();
          }},
@@ -90,8 +90,7 @@ TEST(Verify, NamesTheLawThatARecordBreaks) {
     }
 }
 
-/// A straight shot: the slip of the two balls is vertical only,
-/// and the impulse of the cloth meets its limit exactly.
+/// A straight shot: the balls' slip is vertical only, and the cloth's impulse meets its limit exactly.
 Scene straight_shot(reference::Generator& random, double tolerance) {
     Scene scene = empty_scene();
     scene.physics.tolerance = tolerance;
@@ -104,7 +103,7 @@ Scene straight_shot(reference::Generator& random, double tolerance) {
     return scene;
 }
 
-/// The record up to its impact, after which the ball that was hit has lost this share of its speed.
+/// The record up to its impact, with the struck ball's speed then reduced by this share.
 void spoil_impact(Record& record, double share) {
     const auto hit = std::find_if(record.events.begin(), record.events.end(),
                                   [](const Event& e) { return e.type == EventType::kBallBall; });
@@ -116,7 +115,7 @@ void spoil_impact(Record& record, double share) {
     record.tracks[static_cast<std::size_t>(impact.b)].segments.back().v *= 1.0 - share;
 }
 
-/// A ball that runs into two that touch, without friction of the cloth.
+/// A ball that runs into two touching balls, without cloth friction.
 Plan small_cluster() {
     Scene scene = empty_scene();
     scene.balls.mu_s = 0.0;
@@ -128,7 +127,7 @@ Plan small_cluster() {
     return plan_of(scene);
 }
 
-TEST(Verify, KnowsTheLawsOfAClusterThatLasts) {
+TEST(Verify, ChecksTheLawsOfLastingClusters) {
     const Plan plan = small_cluster();
     const Record good = simulate(plan);
     ASSERT_EQ(verify(good, plan), std::nullopt);
@@ -154,7 +153,7 @@ TEST(Verify, KnowsTheLawsOfAClusterThatLasts) {
     }
 }
 
-// A record that ends while a cluster lasts has the motion afterwards, too.
+// A record that ends during a cluster also has the motion after it.
 TEST(Verify, ARunStopsInsideACluster) {
     const Plan plan = small_cluster();
     const Record whole = simulate(plan);
@@ -188,7 +187,7 @@ TEST(Verify, EnergyMayNotRiseInTheLastCluster) {
     EXPECT_EQ(violation->law, "U4") << violation->message;
 }
 
-// Frames, pages, glTF and samples read the places of a record.
+// Frames, pages, glTF and samples read places from a record.
 TEST(Verify, PlacesDoNotJumpInABreak) {
     constexpr double kStep = 1e-5, kFastest = 15.0;  // [s], [m/s]
     for (const char* name : {"eight_ball_break", "nine_ball_break"}) {
@@ -205,8 +204,8 @@ TEST(Verify, PlacesDoNotJumpInABreak) {
     }
 }
 
-// The limit of U5 has the slack of the tolerance, and no more: 4000 correct shots pass, and a speed that is
-// off by some tolerances fails.
+// The limit of U5 has the slack of the tolerance and no more: 4000 correct shots pass, and a speed wrong by a
+// few tolerances fails.
 TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     for (const double tolerance : {1e-3, 1e-6}) {
         reference::Generator random(5);
@@ -219,8 +218,8 @@ TEST(Verify, StraightShotsMeetTheLimitOfU5) {
                                     << violation->message;
             hits += count(record, EventType::kBallBall) > 0 ? 1 : 0;
             if (k % 40 != 0 || count(record, EventType::kBallBall) != 1) continue;
-            // The momentum of the pair then misses by ten tolerances,
-            // and the cloth's share is up to 0.04 of the impulse.
+            // The pair's momentum then misses by ten tolerances, and the cloth's share is up to 0.04 of the
+            // impulse.
             spoil_impact(record, 10.0 * tolerance + 2.0 * plan.balls.mu_s * plan.balls.mu_b);
             const auto wrong = verify(record, plan);
             ASSERT_TRUE(wrong) << "shot " << k << " at " << tolerance;
@@ -230,8 +229,8 @@ TEST(Verify, StraightShotsMeetTheLimitOfU5) {
     }
 }
 
-/// Two balls side by side on an endless cloth, or one and a
-/// cushion; "a" rolls past, and nothing happens until it stops.
+/// Two balls side by side on an endless cloth, or one and a cushion; "a" rolls past, and no event follows
+/// until it stops.
 Plan roll_past(bool cushion) {
     Scene scene = empty_scene();
     if (cushion) scene.table.cushions = {{"c", {-0.1, 0.3}, {-0.1, 0.5}, 0.036576}};
@@ -242,8 +241,8 @@ Plan roll_past(bool cushion) {
     return plan_of(scene);
 }
 
-// None of this shows at an event.
-TEST(Verify, LooksBetweenEvents) {
+// No event reveals any of these.
+TEST(Verify, ChecksBetweenEvents) {
     const struct {
         const char *law, *says;
         bool cushion;
@@ -291,9 +290,9 @@ TEST(Verify, LooksBetweenEvents) {
     }
 }
 
-// Behind an arc with ends nothing touches, so only the passage itself can be seen: a ball that leaves a table
-// of two half circles, in one piece of its motion. From behind a ball may come in.
-TEST(Verify, SeesABallPassARoundWall) {
+// Nothing touches behind an arc with ends, so only the passage itself shows: a ball that leaves a table of
+// two half circles within one segment. A ball may enter from behind.
+TEST(Verify, DetectsABallPassingARoundWall) {
     for (const bool out : {true, false}) {
         Scene scene = empty_scene();
         scene.balls.mu_s = scene.balls.mu_r = 0.0;

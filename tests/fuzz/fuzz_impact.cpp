@@ -1,4 +1,4 @@
-// Any text as a line of `carom impact`: the answer is one line of JSON without NaN, and comes at once.
+// Any text as a line of `carom impact`: the response is one prompt line of JSON without NaN.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace {
 
 using carom::tools::ImpactSettings;
 
-// By tolerance and by the published march; the cushions cover the closed forms.
+// By tolerance and by the published march; the cushions exercise the closed forms.
 void answer(std::string_view line, ImpactSettings settings) {
     const carom::tools::ImpactAnswer got = carom::tools::answer_impact(line, settings);
     if (got.json.find('\n') != std::string::npos) std::abort();

@@ -1,5 +1,5 @@
-// Any text as a number, wherever a scene or a rule accepts one: it is refused, or it is the number that the
-// text says.
+// Any text as a number, wherever a scene or a rule accepts one: it is refused, or read as the number in the
+// text.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -29,7 +29,7 @@ void check_number(double got, const std::string& text) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);
-    // Digits, a sign, a point and an exponent mean the same to strtod.
+    // strtod reads digits, signs, a point and an exponent the same way.
     if (size > 400 || text.find_first_not_of("+-.0123456789eE") != text.npos) return 0;
     for (const char* const key : {"gravity", "tolerance"}) {
         try {
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 carom::parse_scene(kScene + "[physics]\n" + key + " = " + text, "n.toml");
             check_number(key[0] == 'g' ? scene.physics.gravity : scene.physics.tolerance, text);
         } catch (const carom::SceneError& error) {
-            // An integer is named with its digits; toml++ names those that it cannot hold.
+            // Messages quote an integer's digits; toml++ quotes those that it cannot represent.
             const bool whole = size < 100 && text.find_first_of("123456789") == 0 &&
                                text.find_first_not_of("0123456789") == text.npos;
             expect(!whole || error.message().find(text) != text.npos);

@@ -1,4 +1,4 @@
-// Any text as a record file: read it, then query it as rendering does. Refusing is right; a crash, a hang or
+// Any text as a record file: read it, then query it as rendering does. It may be refused; a crash, a hang or
 // a NaN is a finding.
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Any text as a scene file: read it, plan it, run its first events. Refusing is right; a crash, a hang, a NaN
+// Any text as a scene file: read it, plan it, run its first events. It may be refused; a crash, a hang, a NaN
 // or an exception of another kind is a finding.
 #include <cmath>
 #include <cstddef>
@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (small) check_finite(carom::simulate(plan));
     } catch (const carom::SceneError&) {
     } catch (const carom::SimulationError&) {
-        // A run that cannot continue says so, which is also an answer.
+        // A run that cannot continue may say so.
     }
     return 0;
 }

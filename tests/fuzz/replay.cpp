@@ -1,5 +1,4 @@
-// Runs every file of the given folders through one fuzz target: the corpus as a plain test, built by any
-// compiler.
+// Runs every file of the given folders through one fuzz target: the corpus as a plain test, for any compiler.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

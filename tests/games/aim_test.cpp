@@ -1,4 +1,4 @@
-// Aiming aid: every aim found is played, and pots the ball.
+// Aiming aid: every aim that it finds is played and pots the ball.
 #include "carom/games/aim.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ Cue center_ball(double speed) {
     return cue;
 }
 
-/// Plays the aim: whether the ball falls into the pocket, and how many cushions it hit before.
+/// Plays the aim: whether the ball falls into the pocket, and the number of cushions before.
 struct Fate {
     bool fell = false;
     int cushions = 0;
@@ -56,7 +56,7 @@ Fate played(Scene scene, const Cue& cue, const std::string& ball, const std::str
     return fate;
 }
 
-TEST(Aim, DirectionsAreWithinSomeUlp) {
+TEST(Aim, DirectionsAreAccurateToAFewUlp) {
     EXPECT_NEAR(games::direction_deg({2.0, 0.0}), 0.0, 1e-13);
     EXPECT_NEAR(games::direction_deg({0.0, 0.5}), 90.0, 1e-13);
     EXPECT_NEAR(games::direction_deg({-3.0, 0.0}), 180.0, 1e-13);
@@ -67,7 +67,7 @@ TEST(Aim, DirectionsAreWithinSomeUlp) {
                     1e-13);
 }
 
-TEST(Aim, TheGhostBallTouchesOnTheFarSideAndTheCutIsTheAngleBetween) {
+TEST(Aim, TheGhostBallTouchesOnTheFarSideAtTheCutAngle) {
     const Vec2 ghost = games::ghost_ball({1.0, 1.0}, {0.0, 1.0}, 0.06);
     EXPECT_EQ(ghost, Vec2(1.0, 0.94));
     EXPECT_EQ(games::cut_angle_deg({1.0, 0.5}, ghost, {0.0, 1.0}), 0.0);
@@ -75,28 +75,28 @@ TEST(Aim, TheGhostBallTouchesOnTheFarSideAndTheCutIsTheAngleBetween) {
     EXPECT_NEAR(games::cut_angle_deg({1.0 - 0.44, 0.5}, ghost, {0.0, 1.0}), 45.0, 1e-13);
 }
 
-TEST(Aim, LinesIntoPocketsTouchNothing) {
+TEST(Aim, LinesIntoPocketsAreUnobstructed) {
     const Scene scene = pool_scene({0.3, 0.3}, {0.635, 1.27});
     const std::vector<PocketLine> lines = games::pocket_lines(scene, "1");
     ASSERT_EQ(lines.size(), 6u);
     for (const PocketLine& line : lines) EXPECT_TRUE(line.open()) << line.pocket;
-    // From the middle of the table, opposite pockets are alike.
+    // From the middle of the table, opposite pockets are equal.
     for (std::size_t k = 0; k < 3; ++k) {
         const PocketLine &a = lines[k], &b = lines[k + 3];
         EXPECT_NEAR(a.width_deg, b.width_deg, 1e-6);
         EXPECT_NEAR(a.towards.x(), -b.towards.x(), 1e-7);
     }
-    // The side pocket straight ahead: its mouth of 5 1/16 in less a ball, seen from half the width.
+    // The side pocket straight ahead: its mouth of 5 1/16 in, less a ball, seen from half the width.
     const double mouth = 5.0625 * 0.0254,
                  seen = 2.0 * std::atan((mouth / 2.0 - 0.028575) / 0.635) * 57.29577951308232;
     EXPECT_NEAR(lines[1].width_deg, seen, 0.15 * seen);
-    // Close along the long rail no side pocket is open.
+    // Close to the long rail, no side pocket is open.
     const std::vector<PocketLine> rail = games::pocket_lines(pool_scene({0.3, 0.3}, {0.03, 0.5}), "1");
     EXPECT_EQ(rail[1].width_deg, 0.0);
     EXPECT_GT(rail[0].width_deg, 0.0);
 }
 
-TEST(Aim, ABallInTheWayIsNamed) {
+TEST(Aim, ABlockingBallIsNamed) {
     Scene scene = pool_scene({0.3, 0.3}, {0.635, 1.27});
     const Vec2 towards = games::pocket_lines(scene, "1")[2].towards;
     const Vec2 between = Vec2(0.635, 1.27) + 0.5 * towards;
@@ -127,14 +127,14 @@ TEST(Aim, ThrowIsCompensated) {
     Scene missed = scene;
     const Aim aim = games::aim_pot(scene, center_ball(1.5), "1", "p4");
     ASSERT_TRUE(aim.cue) << aim.why;
-    // Throw pushes the ball along with the cue ball: the aim is
-    // a little thinner, by some tenths of a degree at most.
+    // Throw pushes the ball along with the cue ball, so the aim is thinner by some tenths of a degree at
+    // most.
     EXPECT_GT(std::abs(aim.cue->aim_deg - aim.geometric_deg), 1e-3);
     EXPECT_LT(std::abs(aim.cue->aim_deg - aim.geometric_deg), 2.0);
     EXPECT_TRUE(played(scene, *aim.cue, "1", "p4").fell);
 }
 
-// Random places, speeds and offsets, and all pockets that are open within 70 degrees of cut.
+// Random places, speeds and offsets, and all pockets open within 70 degrees of cut.
 TEST(Aim, PotsAtRandom) {
     SplitMix64 random(21);
     int found = 0, tried = 0, shots = 0, none = 0;
@@ -169,7 +169,7 @@ TEST(Aim, PotsAtRandom) {
     EXPECT_LT(shots, 14 * found) << "shots for an aim";
 }
 
-TEST(Aim, SaysWhyThereIsNone) {
+TEST(Aim, ExplainsWhyNoAimExists) {
     Scene scene = pool_scene({0.635, 1.8}, {0.635, 1.27});
     EXPECT_EQ(games::aim_pot(scene, center_ball(3.0), "1", "p3").why, "the cut would be 90 degrees or more");
     const Scene rail = pool_scene({0.3, 0.3}, {0.03, 0.5});
@@ -179,7 +179,7 @@ TEST(Aim, SaysWhyThereIsNone) {
     const Scene far = pool_scene({0.635, 0.4}, {0.635, 0.8});
     EXPECT_EQ(games::aim_pot(far, center_ball(0.3), "1", "p3").why,
               "the ball runs towards the pocket but does not fall");
-    // Something between cue ball and ball.
+    // An obstacle between cue ball and ball.
     Scene hidden = pool_scene({0.4, 0.4}, {0.7, 1.4});
     add_ball(hidden, "2", 0.55, 0.9);
     const Aim aim = games::aim_pot(hidden, center_ball(3.0), "1", "p4");
@@ -200,7 +200,7 @@ TEST(Aim, ABallOnTheRailRunsAlongIt) {
     }
 }
 
-TEST(Aim, BanksGoOverOneCushionIntoThePocket) {
+TEST(Aim, BanksUseOneCushion) {
     SplitMix64 random(22);
     int routes = 0, scenes = 0;
     for (int round = 0; round < 12; ++round) {

@@ -65,7 +65,7 @@ TEST(ThreeCushion, APointIsThreeCushionsBeforeTheSecondBall) {
     }
 }
 
-TEST(ThreeCushion, TwoCushionsOrOneBallAreNoPoint) {
+TEST(ThreeCushion, TwoCushionsOrOneBallScoreNothing) {
     const Record two = whites_shot()
                            .hit("white", "red")
                            .cushion("white", 0)
@@ -126,7 +126,7 @@ TEST(ThreeCushion, TheOpeningShotIsAtTheRed) {
     EXPECT_EQ(judge(inning(), yellow).points, 1);
 }
 
-TEST(ThreeCushion, BallsOffTheTableComeBackToTheirSpots) {
+TEST(ThreeCushion, BallsOffTheTableReturnToTheirSpots) {
     const Table carom = make_table("carom");
     const Verdict red = judge(inning(), whites_shot().hit("white", "red").out("red").record());
     EXPECT_EQ(red.fouls, (Fouls{Foul::kBallOff}));
@@ -142,14 +142,14 @@ TEST(ThreeCushion, BallsOffTheTableComeBackToTheirSpots) {
     EXPECT_EQ(all.respots()[2], (games::Respot{"yellow", games::head_spot(carom)}));
 }
 
-TEST(ThreeCushion, ABallWhoseSpotIsTakenGoesToTheSpotOfTheOneInTheWay) {
+TEST(ThreeCushion, ABallWhoseSpotIsTakenGoesToTheBlockingBallsSpot) {
     const Table carom = make_table("carom");
     const Vec2 foot = foot_spot(carom);
-    // Yellow, the next cue ball, lies on the foot spot: the red goes to the head spot.
+    // Yellow, the next cue ball, lies on the foot spot, so the red goes to the head spot.
     const Record one =
         whites_shot().hit("white", "red").out("red").rests("yellow", foot.x(), foot.y()).record();
     EXPECT_EQ(judge(inning(), one).respots()[0].place, games::head_spot(carom));
-    // White lies on it: the middle.
+    // White lies on it, so the red goes to the middle.
     const Record other =
         whites_shot().hit("white", "red").out("red").rests("white", foot.x() + 0.01, foot.y()).record();
     EXPECT_EQ(judge(inning(), other).respots()[0].place, games::center_spot(carom));
@@ -183,7 +183,7 @@ TEST(ThreeCushion, TheTargetEndsTheGame) {
     EXPECT_EQ(v.next().winner, 0);
 }
 
-TEST(SumToThree, ThreeCushionsOfBothBallsTogetherWithAHitAreAPoint) {
+TEST(SumToThree, ThreeCushionsOfBothBallsWithAHitScore) {
     const auto shot = [](int cue, int object, bool hit) {
         Told told("carom");
         told.ball("cue", 0.5, 0.7).ball("1", 0.71, 1.5).strike("cue");

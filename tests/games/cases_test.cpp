@@ -1,4 +1,4 @@
-// The cases of tests/data/games: every sentence of a rule book that a record can show, as a shot.
+// The cases of tests/data/games: every rule-book sentence that a record can show, as a shot.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -181,7 +181,7 @@ std::string place_of(const std::string& ball, const games::Option& option, const
     return "nowhere";
 }
 
-/// A number of a verdict by its name.
+/// A number of a verdict, by name.
 std::string told_of(const std::string& key, const Verdict& v, const std::string& expected) {
     const games::Option& option = v.options.front();
     const State& s = option.state;
@@ -233,7 +233,7 @@ std::string told_of(const std::string& key, const State& state, const Words& bal
 
 class Cases : public testing::TestWithParam<std::string> {};
 
-TEST_P(Cases, AreJudgedAsTheBookSays) {
+TEST_P(Cases, AreJudgedByTheBook) {
     const auto game = value<Game>(GetParam());
     std::ifstream file(std::string(CAROM_SOURCE_DIR) + "/tests/data/games/" + GetParam() + ".txt");
     int cases = 0;
@@ -241,7 +241,7 @@ TEST_P(Cases, AreJudgedAsTheBookSays) {
         if (line.empty() || line[0] == '#') continue;
         SCOPED_TRACE(line);
         ++cases;
-        // A cushion is a | without spaces.
+        // A cushion is a | without spaces around it.
         Words columns;
         std::size_t from = 0;
         for (std::size_t at = 0; (at = line.find(" | ", from)) != std::string::npos; from = at + 3)

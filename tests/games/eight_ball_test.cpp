@@ -1,5 +1,5 @@
-// Eight-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test has the number of
-// its rule.
+// Eight-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test name has its
+// rule's number.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -75,7 +75,7 @@ TEST(EightBall, Rule33bNoBallIsCalledAndAnyMayBeMetFirst) {
     EXPECT_TRUE(judge(break_shot(), full_rack().hit("cue", "8").pocket("3").record()).fouls.empty());
 }
 
-TEST(EightBall, Rule33cABallOnTheBreakGoesOnWithAnOpenTable) {
+TEST(EightBall, Rule33cABallOnTheBreakContinuesWithAnOpenTable) {
     const Verdict v = judge(break_shot(), full_rack().hit("cue", "1").pocket("3").record());
     EXPECT_EQ(v.next().turn, 0);
     EXPECT_FALSE(v.next().opening);
@@ -112,7 +112,7 @@ TEST(EightBall, Rule33eTheEightOnALegalBreakMaySpotOrBreakAgain) {
     EXPECT_EQ(v.options[1].state, games::new_game(Game::kEightBall, 0));
 }
 
-TEST(EightBall, Rule33fTheEightWithAScratchOnTheBreakLeavesItToTheOther) {
+TEST(EightBall, Rule33fTheEightWithAScratchOnTheBreakGivesTheOtherTheChoice) {
     const Verdict v = judge(break_shot(), full_rack().hit("cue", "1").pocket("8").pocket("cue").record());
     EXPECT_EQ(v.fouls, (Fouls{Foul::kCueBallPocketed}));
     EXPECT_EQ(v.chooser, 1);
@@ -134,7 +134,7 @@ TEST(EightBall, Rule33gABallOffTheTableOnTheBreakStaysOut) {
     EXPECT_EQ(eight.respots().size(), 1u);
 }
 
-TEST(EightBall, Rule33hAnotherFoulOnTheBreakIsTakenInHandBehindTheHeadString) {
+TEST(EightBall, Rule33hAnotherFoulOnTheBreakGivesBallInHandBehindTheHeadString) {
     const Verdict v = judge(break_shot(), full_rack().hit("cue", "1").pocket("3").pocket("cue").record());
     EXPECT_EQ(decisions(v), (Decisions{Decision::kTakeInHand}));
     EXPECT_EQ(v.next().turn, 1);
@@ -167,14 +167,14 @@ TEST(EightBall, Rule34TheEightMayNotBeMetFirstOnAnOpenTable) {
     EXPECT_EQ(games::legal(playing(Group::kOpen), balls).first, (std::vector<std::string>{"1", "9"}));
 }
 
-TEST(EightBall, Rule35ACalledBallGoesOnAndAnotherDoesNot) {
+TEST(EightBall, Rule35OnlyACalledBallContinuesTheTurn) {
     const std::vector<std::string> ids = {"1", "2", "9"};
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"}), {"1", "p1"}).next().turn, 0);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "2", {"1"}), {"1", "p1"}).next().turn, 0);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"}), {"1", "p2"}).next().turn, 1);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"}), {"2", "p1"}).next().turn, 1);
     EXPECT_EQ(judge(playing(Group::kSolids), potted(ids, "1", {"1"})).next().turn, 1);
-    // Balls that fall besides the called one stay down and do no harm.
+    // Balls that fall besides the called one stay down without penalty.
     const Verdict both = judge(playing(Group::kSolids), potted(ids, "1", {"9", "1"}), {"1", "p1"});
     EXPECT_EQ(both.next().turn, 0);
     EXPECT_TRUE(both.respots().empty());
@@ -208,7 +208,7 @@ TEST(EightBall, Rule38aTheEightWithAFoulLoses) {
 
 TEST(EightBall, Rule38bTheEightBeforeTheGroupLoses) {
     EXPECT_EQ(judge(playing(Group::kSolids), potted({"1"}, "1", {"8"}), {"8", "p1"}).next().winner, 1);
-    // With the last ball of the group in the same shot, too.
+    // Also if the group's last ball falls in the same shot.
     EXPECT_EQ(judge(playing(Group::kSolids), potted({"1"}, "1", {"1", "8"}), {"8", "p1"}).next().winner, 1);
     EXPECT_EQ(judge(playing(Group::kOpen), potted({"1", "9"}, "1", {"8"}), {"8", "p1"}).next().winner, 1);
 }
@@ -240,12 +240,12 @@ TEST(EightBall, Rule61TheCueBallInAPocketOrOffTheTable) {
     EXPECT_STREQ(games::rule_of(Game::kEightBall, Foul::kCueBallOff), "WPA 6.1");
 }
 
-TEST(EightBall, Rule62TwoBallsMetAtOnceCountForTheShooter) {
+TEST(EightBall, Rule62TwoBallsHitAtOnceCountForTheShooter) {
     const Record record = table({"1", "9"}).strike("cue").hit_both("cue", "9", "1").cushion("1").record();
     EXPECT_TRUE(judge(playing(Group::kSolids), record).fouls.empty());
 }
 
-TEST(EightBall, Rule63WithoutABallDownOneHasToMeetACushionAfterTheContact) {
+TEST(EightBall, Rule63WithoutABallDownOneMustReachACushionAfterTheContact) {
     const State state = playing(Group::kSolids);
     const Told met = table({"1", "9"}).strike("cue").cushion("cue").hit("cue", "1");
     EXPECT_EQ(judge(state, met.record()).fouls, (Fouls{Foul::kNoCushion}));
@@ -273,12 +273,12 @@ TEST(EightBall, Rule611FromBehindTheHeadStringABallBehindItIsReachedOverTheStrin
     EXPECT_EQ(judge(state, straight.record()).fouls, (Fouls{Foul::kBehindHeadString}));
     const Told around = Told(told).passes("cue", 0.6, 2.4).hit("cue", "1").cushion("1");
     EXPECT_TRUE(judge(state, around.record()).fouls.empty());
-    // In hand anywhere, there is no such line.
+    // In hand anywhere, that line does not apply.
     state.in_hand = InHand::kAnywhere;
     EXPECT_TRUE(judge(state, straight.record()).fouls.empty());
 }
 
-TEST(EightBall, WhatIsNoShotOfTheGameIsRefused) {
+TEST(EightBall, ShotsOfAnotherGameAreRefused) {
     EXPECT_THROW(judge(break_shot(), Told().ball("cue", 0.5, 0.5).strike("cue").record()),
                  std::invalid_argument);
     EXPECT_THROW(judge(break_shot(), table({"1"}).record()), std::invalid_argument);

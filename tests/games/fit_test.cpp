@@ -1,4 +1,4 @@
-// Fits of synthetic tracks, whose numbers are known.
+// Fits of synthetic tracks with known numbers.
 #include "carom/games/fit.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ Scene started(double off) {
     return scene;
 }
 
-TEST(Fit, FindsTheNumbersOfExactTracks) {
+TEST(Fit, RecoversTheNumbersOfExactTracks) {
     const Fit found =
         fit(started(1.0), tracks_of(three_cushion(), 6.5, 0.0, 1), {kVary}, kernel::Isa::kScalar);
     EXPECT_TRUE(found.converged) << found.trouble;
@@ -65,9 +65,9 @@ TEST(Fit, FindsTheNumbersOfExactTracks) {
     EXPECT_TRUE(found.warnings.empty()) << found.warnings[0];
 }
 
-// With 1 mm of noise, in 95 of 100 trials all numbers lie within three standard deviations of the truth; and
-// they lie as far away as the deviations say.
-TEST(Fit, DeviationsAreThoseOfNoisyTracks) {
+// With 1 mm of noise, all numbers lie within three standard deviations of the truth in 95 of 100 trials, and
+// their spread matches the deviations.
+TEST(Fit, DeviationsMatchNoisyTracks) {
     const int trials = 100;
     int good = 0;
     double squares = 0.0;
@@ -89,7 +89,7 @@ TEST(Fit, DeviationsAreThoseOfNoisyTracks) {
     EXPECT_NEAR(squares, 1.0, 0.25);
 }
 
-TEST(Fit, LeavesOutliersAsideAndGapsOut) {
+TEST(Fit, IgnoresOutliersAndGaps) {
     std::vector<TrackPoint> points = tracks_of(three_cushion(), 3.0, 1e-3, 7);
     for (std::size_t i = 0; i < points.size(); i += 17) points[i].place.x() += 0.3;
     points.erase(points.begin() + 100, points.begin() + 160);
@@ -102,8 +102,8 @@ TEST(Fit, LeavesOutliersAsideAndGapsOut) {
     }
 }
 
-// The truth lies at the end of a range, where a number has no derivative: shorter steps end near it.
-TEST(Fit, GoesToTheEndOfARange) {
+// The truth is at the end of a range, where a number has no derivative: steps shorten near it.
+TEST(Fit, ReachesTheEndOfARange) {
     Scene scene = three_cushion();
     scene.balls.e_b = 1.0;
     const std::vector<TrackPoint> points = tracks_of(scene, 3.0, 0.0, 1);
@@ -112,9 +112,10 @@ TEST(Fit, GoesToTheEndOfARange) {
     EXPECT_GT(found.values[0], 0.995) << found.trouble;
 }
 
-TEST(Fit, SaysWhatTheTracksCannotTell) {
+TEST(Fit, ReportsUndeterminedNumbers) {
     Scene scene = three_cushion();
-    // Before the first impact, nothing depends on the cushions, and mass and speed of the cue act alike.
+    // Before the first impact, nothing depends on the cushions, and the cue's mass and speed have the same
+    // effect.
     const std::vector<TrackPoint> points = tracks_of(scene, 0.05, 0.0, 1);
     scene.cue->speed *= 1.001;
     const Fit found =

@@ -1,4 +1,4 @@
-// Batches that judge: what the rules say about every shot by itself, whatever the number of threads.
+// Judged batches: the rules' verdict on every single shot, for any number of threads.
 #include "carom/games/judge_many.h"
 
 #include <gtest/gtest.h>
@@ -44,8 +44,7 @@ const std::vector<GameScene>& game_scenes() {
     return list;
 }
 
-/// Tables with balls anywhere, some of them gone, and random strikes; now and then a jump, or an illegal
-/// strike.
+/// Tables with balls anywhere, some missing, and random strikes; occasionally a jump or an illegal strike.
 struct RandomTables {
     Scene base;
     std::vector<std::string> keys = {"cue.aim_deg", "cue.speed", "cue.elevation_deg"};
@@ -127,7 +126,7 @@ Judgements judged(const RandomTables& tables, Game game, int threads) {
     return j;
 }
 
-/// The first ball that falls and may be called, found ball by ball.
+/// The first fallen ball that may be called, found ball by ball.
 games::Call call_of(const games::State& state, const Scene& scene, const Record& record) {
     std::vector<std::string> ids;
     for (const BallStart& ball : scene.ball) ids.push_back(ball.id);
@@ -140,7 +139,7 @@ games::Call call_of(const games::State& state, const Scene& scene, const Record&
     return {};
 }
 
-/// How often something happened in a game.
+/// Counts of outcomes in a game.
 struct Seen {
     int fouls = 0, fair = 0, points = 0, turns = 0, back = 0, refused = 0;
 };
@@ -192,7 +191,7 @@ void expect_row(const RandomTables& tables, Game game, const Judgements& got, st
     seen.turns += got.goes_on[i];
 }
 
-TEST(JudgeMany, SaysWhatTheRulesSayOfEveryShot) {
+TEST(JudgeMany, GivesTheVerdictOfTheRulesForEveryShot) {
     for (const GameScene& of : game_scenes()) {
         const RandomTables tables(of, 720);  // few random shots score at three-cushion
         Seen seen;
@@ -215,7 +214,7 @@ TEST(JudgeMany, SaysWhatTheRulesSayOfEveryShot) {
     }
 }
 
-// Like judge(): a table without a ball that the game needs is the caller's mistake.
+// Like judge(): a table without a ball that the game needs is the caller's error.
 TEST(JudgeMany, RefusesATableWithoutItsBalls) {
     RandomTables tables(game_scenes()[1], 40);
     for (std::size_t b = 0; b < tables.base.ball.size(); ++b)

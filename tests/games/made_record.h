@@ -1,4 +1,4 @@
-// Records made for a rule: balls lie where they are put, and events are added one by one.
+// Records made for a rule: balls at given places, and events added one by one.
 #pragma once
 
 #include <cstdlib>
@@ -12,7 +12,7 @@
 
 namespace carom::test {
 
-/// A shot as a referee would tell it. Every call is an event, a tenth of a second after the previous one.
+/// A shot in a referee's words. Every call adds an event, a tenth of a second after the previous one.
 class Told {
   public:
     explicit Told(const std::string& table = "nine_foot") {
@@ -27,7 +27,7 @@ class Told {
         record_.tracks.push_back({.id = id, .segments = {rest}});
         return *this;
     }
-    /// Balls in a row that block nobody.
+    /// Balls in a row that block none.
     Told& balls(const std::vector<std::string>& ids) {
         for (const std::string& id : ids) {
             const std::div_t at_row = std::div(static_cast<int>(record_.tracks.size()), 15);
@@ -37,7 +37,6 @@ class Told {
     }
     Told& strike(const std::string& id) { return add(EventType::kCueStrike, at(id), -1); }
     Told& hit(const std::string& a, const std::string& b) { return add(EventType::kBallBall, at(a), at(b)); }
-    /// Two balls at the same instant.
     Told& hit_both(const std::string& a, const std::string& b, const std::string& c) {
         hit(a, b);
         record_.events.push_back(record_.events.back());
@@ -48,7 +47,7 @@ class Told {
         const Cushion& c = record_.table.cushions[static_cast<std::size_t>(part)];
         const Vec2 middle = (c.from + c.to) / 2.0;
         add(EventType::kBallCushion, at(id), part);
-        // The ball has come there; its radius does not matter to the rules.
+        // The ball has arrived there; its radius does not matter to the rules.
         move(at(id), {middle.x(), middle.y(), record_.balls.R}, MotionState::kStationary);
         return *this;
     }
@@ -65,13 +64,12 @@ class Told {
         move(at(id), {-1.0, -1.0, 0.5}, MotionState::kOut);
         return *this;
     }
-    /// The ball comes to rest there.
     Told& rests(const std::string& id, double x, double y) {
         add(EventType::kRollStop, at(id), -1);
         move(at(id), {x, y, record_.balls.R}, MotionState::kStationary);
         return *this;
     }
-    /// Where a ball goes before the next event.
+    /// The ball's place before the next event.
     Told& passes(const std::string& id, double x, double y) {
         time_ += 0.1;
         move(at(id), {x, y, record_.balls.R}, MotionState::kStationary);

@@ -1,4 +1,4 @@
-// Random matches: whatever is played, every verdict is consistent, and the next scene is valid.
+// Random matches: every verdict is consistent, and the next scene is valid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ const Start kStarts[] = {
     {Game::kFourBall, "[table]\npreset = \"carom\"\n[rack]\ngame = \"four_ball\"\n"},
 };
 
-/// A match against chance.
+/// A match of random players.
 class Match {
   public:
     Match(const Start& start, std::uint64_t seed) : start_(start), random_(seed) {
@@ -55,7 +55,7 @@ class Match {
         rack();
     }
 
-    /// Plays until the game is over. @return how many shots
+    /// Plays until the game is over. @return the number of shots
     int play(int most) {
         for (int shot = 1; shot <= most; ++shot) {
             SCOPED_TRACE("shot " + std::to_string(shot));
@@ -187,7 +187,7 @@ class Match {
                 const Vec2 from = r.place - record.table.corner;
                 const bool on_bed = from.x() > 0.0 && from.y() > 0.0 && from.x() < record.table.width &&
                                     from.y() < record.table.length;
-                // A replaced ball may have been between the jaws of a pocket.
+                // A respotted ball may have been between the jaws of a pocket.
                 const int ball = games::index_of(record, r.ball);
                 const bool was_there = option.decision == games::Decision::kReplace &&
                                        r.place == planar(record.state_at(ball, 0.0).position);
@@ -201,7 +201,7 @@ class Match {
             verdict.chooser != state_.turn)
             EXPECT_EQ(verdict.next().turn, 1 - state_.turn);
     }
-    /// Whether the game keeps the points of its verdicts.
+    /// Whether the game scores its verdicts' points.
     bool counts() const {
         return state_.game != Game::kEightBall && state_.game != Game::kNineBall &&
                state_.game != Game::kTenBall;

@@ -1,4 +1,4 @@
-// Measures and expressions: against the record, and what is refused.
+// Measures and expressions: against the record, and their refusals.
 #include "carom/games/measures.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string asked(const std::string& text, const Scene& scene, const Record& rec
     return text_of(Measure(text, scene, games::Game::kEightBall).of(record));
 }
 
-TEST(Measures, TellWhatAShotDid) {
+TEST(Measures, DescribeAShot) {
     const Scene scene = scene_named("draw");
     const Record record = simulate(plan_of(scene));
     const auto is = [&](const std::string& text, const std::string& value) {
@@ -85,7 +85,7 @@ TEST(Measures, TheRouteOfAShotAndItsPoints) {
     for (const char* game : {"three_cushion", "one_cushion", "straight_rail"})
         is(std::string("point(") + game + ")", "1");
     EXPECT_THROW(asked("\"top\" in route", scene, record), MeasureError);
-    // Nothing is met.
+    // The ball meets nothing.
     Scene alone = scene;
     alone.ball.resize(1);
     const Record miss = simulate(plan_of(alone));
@@ -93,7 +93,7 @@ TEST(Measures, TheRouteOfAShotAndItsPoints) {
     EXPECT_EQ(asked("kick or carom", alone, miss), "0");
 }
 
-// The cue ball comes to ball 1 off the head rail; ball 2 off a rail into a corner; ball 4 pushed by ball 3.
+// The cue ball reaches ball 1 off the head rail; ball 2 goes off a rail into a corner; ball 3 pushes ball 4.
 TEST(Measures, KicksBanksAndCombinations) {
     const auto shot = [](const std::string& balls) {
         return parse_scene("[table]\npreset = \"nine_foot\"\n" + balls, "shot.toml");
@@ -115,7 +115,7 @@ TEST(Measures, KicksBanksAndCombinations) {
     EXPECT_EQ(asked("bank and not combination and not kick", bank, simulate(plan_of(bank))), "1");
 }
 
-TEST(Measures, TravelIsThePathThatSamplesAdd) {
+TEST(Measures, TravelMatchesTheSampledPath) {
     for (const char* name : {"three_cushion", "eight_ball_break", "jump", "masse"}) {
         SCOPED_TRACE(name);
         const std::string path = std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
@@ -148,14 +148,14 @@ TEST(Measures, BreaksAreJudgedByTheirGame) {
     EXPECT_EQ(asked("legal_break(eight_ball)", scene, record), "1");
     EXPECT_EQ(asked("break_foul(eight_ball)", scene, record), "");
     EXPECT_EQ(asked("driven >= 4", scene, record), "1");
-    // Without the game's balls there is nothing to judge.
+    // Without the game's balls there is no verdict.
     const Scene two = scene_named("draw");
     EXPECT_THROW(asked("foul", two, simulate(plan_of(two))), std::invalid_argument);
 }
 
-// The head string of this table is at y = 0.635. Ball 1 is driven across it, ball 2 falls, ball 3 stays, and
-// the struck ball does not count.
-TEST(Measures, BallsThatFellOrCrossedTheHeadString) {
+// The head string of this table is at y = 0.635. Ball 1 crosses it, ball 2 falls, ball 3 stays, and the
+// struck ball does not count.
+TEST(Measures, CountBallsThatFellOrCrossedTheHeadString) {
     const Scene scene = parse_scene(
         "[table]\npreset = \"nine_foot\"\n[[ball]]\nposition = [0.635, 0.3]\n[cue]\nspeed = 0.2\naim_deg = "
         "180\n"
@@ -168,7 +168,7 @@ TEST(Measures, BallsThatFellOrCrossedTheHeadString) {
     EXPECT_EQ(asked("past_head_string", scene, record), "2");
 }
 
-TEST(Measures, MistakesAreToldWhereTheyAre) {
+TEST(Measures, MistakesAreLocated) {
     const Scene scene = scene_named("draw");
     const auto refused = [&](const std::string& text, const std::string& why) {
         try {

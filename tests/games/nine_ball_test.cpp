@@ -1,5 +1,5 @@
-// Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test has the number of
-// its rule.
+// Nine-ball: the sentences of the WPA's Rules of Play (15 March 2016) as shots. Each test name has its rule's
+// number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ State second_shot() {
     return state;
 }
 
-TEST(NineBall, Rule23OnTheBreakTheOneIsMetFirstAndSomethingFallsOrFourMeetACushion) {
+TEST(NineBall, Rule23TheBreakHitsTheOneFirstAndABallFallsOrFourReachACushion) {
     EXPECT_EQ(judge(nine_break(), nine_table(1).hit("cue", "2").pocket("3").record()).fouls,
               (Fouls{Foul::kWrongBallFirst}));
     const Told few = nine_table(1).hit("cue", "1").cushion("1").cushion("2").cushion("3").cushion("cue");
@@ -81,7 +81,7 @@ TEST(NineBall, Rule24AfterAFairBreakAPushOutNeedsNeitherBallNorCushion) {
     EXPECT_EQ(push.options[1].state.turn, 0);
     EXPECT_FALSE(push.options[0].state.may_push_out);
     EXPECT_TRUE(judge(second_shot(), nine_table(1).record(), kPush).fouls.empty());
-    // Unannounced, it is an ordinary shot; and there is none later in the rack.
+    // Unannounced, it is an ordinary shot; later in the rack there is none.
     EXPECT_EQ(judge(second_shot(), nine_table(1).hit("cue", "4").record()).fouls,
               (Fouls{Foul::kWrongBallFirst, Foul::kNoCushion}));
     EXPECT_EQ(judge(playing(), nine_table(1).record(), kPush).fouls, (Fouls{Foul::kNoBallHit}));
@@ -93,7 +93,7 @@ TEST(NineBall, Rule24AFoulOnAPushOutIsAFoul) {
     EXPECT_EQ(v.next().in_hand, InHand::kAnywhere);
 }
 
-TEST(NineBall, Rule25ABallThatFallsFairlyGoesOn) {
+TEST(NineBall, Rule25AFairPotContinuesTheTurn) {
     EXPECT_EQ(games::legal(playing(), std::vector<std::string>{"cue", "7", "3", "9"}).first,
               (std::vector<std::string>{"3"}));
     EXPECT_EQ(judge(playing(), nine_table(3).hit("cue", "3").pocket("7").record()).next().turn, 0);
@@ -107,7 +107,7 @@ TEST(NineBall, Rule25TheNineWinsWheneverItFallsFairly) {
     EXPECT_TRUE(judge(nine_break(), nine_table(1).hit("cue", "1").pocket("9").record()).next().over);
 }
 
-TEST(NineBall, Rule26TheNineComesBackAfterAFoulAndAPushOutAndOffTheTable) {
+TEST(NineBall, Rule26TheNineReturnsAfterAFoulAPushOutOrOffTheTable) {
     const Vec2 spot = foot_spot(make_table("nine_foot"));
     for (const Verdict& v : {judge(playing(), nine_table(3).hit("cue", "4").pocket("9").record()),
                              judge(second_shot(), nine_table(1).hit("cue", "4").pocket("9").record(), kPush),
@@ -117,7 +117,7 @@ TEST(NineBall, Rule26TheNineComesBackAfterAFoulAndAPushOutAndOffTheTable) {
         EXPECT_EQ(v.respots()[0].ball, "9");
         EXPECT_EQ(v.respots()[0].place, spot);
     }
-    // No other ball does.
+    // No other ball returns.
     EXPECT_TRUE(
         judge(playing(), nine_table(3).hit("cue", "4").pocket("5").out("6").record()).respots().empty());
 }
@@ -159,7 +159,7 @@ TEST(NineBall, NumbersThatWouldOverflowAreRefused) {
         }
 }
 
-// Of a lattice with steps of a quarter of a radius, by trying all of it.
+// The nearest free place of a lattice with steps of a quarter of a radius, by trying all of it.
 TEST(NineBall, TheFreePlaceIsTheNearestOne) {
     const Record record = nine_table(1).hit("cue", "2").record();
     const games::Option option = judge(playing(), record).options.front();
@@ -179,8 +179,7 @@ TEST(NineBall, TheFreePlaceIsTheNearestOne) {
     }
 }
 
-// An option that respots a ball, with a record or a scene that does not have it: nothing is read out of
-// bounds.
+// An option that respots a ball, with a record or scene without that ball, must not read out of bounds.
 TEST(NineBall, AnOptionOfAnotherRecordIsRefused) {
     const Record record = nine_table(1).hit("cue", "2").pocket("9").record();
     const Record other = Told().ball("cue", 0.6, 0.3).ball("1", 0.6, 1.0).strike("cue").record();

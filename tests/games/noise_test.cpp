@@ -1,4 +1,4 @@
-// Execution noise: the promised errors, the same for a seed, and always a legal strike.
+// Execution noise: the promised errors, reproducible by seed, and always a legal strike.
 #include "carom/games/noise.h"
 
 #include <gtest/gtest.h>
@@ -47,23 +47,23 @@ TEST(Noise, ByNameHasThePublishedDeviations) {
     EXPECT_THROW(noise_by_name("fastfiz", 0.0), std::invalid_argument);
 }
 
-TEST(Noise, NoneLeavesAStrikeToTheBit) {
+TEST(Noise, NoNoiseKeepsEveryBit) {
     EXPECT_EQ(with_noise(meant(), Noise(), 7, 3), meant());
 }
 
-TEST(Noise, IsTheSameForASeedAndAnotherForAnother) {
+TEST(Noise, IsReproducibleBySeed) {
     EXPECT_EQ(with_noise(meant(), kOwn, 7, 3), with_noise(meant(), kOwn, 7, 3));
     EXPECT_NE(with_noise(meant(), kOwn, 7, 3), with_noise(meant(), kOwn, 7, 4));
     EXPECT_NE(with_noise(meant(), kOwn, 7, 3), with_noise(meant(), kOwn, 8, 3));
-    // An error does not depend on what else is uncertain.
+    // An error does not depend on the other uncertain quantities.
     const Noise aim_only = {0.0, kOwn.aim_deg, 0.0, 0.0, 0.0};
     const Cue one = with_noise(meant(), aim_only, 7, 3);
     EXPECT_EQ(one.aim_deg, with_noise(meant(), kOwn, 7, 3).aim_deg);
     EXPECT_EQ(one.speed, 4.0);
 }
 
-// The draws of `carom sweep`, so that a sweep and a game agree.
-TEST(Noise, DrawsWhatASweepDraws) {
+// Uses the draws of `carom sweep`, so that a sweep and a game agree.
+TEST(Noise, DrawsLikeASweep) {
     const std::string text =
         "[[ball]]\nid = \"cue\"\n[cue]\nspeed = 4.0\naim_deg = 33.0\nelevation_deg = 20.0\noffset = [0.1, "
         "-0.2]\n";
@@ -103,7 +103,7 @@ TEST(Noise, HasItsDeviations) {
 }
 
 // Strikes at every limit, with noise as large as the range.
-TEST(Noise, IsAlwaysAStrikeThatASceneTakes) {
+TEST(Noise, IsAlwaysALegalStrike) {
     Scene scene = empty_scene();
     add_ball(scene, "cue", 0.5, 0.5);
     const Noise wild = {3.0, 400.0, 60.0, 0.6, 0.6};
@@ -125,7 +125,7 @@ TEST(Noise, IsAlwaysAStrikeThatASceneTakes) {
     EXPECT_GT(at_rim, 300);
 }
 
-TEST(Noise, RefusesWhatIsNoNumber) {
+TEST(Noise, RefusesNanAndNegativeDeviations) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(with_noise(meant(), {nan, 0.0, 0.0, 0.0, 0.0}, 1, 1), std::invalid_argument);
     EXPECT_THROW(with_noise(meant(), {0.0, 0.0, 0.0, -0.1, 0.0}, 1, 1), std::invalid_argument);
@@ -134,7 +134,7 @@ TEST(Noise, RefusesWhatIsNoNumber) {
     EXPECT_THROW(with_noise(cue, Noise(), 1, 1), std::invalid_argument);
 }
 
-TEST(LegalStrike, KeepsWhatIsLegalAndTheDirectionOfWhatIsNot) {
+TEST(LegalStrike, KeepsLegalStrikesAndTheDirectionOfOthers) {
     EXPECT_EQ(legal_strike(meant()), meant());
     SplitMix64 random(3);
     for (int i = 0; i < 10000; ++i) {

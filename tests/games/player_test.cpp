@@ -1,4 +1,4 @@
-// The player: scenes with one right answer, the same bits everywhere, refusals, and racks that end.
+// The player: scenes with one right decision, the same bits everywhere, refusals, and racks that end.
 #include "carom/games/player.h"
 
 #include <gtest/gtest.h>
@@ -74,8 +74,8 @@ TEST(Player, StraightIn) {
     EXPECT_GT(best.makes.low, 0.8);
 }
 
-TEST(Player, OnlyACombination) {
-    // The stripe hangs in the corner behind the only ball that can be hit: in nine-ball, the 1 drives the 9.
+TEST(Player, PlaysACombinationIfThatIsAll) {
+    // The 9 hangs in the corner behind the 1, the only ball that may be hit first: the 1 drives it in.
     const Advice best =
         ask(turn(Game::kNineBall), table({{"cue", {0.6, 0.6}}, {"1", {0.25, 0.25}}, {"9", {0.1, 0.1}}}))
             .front();
@@ -83,7 +83,7 @@ TEST(Player, OnlyACombination) {
     EXPECT_EQ(best.kind, ShotKind::kCombination);
 }
 
-TEST(Player, NeverTheEightTooEarly) {
+TEST(Player, NeverPotsTheEightTooEarly) {
     const std::vector<Advice> advice =
         ask(turn(Game::kEightBall, Group::kSolids),
             table({{"cue", {0.6, 0.6}}, {"8", {0.07, 0.07}}, {"3", {1.0, 2.0}}, {"9", {0.2, 2.3}}}));
@@ -93,7 +93,7 @@ TEST(Player, NeverTheEightTooEarly) {
     }
 }
 
-TEST(Player, TheEightAtLast) {
+TEST(Player, PotsTheEightLast) {
     const Advice best = ask(turn(Game::kEightBall, Group::kSolids),
                             table({{"cue", {0.6, 0.6}}, {"8", {0.3, 0.3}}, {"9", {0.2, 2.3}}}))
                             .front();
@@ -101,8 +101,8 @@ TEST(Player, TheEightAtLast) {
     EXPECT_GT(best.worth, 0.85);
 }
 
-TEST(Player, SnookeredItIsFairInHalfOfItsShots) {
-    // A wall of stripes stands before the last solid.
+TEST(Player, PlaysHalfOfItsSnookeredShotsFairly) {
+    // A wall of stripes hides the last solid.
     Places places = {{"cue", {0.635, 0.3}}, {"3", {0.635, 2.2}}, {"8", {0.3, 2.4}}};
     for (int k = 0; k < 7; ++k) places.push_back({std::to_string(9 + k), {0.44 + 0.065 * k, 0.6}});
     const Advice best = ask(turn(Game::kEightBall, Group::kSolids), table(places)).front();
@@ -117,15 +117,15 @@ TEST(Player, PlacesTheBallInHand) {
     EXPECT_EQ(best.ball, "3");
     EXPECT_GT(best.makes.value, 0.95);
     EXPECT_NO_THROW(validate(games::scene_with(scene, best)));
-    // Behind the head string, it may not hit the ball that lies there.
+    // Behind the head string, it may not hit the ball lying there.
     const Advice behind = ask(turn(Game::kEightBall, Group::kSolids, InHand::kHeadString), scene).front();
     EXPECT_LT(behind.place->y(), games::head_string(scene.table));
 }
 
-// Without a pot, it has no reason to move the ball but the rules: it touches a ball, or is beyond the string.
-TEST(Player, MovesTheBallInHandFromWhereItMayNotLie) {
+// Without a pot, only the rules make it move the ball: it touches a ball, or is beyond the string.
+TEST(Player, MovesTheBallInHandFromIllegalPlaces) {
     Places places = {{"cue", {0.4, 1.5}}, {"3", {0.635, 2.2}}, {"8", {0.3, 2.4}}, {"9", {0.4, 1.55715}}};
-    // Stripes stand all round the only ball that it may hit.
+    // Stripes surround the only ball that it may hit.
     for (int k = 0; k < 6; ++k) {
         const auto [sin, cos] = sin_cos_deg(60.0 * k);
         places.push_back({std::to_string(10 + k), {0.635 + 0.0575 * cos, 2.2 + 0.0575 * sin}});
@@ -143,7 +143,7 @@ TEST(Player, MovesTheBallInHandFromWhereItMayNotLie) {
     }
 }
 
-TEST(Player, AdviceDiffers) {
+TEST(Player, AdviceOffersDifferentShots) {
     const std::vector<Advice> advice =
         ask(turn(Game::kEightBall),
             table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}}));
@@ -152,7 +152,7 @@ TEST(Player, AdviceDiffers) {
         for (std::size_t j = 0; j < i; ++j)
             EXPECT_FALSE(advice[i].kind == advice[j].kind && advice[i].ball == advice[j].ball &&
                          advice[i].pocket == advice[j].pocket);
-    // A table of the same balls in another order.
+    // A table with the same balls in another order.
     Scene turned = table({{"8", {0.4, 2.2}}, {"3", {1.0, 0.5}}, {"9", {0.9, 1.4}}, {"cue", {0.6, 0.9}}});
     EXPECT_EQ(ask(turn(Game::kEightBall), turned).front().cue.aim_deg, advice.front().cue.aim_deg);
 }
@@ -184,7 +184,7 @@ std::string refusal(const State& state, const Scene& scene) {
     return "";
 }
 
-TEST(Player, RefusesWhatItCannotPlay) {
+TEST(Player, RefusesUnplayableTables) {
     const Scene scene = table({{"cue", {0.6, 0.9}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
     EXPECT_NE(refusal(turn(Game::kSnooker), scene).find("no player of snooker"), std::string::npos);
     State over = turn(Game::kEightBall);
@@ -219,8 +219,8 @@ TEST(Player, AChanceFallsWithDistanceCutAndError) {
     EXPECT_GT(chance({0.6, 0.6}, 0.1), chance({0.6, 0.6}, 1.0));
 }
 
-// The number of the front ball depends on the rack.
-TEST(Player, TheBreakMeetsTheFrontBallFirst) {
+// The front ball's number depends on the rack.
+TEST(Player, TheBreakHitsTheFrontBallFirst) {
     for (const Game game : {Game::kEightBall, Game::kNineBall, Game::kTenBall}) {
         for (const std::uint64_t seed : {1, 2, 3, 777}) {
             const Scene rack = nine_foot_rack(game, seed);
@@ -248,8 +248,8 @@ TEST(Player, TheBreakKeepsTheTurnOnEveryTable) {
                 << table << " " << name(game);
 }
 
-// Aims at the ghost ball alone miss by throw and squirt; those that are corrected by playing them pot.
-TEST(Player, CorrectedAimsPotFarBallsThatAreCut) {
+// Aims at the ghost ball alone miss by throw and squirt; aims corrected by playing them pot.
+TEST(Player, CorrectedAimsPotDistantCuts) {
     SplitMix64 random = draws_of(5, 0, "far");
     double made = 0.0;
     constexpr int kTables = 12;
@@ -264,12 +264,12 @@ TEST(Player, CorrectedAimsPotFarBallsThatAreCut) {
                     .front()
                     .makes.value;
     }
-    // 0.73; with the corrections the wrong way 0.54.
+    // 0.73; with corrections of the wrong sign 0.54.
     EXPECT_GT(made / kTables, 0.68);
 }
 
-TEST(Player, TheCueHasRoom) {
-    // The cue ball lies at the head rail, and a ball lies right behind it for a shot across the table.
+TEST(Player, TheCueClearsObstacles) {
+    // The cue ball is at the head rail, with a ball right behind it for a shot across the table.
     const Scene scene =
         table({{"cue", {0.6, 0.03}}, {"9", {0.54, 0.03}}, {"3", {0.9, 0.4}}, {"8", {0.4, 2.2}}});
     for (const Advice& a : ask(turn(Game::kEightBall, Group::kSolids), scene))

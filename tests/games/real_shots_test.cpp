@@ -1,5 +1,4 @@
-// Rules on shots that the engine plays: what is read from a record, and whole games by players who hit at
-// random.
+// Rules on shots that the engine plays: facts read from a record, and whole games of random players.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +45,7 @@ Scene carom_scene(const Vec2& white, double aim_deg, double speed) {
     return scene;
 }
 
-TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
+TEST(RealShots, AFrozenCushionCountsWhenTheBallReturns) {
     const double R = make_ball_params("carom").R;
     for (const double aim : {180.0, 150.0, 120.0}) {
         // Into the cushion that it touches, across the table, and back.
@@ -59,7 +58,7 @@ TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
         ASSERT_GE(driven.size(), 3u) << aim;
         EXPECT_FALSE(driven[0]) << aim;
         EXPECT_TRUE(std::all_of(driven.begin() + 1, driven.end(), [](bool d) { return d; })) << aim;
-        // A sweep counts as the game does, whatever it keeps of the shot.
+        // A sweep counts as the game does, whatever part of the shot it keeps.
         int before = 0;
         std::set<int> met;
         for (const games::Touch& t : shot.touches) {
@@ -80,7 +79,7 @@ TEST(RealShots, ACushionThatABallIsFrozenToCountsWhenTheBallComesBack) {
     EXPECT_TRUE(shot_of(simulate(plan_of(carom_scene({R + 1e-5, 1.42}, 180.0, 5.0)))).touches[0].driven);
 }
 
-TEST(RealShots, TheFirstBallMetIsThatOfTheOutcome) {
+TEST(RealShots, TheFirstBallHitMatchesTheOutcome) {
     for (const char* file : {"eight_ball_break", "nine_ball_break", "ten_ball_break", "snooker_break", "draw",
                              "three_cushion", "side_bank"}) {
         Scene scene = read_scene(std::string(CAROM_SOURCE_DIR "/scenes/") + file + ".toml");
@@ -108,7 +107,7 @@ TEST(RealShots, TheFirstBallMetIsThatOfTheOutcome) {
     }
 }
 
-TEST(RealShots, TheFarthestPlaceIsThatOfManySamples) {
+TEST(RealShots, TheFarthestPlaceMatchesManySamples) {
     const Record record = simulate(plan_of(read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml")));
     SplitMix64 random(4);
     for (int k = 0; k < 40; ++k) {
@@ -124,12 +123,12 @@ TEST(RealShots, TheFarthestPlaceIsThatOfManySamples) {
     }
 }
 
-/// Players who hit at a legal ball and hope. Every game must continue to a legal scene.
+/// Players who strike at random at a legal ball. Every game must continue to a legal scene.
 class RandomPlayers {
   public:
     RandomPlayers(Game game, std::uint64_t seed) : game_(game), random_(seed) { rack(); }
 
-    /// Plays to the end, or this many shots.
+    /// Plays to the end, or at most this many shots.
     void play(int shots) {
         state_ = games::new_game(game_, 0, 5);
         while (shots-- > 0 && !state_.over) shot();
@@ -171,7 +170,7 @@ class RandomPlayers {
         const Vec2 way = place(target) - place(cue.ball);
         cue.aim_deg = std::atan2(way.y(), way.x()) * 57.29577951308232 + 3.0 * (random_.uniform() - 0.5);
         cue.speed = 1.0 + 7.0 * random_.uniform();
-        // Now and then a jump, so that balls leave the table.
+        // Occasionally a jump, so that balls leave the table.
         if (random_.below(8) == 0) cue.elevation_deg = 25.0;
         scene_.cue = cue;
         const games::Call call = {target, "p" + std::to_string(1 + random_.below(6)), random_.below(10) == 0,
@@ -218,7 +217,7 @@ class RandomPlayers {
                 EXPECT_TRUE(shot.gone(games::index_of(record, r.ball)) ||
                             option.decision == games::Decision::kSpotTouching);
             }
-            // A foul never leaves the turn with the player unless the other one chooses so.
+            // After a foul the turn passes unless the opponent chooses otherwise.
             const bool final = option.state.over || verdict.chooser >= 0 || game_ == Game::kSnooker;
             EXPECT_TRUE(verdict.fouls.empty() || final || option.state.turn != state_.turn);
             respots += static_cast<int>(option.respots.size());
@@ -238,7 +237,7 @@ class RandomPlayers {
 
 class RandomGames : public ::testing::TestWithParam<Game> {};
 
-TEST_P(RandomGames, GoOnToLegalScenesUntilTheyAreOver) {
+TEST_P(RandomGames, ContinueToLegalScenesUntilTheyEnd) {
     const Game game = GetParam();
     int over = 0, fouls = 0, respots = 0, choices = 0, points = 0;
     for (std::uint64_t seed = 1; seed <= 150; ++seed) {

@@ -1,4 +1,4 @@
-// Shots that are moved until balls rest at given places.
+// Shots adjusted until balls rest at given places.
 #include "carom/games/refine.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Vec2 end_of(const Scene& scene, int ball) {
     return planar(record.state_at(ball, record.duration).position);
 }
 
-/// The shipped shot only just touches a ball at its end, so that no place is far from another order.
+/// The shipped shot barely touches a ball at its end, so every place is near another order of events.
 Scene aimed_three_cushion() {
     Scene scene = test::shipped("three_cushion");
     scene.cue->aim_deg = -7.0;
@@ -59,7 +59,7 @@ TEST(Refine, TwoBallsAtOnce) {
     for (const Place& place : places) EXPECT_LT((end_of(found.scene, place.ball) - place.at).norm(), 1e-6);
 }
 
-TEST(Refine, KnowsThePlacesOfAWant) {
+TEST(Refine, ReadsThePlacesOfAGoal) {
     const Scene scene = test::shipped("draw");
     const auto places = [&](const char* want) { return Measure(want, scene).places(); };
     const std::vector<Place> two =
@@ -74,9 +74,9 @@ TEST(Refine, KnowsThePlacesOfAWant) {
         EXPECT_TRUE(places(want).empty()) << want;
 }
 
-TEST(Refine, SaysIfItCannot) {
+TEST(Refine, ReportsFailure) {
     const Scene scene = test::shipped("draw");
-    // Behind the rail; and a ball that falls.
+    // Behind the rail, and a ball that falls.
     const std::vector<Place> outside{{0, Vec2(-1.0, 1.0)}}, fallen{{1, Vec2(0.5, 0.5)}};
     EXPECT_NE(refine(scene, kStroke, outside, kernel::Isa::kScalar).trouble, "");
     EXPECT_EQ(refine(scene, kStroke, fallen, kernel::Isa::kScalar).trouble,

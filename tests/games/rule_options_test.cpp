@@ -1,4 +1,4 @@
-// Options of the games' rules: what is accepted, what is refused and how, and what outlives a new rack.
+// Options of the games' rules: values accepted and refused, and those that survive a new rack.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::string refused(Game game, const std::string& option) {
     return "";
 }
 
-TEST(RuleOptions, EveryValueOfEveryOptionIsReadBack) {
+TEST(RuleOptions, EveryValueOfEveryOptionReadsBack) {
     for (const games::RuleOption& option : games::rule_options()) {
         SCOPED_TRACE(option.key);
         ASSERT_GE(option.values.size(), 2u);
@@ -49,7 +49,7 @@ TEST(RuleOptions, EveryValueOfEveryOptionIsReadBack) {
     }
 }
 
-TEST(RuleOptions, WhatAGameDoesNotHaveIsRefusedWithWhatItHas) {
+TEST(RuleOptions, AForeignOptionIsRefusedWithTheGamesOwn) {
     EXPECT_EQ(refused(Game::kEightBall, "push_out=true"),
               "eight_ball has no option \"push_out\"; it has call, eight_on_break, in_hand, jump");
     EXPECT_EQ(refused(Game::kThreeCushion, "call=all"),
@@ -63,7 +63,7 @@ TEST(RuleOptions, WhatAGameDoesNotHaveIsRefusedWithWhatItHas) {
     EXPECT_THROW(games::legal(other, std::vector<std::string>{"white", "red"}), std::invalid_argument);
 }
 
-TEST(RuleOptions, OutliveANewRack) {
+TEST(RuleOptions, SurviveANewRack) {
     State state = games::new_game(Game::kEightBall);
     set_rule(state, "call=none");
     const Record record =
@@ -75,7 +75,7 @@ TEST(RuleOptions, OutliveANewRack) {
 }
 
 // The light cue ball of scenes/jump.toml passes over the eight and hits the one.
-TEST(RuleOptions, AJumpIsAFoulIfTheGameSaysSo) {
+TEST(RuleOptions, AJumpIsAFoulIfTheRulesForbidIt) {
     std::string text = read_file(std::string(CAROM_SOURCE_DIR) + "/scenes/jump.toml");
     for (const auto& [from, to] :
          {std::pair{"\"white\"", "\"cue\""}, {"\"red\"", "\"8\""}, {"\"yellow\"", "\"1\""}})

@@ -56,7 +56,7 @@ TEST(Snooker, ARedScoresOneAndStaysDownAndAColourIsOn) {
         judge(on(BallOn::kRed), snooker_table(5).hit("cue", "1").pocket("1").pocket("2").record()).points, 2);
 }
 
-TEST(Snooker, AColourScoresItsValueAndComesBackWhileThereAreReds) {
+TEST(Snooker, AColourScoresItsValueAndReturnsWhileRedsRemain) {
     const int values[] = {2, 3, 4, 5, 6, 7};
     for (std::size_t k = 0; k < 6; ++k) {
         const std::string& colour = kAllColours[k];
@@ -69,7 +69,7 @@ TEST(Snooker, AColourScoresItsValueAndComesBackWhileThereAreReds) {
     }
 }
 
-TEST(Snooker, AfterTheLastRedAColourComesBackOnceMoreAndThenTheyFallInOrder) {
+TEST(Snooker, AfterTheLastRedAColourReturnsOnceAndThenTheyFallInOrder) {
     const Verdict last_red = judge(on(BallOn::kRed), snooker_table(1).hit("cue", "1").pocket("1").record());
     EXPECT_EQ(last_red.next().on, BallOn::kColour);
     const Verdict colour =
@@ -82,7 +82,7 @@ TEST(Snooker, AfterTheLastRedAColourComesBackOnceMoreAndThenTheyFallInOrder) {
     EXPECT_EQ(yellow.points, 2);
     EXPECT_TRUE(yellow.respots().empty());
     EXPECT_EQ(yellow.next().on, BallOn::kGreen);
-    // Missed after the last red: the colours in their order.
+    // Missed after the last red: the colours follow in order.
     EXPECT_EQ(
         judge(on(BallOn::kColour), snooker_table(0).hit("cue", "black").record(), {"black", ""}).next().on,
         BallOn::kYellow);
@@ -96,7 +96,7 @@ TEST(Snooker, AMissWithoutAFoulPassesTheTurn) {
     EXPECT_EQ(v.next().in_hand, InHand::kNo);
 }
 
-TEST(Snooker, APenaltyIsFourOrTheBallOnOrTheBallConcerned) {
+TEST(Snooker, APenaltyIsFourOrTheValueOfTheBallOnOrConcerned) {
     const auto penalty = [](BallOn ball, const Record& record, const std::string& call = "") {
         const Verdict v = judge(on(ball), record, {call, ""});
         EXPECT_EQ(v.points, 0);
@@ -104,7 +104,7 @@ TEST(Snooker, APenaltyIsFourOrTheBallOnOrTheBallConcerned) {
         EXPECT_EQ(v.next().points[0], 0);
         return v.penalty;
     };
-    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).record()), 4);  // nothing hit
+    EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).record()), 4);  // no ball hit
     EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "1").pocket("cue").record()), 4);  // in-off
     EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "yellow").record()), 4);
     EXPECT_EQ(penalty(BallOn::kRed, snooker_table(3).hit("cue", "black").record()), 7);
@@ -124,7 +124,7 @@ TEST(Snooker, TwoBallsAtOnceAreAFoulUnlessTheyAreReds) {
     EXPECT_EQ(v.penalty, 5);
 }
 
-TEST(Snooker, AfterAFoulBallsComeBackAndTheOtherMayLetTheStrikerPlayAgain) {
+TEST(Snooker, AfterAFoulBallsReturnAndTheOpponentMayLetTheStrikerPlayAgain) {
     const Verdict v = judge(
         on(BallOn::kRed), snooker_table(3).hit("cue", "1").pocket("1").pocket("pink").pocket("cue").record());
     EXPECT_EQ(v.fouls, (Fouls{Foul::kCueBallPocketed, Foul::kWrongBallPocketed}));
@@ -155,7 +155,7 @@ TEST(Snooker, InHandTheCueBallIsInTheD) {
 }
 
 TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
-    // The only red is hidden behind the black, as seen from the cue ball.
+    // From the cue ball, the black hides the only red.
     Told told("snooker");
     told.ball("cue", 0.889, 2.0)
         .ball("black", 0.889, 2.3)
@@ -166,7 +166,7 @@ TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
     EXPECT_TRUE(v.next().free_ball);
     EXPECT_EQ(games::legal(v.next(), std::vector<std::string>{"cue", "black", "1", "blue"}).callable,
               (std::vector<std::string>{"black", "1", "blue"}));
-    // Not if one of its edges is covered only in part, and not without a foul.
+    // Not if one edge is only partly covered, nor without a foul.
     const Verdict open =
         judge(on(BallOn::kRed), Told(told).hit("cue", "blue").rests("black", 1.2, 2.3).record());
     EXPECT_FALSE(open.next().free_ball);
@@ -176,7 +176,7 @@ TEST(Snooker, ASnookerAfterAFoulGivesAFreeBall) {
     EXPECT_FALSE(judge(on(BallOn::kRed), Told(told).hit("cue", "1").record()).next().free_ball);
 }
 
-TEST(Snooker, AFreeBallHasTheValueOfTheBallOnAndComesBack) {
+TEST(Snooker, AFreeBallHasTheValueOfTheBallOnAndReturns) {
     State state = on(BallOn::kRed);
     state.free_ball = true;
     const Verdict red =
@@ -213,7 +213,7 @@ TEST(Snooker, TheLastBlackEndsTheFrameWithAScoreOrAFoul) {
     EXPECT_FALSE(judge(state, snooker_table(0, {"black"}).hit("cue", "black").record()).next().over);
 }
 
-TEST(Snooker, WithEqualPointsTheBlackComesBack) {
+TEST(Snooker, WithEqualPointsTheBlackReturns) {
     State state = on(BallOn::kBlack);
     state.points = {45, 52};
     const Verdict v = judge(state, snooker_table(0, {"black"}).hit("cue", "black").pocket("black").record());
@@ -229,7 +229,7 @@ TEST(Snooker, WithEqualPointsTheBlackComesBack) {
 TEST(Snooker, AColourWhoseSpotIsTakenGoesToTheHighestFreeOne) {
     const Vec2 blue = snooker_spot(kTable, "blue"), black = snooker_spot(kTable, "black");
     Told told = snooker_table(3).hit("cue", "blue").pocket("blue").rests("cue", blue.x(), blue.y());
-    // Black, pink, brown, green and yellow are on their spots: nothing is free.
+    // Black, pink, brown, green and yellow are on their spots, so none is free.
     const Verdict near = judge(on(BallOn::kColour), told.record());
     ASSERT_EQ(near.respots().size(), 1u);
     EXPECT_EQ(near.respots()[0].place.x(), blue.x());

@@ -1,4 +1,4 @@
-// The search for a shot: it finds what is there, its figures are fair, and threads change nothing.
+// The search for a shot: it finds existing shots, its figures are unbiased, and threads change nothing.
 #include "carom/games/solve.h"
 #include "carom/games/break.h"
 
@@ -39,12 +39,12 @@ TEST(Solve, FindsAPotFromAnyDirection) {
         ASSERT_EQ(found.size(), 1u);
         EXPECT_GT(static_cast<double>(found[0].successes), 0.9 * static_cast<double>(found[0].shots));
         EXPECT_NEAR(found[0].values[0], 135.0, 2.0);
-        // Without a hand's errors the shot does what is wanted.
+        // Without execution errors the shot achieves its goal.
         EXPECT_TRUE(want.holds(simulate(plan_of(found[0].scene))));
     }
 }
 
-TEST(Solve, FindsAPointOfThreeCushionAndAKickByItsRoute) {
+TEST(Solve, FindsAThreeCushionPointAndAKickByItsRoute) {
     const Scene scene = shipped("three_cushion");
     SolveOptions options = small();
     options.choices = games::default_choices();
@@ -76,8 +76,8 @@ TEST(Solve, HitAimsAtItsBall) {
     }
 }
 
-// Without errors of the hand the ball is hit if the aim is less than its edge away, at any speed.
-TEST(Solve, AMapShowsTheInputThatMustBeMet) {
+// Without execution errors the ball is hit at any speed, if the aim passes less than its edge away.
+TEST(Solve, AMapShowsTheDecisiveInput) {
     const Scene scene = parse_scene(
         "[table]\ncushion = []\n[[ball]]\n[[ball]]\nid = \"1\"\nposition = [0.635, 1.5]\n[cue]\nspeed = 2\n",
         "open.toml");
@@ -100,7 +100,7 @@ TEST(Solve, AMapShowsTheInputThatMustBeMet) {
     EXPECT_THROW(games::success_map(scene, want, kernel::best_isa(), options, around), std::invalid_argument);
 }
 
-// Each layout brings its balls' sizes along: otherwise the balls of most would overlap.
+// Each layout includes its balls' sizes: otherwise most layouts would overlap.
 TEST(Solve, LayoutsOfUnlikeBalls) {
     games::BreakOptions wanted;
     wanted.radius_sd = 1e-4;
@@ -132,8 +132,8 @@ TEST(Solve, ThreadsAndTheOrderOfPlayChangeNothing) {
     }
 }
 
-TEST(Solve, TheFiguresAreOfShotsThatTheSearchHasNotSeen) {
-    // A coin: no input decides, so that the best is half, however many candidates were tried.
+TEST(Solve, TheFiguresComeFromShotsUnseenBySearch) {
+    // A coin: no input matters, so the best success rate is one half, however many candidates were tried.
     const Scene scene = shipped("draw");
     const Measure want("x(cue) > 0.748", scene);
     SolveOptions options = small();
@@ -141,7 +141,7 @@ TEST(Solve, TheFiguresAreOfShotsThatTheSearchHasNotSeen) {
     options.hand = {0.5, 0.2, 0.05, 0.0};
     const Solution found = games::solve(scene, want, kernel::best_isa(), options).at(0);
     const double share = static_cast<double>(found.successes) / static_cast<double>(found.shots);
-    // The same shots again, with other errors.
+    // The same shots again with other errors.
     options.seed = 99;
     options.choices = {{"cue.speed", found.values[0], found.values[0]}};
     const Solution again = games::solve(scene, want, kernel::best_isa(), options).at(0);

@@ -1,4 +1,4 @@
-// Balls are respotted exactly, and onto no other ball.
+// Balls are respotted exactly, and never onto another ball.
 #include "carom/games/spots.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using games::Lying;
 
 constexpr double kBallR = 0.028575;
 
-TEST(Spots, AreWhereTheEquipmentHasThem) {
+TEST(Spots, FollowTheEquipmentRules) {
     const Table pool = make_table("nine_foot"), snooker = make_table("snooker");
     EXPECT_EQ(games::head_spot(pool), Vec2(0.635, 0.635));
     EXPECT_EQ(games::center_spot(pool), Vec2(0.635, 1.27));
@@ -31,7 +31,7 @@ TEST(Spots, AreWhereTheEquipmentHasThem) {
     EXPECT_TRUE(games::in_area(pool, games::InHand::kHeadString, {0.5, 0.6349}));
 }
 
-TEST(Spots, TheSnookerSpotsAreThoseOfTheRack) {
+TEST(Spots, TheSnookerSpotsMatchTheRack) {
     const Scene rack = parse_scene(
         "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n[rack]\ngame = \"snooker\"\n", "rack");
     for (const std::string_view colour : games::kColours) {
@@ -42,7 +42,7 @@ TEST(Spots, TheSnookerSpotsAreThoseOfTheRack) {
     }
 }
 
-TEST(Spots, Rule14ASpottedBallTouchesWhatIsInTheWayButNotTheCueBall) {
+TEST(Spots, Rule14ASpottedBallTouchesABlockingBallButNotTheCueBall) {
     const Table pool = make_table("nine_foot");
     const Vec2 spot = foot_spot(pool);
     const std::vector<Lying> object = {{spot, kBallR, 0.0}}, cue = {{spot, kBallR, games::kSpotGap}};
@@ -52,7 +52,7 @@ TEST(Spots, Rule14ASpottedBallTouchesWhatIsInTheWayButNotTheCueBall) {
     EXPECT_GE((touching - spot).squaredNorm(), 4.0 * kBallR * kBallR);
     EXPECT_NEAR(games::spot_on_long_string(pool, spot, kBallR, cue).y() - spot.y(),
                 2.0 * kBallR + games::kSpotGap, 1e-15);
-    // The whole string to the foot rail is blocked: towards the middle.
+    // The whole string to the foot rail is blocked, so the ball goes towards the middle.
     std::vector<Lying> blocked;
     for (double y = spot.y(); y < pool.length; y += 2.0 * kBallR)
         blocked.push_back({{spot.x() + 0.001, y}, kBallR, 0.0});
@@ -80,7 +80,7 @@ TEST(Spots, NeverOverlapAndAreTheNearestAtRandom) {
         ASSERT_LE(place.y(), pool.length - kBallR);
         moved += place != spot;
         back += place.y() < spot.y();
-        // No nearer place on the same side is free; towards the foot rail all of them are tried first.
+        // No nearer place on the same side is free; places towards the foot rail are tried first.
         const double step = place.y() < spot.y() ? -1e-4 : 1e-4;
         for (int k = 0; std::abs(k * step) < std::abs(place.y() - spot.y()) - 1e-12; ++k)
             ASSERT_FALSE(is_free(spot + Vec2(0.0, k * step), kBallR, others)) << round << " " << k;

@@ -1,4 +1,4 @@
-// The table of a sweep: its columns, and the values of its rows.
+// The columns and values of a sweep's table.
 #include "carom/games/sweep.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs a build into its own folder and uses it as a stranger would: the C++ and C examples see only the
-# installed package. Usage: examples.sh BUILD_DIR SOURCE_DIR C++_COMPILER examples.sh --installed PREFIX
-# SOURCE_DIR C++_COMPILER uses an existing installation, such as a system package.
+# Installs a build into its own folder and uses it as an outside user would: the C++ and C examples see only
+# the installed package. Usage: examples.sh BUILD_DIR SOURCE_DIR C++_COMPILER
+#    or: examples.sh --installed PREFIX SOURCE_DIR C++_COMPILER for an existing installation, such as a system
+# package.
 set -euo pipefail
 build=
 prefix=
@@ -19,7 +20,7 @@ fail() { echo "examples.sh: $*" >&2; exit 1; }
 if [ -n "$build" ]; then
     cmake --install "$build" --prefix "$work/first" >"$work/install.log" \
         || { cat "$work/install.log"; exit 1; }
-    # The package may be moved, so nothing in it may contain the path of the build.
+    # The package may be moved, so it must not contain the path of the build.
     mv "$work/first" "$work/carom"
     prefix=$work/carom
     texts=(--include=*.cmake --include=*.pc --include=*.cps --include=*.h)
@@ -38,7 +39,7 @@ echo "== C++"
 } >"$work/cpp.log" 2>&1 || { cat "$work/cpp.log"; exit 1; }
 "$work/cpp/shot" | tee "$work/cpp.txt"
 grep -q 'ball_ball *cue 1' "$work/cpp.txt" || fail "the C++ example has no impact of the two balls"
-# A later minor version of 0.x may have another interface, so it must not be accepted.
+# A later minor version of 0.x may change the interface, so it must be rejected.
 next=$(sed -n 's/.*find_package(carom 0\.\([0-9]*\) .*/\1/p' "$work/examples/cpp/CMakeLists.txt")
 next=0.$((next + 1))
 sed -i "s/find_package(carom [0-9.]*/find_package(carom $next/" "$work/examples/cpp/CMakeLists.txt"
@@ -63,7 +64,7 @@ cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$work/examples/c/nine_ball.c" $fla
 "$work/nine_ball" "$prefix/share/carom/scenes/nine_ball_break.toml" | tail -1 | grep -q 'player [01] wins' \
     || fail "nobody won the nine-ball game of the C example"
 
-# Both languages saw the same shot. tests/python compares the Python example.
+# Both languages saw the same shot; tests/python compares the Python example.
 for text in cpp c; do grep ' s  [a-z]' "$work/$text.txt" >"$work/$text.events"; done
 cmp "$work/cpp.events" "$work/c.events"
 
@@ -75,7 +76,7 @@ declared=$(grep -o 'carom_[a-z_]*(' "$prefix/include/carom/carom.h" | tr -d '(' 
 $shown"
 readelf -d "$library/libcarom.so" | grep -q 'SONAME.*libcarom\.so\.[0-9]*\.[0-9]*\]' \
     || fail "the soname has no version"
-# Symbols must also stay hidden if the static library is linked into another library.
+# Symbols must also stay hidden if another library links the static one.
 if nm "$library/libcarom_engine.a" 2>/dev/null | grep -q ' T _ZN5carom8simulate'; then
     find='$8 ~ /^_ZN5carom8simulateERK/ && $7 != "UND" {print $6; exit}'
     visibility=$(readelf -sW "$library/libcarom_engine.a" | awk "$find")

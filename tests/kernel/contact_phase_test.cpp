@@ -1,5 +1,5 @@
 // The contact phase of a cluster: every instruction set against a plain program for the same equations, bit
-// for bit; its step rule against tiny steps; where it stops.
+// for bit; the step rule against tiny steps; the end of the phase.
 #include "carom/kernel/contact_phase.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ long run(Isa isa, Cluster& c, const HertzLaw& law, double longest_step, double l
     return steps;
 }
 
-// Some balls of a triangular lattice, with small gaps, some of them 0; one runs into the others.
+// Some balls of a triangular lattice with small gaps, some of them 0; one runs into the others.
 Cluster random_cluster(reference::Generator& rng) {
     Cluster c;
     std::vector<std::array<double, 2>> places;
@@ -88,7 +88,7 @@ HertzLaw random_law(reference::Generator& rng) {
             rng.uniform(0.0, 20.0)};
 }
 
-TEST(ContactPhase, EveryInstructionSetIsThePlainProgram) {
+TEST(ContactPhase, EveryInstructionSetMatchesThePlainProgram) {
     reference::Generator rng(
         9);  // with this seed, an open contact between overlapping balls would shorten a step
     std::set<std::size_t> sizes, stages;
@@ -148,9 +148,8 @@ TEST(ContactPhase, StepsFollowTheFriction) {
     }
 }
 
-// Without friction the longest step is that of contacts at the speed V:
-// slower ones, and the long way on which little restitution opens them, take
-// longer steps. With steps of one length these laws take 262, 295 and 556.
+// Without friction the longest step suits contacts at the speed V; slower contacts, and the long opening with
+// little restitution, allow longer steps. With equal steps these laws need 262, 295 and 556.
 TEST(ContactPhase, StepsFollowTheSpeedWithoutFriction) {
     for (const auto& [a, b, p, most] :
          {std::array{1.0, 0.0, 1.0, 230.0}, {0.659, 0.341, 1.0, 250.0}, {0.049, 0.951, 32.0, 400.0}}) {
@@ -162,10 +161,10 @@ TEST(ContactPhase, StepsFollowTheSpeedWithoutFriction) {
     }
 }
 
-// The cloth acts between two steps and yet has an error of the second order: an eighth
-// of the step gives a 64th of it, or less. With all of a step's impulse at its end the
-// first error is 8e-4 with the rough cloth, and an eighth of the step gives an eighth.
-TEST(ContactPhase, TheClothBetweenStepsIsOfSecondOrder) {
+// The cloth acts between two steps, and yet its error is of second order: an eighth of the step reduces it to
+// a 64th or less. With a step's whole impulse at its end, the first error is 8e-4 on the rough cloth and an
+// eighth of the step reduces it to an eighth.
+TEST(ContactPhase, TheClothErrorIsOfSecondOrder) {
     for (const double mu_s : {0.2, 2.0}) {
         HertzLaw law = pool_law(1e-2);
         law.mu_s = mu_s;
@@ -178,7 +177,7 @@ TEST(ContactPhase, TheClothBetweenStepsIsOfSecondOrder) {
     }
 }
 
-// A cloth on which no ball slides is stiff, but does not limit the step.
+// A cloth on which no ball slides is stiff, but must not limit the step.
 TEST(ContactPhase, StickAtTheClothNeedsNoShorterSteps) {
     HertzLaw law = pool_law(1e-2);
     law.mu_s = 20.0;
@@ -191,8 +190,8 @@ TEST(ContactPhase, StickAtTheClothNeedsNoShorterSteps) {
     EXPECT_GT(difference(fine, smooth), 1e-2);
 }
 
-// With a fit that does not fall, friction is one number.
-TEST(ContactPhase, AFitThatDoesNotFallIsOneFriction) {
+// A constant fit is the same as one friction number.
+TEST(ContactPhase, AConstantFitIsOneFriction) {
     HertzLaw one = pool_law(), fit = pool_law();
     fit.mu_b = 0.02;
     fit.mu_b_more = 0.03;
@@ -220,9 +219,9 @@ TEST(ContactPhase, NeverGainsEnergy) {
     }
 }
 
-// A contact lasts about 2.5 L/V. Nothing is computed after the last one, nor for one that comes later than
-// the look-ahead.
-TEST(ContactPhase, StopsWhenNothingCloses) {
+// A contact lasts about 2.5 L/V. The phase ends after the last one, and ignores contacts beyond the
+// look-ahead.
+TEST(ContactPhase, StopsWhenNoContactCloses) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;
     const auto three = [](double gap) {
@@ -238,10 +237,10 @@ TEST(ContactPhase, StopsWhenNothingCloses) {
     EXPECT_NEAR(near.motion[11], 0.950625, 1e-4) << "comes in 1.7 L/V";
 }
 
-// Two balls moving together close or open at the rounding of their speeds, without end; and a contact with
-// hardly any restitution opens long after its force has gone. Such phases took all their time, and then
+// Two balls moving together close or open endlessly at the rounding of their speeds, and a contact with
+// hardly any restitution opens long after its force has ended. Such phases once used all their time and then
 // counted as jammed.
-TEST(ContactPhase, EndsWhenNothingIsLeftToDo) {
+TEST(ContactPhase, EndsWhenNoContactIsLeft) {
     HertzLaw law = pool_law();
     law.mu_b = 0.0;
     const auto alone = [&law](double closing) {
@@ -263,7 +262,7 @@ TEST(ContactPhase, EndsWhenNothingIsLeftToDo) {
     EXPECT_NEAR(pair.motion[6], 0.5, 0.03);
 }
 
-TEST(ContactPhase, SaysWhenItsTimeIsOver) {
+TEST(ContactPhase, ReportsItsTimeLimit) {
     Cluster c = small_rack();
     EXPECT_EQ(run(best_isa(), c, pool_law(), 1.0 / 16.0, kLookAhead, 1.0), -1);
 }

@@ -1,6 +1,6 @@
-// The bits of the kernels, as hashes that hold on every processor: for this machine's instruction sets, and
-// for another processor that builds the same sources. The impacts use only + - * /, because sin and pow
-// differ between libraries.
+// The kernels' bits, as hashes valid on every processor: for this machine's instruction sets, and for another
+// processor that builds the same sources. The impacts use only + - * /, because sin and pow differ between
+// libraries.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -92,7 +92,7 @@ Hashes hashes_on(Isa isa) {
     return all;
 }
 
-TEST(GoldenBits, AreThoseOfEveryProcessor) {
+TEST(GoldenBits, AreTheSameOnEveryProcessor) {
     for (const Isa isa : {Isa::kScalar, Isa::kV3, Isa::kV4, Isa::kFastest}) {
         if (!available(isa)) continue;
         const Hashes got = hashes_on(isa);

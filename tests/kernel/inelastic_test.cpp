@@ -17,11 +17,11 @@ namespace {
 
 using namespace kernel;
 
-// pooltool 0.6.0 limits the friction impulse by mu_b times the speed of separation, e v_n; Coulomb's law, and
-// TP A.14, by mu_b times the normal impulse, (1 + e) v_n / 2 per unit mass. The two agree at e = 1. So its
-// numbers are ours with mu_b scaled by 2 e / (1 + e), which checks everything but that factor; NoSlipLimit
-// and CoulombLimit check ours.
-TEST(Inelastic, AgreesWithPooltoolUpToItsCoulombLimit) {
+// pooltool 0.6.0 limits the friction impulse to mu_b times the speed of separation, e v_n; Coulomb's law, and
+// TP A.14, to mu_b times the normal impulse, (1 + e) v_n / 2 per unit mass. They agree at e = 1. So its
+// numbers equal ours with mu_b scaled by 2 e / (1 + e), which checks all but that factor; NoSlipLimit and
+// CoulombLimit check the factor.
+TEST(Inelastic, AgreesWithPooltoolExceptForItsCoulombLimit) {
     int compared = 0;
     for (const ReferenceImpact& impact : reference_impacts("ball_ball.json")) {
         const auto expected = impact.outputs.find("frictional_inelastic");
@@ -38,7 +38,7 @@ TEST(Inelastic, AgreesWithPooltoolUpToItsCoulombLimit) {
 }
 
 TEST(Inelastic, CoulombLimit) {
-    // While it slips, the tangential impulse is mu_b times the normal one, whatever e.
+    // While the contact slips, the tangential impulse is mu_b times the normal one, for any e.
     for (double e : {0.0, 0.5, 0.95, 1.0}) {
         Ball cue{}, object{};
         cue.v[0] = 3.0;
@@ -51,7 +51,7 @@ TEST(Inelastic, CoulombLimit) {
     }
 }
 
-// A cue ball at `speed`, aimed so that it meets a resting ball under the cut angle phi; roll = w_x R / v.
+// A cue ball at `speed` meets a resting ball at the cut angle phi; roll = w_x R / v.
 struct Throw {
     double angle_deg;  // of the object ball against the line of centres, towards the cue ball's tangential
                        // motion
@@ -63,8 +63,7 @@ Throw throw_of(double speed, double phi, double roll, double w_z, double mu, dou
     Ball cue{}, object{};
     cue.v[0] = speed * std::sin(phi);
     cue.v[1] = speed * std::cos(phi);
-    // Natural roll is w = z x v / R; of it only the part
-    // along x, R w_x = -v cos(phi), slips on the object ball.
+    // Natural roll is w = z x v / R; only its part along x, R w_x = -v cos(phi), slips on the object ball.
     cue.w[0] = -roll * cue.v[1] / R;
     cue.w[1] = roll * cue.v[0] / R;
     cue.w[2] = w_z;

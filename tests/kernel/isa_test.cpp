@@ -1,4 +1,4 @@
-// The instruction set of every kernel: by name, and by default.
+// The instruction set of every kernel, by name and by default.
 #include "carom/kernel/isa.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using namespace kernel;
 constexpr KernelKind kTestedKinds[] = {KernelKind::kMarch, KernelKind::kSummedMarch, KernelKind::kTolerance,
                                        KernelKind::kToleranceBatch, KernelKind::kContactPhase};
 
-TEST(Isa, FastestIsOneThatThisProcessorHas) {
+TEST(Isa, FastestIsAvailableOnThisProcessor) {
     static_assert(sizeof kTestedKinds / sizeof *kTestedKinds == kKernelKinds);
     for (const KernelKind kind : kTestedKinds) {
         const Isa isa = fastest_isa(kind);
@@ -29,7 +29,7 @@ TEST(Isa, FastestIsOneThatThisProcessorHas) {
     }
 }
 
-TEST(Isa, EveryKernelTakesItsOwn) {
+TEST(Isa, EveryKernelUsesItsOwnFastest) {
     EXPECT_EQ(march_function(Isa::kFastest), march_function(fastest_isa(KernelKind::kMarch)));
     EXPECT_EQ(summed_march_function(Isa::kFastest),
               summed_march_function(fastest_isa(KernelKind::kSummedMarch)));

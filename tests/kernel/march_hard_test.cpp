@@ -102,7 +102,7 @@ TEST(MarchHard, H24EnergyGainByConstruction) {
 TEST(MarchHard, H25ChatterStaysWithinItsAmplitude) {
     HardImpact impact = plain_hard_impact("", 1e-4, 1.0);
     const ImpactResult out = run(impact);
-    EXPECT_NEAR(out.v1[0], 5.125e-5, 1e-8);  // the published loop's answer; converged: 8.571e-5
+    EXPECT_NEAR(out.v1[0], 5.125e-5, 1e-8);  // the published loop's result; converged: 8.571e-5
     const double residual = out.v1[0] - out.v2[0] - impact.params.R * (out.w1[2] + out.w2[2]);
     EXPECT_LE(std::fabs(residual), 7.0 * 0.05 * 1.95 / 2.0 / 1000 * 1.0001);
     impact.n = 1000000;

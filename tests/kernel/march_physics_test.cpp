@@ -1,5 +1,5 @@
-// Physical truths that the march must show (tests/README.md): T6 to T8, T12, T13, T15. An Euler march of N
-// steps errs by up to (1 + e) v_n / N, so limits are tested within that.
+// Physical truths that the march must reproduce (tests/README.md): T6 to T8, T12, T13, T15. An Euler march of
+// N steps errs by up to (1 + e) v_n / N, which is the tolerance here.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ TEST(MarchPhysics, T7NinetyDegreeRule) {
     }
 }
 
-// The direction in which a ball rolls on: v + (2/5) R (z x (w_xy) ...) = 5/7 v + 2/7 (R w_y, -R w_x).
+// The direction of the final roll: v + (2/5) R (z x (w_xy) ...) = 5/7 v + 2/7 (R w_y, -R w_x).
 void rolling_velocity(const double (&v)[3], const double (&w)[3], double (&out)[2]) {
     out[0] = 5.0 / 7.0 * v[0] + 2.0 / 7.0 * kR * w[1];
     out[1] = 5.0 / 7.0 * v[1] - 2.0 / 7.0 * kR * w[0];
@@ -148,7 +148,7 @@ TEST(MarchPhysics, T13ClothSlipChangesBySevenHalves) {
     // dv1x.
     int seen = 0;
     for (Impact impact : random_impacts(4, 400)) {
-        impact.params.mu_s1 = 0.0;  // only ball 2 feels the cloth
+        impact.params.mu_s1 = 0.0;  // only ball 2 has cloth friction
         for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
             impact.params.cloth_slip = slip;
             const ImpactResult out = march(impact.ball1, impact.ball2, impact.params);
@@ -169,7 +169,7 @@ TEST(MarchPhysics, T15SpinTransfer) {
         impact.params.mu_s1 = impact.params.mu_s2 = 0.0;
         const Change d = change(impact, march(impact.ball1, impact.ball2, impact.params));
         const double scale = 1e-11 * (1.0 + approach_speed(impact.ball1, impact.ball2));
-        // (5/2R) n x dv1 = -(5/2R) dv1x z; the part along x belongs to the vertical velocity, which the model
+        // (5/2R) n x dv1 = -(5/2R) dv1x z; the part along x comes from the vertical velocity, which the model
         // drops.
         EXPECT_NEAR(kR * d.w1z, -2.5 * d.x1, scale);
         EXPECT_NEAR(kR * d.w2z, kR * d.w1z, scale);

@@ -1,4 +1,4 @@
-// The plain march against numbers computed by other software, and against itself on every instruction set.
+// The plain march against numbers from other software, and against itself on every instruction set.
 #include <gtest/gtest.h>
 
 #include "carom/kernel/march.h"
@@ -26,7 +26,7 @@ TEST(MarchReference, ReproducesThePapersFiveStates) {
 }
 
 // The loop ends at the first step past its target. If the work at that step equals the target to a few ulp,
-// two correct roundings may stop one step apart; no input of this file is such a tie.
+// two correct roundings may stop one step apart; this file has no such tie.
 struct Column {
     const char* name;
     int n, cases;
@@ -75,7 +75,7 @@ TEST(MarchConvergence, ApproachesTheConvergedResultAsOneOverN) {
         const double v_n = approach_speed(impact.ball1, impact.ball2);
         ImpactResult result;
         march_function(Isa::kScalar)(impact.ball1, impact.ball2, impact.params, 1000, result);
-        // One step of normal velocity, both balls, and what the stick chatter adds: 7 mu_b of it.
+        // One step of normal velocity, both balls, plus the stick chatter: 7 mu_b of it.
         EXPECT_LE(difference(result, fine, impact.params.R),
                   (2.0 + 14.0 * impact.params.mu_b) * v_n / 1000 + 1e-4)
             << "id " << impact.id;

@@ -1,5 +1,5 @@
 // A plain program for the equations of the contact phase (docs/reference/physics.md, several contacts at
-// once), with which every instruction set is compared, bit for bit.
+// once); every instruction set must match it bit for bit.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -85,8 +85,8 @@ class Plain {
     std::vector<Contact> contacts_;
     const HertzLaw law_;
     const double curvature_;
-    double next_ = 0.0;          // the longest step that the last error allows
-    std::vector<double> ahead_;  // vertical impulse of each ball that the cloth has already answered
+    double next_ = 0.0;          // the longest step permitted by the last error
+    std::vector<double> ahead_;  // each ball's vertical impulse whose cloth friction is already applied
 
   public:
     std::vector<double> y;
@@ -256,7 +256,7 @@ class Plain {
         slope.limit[j] += k;
     }
 
-    /// e^-x by the kernel's series, whose bits it has.
+    /// e^-x by the kernel's series, with the same bits.
     static double falling_exponential(double x) {
         const double t = std::min(x / 64.0, 1.0);
         double power = 1.0 / 720.0;
@@ -268,7 +268,7 @@ class Plain {
         return power;
     }
 
-    // The slope of a state whose normals have turned for a time.
+    // The slope of a state after its normals have turned for the time `in`.
     Slope slope_at(const std::vector<double>& at, const std::vector<double>& d, double in) const {
         const std::size_t balls = y.size() / 5;
         Slope s{std::vector<double>(y.size(), 0.0),
@@ -289,8 +289,8 @@ class Plain {
         return {n.x - angle * n.y, n.y + angle * n.x};
     }
 
-    // The friction of the cloth after a step, with half of its vertical impulse `past` and what half a step
-    // of the last vertical force would add, less what was counted ahead.
+    // Applies the cloth's friction after a step: for half of the step's vertical impulse, `past`, plus half a
+    // step of its last vertical force, `next`, less the impulse counted ahead.
     void drag(std::size_t b, double past, double next) {
         past = std::min(past, 0.0);
         next = std::min(next, 0.0);
@@ -316,7 +316,7 @@ class Plain {
 
     bool has_friction() const { return law_.mu_b > 0.0 || law_.mu_b_more > 0.0; }
 
-    // How much longer steps may be if everything is slow.
+    // Factor by which steps may be longer if everything is slow.
     double slowness() const {
         double fastest = 0.0;
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -342,8 +342,8 @@ class Plain {
                                             k[0].limit[static_cast<std::size_t>(start_[c].j)]);
         }
         if (has_friction()) longest = std::min(longest, next_);
-        // The classical method if nothing is stiff, else Simpson's weights at 0, a node below 1/2 with weight
-        // 0, 1/2, 1.
+        // The classical method if nothing is stiff, otherwise Simpson's weights at 0, 1/2 and 1, and a node
+        // below 1/2 with weight 0.
         const bool stiff = has_friction();
         const std::array<double, 4> weight = {1.0 / 6.0, stiff ? 0.0 : 1.0 / 3.0,
                                               stiff ? 2.0 / 3.0 : 1.0 / 3.0, 1.0 / 6.0};

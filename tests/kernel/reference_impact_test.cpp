@@ -1,5 +1,5 @@
-// The truth itself is checked: by other orders and step sizes, by its energy balance, by closed solutions and
-// by the march.
+// Checks the reference solution itself: by other orders and step sizes, by its energy balance, by closed
+// solutions and by the march.
 #include "reference/solver.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(ReferenceImpact, OrderAndStepSizeDoNotMatter) {
             Impact i = n % 2 == 0 ? random_impact(rng) : hard_random_impact(rng, 0.12, 0.4, slip);
             i.params.cloth_slip = slip;
             const ImpactTruth fine = truth(i);
-            // Extended precision rounds at 5e-20 of the speeds that go in.
+            // Extended precision rounds at 5e-20 of the input speeds.
             const double rounding = 1e-17 * speed_scale(i) / approach_speed(i);
             EXPECT_LT(distance(fine, truth(i, {12, 1e-17L, 1e-19L}), i.params.R), 1e-14 + rounding);
             EXPECT_LT(distance(fine, truth(i, {22, 1e-19L, 1e-18L}), i.params.R), 1e-14 + rounding);
@@ -54,7 +54,7 @@ TEST(ReferenceImpact, OrderAndStepSizeDoNotMatter) {
     }
 }
 
-// T14: what both frictions and the restitution take equals what the balls lose.
+// T14: the balls lose the energy dissipated by both frictions and the restitution.
 TEST(ReferenceImpact, EnergyBookCloses) {
     Generator rng(12);
     for (int n = 0; n < 400; ++n) {
@@ -77,7 +77,7 @@ TEST(ReferenceImpact, EnergyBookCloses) {
     }
 }
 
-TEST(ReferenceImpact, HorizontalSlipSticksAsTheClosedFormSays) {
+TEST(ReferenceImpact, HorizontalSlipSticksAsInClosedForm) {
     Impact i{};
     i.params = {0.03125, 0.17, 0.2, 0.2, 0.05, 0.9, ClothSlip::kConsistent};
     i.ball2.r[1] = 2.0 * i.params.R;

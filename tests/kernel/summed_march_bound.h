@@ -1,4 +1,4 @@
-// Marches impacts twice, summed and as published, and compares them by the bound of march.h.
+// Marches impacts both summed and as published, and compares the results by the bound of march.h.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ inline double apart(const kernel::ImpactResult& a, const kernel::ImpactResult& b
     return most;
 }
 
-/// How many have the bits of the published march, and how many are summed.
+/// Numbers of impacts with the bits of the published march, and of summed ones.
 struct Followed {
     int left_to_published = 0, summed = 0;
 };

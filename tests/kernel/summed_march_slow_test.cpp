@@ -1,5 +1,5 @@
-// The bound of the summed march on random impacts of both signs of the cloth slip, and on more hard ones.
-// With CAROM_SLOW_TESTS=1 there are a million of each sign and 400 000 hard ones (two minutes); else a tenth
+// The bound of the summed march on random impacts with both signs of the cloth slip, and on more hard ones.
+// CAROM_SLOW_TESTS=1 runs a million of each sign and 400 000 hard ones (two minutes); the default is a tenth
 // of that.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The summed march against the published one: the bound that march.h states, steps, bits.
+// The summed march against the published one: the bound stated in march.h, steps, bits.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -19,7 +19,7 @@ TEST(SummedMarch, FollowsThePublishedOne) {
     for (const ClothSlip slip : kSlips) {
         const Followed followed = follow(random_impacts_of(41, 10000, slip), 1000);
         EXPECT_EQ(followed.left_to_published + followed.summed, 10000);
-        // Sticking impacts are left to the published march, and they are few.
+        // Sticking impacts, which are few, are left to the published march.
         EXPECT_GT(followed.left_to_published, 100);
         EXPECT_LT(followed.left_to_published, 500);
     }
@@ -36,7 +36,7 @@ TEST(SummedMarch, FollowsImpactsBuiltToBeHard) {
         for (const bool usual : {true, false}) follow(hard_impacts_of(43, 4000, usual, slip), 1000);
 }
 
-TEST(SummedMarch, AnswersTheHardList) {
+TEST(SummedMarch, FollowsTheHardList) {
     for (HardImpact hard : hard_impacts()) {
         for (const ClothSlip slip : kSlips) {
             hard.params.cloth_slip = slip;
@@ -46,13 +46,13 @@ TEST(SummedMarch, AnswersTheHardList) {
     }
 }
 
-TEST(SummedMarch, FewSubstepsAreThePublishedMarch) {
+TEST(SummedMarch, FewSubstepsUseThePublishedMarch) {
     for (const int n : {-1, 0, 1, 2, 10, 99})
         EXPECT_EQ(follow(random_impacts_of(44, 300, ClothSlip::kConsistent), n).summed, 0) << "N = " << n;
 }
 
-// Without losses v_n is 0 after N/2 steps and the work complete after N, except for rounding.
-TEST(SummedMarch, TiesAreThePublishedMarch) {
+// Without losses v_n is 0 after N/2 steps and the work complete after N, to rounding.
+TEST(SummedMarch, TiesUseThePublishedMarch) {
     std::vector<Impact> impacts;
     for (const double speed : {0.3, 0.7, 1.0, 2.3, 5.1}) {
         HardImpact hard = plain_hard_impact("", 0.2, speed);
@@ -70,7 +70,7 @@ TEST(SummedMarch, WithoutRestitutionItIsSummed) {
     EXPECT_GT(follow(impacts, 1000).summed, 270);
 }
 
-// The engine skips what has no effect, and its records keep their bits.
+// The engine skips effects that change nothing, and its records keep their bits.
 TEST(SummedMarch, WithoutFrictionBetweenTheBallsTheClothChangesNoBit) {
     for (Impact& rough : random_impacts_of(48, 1000, ClothSlip::kConsistent)) {
         rough.params.mu_b = 0.0;
@@ -83,7 +83,7 @@ TEST(SummedMarch, WithoutFrictionBetweenTheBallsTheClothChangesNoBit) {
     }
 }
 
-TEST(SummedMarch, BitsAreThoseOfScalar) {
+TEST(SummedMarch, EveryInstructionSetHasTheBitsOfScalar) {
     for (const ClothSlip slip : kSlips) {
         std::vector<Impact> impacts = random_impacts_of(46, 2000, slip);
         const std::vector<Impact> hard = hard_impacts_of(47, 1000, true, slip);

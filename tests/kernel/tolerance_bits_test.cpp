@@ -1,5 +1,4 @@
-// One answer everywhere: the same bits from every instruction set and every position in a batch; and an
-// answer to any input.
+// The same bits from every instruction set and at every position in a batch, and a status for any input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,8 +60,8 @@ TEST(ToleranceBits, EveryInstructionSetAgrees) {
     }
 }
 
-// The same bits from gcc and clang, with and without optimisation: every build must match this hash. If a
-// change of the method changes it, renew it here; every compiler must still agree.
+// gcc and clang, with and without optimisation, must all match this hash. If a change of the method changes
+// it, renew it here; every compiler must still agree.
 TEST(ToleranceBits, EveryCompilerAgrees) {
     Generator rng(65);
     std::uint64_t hash = 0xCBF29CE484222325ull;
@@ -127,7 +126,7 @@ TEST(ToleranceBits, PlaceAndLengthOfABatchDoNotMatter) {
     }
 }
 
-// If all impacts of a batch need 8 nodes, or stretches, the lists that gather them fill up.
+// If all impacts of a batch need 8 nodes, or stretches, the lists that collect them fill up.
 TEST(ToleranceBits, BatchesOfOneKind) {
     for (ToleranceMethod kind : {ToleranceMethod::kCollocation8, ToleranceMethod::kAdaptive}) {
         Generator rng(66);
@@ -149,7 +148,7 @@ TEST(ToleranceBits, BatchesOfOneKind) {
     }
 }
 
-TEST(ToleranceBits, BatchesOfNothingAndWithoutDiagnostics) {
+TEST(ToleranceBits, EmptyBatchesAndBatchesWithoutDiagnostics) {
     const std::vector<Impact> impacts = mixed(63, 100, ClothSlip::kConsistent);
     Lanes lanes(impacts), plain(impacts);
     const ToleranceBatchFunction batch = tolerance_batch_function(best_isa());
@@ -189,7 +188,7 @@ bool all_finite(const ImpactResult& r) {
     return sum == 0.0;
 }
 
-// Bit patterns of every exponent, in every field or in some: it ends, and what it computes is finite.
+// Bit patterns of every exponent, in all fields or some: each call ends, and results are finite.
 void expect_answers(std::uint64_t seed, int count) {
     Generator rng(seed);
     const double tolerances[] = {1e-1, 1e-3, 1e-6, 1e-10, 1e-13};
@@ -231,7 +230,7 @@ void expect_answers(std::uint64_t seed, int count) {
     }
 }
 
-TEST(ToleranceBits, AnyInputHasAnAnswer) {
+TEST(ToleranceBits, AnyInputEndsWithAStatus) {
     expect_answers(64, 200000);
 }
 

@@ -18,11 +18,11 @@ using reference::ImpactTruth;
 using reference::reference_impact;
 
 /// Expects every error within the tolerance plus a few units of rounding of the largest speed. One sign of
-/// the cloth slip per call. Batches take balls of one mass; others are solved one by one.
+/// the cloth slip per call. Batches need balls of one mass; others are solved one by one.
 inline void expect_bound(const std::vector<Impact>& impacts, std::initializer_list<double> tolerances) {
     std::vector<ImpactTruth> truths;
     truths.reserve(impacts.size());
-    // An order of 16 and 1e-15 per step: ten times below the tightest tested bound, in half the time.
+    // Order 16 and 1e-15 per step: ten times below the tightest tested bound, in half the time.
     for (const Impact& i : impacts) {
         truths.push_back(reference_impact(i.ball1, i.ball2, i.params, {16, 1e-15L, 1e-17L}));
     }

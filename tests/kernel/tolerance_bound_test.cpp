@@ -1,5 +1,5 @@
-// The bound: no error exceeds the tolerance, over random impacts, impacts built to be hard, and any approach
-// speed. The night has twenty times as many (tolerance_slow_test.cpp).
+// No error exceeds the tolerance: over random impacts, impacts built to be hard, and any approach speed. The
+// nightly run has twenty times as many (tolerance_slow_test.cpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ TEST(ToleranceBound, WithoutRestitution) {
     }
 }
 
-// Slow, fast, and almost only sideways: the bound is relative to the approach speed until rounding shows.
+// Slow, fast, and almost purely sideways: the bound is relative to the approach speed until rounding shows.
 TEST(ToleranceBound, AnyApproachSpeed) {
     Generator rng(44);
     std::vector<Impact> impacts;
@@ -76,12 +76,12 @@ TEST(ToleranceBound, ImpactsBuiltToBeHard) {
     for (int n = 0; n < 1000; ++n)
         impacts.push_back(hard_random_impact(rng, 1.0, 1.0, ClothSlip::kConsistent));
     expect_bound(impacts, {1e-2, 1e-3, 1e-6, 1e-10, 1e-12});
-    // As published the cloth feeds the slip; with friction near 1 that makes the model itself unstable.
+    // As published, the cloth increases the slip; with friction near 1 the model itself becomes unstable.
     for (Impact& i : impacts) i = hard_random_impact(rng, 0.12, 0.4, ClothSlip::kAsPublished);
     expect_bound(impacts, {1e-2, 1e-3, 1e-6, 1e-10});
 }
 
-TEST(ToleranceBound, MassesThatDiffer) {
+TEST(ToleranceBound, UnequalMasses) {
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         expect_bound(impacts_of_masses_that_differ(46, 1000, slip), {1e-2, 1e-3, 1e-6, 1e-10, 1e-12});
     }

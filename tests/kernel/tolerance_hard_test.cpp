@@ -26,7 +26,7 @@ const std::map<Expect, ImpactStatus> kExpected = {{Expect::kComputed, ImpactStat
                                                   {Expect::kBadState, ImpactStatus::kBadState},
                                                   {Expect::kBadParameter, ImpactStatus::kBadParameter}};
 
-// The list, except what concerns the number of substeps.
+// The list, except for cases about the number of substeps.
 std::vector<HardImpact> impacts_for(ClothSlip slip) {
     std::vector<HardImpact> list;
     for (HardImpact& impact : hard_impacts()) {
@@ -37,7 +37,7 @@ std::vector<HardImpact> impacts_for(ClothSlip slip) {
     return list;
 }
 
-// The vertical slip of H31 with mu_b = 1 as published is outside the model's stable range
+// H31's vertical slip with mu_b = 1 as published is outside the model's stable range
 // (docs/design/impact_kernel.md).
 bool has_a_stable_solution(const HardImpact& i) {
     return i.params.cloth_slip == ClothSlip::kConsistent || i.params.mu_b <= 0.3;
@@ -47,7 +47,7 @@ TEST(ToleranceHard, StatusBoundAndEnergy) {
     for (ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         for (const HardImpact& hard : impacts_for(slip)) {
             const Impact impact{hard.ball1, hard.ball2, hard.params};
-            // Powers of two scale tiny speeds into the range of the truth; H29 shows that this changes
+            // Powers of two scale tiny speeds into the reference's range; H29 shows that this changes
             // nothing.
             const double up =
                 speed_scale(impact) > 0.0 ? std::exp2(-std::floor(std::log2(speed_scale(impact)))) : 1.0;

@@ -1,4 +1,4 @@
-// The bound on the 40 000 impacts that the project's claims name, with both signs of the cloth slip, and more
+// The bound on the 40 000 impacts named in the project's claims, with both signs of the cloth slip, and more
 // hard ones.
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ TEST(ToleranceSlow, HardAsPublished) {
     expect_bound(impacts, {1e-3, 1e-6, 1e-10, 1e-12});
 }
 
-TEST(ToleranceSlow, MassesThatDiffer) {
+TEST(ToleranceSlow, UnequalMasses) {
     expect_bound(impacts_of_masses_that_differ(2029, 40000, ClothSlip::kConsistent), {1e-3, 1e-6, 1e-10});
 }
 

@@ -1,4 +1,4 @@
-// Shared by the tests of the kernel by tolerance: calls, batches, energy, and impacts built to be hard.
+// Shared by the tests of the tolerance kernel: calls, batches, energy, and impacts built to be hard.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,7 @@ inline double energy_after(const Impact& i, const kernel::ImpactResult& r) {
     return energy(r.v1, r.w1, r.v2, r.w2, i.params.R);
 }
 
-/// Largest input speed, to which rounding is relative.
+/// Largest input speed; rounding is relative to it.
 inline double speed_scale(const Impact& i) {
     double most = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -62,9 +62,8 @@ inline double approach_speed(const Impact& i) {
     return ((i.ball1.v[0] - i.ball2.v[0]) * dx + (i.ball1.v[1] - i.ball2.v[1]) * dy) / d;
 }
 
-/// Impacts around everything singular: slip that ends, cloth slip that passes or starts next to zero, both,
-/// over many decades; e_b and the frictions up to `mu_b` and `mu_s`, including their limits. Approach speed
-/// 1.
+/// Impacts around all singularities, over many decades: slip that ends, cloth slip that passes or starts next
+/// to zero, both; e_b and the frictions up to `mu_b` and `mu_s` inclusive. Approach speed 1.
 inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kernel::ClothSlip slip,
                                  double mass_ratio = 1.0) {
     const auto decades = [&rng](double lo, double hi) { return lo * std::pow(hi / lo, rng.uniform()); };
@@ -103,14 +102,14 @@ inline Impact hard_random_impact(Generator& rng, double mu_b, double mu_s, kerne
     return i;
 }
 
-/// Random impacts, and as many built to be hard, of balls with mass ratios of 1/10 to 10, ends included.
+/// Random impacts, and as many hard ones, of balls with mass ratios of 1/10 to 10 inclusive.
 inline std::vector<Impact> impacts_of_masses_that_differ(std::uint64_t seed, int count,
                                                          kernel::ClothSlip slip) {
     Generator rng(seed);
     std::vector<Impact> impacts;
     for (int n = 0; n < count; ++n) {
         double ratio = std::pow(10.0, rng.uniform(-1.0, 1.0));
-        // The tolerance is promised so far; the kernel accepts larger ratios (impact_kernel.md).
+        // The tolerance is promised up to this ratio; the kernel accepts larger ones (impact_kernel.md).
         constexpr double kPromisedRatio = 10.0;
         if (n % 16 == 0) ratio = n % 32 == 0 ? kPromisedRatio : 1.0 / kPromisedRatio;
         impacts.push_back(reference::random_impact(rng));

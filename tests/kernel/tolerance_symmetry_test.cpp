@@ -1,5 +1,5 @@
-// Conserved by every impact: energy, momentum and, bit for bit, its mirror image, its turn by 90 degrees,
-// the exchange of the balls and any power of two of its speeds.
+// Every impact conserves energy and momentum and commutes, bit for bit, with mirror images, turns by 90
+// degrees, exchange of the balls and powers of two of its speeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Impact any_impact(Generator& rng) {
                                : hard_random_impact(rng, 0.3, 0.6, ClothSlip::kConsistent);
 }
 
-// U4. Some rounding remains: the energies are sums of squares of numbers that were rounded once.
+// U4. Some rounding remains: the energies are sums of squares of rounded numbers.
 TEST(ToleranceEnergy, NeverRises) {
     Generator rng(51);
     for (double tolerance : {1e-1, 1e-3, 1e-6, 1e-10}) {
@@ -55,7 +55,7 @@ TEST(ToleranceMomentum, OnlyTheClothChangesIt) {
             square += change * change;
         }
         EXPECT_LE(std::sqrt(square), mu_s * i.params.mu_b * 1.5 * approach_speed(i) + 8.0 * rounding);
-        // Side spins change alike, and by 5/(2R) of the horizontal friction.
+        // Both side spins change equally, by 5/(2R) of the horizontal friction.
         EXPECT_NEAR(r.w1[2] - i.ball1.w[2], r.w2[2] - i.ball2.w[2], 4.0 * rounding / i.params.R);
         EXPECT_EQ(r.v1[2], i.ball1.v[2]);
         EXPECT_EQ(r.v2[2], i.ball2.v[2]);

@@ -1,4 +1,4 @@
-// The kernel by tolerance against closed solutions, published tables, and its own contract.
+// The tolerance kernel against closed solutions, published tables and its own contract.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +65,7 @@ TEST(Tolerance, GearingThrowsNothing) {
     }
 }
 
-// H25 and the throw table's no-slip branch: dv = slip/7 if it sticks, mu_b times the impulse if it keeps
+// H25 and the no-slip branch of the throw table: dv = slip/7 if it sticks, mu_b times the impulse if it keeps
 // sliding.
 TEST(Tolerance, HorizontalSlipIsClosed) {
     for (double x : {1e-4, 0.1, 0.33, -0.2, 0.4, 3.0}) {
@@ -84,8 +84,8 @@ TEST(Tolerance, HorizontalSlipIsClosed) {
     }
 }
 
-// The straight draw shot, on which no march converges: with the spin against it, the cue ball's slip is
-// vertical only.
+// The straight draw shot, on which no march converges: against the spin, the cue ball's slip is vertical
+// only.
 TEST(Tolerance, StraightDraw) {
     for (double spin : {30.0, 60.0, -40.0}) {
         Impact i = plain(0.0);
@@ -98,7 +98,7 @@ TEST(Tolerance, StraightDraw) {
             EXPECT_EQ(r.v2[0], 0.0);
         }
     }
-    // A slip of 0.01 ends during the impact: each ball takes a fifth of it, less what the cloth takes.
+    // A slip of 0.01 ends during the impact: each ball receives a fifth of it, less the cloth's share.
     Impact i = plain(0.0);
     i.params.mu_s1 = i.params.mu_s2 = 0.0;
     i.ball1.w[0] = 0.01 / kRadius;
@@ -145,7 +145,7 @@ TEST(Tolerance, MathavanTable) {
     }
 }
 
-// T14 at the strictest tolerance: the lost energy is what restitution and both frictions take.
+// T14 at the strictest tolerance: the lost energy equals the dissipation of restitution and both frictions.
 TEST(Tolerance, EnergyBook) {
     Generator rng(21);
     for (int n = 0; n < 300; ++n) {
@@ -159,7 +159,7 @@ TEST(Tolerance, EnergyBook) {
     }
 }
 
-TEST(Tolerance, ParametersOutOfRangeLeaveTheInput) {
+TEST(Tolerance, ParametersOutOfRangeReturnTheInput) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const Impact good = plain(0.4);
     const auto refused = [](const Impact& i, double tolerance) {
@@ -182,7 +182,7 @@ TEST(Tolerance, ParametersOutOfRangeLeaveTheInput) {
     }
 }
 
-TEST(Tolerance, LooserNeverTakesMoreSweeps) {
+TEST(Tolerance, LooserTolerancesNeverNeedMoreSweeps) {
     for (const Impact& i : random_impacts(4, 500)) {
         const ImpactResult loose = solve(i, 1e-2), tight = solve(i, 1e-11);
         EXPECT_LE(loose.steps, tight.steps);
@@ -203,8 +203,8 @@ TEST(Tolerance, MethodsAndInstructionSetsHaveNames) {
     EXPECT_STREQ(name(ToleranceMethod::kNone), "");
 }
 
-// On the impacts of the benchmark, every method is used at the tolerance for which it is made.
-TEST(Tolerance, EasyImpactsTakeOneCollocation) {
+// On the benchmark's impacts, each method is used at the tolerance it was designed for.
+TEST(Tolerance, EasyImpactsNeedOneCollocation) {
     const auto impacts = random_impacts(5, 2000);
     const auto count = [&](double tolerance, ToleranceMethod method) {
         int n = 0;
@@ -218,8 +218,8 @@ TEST(Tolerance, EasyImpactsTakeOneCollocation) {
     EXPECT_GT(count(1e-6, ToleranceMethod::kAdaptive), 20);
 }
 
-// Sweeps of 4 nodes come before those of 8, and leave them half of the work: without them, 8 nodes take 6.2
-// sweeps here, all of the expensive kind.
+// Sweeps with 4 nodes come before those with 8 and halve their work: without them, 8 nodes need 6.2 of the
+// expensive sweeps here.
 TEST(Tolerance, SweepsOfEightNodes) {
     const std::vector<Impact> impacts = reference::random_impacts(1, 2000);
     Lanes lanes(impacts);

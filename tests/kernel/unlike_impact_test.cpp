@@ -1,4 +1,4 @@
-// Impacts of balls of different radius and mass, by tolerance and marched.
+// Impacts of balls of different radius and mass, by tolerance and by march.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -53,8 +53,8 @@ Two two_of(const Impact& i) {
     return t;
 }
 
-// The impact as forces on two spheres in space, held to the cloth, in SI units and table coordinates: nothing
-// of it knows a contact frame. Marched in `steps` equal normal impulses.
+// The impact as forces on two spheres in space that stay on the cloth, in SI units and table coordinates,
+// without a contact frame. Marched in `steps` equal normal impulses.
 ImpactResult marched_in_space(const Impact& i, int steps) {
     const ImpactParams& p = i.params;
     Two t = two_of(i);
@@ -66,8 +66,8 @@ ImpactResult marched_in_space(const Impact& i, int steps) {
         const double closing = dot(t.v[0] - t.v[1], t.n);
         Triple slip = t.v[0] + cross(t.w[0], t.R[0] * t.n) - (t.v[1] + cross(t.w[1], -t.R[1] * t.n));
         slip = slip - dot(slip, t.n) * t.n;
-        // Near zero the friction falls with the slip. Otherwise the steps go to and fro, and press one ball
-        // and the other in turn, which is not what a slip of zero does.
+        // Near zero the friction falls with the slip. Otherwise the steps alternate in sign and press down
+        // one ball and the other in turn, unlike a slip of zero.
         const double c = std::hypot(length(slip), 1e-4);
         const Triple friction = -p.mu_b * dP / c * slip;  // on ball 1
         const Triple force[2] = {friction - dP * t.n, dP * t.n - friction};
@@ -101,7 +101,7 @@ ImpactResult marched_in_space(const Impact& i, int steps) {
     return r;
 }
 
-// Anywhere on the table, in any direction, the second ball 0.8 to 1.25 times as large.
+// Anywhere on the table, in any direction; the second ball is 0.8 to 1.25 times as large.
 Impact unlike(Generator& rng) {
     Impact i{};
     i.params = {.R = 0.0286,
@@ -133,8 +133,8 @@ Impact unlike(Generator& rng) {
     return i;
 }
 
-// Of one radius and masses up to a factor of ten apart: ball 1 at the origin, ball 2 along y, both with
-// random velocities and spins.
+// Equal radii and masses up to a factor of ten apart: ball 1 at the origin, ball 2 along y, both with random
+// velocities and spins.
 Impact of_one_radius(Generator& rng) {
     Impact i{};
     i.params = {0.0286,
@@ -178,7 +178,7 @@ Impact swapped(const Impact& i) {
     return s;
 }
 
-TEST(UnlikeImpact, AsForcesOnTwoSpheres) {
+TEST(UnlikeImpact, MatchesForcesOnTwoSpheres) {
     for (const ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         Generator rng(81);
         for (int n = 0; n < 120; ++n) {
@@ -194,7 +194,7 @@ TEST(UnlikeImpact, AsForcesOnTwoSpheres) {
     }
 }
 
-// The bound on the error, against the solution to 1e-13.
+// The error bound, against the solution to 1e-13.
 TEST(UnlikeImpact, KeepsTheTolerance) {
     for (const ClothSlip slip : {ClothSlip::kConsistent, ClothSlip::kAsPublished}) {
         Generator rng(82);
@@ -212,8 +212,8 @@ TEST(UnlikeImpact, KeepsTheTolerance) {
     }
 }
 
-// Where slips end, begin at zero, or pass next to it, over many decades: straight on a ball at rest, rolling,
-// with hardly any spin, and with hardly any friction. Slips that pass exactly through zero were missed.
+// Slips that end, begin at zero or pass close to it, over many decades: straight at a resting ball, rolling,
+// almost without spin, and almost without friction. Slips that pass exactly through zero were once missed.
 TEST(UnlikeImpact, KeepsTheToleranceWhereSlipsVanish) {
     Generator rng(89);
     const auto decades = [&rng](double lowest) {
@@ -249,7 +249,7 @@ TEST(UnlikeImpact, KeepsTheToleranceWhereSlipsVanish) {
     }
 }
 
-// Energy is never gained, momentum is kept without a cloth, and so is the difference of the spins' changes.
+// Energy is never gained; without a cloth, momentum and the difference of the spins' changes are conserved.
 TEST(UnlikeImpact, MomentumAndEnergy) {
     Generator rng(83);
     for (int n = 0; n < 5000; ++n) {
@@ -269,7 +269,7 @@ TEST(UnlikeImpact, MomentumAndEnergy) {
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(t.m[0] * t.R[0] * (r.w1[k] - i.ball1.w[k]),
                         t.m[1] * t.R[1] * (r.w2[k] - i.ball2.w[k]), 1e-14);
-        // Without any friction and with all the work returned, nothing is lost.
+        // Without friction and with full restitution, no energy is lost.
         i.params.mu_b = 0.0;
         i.params.e_b = 1.0;
         const ImpactResult free = solve(i, 1e-3);
@@ -278,7 +278,7 @@ TEST(UnlikeImpact, MomentumAndEnergy) {
     }
 }
 
-// The mirror image of an impact has the mirror image of its result, to the bit; so has the other order.
+// Mirroring an impact, or exchanging the balls, does the same to its result, bit for bit.
 TEST(UnlikeImpact, MirrorAndOrder) {
     Generator rng(84);
     for (int n = 0; n < 1000; ++n) {
@@ -305,8 +305,8 @@ TEST(UnlikeImpact, MirrorAndOrder) {
     }
 }
 
-// Nothing jumps where the balls become alike, or of one radius.
-TEST(UnlikeImpact, ContinuousWhereTheBallsAreAlike) {
+// Results are continuous where the balls become equal, or equal in radius.
+TEST(UnlikeImpact, ContinuousAtEqualBalls) {
     Generator rng(85);
     for (int n = 0; n < 300; ++n) {
         Impact i = unlike(rng);
@@ -338,7 +338,7 @@ TEST(UnlikeImpact, ContinuousAtEqualMasses) {
     }
 }
 
-// A ball of a million times the mass is a wall: it stays, and the other one is thrown back at e_b.
+// A ball a million times as heavy acts as a wall: it stays, and the other rebounds at e_b.
 TEST(UnlikeImpact, AgainstAWall) {
     for (const double ratio : {1.0, 1.25}) {
         Impact i{};
@@ -430,7 +430,7 @@ TEST(UnlikeImpact, ABatchSolvesThemOneByOne) {
     }
 }
 
-TEST(UnlikeImpact, RefusedWhereFrictionCouldHold) {
+TEST(UnlikeImpact, RefusedIfFrictionCouldLock) {
     Generator rng(88);
     Impact i = unlike(rng);
     for (const double ratio : {0.0, 0.249, 4.01, std::numeric_limits<double>::quiet_NaN()}) {
@@ -445,14 +445,14 @@ TEST(UnlikeImpact, RefusedWhereFrictionCouldHold) {
     i.params.mu_s1 = i.params.mu_s2 = 0.2;
     i.params.mu_b = 0.1;
     EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kOk);
-    i.ball2.r[2] = i.params.R;  // the larger ball is not that low
+    i.ball2.r[2] = i.params.R;  // too low for the larger ball
     EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kBadState);
     ImpactResult r{};
     collide_inelastic(i.ball1, i.ball2, i.params, r);
     EXPECT_EQ(r.status, ImpactStatus::kBadParameter);
 }
 
-TEST(UnlikeImpact, MassesAreRefusedWhereNothingIsClaimed) {
+TEST(UnlikeImpact, UnsupportedMassRatiosAreRefused) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     Generator rng(74);
     Impact i = of_one_radius(rng);
@@ -465,7 +465,7 @@ TEST(UnlikeImpact, MassesAreRefusedWhereNothingIsClaimed) {
         i.params.mass_ratio = ratio;
         EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kOk) << ratio;
     }
-    // Friction on the cloth up to 1, as between equal balls.
+    // Cloth friction up to 1 is accepted, as between equal balls.
     i.params.mass_ratio = 1.5;
     i.params.mu_s1 = i.params.mu_s2 = 0.9;
     EXPECT_EQ(solve(i, 1e-6).status, ImpactStatus::kOk);

@@ -1,7 +1,7 @@
 """Paths of the repository and the program.
 
-The package is the one that Python finds: tests/python/CMakeLists.txt points PYTHONPATH at the build, and an
-installed wheel is tested without it.
+Tests the package that Python finds: tests/python/CMakeLists.txt sets PYTHONPATH to the build; without it, an
+installed wheel is tested.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ SOURCE = pathlib.Path(os.environ.get("CAROM_SOURCE_DIR", pathlib.Path(__file__).
 SCENES = sorted((SOURCE / "scenes").glob("*.toml"))
 #: CAROM_SLOW_TESTS=1 also runs the tests that take minutes.
 SLOW = os.environ.get("CAROM_SLOW_TESTS") == "1"
-#: Anything that takes this many seconds hangs. Far above what a busy machine needs: load must not fail a
+#: Anything that runs for this many seconds hangs. Far more than a busy machine needs: load must not fail a
 #: test.
 HANGS = 600.0
 BAD_SCENES = sorted((SOURCE / "tests/data/bad_scenes").glob("*.toml"))
 
 
 def carom_program(*arguments: object, text: str | None = None, binary: bool = False):
-    """The program's output, with which Python must agree; the program has its own tests elsewhere."""
+    """The program's output, which Python must match; other tests check the program."""
     program = os.environ.get("CAROM_PROGRAM", SOURCE / "build/release/carom")
     return subprocess.run(
         [program, *map(str, arguments)], check=True, capture_output=True, text=not binary, input=text).stdout

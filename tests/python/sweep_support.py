@@ -12,7 +12,7 @@ from carom import sweep
 from conftest import HANGS, SOURCE
 
 DRAW = ["cue.aim_deg=normal(2)", "cue.speed=uniform(1,4)"]
-# Each shot takes milliseconds, which leaves time to kill a worker.
+# Each shot lasts milliseconds, which leaves time to kill a worker.
 BREAKS = ["cue.aim_deg=normal(0.3)", "cue.speed=uniform(8,10)"]
 # Half of these shots reach a state that cannot be computed.
 STUCK = """
@@ -35,7 +35,7 @@ def break_plan(shots, shard):
 
 
 def stamps(folder):
-    """For every shard's file, values that change when the file is written again."""
+    """Values per shard file that change when the file is rewritten."""
     return {
         path.name: (path.stat().st_ino, path.stat().st_mtime_ns)
         for path in pathlib.Path(folder).glob("*.parquet")}

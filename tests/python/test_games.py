@@ -13,7 +13,7 @@ import carom
 from carom import games
 
 
-def test_noise_has_names_and_is_the_same_for_a_seed():
+def test_noise_has_names_and_is_reproducible_by_seed():
     assert games.Noise.named("none") == games.Noise()
     assert games.Noise.named("ai3603") == (0.1, 0.1, 0.1, 0.003, 0.003)
     assert games.Noise.named("fastfiz", 0.025)[:3] == (0.075, 0.125, 0.1)
@@ -32,7 +32,7 @@ def test_noise_has_names_and_is_the_same_for_a_seed():
         struck["speed"], struck["aim_deg"], struck["elevation_deg"], *struck["offset"]]
 
 
-def test_noise_is_what_a_sweep_draws(tmp_path):
+def test_noise_draws_like_a_sweep(tmp_path):
     scene = carom.Scene(ball=[{"id": "cue", "position": [0.5, 0.5]}],
                         cue={"speed": 4.0, "aim_deg": 30.0, "elevation_deg": 9.0, "offset": [0.1, 0.0]})
     (tmp_path / "s.toml").write_text(scene.text())
@@ -45,7 +45,7 @@ def test_noise_is_what_a_sweep_draws(tmp_path):
     assert [[float(row[c]) for c in columns] for row in rows] == strikes.tolist()
 
 
-def test_a_noisy_strike_is_legal_whatever_it_was():
+def test_a_noisy_strike_is_always_legal():
     random = np.random.default_rng(1)
     wild = games.noisy(random.normal(0.0, 3.0, (2000, 5)), games.Noise(1.0, 500.0, 50.0, 0.3, 0.3), 3)
     assert (wild[:, 0] >= 0.0).all() and (wild[:, 2] >= 0.0).all() and (wild[:, 2] < 90.0).all()
@@ -81,7 +81,7 @@ RACKS = {
 RACKS["straight_rail"] = RACKS["one_cushion"] = RACKS["three_cushion"]
 
 
-def test_a_new_game_and_what_is_legal():
+def test_a_new_game_states_what_is_legal():
     state = games.new_game("eight_ball")
     assert state == games.State("eight_ball", 0, True, "head string", (0, 0), 0, False, -1, ("open", "open"),
                                 False, (0, 0), "red", False)
@@ -129,7 +129,7 @@ def test_a_shot_is_judged_and_the_next_scene_follows():
         games.judge(state, carom.simulate(scene, until=0.1))
 
 
-def test_numbers_that_no_game_holds_are_refused_with_the_range():
+def test_numbers_out_of_range_are_refused_with_the_range():
     places = {"cue": [0.3, 0.3], "1": [0.3, 0.6], "9": [0.7, 1.0]}
     balls = [{"id": ball, "position": place} for ball, place in places.items()]
     scene = carom.Scene(ball=balls, cue={"speed": 1.0})
@@ -150,8 +150,8 @@ def test_numbers_that_no_game_holds_are_refused_with_the_range():
             games.judge(state._replace(turn=number), record)
 
 
-def test_a_verdict_is_of_one_record():
-    # The same balls, a little slower: what holds for one shot is not told of the other.
+def test_a_verdict_belongs_to_one_record():
+    # The same balls, slightly slower: one shot's verdict does not describe the other.
     scene = carom.Scene(
         table="nine_foot",
         balls="pool",
@@ -174,7 +174,7 @@ def test_a_verdict_is_of_one_record():
         with pytest.raises(ValueError, match="the verdict is of another record"):
             games.next_scene(of_another, verdict, place=(0.7, 0.5))
     assert games.may_place(record, pickle.loads(pickle.dumps(option)), (0.7, 0.5))
-    # An option is a tuple of three, and one that is made by hand is of any record that has its balls.
+    # An option is a tuple of three; a hand-made one belongs to any record that has its balls.
     decision, state, respots = option
     mine = games.Option(decision, state, respots)
     assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
@@ -185,7 +185,7 @@ def test_a_verdict_is_of_one_record():
         games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))
 
 
-def test_a_verdict_of_a_loaded_record_is_of_that_record(tmp_path):
+def test_a_verdict_of_a_loaded_record_belongs_to_it(tmp_path):
     scene = carom.Scene(
         ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "1", "position": [0.3, 0.6]},
               {"id": "9", "position": [0.7, 1.0]}], cue={"speed": 1.0})
@@ -198,7 +198,7 @@ def test_a_verdict_of_a_loaded_record_is_of_that_record(tmp_path):
         record, verdict, place=place)
 
 
-def test_respots_come_back_exactly():
+def test_respotted_balls_lie_exactly_on_their_spots():
     scene = carom.Scene(
         table="snooker",
         balls="snooker",
@@ -258,7 +258,7 @@ def test_options_of_a_game():
                            ({"call": "some"}, r"expected call=all\|eight\|none")):
         with pytest.raises(ValueError, match=message):
             games.new_game("eight_ball", rules=rules)
-    # An eight that falls without a call wins only if no shot is called.
+    # An eight that falls uncalled wins only if shots are not called.
     scene = carom.Scene(
         table="nine_foot", balls="pool",
         ball=[{"id": "cue", "position": [0.3, 0.3]}, {"id": "8", "position": [0.2, 0.2]}],
@@ -304,7 +304,7 @@ def test_an_aim_pots_the_ball():
         assert ("ball_cushion", "1", route.cushion) in [event[1:] for event in events]
 
 
-def test_an_aim_that_is_none_says_why():
+def test_an_impossible_aim_says_why():
     scene = pool(("cue", [0.4, 0.4]), ("1", [0.7, 1.4]), ("2", [0.55, 0.9]), speed=3.0)
     assert games.aim_pot(scene, "1", "p4")[0] is None
     assert games.aim_pot(scene, "1", "p4").why == "the cue ball meets ball 2 first"

@@ -33,7 +33,7 @@ def test_forwards_and_backwards_agree_with_differences(gradients, shot):
     assert gradients.pulled(slopes, pull) @ push == pytest.approx((pull * moved).sum(), abs=1e-7)
 
 
-def test_it_says_what_agrees(gradients, capsys, monkeypatch):
+def test_the_script_reports_agreement(gradients, capsys, monkeypatch):
     monkeypatch.chdir(SOURCE)
     gradients.main()
     said = capsys.readouterr().out.splitlines()

@@ -37,7 +37,7 @@ def test_there_are_pages():
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
-def test_blocks_print_what_the_page_says(page, tmp_path, monkeypatch):
+def test_blocks_print_the_output_on_the_page(page, tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     pyplot = pytest.importorskip("matplotlib.pyplot")
     for package in ("gymnasium", "pettingzoo") if "carom.gym" in page.read_text() else ():
@@ -54,7 +54,7 @@ def test_blocks_print_what_the_page_says(page, tmp_path, monkeypatch):
     pyplot.close("all")
 
 
-def test_the_example_plays_the_shot_that_it_says(tmp_path):
+def test_the_example_plays_its_described_shot(tmp_path):
     example = runpy.run_path(str(SOURCE / "examples/python/shot.py"))
     (tmp_path / "cut.toml").write_text(example["cut_shot"]().text())
     carom_program("simulate", tmp_path / "cut.toml", "--events", tmp_path / "e.csv")
@@ -66,7 +66,7 @@ def test_the_example_plays_the_shot_that_it_says(tmp_path):
     assert re.fullmatch(r"aim at \d+\.\d+ degrees to pot ball 1; 0\.\d+ degrees wide", printed[-1])
 
 
-def test_blocks_and_examples_pass_a_strict_check_of_types(tmp_path):
+def test_blocks_and_examples_pass_a_strict_type_check(tmp_path):
     for package in ("mypy", "matplotlib", "gymnasium", "pettingzoo"):
         pytest.importorskip(package)
     files = sorted((SOURCE / "examples").glob("*/*.py"))

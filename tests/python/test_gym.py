@@ -48,7 +48,7 @@ def test_gymnasium_accepts_the_environment(name, options):
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))
 @pytest.mark.parametrize(("name", "options"), list(itertools.product(NAMES, OPTIONS)))
-def test_the_vector_is_so_many_single_environments(name, options, mode):
+def test_the_vector_equals_single_environments(name, options, mode):
     n, steps = 5, 12 if name == "SumToThree" else 6
     single = SyncVectorEnv([lambda: gymnasium.make(f"carom/{name}-v0", **options)] * n, autoreset_mode=mode)
     many = gymnasium.make_vec(f"carom/{name}-v0", num_envs=n, autoreset_mode=mode.value, **options)
@@ -69,7 +69,7 @@ def test_the_vector_is_so_many_single_environments(name, options, mode):
         if mode == AutoresetMode.DISABLED and ended.any():
             with pytest.raises(gymnasium.error.ResetNeeded, match="is over"):
                 many.step(actions)
-            # Reset some tables, as Gymnasium's own vector does, and seed one of them.
+            # Reset some tables, as Gymnasium's own vector does, and seed one.
             again = [None, 9, None, None, None]
             assert same_bits(many.reset(seed=again, options={"reset_mask": ended.copy()}),
                              single.reset(seed=again, options={"reset_mask": ended.copy()}))
@@ -78,7 +78,7 @@ def test_the_vector_is_so_many_single_environments(name, options, mode):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_seed_repeats_to_the_bit_whatever_the_threads(name):
+def test_a_seed_repeats_bit_for_bit_on_any_threads(name):
     def run(threads):
         env = carom.gym.make_vector_env(name, 40, threads=threads, hashes=True, autoreset_mode="SameStep")
         env.action_space.seed(2)
@@ -93,7 +93,7 @@ def test_a_seed_repeats_to_the_bit_whatever_the_threads(name):
     assert len(set(hashes.tolist())) == len(hashes) == 160
 
 
-def test_what_is_returned_is_nobody_elses():
+def test_returned_arrays_are_not_shared():
     env = carom.gym.make_vector_env("Pot", 3, observation="dict")
     kept = [env.reset(seed=1)[0]]
     copies = [{key: values.copy() for key, values in kept[0].items()}]
@@ -113,7 +113,7 @@ def test_what_is_returned_is_nobody_elses():
 
 
 def corners(size):
-    """Actions whose numbers are at the ends, in the middle, or close to zero."""
+    """Actions with numbers at the ends, in the middle, or close to zero."""
     tiny = np.array([-1.0, 0.0, 1.0, 1e-45, -1e-30, 0.5])
     few = np.array(list(itertools.product([-1.0, 0.0, 1.0], repeat=size)))
     random = np.random.default_rng(5)
@@ -129,7 +129,7 @@ def test_every_action_is_a_legal_strike(aim, elevation, dtype):
     env.reset(seed=4)
     actions = corners(env.action_space.shape[0]).astype(dtype)
     played = env.rollout(env.states.take(np.zeros(len(actions), int)), actions)
-        # The scene's own check decides what is legal: no shot is invalid.
+        # The scene's own check decides legality: no shot is invalid.
     assert not played.shots.messages and (played.shots.status == carom.ShotStatus.AT_REST).all()
     speed, aim_deg, raised, side, height = played.cue.T
     assert (speed >= 0.3).all() and (speed <= 5.0).all() and {0.3, 5.0} <= set(speed.tolist())
@@ -137,7 +137,7 @@ def test_every_action_is_a_legal_strike(aim, elevation, dtype):
     assert raised.min() == 0.0 and raised.max() == (60.0 if isinstance(elevation, tuple) else 0.0)
 
 
-def test_the_square_of_offsets_is_laid_on_the_whole_disc():
+def test_the_square_of_offsets_maps_onto_the_whole_disc():
     ends = np.array([[1, 0, 0, x, y] for x, y in [(1, 0), (0, 1), (1, 1), (-1, 1), (0.01, 0)]], float)
     env = carom.gym.make_env("Pot")
     env.reset(seed=1)
@@ -147,7 +147,7 @@ def test_the_square_of_offsets_is_laid_on_the_whole_disc():
                        [[0.5, 0], [0, 0.5], [half, half], [-half, half], [0.005, 0]], atol=1e-9)
 
 
-def test_directions_are_those_of_numpy():
+def test_directions_match_numpy():
     def directions_deg(along):
         actions = np.column_stack((along, np.zeros((len(along), 3))))
         return carom.gym.Strikes().cue(
@@ -161,7 +161,7 @@ def test_directions_are_those_of_numpy():
     assert np.isfinite(directions_deg(ends)[:6]).all() and np.isnan(directions_deg(ends)[6])
 
 
-def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
+def test_an_aim_at_a_ball_has_its_stated_fullness():
     env = carom.gym.make_env("Pot", aim="ball")
     env.reset(seed=1)
     # Straight up the table, so that left and right show in x.
@@ -171,13 +171,13 @@ def test_an_aim_at_a_ball_hits_it_as_full_as_it_says():
     played = env.rollout(states, actions)
     radius = 0.028575
     line = np.radians(played.cue[:, 1])
-    # How far to the right of the line of aim the other ball is.
+    # Distance of the other ball to the right of the line of aim.
     right = (1.0 * np.cos(line)) * -1.0
     assert np.allclose(right, full * 2 * radius, atol=1e-12)
     assert (played.shots.first_hit == 1).all()
 
 
-def test_noise_is_that_of_the_seed():
+def test_noise_depends_on_the_seed():
     env = carom.gym.make_env("Pot", noise="fastfiz", hashes=True)
     meant = np.array([0.3, 0.9, 0.2, 0.1, -0.2], np.float32)
 
@@ -226,7 +226,7 @@ def uniforms(states, draws):
 
 
 @pytest.mark.parametrize("name", ["EightBallRun", "SumToThree"])
-def test_layouts_are_drawn_until_their_balls_have_room(name):
+def test_layouts_are_redrawn_until_their_balls_fit(name):
     game = carom.gym.GAMES[name]()
     table, R, b, n = game.table, game.radii.max(), len(game.ids), 300
     states = np.random.default_rng(8).integers(0, 2**64, n, dtype=np.uint64)
@@ -257,7 +257,7 @@ def test_a_table_without_room_for_a_layout_is_refused():
         carom.gym.make_env("Pot", scene=full).reset(seed=1)
 
 
-def test_an_observation_is_the_table_from_minus_one_to_one():
+def test_an_observation_scales_the_table_to_minus_one_to_one():
     game = carom.gym.Position()
     random = np.random.default_rng(3)
     xy = random.uniform([-0.3, -0.3], [1.6, 2.9], (200, 2, 2))
@@ -283,7 +283,7 @@ def play_one(game, xy, cue, **extra):
     return env._rules.play(env.states, np.array([cue], float))
 
 
-def test_pot_pays_for_the_ball_and_takes_for_fouls():
+def test_pot_rewards_the_ball_and_penalises_fouls():
     # A straight shot into the corner (0, 0) from the diagonal of the table.
     straight = [[0.6, 0.6], [0.3, 0.3]]
     for speed, height, reward, foul in (
@@ -295,7 +295,7 @@ def test_pot_pays_for_the_ball_and_takes_for_fouls():
         assert played.terminated.all(), case
 
 
-def test_position_takes_the_distance_to_the_target():
+def test_position_subtracts_the_distance_to_the_target():
     target = {"target x": 0.9, "target y": 1.5}
     played = play_one("Position", [[0.6, 0.6], [0.3, 0.3]], [1.0, -135, 0, 0, -0.3], **target)
     far = np.hypot(*(played.shots.xy[0, 0] - [0.9, 1.5])) / np.hypot(1.27, 2.54)
@@ -303,8 +303,8 @@ def test_position_takes_the_distance_to_the_target():
 
 
 @pytest.mark.parametrize("name", ["ThreeCushion", "SumToThree", "NineBallRun", "EightBallRun"])
-def test_what_a_shot_is_worth_is_what_the_rules_say(name):
-    """Plays every shot again as a scene of its own and judges its record by carom.games."""
+def test_rewards_follow_the_rules(name):
+    """Replays every shot as its own scene and judges its record by carom.games."""
     env = carom.gym.make_vector_env(
         name, 60, autoreset_mode="SameStep", aim="ball", speed=(2.0, 6.0), hashes=True)
     game = carom.gym.GAMES[name]()
@@ -353,7 +353,7 @@ def test_what_a_shot_is_worth_is_what_the_rules_say(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_playing_and_judging_in_one_pass_or_in_two_is_the_same(name):
+def test_judging_during_or_after_play_is_the_same(name):
     env = carom.gym.make_vector_env(name, 50, speed=(3.0, 8.0), elevation_deg=(0.0, 30.0), hashes=True)
     env.reset(seed=5)
     env.action_space.seed(6)
@@ -392,7 +392,7 @@ def test_a_subclass_may_judge_by_itself():
     assert same_bits(strict[0], usual[0])
 
 
-def test_the_scene_of_a_point_is_a_point():
+def test_the_scene_of_a_point_scores_again():
     scene = carom.Scene.load(SOURCE / "scenes/three_cushion.toml")
     cue = scene.to_dict()["cue"]
     played = play_one("ThreeCushion", scene.positions, [cue["speed"], cue["aim_deg"], 0, *cue["offset"]])
@@ -412,7 +412,7 @@ def test_the_last_ball_ends_the_run():
     assert not env._rules.game.legal(played.states).any()
 
 
-def test_a_shot_without_an_end_is_truncated_and_says_why():
+def test_an_endless_shot_is_truncated_and_says_why():
     env = carom.gym.make_env("Pot")
     before, _ = env.reset(seed=1)
     observation, reward, terminated, truncated, info = env.step(np.array([np.nan, 0, 0, 0, 0], np.float32))
@@ -437,7 +437,7 @@ def test_a_table_without_cushions_is_refused():
         carom.gym.make_env("Pot", scene=scene.replace(table={"cushion": []}))
 
 
-def test_the_record_is_the_shot_and_the_picture_the_table():
+def test_the_record_shows_the_shot_and_the_picture_the_table():
     env = carom.gym.make_env("Position", hashes=True, render_mode="rgb_array", size=(64, 36))
     env.reset(seed=3)
     with pytest.raises(RuntimeError, match="no shot since reset"):
@@ -451,7 +451,7 @@ def test_the_record_is_the_shot_and_the_picture_the_table():
     assert carom.gym.make_env("Pot").render() is None
 
 
-def test_a_rollout_is_what_a_step_would_be():
+def test_a_rollout_equals_a_step():
     env = carom.gym.make_env("Pot", hashes=True)
     env.reset(seed=6)
     env.action_space.seed(1)
@@ -468,7 +468,7 @@ def test_a_rollout_is_what_a_step_would_be():
         env.reset(options={"xy": places})
 
 
-def test_reset_takes_a_scene_and_says_what_is_wrong():
+def test_reset_accepts_a_scene_and_explains_errors():
     env = carom.gym.make_env("Pot")
     path = SOURCE / "scenes/draw.toml"
     scene = carom.Scene.load(path)
@@ -511,7 +511,7 @@ def test_reset_takes_a_scene_and_says_what_is_wrong():
         carom.gym.make_env("Pot").step(np.zeros(5, np.float32))
 
 
-def test_places_know_balls_that_left_the_table():
+def test_places_mark_balls_off_the_table():
     scene = carom.Scene.load(SOURCE / "scenes/jump.toml")
     shots = carom.simulate_many(
         scene, params={"cue.speed": np.linspace(1, 12, 60), "cue.elevation_deg": np.full(60, 40.0)})
@@ -519,7 +519,7 @@ def test_places_know_balls_that_left_the_table():
     assert out.any() and np.isnan(shots.places[out]).all()
 
 
-def test_planes_have_their_balls_where_they_are():
+def test_planes_show_the_balls_at_their_places():
     env = carom.gym.FeaturePlanes(carom.gym.make_env("NineBallRun"), 30, 60)
     seen, _ = env.reset(seed=3)
     assert env.observation_space.contains(seen)
@@ -542,7 +542,7 @@ def test_planes_have_their_balls_where_they_are():
         carom.gym.FeaturePlanes(carom.gym.make_env("Pot"), 0)
 
 
-def test_pixels_are_those_of_gymnasiums_wrapper():
+def test_pixels_match_gymnasiums_wrapper():
     from gymnasium.wrappers import AddRenderObservation
 
     env = AddRenderObservation(

@@ -34,7 +34,7 @@ def answers(lines, *options):
 
 
 @pytest.mark.parametrize("model", ["mathavan", "inelastic", "elastic"])
-def test_ball_ball_is_that_of_the_program(model):
+def test_ball_ball_matches_the_program(model):
     n = 70
     rvw, mu_b, e_b = pairs(n), RANDOM.uniform(0, 0.1, n), RANDOM.uniform(0.5, 1, n)
     after = kernel.ball_ball(
@@ -56,7 +56,7 @@ def test_ball_ball_is_that_of_the_program(model):
 
 
 @pytest.mark.parametrize("model", ["han_2005", "mathavan_2010", "stronge", "impulse", "smooth"])
-def test_ball_cushion_is_that_of_the_program(model):
+def test_ball_cushion_matches_the_program(model):
     n = 20
     rvw = RANDOM.normal(0, [[0.1], [2.0], [40.0]], (n, 3, 3))
     rvw[:, 1, 2] = 0
@@ -74,7 +74,7 @@ def test_ball_cushion_is_that_of_the_program(model):
     assert (moved == (np.sum(rvw[:, 1, :2] * normal, -1) < 0)).all() and moved.any()
 
 
-def test_shapes_and_one_number_for_all():
+def test_shapes_broadcast():
     rvw = pairs(6).reshape(2, 3, 2, 3, 3)
     after = kernel.ball_ball(rvw)
     assert after.shape == rvw.shape
@@ -97,7 +97,7 @@ def test_defaults_are_pool_classic():
             assert inspect.signature(function).parameters[key].default == float(balls[key])
 
 
-def test_what_cannot_be_computed_is_refused():
+def test_invalid_impacts_are_refused():
     rvw = pairs(3)
     bad = rvw.copy()
     bad[1, 0, 1, 0] = np.nan

@@ -1,4 +1,4 @@
-"""Batches: the bits of single shots, failures that affect only their own shot, and arrays that are reused."""
+"""Batches: the bits of single shots, failures that affect only their own shot, and reused arrays."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_a_bad_shot_has_a_status_and_the_others_are_played(draw_scene):
         assert np.array_equal(shots.xy[i], good.xy[i]) and shots.duration[i] == good.duration[i]
 
 
-def test_a_run_that_cannot_go_on_is_a_status():
+def test_a_failed_run_is_a_status():
     shots = carom.simulate_many(stuck_scene(0.5), params={"balls.e_t": [0.5, 0.9999999, 0.6]})
     assert shots.status.tolist() == [0, ShotStatus.FAILED, 0]
     assert shots.messages[1].startswith("simulation stopped at t = ")
@@ -119,7 +119,7 @@ def test_a_ball_without_a_place_is_left_out(break_scene):
     assert f"{shots.hash[1]:016x}" == carom.simulate(carom.Scene.from_dict(tree)).hash()
     assert f"{shots.hash[0]:016x}" == carom.simulate(break_scene).hash()
     assert np.isnan(shots.xy[1]).any(axis=-1).nonzero()[0].tolist() == [3, 5, 8]
-    # A single NaN coordinate is a mistake.
+    # A single NaN coordinate is an error.
     xy[1, 3, 0] = 0.5
     assert carom.simulate_many(break_scene, xy=xy).status[1] == ShotStatus.INVALID
 
@@ -137,14 +137,14 @@ def test_shots_follow_each_other(break_scene):
     assert (np.isnan(second.xy[:, :, 0]) == (first.pocket >= 0)).all()
 
 
-def test_limits_are_those_of_a_single_shot(break_scene):
+def test_limits_apply_as_to_a_single_shot(break_scene):
     assert carom.simulate_many(break_scene, shots=2, until=0.5).duration.tolist() == [0.5, 0.5]
     few = carom.simulate_many(break_scene, shots=2, max_events=10)
     assert few.events.tolist() == [10, 10] and (few.status == ShotStatus.EVENTS).all()
     assert carom.simulate_many(break_scene, shots=0).xy.shape == (0, 16, 2)
 
 
-def test_what_does_not_fit_is_refused(draw_scene):
+def test_mismatched_arrays_are_refused(draw_scene):
     two = len(draw_scene.ids)
     refused(
         ValueError,
@@ -160,20 +160,20 @@ def test_what_does_not_fit_is_refused(draw_scene):
     )
 
 
-def test_names_of_the_engine_and_the_enumeration_agree():
+def test_the_enumeration_has_the_engines_names():
     from carom import _carom
 
     assert _carom.status_names() == [status.name.lower() for status in ShotStatus]
 
 
 def test_a_run_may_ask_for_more_or_fewer_events():
-    # A ball that all but never stops bouncing.
+    # A ball that almost never stops bouncing.
     scene = carom.Scene(balls={"e_t": 0.9999999}, ball=[{"height": 0.1}])
     shots = carom.simulate_many(scene, params={"stop.events": [1000.0, 7.0]})
     assert shots.status.tolist() == [ShotStatus.EVENTS] * 2 and shots.events.tolist() == [1000, 7]
 
 
-def test_more_shots_than_arrays_hold_are_refused(draw_scene):
+def test_shots_beyond_the_arrays_are_refused(draw_scene):
     for shots in (2**31 + 1, 2**53 + 1, 2**64):
         wanted = "is out of range; it must be at most 2147483648"
         with pytest.raises(ValueError, match=f"^shots = {shots} {wanted}$"):

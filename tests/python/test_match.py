@@ -71,7 +71,7 @@ def until_in_hand(env, seed):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_the_way(name):
+def test_the_cue_ball_in_hand_lies_at_the_chosen_place_or_beside_an_obstacle(name):
     env = match.env(name)
     cue = env.ids.index("cue")
     for seed in range(3):
@@ -96,11 +96,10 @@ def test_the_cue_ball_in_hand_lies_where_the_action_says_or_beside_what_is_in_th
         assert np.array_equal(env.record().states(0.0)[env.record().ids.index("cue"), 0, :2], wanted[4])
 
 
-def test_calls_are_numbers_of_the_action():
+def test_calls_are_part_of_the_action():
     env = match.env("EightBall", called=True)
     assert env.action_space("player_0").shape == (7,)
-    # With `called`, pocketing a ball that was not called ends the turn: compare the same shots with lucky
-    # calls.
+    # With `called`, pocketing an uncalled ball ends the turn: compare the same shots with lucky calls.
     lucky, called = match.env("EightBall", aim="ball"), match.env("EightBall", aim="ball", called=True)
     differ = 0
     for seed in range(3):
@@ -123,7 +122,7 @@ def test_calls_are_numbers_of_the_action():
         match.env("Chess")
 
 
-def test_a_shot_without_an_end_truncates_the_game():
+def test_an_endless_shot_truncates_the_game():
     env = match.env("NineBall")
     env.reset(seed=1)
     before = env.observe("player_0")["balls"]
@@ -139,7 +138,7 @@ def test_a_shot_without_an_end_truncates_the_game():
     assert all(short.truncations.values())
 
 
-def test_the_picture_is_the_table():
+def test_the_picture_shows_the_table():
     env = match.env("Snooker", render_mode="rgb_array", size=(64, 36))
     env.reset(seed=1)
     with pytest.raises(RuntimeError, match="no shot"):

@@ -29,7 +29,7 @@ def quarter_ball():
     )
 
 
-def test_an_event_tells_its_place_and_its_numbers_in_closed_form():
+def test_an_event_has_its_place_and_numbers_in_closed_form():
     record = carom.simulate(quarter_ball())
     hit = list(record.events["type"]).index(record.EVENT_TYPES.index("ball_ball"))
     told = record.event_details[hit]
@@ -44,7 +44,7 @@ def test_an_event_tells_its_place_and_its_numbers_in_closed_form():
     assert len(record.event_details) == len(record.events)
 
 
-def test_details_are_those_of_the_program(draw_scene, tmp_path):
+def test_details_match_the_program(draw_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/draw.toml", "--events", tmp_path / "e.csv")
     header, *rows = rows_of(tmp_path / "e.csv")
     record = carom.simulate(draw_scene)
@@ -58,7 +58,7 @@ def test_details_are_those_of_the_program(draw_scene, tmp_path):
     assert frame["closing"].tolist()[:0] == [] and list(frame["met"]) == record.met
 
 
-def test_measures_are_those_of_the_program():
+def test_measures_match_the_program():
     text = carom_program("describe", "measures")
     listed = carom.measures()
     assert len(listed) > 20
@@ -159,7 +159,7 @@ def test_a_break():
             ({"rack": "wood"}, "use template, triangle"))
 
 
-def test_names_are_those_of_the_engine():
+def test_names_match_the_engine():
     pages = carom_program("describe", "scene-format")
     for table in typing.get_args(_names.TableName):
         assert f"`{table}`" in pages
@@ -171,7 +171,7 @@ def test_names_are_those_of_the_engine():
         carom.games.new_game("chess")
 
 
-def test_paths_are_those_of_the_records(draw_scene):
+def test_paths_match_the_records(draw_scene):
     times = np.array([0.0, 0.2, 1.0, 99.0])
     cue = np.array([[2.25, 135, 0, 0, -0.4], [3.0, 134, 0, 0.1, 0]])
     shots = carom.simulate_many(draw_scene, cue=cue, times=times)
@@ -207,7 +207,7 @@ def test_shots_are_tables(draw_scene):
         assert two["status"] == "invalid" and "cue.speed" in two["message"] and two["first_hit"] != "1"
 
 
-def test_a_repr_is_short_and_says_shapes_and_units(break_scene):
+def test_a_repr_is_short_with_shapes_and_units(break_scene):
     shots = carom.simulate_many(break_scene, shots=1000, max_events=2, hashes=True, times=[0.0])
     record = carom.simulate(break_scene)
     for thing, words in ((shots, ("1000 shots of 16 balls", "(1000, 16, 2) m", "duration [s]")),
@@ -216,7 +216,7 @@ def test_a_repr_is_short_and_says_shapes_and_units(break_scene):
         assert len(repr(thing).splitlines()) <= 10 and all(word in repr(thing) for word in words), repr(thing)
 
 
-def test_scenes_travel_with_the_package():
+def test_the_package_includes_the_scenes():
     assert carom.scenes.names() == sorted(path.stem for path in (SOURCE / "scenes").glob("*.toml"))
     assert carom.scenes.load("draw") == carom.Scene.load(SOURCE / "scenes/draw.toml")
     assert carom.simulate(carom.scenes.path("draw")).stopped == "at_rest"

@@ -1,4 +1,4 @@
-"""The package as a whole: imports, argument types, and what is accepted as a scene."""
+"""The package as a whole: imports, argument types, and values accepted as a scene."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def imported(node):
 
 
 def wrong_imports(sources):
-    """Modules in import cycles, imports for type checking included, and imports of the package inside
+    """Modules in import cycles, including imports for type checking, and imports of the package inside
     functions."""
     trees = {name: ast.parse(text) for name, text in sources.items()}
-    # The package itself is left out: importing any of its modules imports it.
+    # The package itself is excluded: importing any of its modules imports it.
     edges = {
         name: {
             other for node in ast.walk(tree) for other in imported(node) if other in sources
@@ -55,7 +55,7 @@ def wrong_imports(sources):
     return sorted(edges), sorted(hidden)
 
 
-def test_modules_import_each_other_in_no_circle_and_at_the_top():
+def test_modules_import_without_cycles_and_at_the_top():
     assert wrong_imports(SOURCES) == ([], [])
 
 
@@ -70,7 +70,7 @@ def test_modules_import_each_other_in_no_circle_and_at_the_top():
          ({"carom._toml", "carom.plot"}, ["carom._toml:3"])),
     ],
 )
-def test_a_circle_and_a_hidden_import_are_found(planted, wrong):
+def test_a_cycle_and_a_hidden_import_are_found(planted, wrong):
     circle, hidden = wrong_imports(SOURCES | planted)
     assert hidden == wrong[1]
     assert wrong[0] <= set(circle) and bool(circle) == bool(wrong[0])
@@ -85,7 +85,7 @@ WRONG = [
     (("None",), None),
     (("int", "float", "ArrayLike"), 5),
     (("float", "ArrayLike"), 2.5),
-    (("int",), 10**400),  # no double is as large
+    (("int",), 10**400),  # too large for a double
     (("str", "Literal", "SceneLike", *NAMES), "a text"),
     (("list",), [object()]),
     (("Mapping", "dict", "SceneLike"), {"a": object()}),
@@ -93,7 +93,7 @@ WRONG = [
 
 
 def public_functions():
-    """The functions and methods of carom's public names, without those that other packages define."""
+    """The functions and methods of carom's public names, without those of other packages."""
     modules = [carom, carom.games, carom.kernel, carom.plot, carom.scenes, carom.sweep,
                importlib.import_module("carom.io.pooltool")]
     if importlib.util.find_spec("pettingzoo"):
@@ -124,7 +124,7 @@ def arguments():
 
 
 @pytest.mark.parametrize(("function", "name", "annotation"), list(arguments()))
-def test_a_wrong_type_is_refused_by_the_name_of_the_argument(function, name, annotation):
+def test_a_wrong_type_is_refused_naming_the_argument(function, name, annotation):
     whole = annotation
     while "[" in whole:
         whole = re.sub(r"\[[^\[\]]*\]", "", whole)
@@ -138,7 +138,7 @@ def test_a_wrong_type_is_refused_by_the_name_of_the_argument(function, name, ann
             function(**{name: value})
 
 
-def test_what_takes_a_scene_takes_its_path_and_its_tree(draw_scene):
+def test_scene_arguments_accept_a_path_or_a_tree(draw_scene):
     path = SOURCE / "scenes/draw.toml"
     takers = [
         lambda scene: carom.simulate(scene).hash(),
@@ -158,7 +158,7 @@ def test_what_takes_a_scene_takes_its_path_and_its_tree(draw_scene):
             take("nowhere.toml")
 
 
-def test_a_warning_names_the_line_that_simulates():
+def test_a_warning_names_the_simulating_line():
     with pytest.warns(UserWarning, match="the elevated cue would give") as told:
         carom.simulate(SOURCE / "scenes/masse.toml", until=0.1)
     assert told[0].filename == __file__

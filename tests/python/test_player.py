@@ -1,4 +1,4 @@
-"""The player: advice, somebody to play against, and an opponent in matches."""
+"""The player: advice, a player for whole games, and an opponent in matches."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Pictures and tables of records: what matplotlib and pandas receive, and what notebooks show."""
+"""Pictures and tables of records: the data for matplotlib and pandas, and notebook displays."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def pixels(axes):
     return image, at
 
 
-def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
+def test_a_plan_has_balls_trails_and_pockets_in_place(pyplot):
     from carom.plot import _CLOTH, _HOLE
     from matplotlib.colors import to_rgb
 
@@ -61,7 +61,7 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     np.testing.assert_allclose(at(0.415, 0.5), to_rgb(_CLOTH), **near)  # the ring is empty
     for _, x, y, _radius in record.table.pockets:
         np.testing.assert_allclose(at(x, y), to_rgb(_HOLE), **near)
-    # At a given time there is a disc, and the trail ends there; without trails there is no trail.
+    # A given time draws a disc, where the trail ends; without trails there is none.
     place = record.states(0.3)[0, 0]
     _, at = pixels(carom.plot.table(record, at=0.3))
     np.testing.assert_allclose(at(place[0] + 0.015, place[1]), red, **near)
@@ -70,7 +70,7 @@ def test_a_plan_has_balls_trails_and_pockets_where_they_are(pyplot):
     np.testing.assert_allclose(at(0.4, 0.8), to_rgb(_CLOTH), **near)
 
 
-def test_a_plan_shows_what_other_pictures_show(pyplot, break_scene):
+def test_a_plan_matches_other_pictures(pyplot, break_scene):
     record = carom.simulate(break_scene)
     axes = carom.plot.table(record)
     assert axes.yaxis_inverted() and axes.get_aspect() == 1.0
@@ -82,7 +82,7 @@ def test_a_plan_shows_what_other_pictures_show(pyplot, break_scene):
         carom.plot.table(record, at=np.nan)
 
 
-def test_flights_are_dotted_and_an_endless_cloth_has_its_balls_in_view(pyplot):
+def test_flights_are_dotted_and_an_endless_cloth_shows_its_balls(pyplot):
     jump = carom.simulate(carom.Scene.load(SOURCE / "scenes/jump.toml"))
     styles = [collection.get_linestyle()[0][1] for collection in carom.plot.table(jump).collections]
     flying = sum(jump.MOTIONS.index("airborne") in segments["state"] for segments in jump.segments)
@@ -94,7 +94,7 @@ def test_flights_are_dotted_and_an_endless_cloth_has_its_balls_in_view(pyplot):
         assert low < places[..., axis].min() and places[..., axis].max() < high
 
 
-def test_speeds_and_energies_are_those_of_the_states(pyplot):
+def test_speeds_and_energies_match_the_states(pyplot):
     record = carom.simulate(carom.Scene(**HEAD_ON))
     hit = next(e.time for e in record.event_list() if e.type == "ball_ball")
     lines = {line.get_label(): line.get_xydata() for line in carom.plot.speeds(record).lines}
@@ -111,7 +111,7 @@ def test_speeds_and_energies_are_those_of_the_states(pyplot):
     assert first == pytest.approx(0.5 * record.masses[0] * 4.0, rel=1e-12)
 
 
-def test_a_notebook_shows_the_page_and_nothing_from_outside(pyplot):
+def test_a_notebook_shows_the_page_without_outside_resources(pyplot):
     scene = carom.Scene(**HEAD_ON | {"ball": [{"id": "<b>", "velocity": [0, 2.0]}]})
     record = carom.simulate(scene, until=0.5)
     shown = record._repr_html_()
@@ -125,7 +125,7 @@ def test_a_notebook_shows_the_page_and_nothing_from_outside(pyplot):
     assert pyplot.get_fignums() == []
 
 
-def test_without_matplotlib_it_says_what_is_missing():
+def test_without_matplotlib_the_error_names_it():
     code = f"""
 import sys
 sys.modules["matplotlib"] = None

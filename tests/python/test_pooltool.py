@@ -1,6 +1,6 @@
 """pooltool's files, both ways.
 
-tests/data/pooltool holds Systems that pooltool 0.6.0 saved: one shot before and after simulation, a potted
+tests/data/pooltool contains Systems saved by pooltool 0.6.0: one shot before and after simulation, a potted
 ball, and a jaw. lab/measure/pooltool_parity.py compares with pooltool itself.
 """
 
@@ -41,7 +41,7 @@ def test_a_system_plays_as_in_pooltool(name):
         end, [system["balls"][ball]["state"]["rvw"][0] for ball in record.ids], atol=1e-4)
 
 
-def test_the_friction_between_balls_is_pooltools():
+def test_the_friction_between_balls_matches_pooltool():
     # Without the scaled friction, the balls would roll half a millisecond earlier or later.
     scene = pooltool.load(SYSTEMS / "two_balls.json")
     rolls = [
@@ -54,7 +54,7 @@ def test_the_friction_between_balls_is_pooltools():
         assert np.abs(np.subtract(ours, rolls)).max() < 1e-3
 
 
-def test_a_system_that_was_not_simulated_is_the_same_shot(tmp_path):
+def test_an_unsimulated_system_is_the_same_shot(tmp_path):
     assert pooltool.load(SYSTEMS / "start.json").text() == pooltool.load(SYSTEMS / "two_balls.json").text()
     system = system_of(SYSTEMS / "start.json")
     system["cue"]["V0"] = 0.0
@@ -95,7 +95,7 @@ def test_a_system_that_was_not_simulated_is_the_same_shot(tmp_path):
         (lambda s: s["table"].pop("cushion_segments"), "table.cushion_segments is missing"),
     ],
 )
-def test_what_is_no_system_is_named(change, message, tmp_path):
+def test_a_bad_system_is_reported(change, message, tmp_path):
     system = system_of(SYSTEMS / "start.json")
     change(system)
     path = tmp_path / "bad.json"
@@ -105,7 +105,7 @@ def test_what_is_no_system_is_named(change, message, tmp_path):
     assert caught.value.file == str(path)
 
 
-def test_what_is_no_file_or_no_json_is_named(tmp_path):
+def test_a_missing_file_or_bad_json_is_reported(tmp_path):
     (tmp_path / "a.json").write_text('{"cue": {},\n "balls": }')
     with pytest.raises(carom.SceneError, match=r"a.json:2:11: is not JSON"):
         pooltool.load(tmp_path / "a.json")
@@ -151,7 +151,7 @@ def test_a_saved_record_is_a_system(path, tmp_path):
     system = system_of(tmp_path / "s.json")
     known = {pair for file in SYSTEMS.glob("*.json") for pair in keys_of(system_of(file))}
     assert keys_of(system) <= known
-    # pooltool starts at the state after a ball's last event: it must be the record's.
+    # pooltool starts from the state after a ball's last event, which must match the record.
     assert system["events"][0]["event_type"] == system["events"][-1]["event_type"] == "none"
     times = [event["time"] for event in system["events"]]
     assert times == sorted(times) and times[0] == 0.0
@@ -174,7 +174,7 @@ def test_a_saved_record_is_a_system(path, tmp_path):
     assert {ball for pocket in system["table"]["pockets"].values() for ball in pocket["contains"]} == fallen
 
 
-def test_a_saved_record_comes_back_with_its_cue_and_table(break_scene, tmp_path):
+def test_a_saved_record_keeps_its_cue_and_table(break_scene, tmp_path):
     record = carom.simulate(break_scene)
     pooltool.save(record, tmp_path / "s.json")
     again = pooltool.load(tmp_path / "s.json")
@@ -216,7 +216,7 @@ def test_a_system_as_messagepack_is_the_same_scene(name, tmp_path):
     assert pooltool.load(tmp_path / "s.msgpack").text() == pooltool.load(path).text()
 
 
-def test_a_table_that_was_saved_comes_back_the_same(break_scene, tmp_path):
+def test_a_saved_table_reads_back_unchanged(break_scene, tmp_path):
     pooltool.save(carom.simulate(break_scene), tmp_path / "s.json")
 
     def heights(scene):
@@ -225,7 +225,7 @@ def test_a_table_that_was_saved_comes_back_the_same(break_scene, tmp_path):
         heights(pooltool.load(tmp_path / "s.json")), heights(break_scene), rtol=4e-16)
 
 
-def test_a_specification_of_a_table_is_a_table():
+def test_a_table_specification_yields_a_table():
     # The defaults of PocketTableSpecs in pooltool 0.6.0.
     specs = {
         "l": 1.9812, "w": 1.9812 / 2, "cushion_width": 2 * 2.54 / 100, "cushion_height": 0.64 * 2 * 0.028575,
@@ -249,7 +249,7 @@ def test_a_specification_of_a_table_is_a_table():
     assert flat == {"preset": "carom", "size": [1.42, 2.84], "cushion_height": 0.037}
 
 
-def test_what_pooltool_cannot_have_is_refused(draw_scene, tmp_path):
+def test_scenes_beyond_pooltool_are_refused(draw_scene, tmp_path):
     record = carom.simulate(draw_scene)
     with pytest.raises(ValueError, match="saved as .json"):
         pooltool.save(record, tmp_path / "s.msgpack")

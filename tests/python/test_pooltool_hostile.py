@@ -1,4 +1,5 @@
-"""Files that claim to be pooltool's: only SceneError comes out, and memory is bounded by the file's size."""
+"""Files that claim to be pooltool's: the only exception is SceneError, and memory is bounded by the file's
+size."""
 
 from __future__ import annotations
 
@@ -31,7 +32,7 @@ def array(msgpack, shape, data=b"", kind="<f8"):
 
 
 @pytest.mark.parametrize("shape", [[20000, 20000, 0], [0], [10**9, 0], [2, 2], [-1], ["1"], [1] * 40])
-def test_an_array_has_as_many_numbers_as_its_shape_says(shape, tmp_path):
+def test_an_arrays_size_must_match_its_shape(shape, tmp_path):
     msgpack = pytest.importorskip("msgpack")
     path = tmp_path / "s.msgpack"
     path.write_bytes(array(msgpack, shape, b"" if shape[-1:] == [0] else bytes(8)))
@@ -42,7 +43,7 @@ KINDS = ["O", "(1000,1000)f8", "f8,f8", "V8", "<U2", "c16", 3, None, {"names": [
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_array_holds_numbers(kind, tmp_path):
+def test_an_array_must_contain_numbers(kind, tmp_path):
     msgpack = pytest.importorskip("msgpack")
     path = tmp_path / "s.msgpack"
     path.write_bytes(array(msgpack, [1], bytes(8), kind))
@@ -50,7 +51,7 @@ def test_an_array_holds_numbers(kind, tmp_path):
 
 
 @pytest.mark.parametrize("member", [b"\xdd\x00\x01\x00\x00", b"\xdf\x00\x00\x80\x00"], ids=["lists", "maps"])
-def test_lists_that_say_to_be_long_take_no_memory(member, tmp_path):
+def test_lists_claiming_to_be_long_use_no_memory(member, tmp_path):
     pytest.importorskip("msgpack")
     pytest.importorskip("resource")
     path = tmp_path / "s.msgpack"
@@ -79,7 +80,7 @@ except carom.SceneError:
         ("", "is not JSON"),
     ],
 )
-def test_json_that_python_refuses_is_refused(text, message, tmp_path):
+def test_json_refused_by_python_is_refused(text, message, tmp_path):
     path = tmp_path / "s.json"
     path.write_text(text, encoding="utf-8")
     refused(path, message)
@@ -97,7 +98,7 @@ def test_json_that_python_refuses_is_refused(text, message, tmp_path):
         ("cue.V0", True, "cue.V0 is not a number"),
     ],
 )
-def test_values_that_no_system_has_are_named(where, value, message, tmp_path):
+def test_impossible_values_are_reported(where, value, message, tmp_path):
     system = json.loads((SYSTEMS / "start.json").read_text())
     *way, last = where.split(".")
     part = system
@@ -110,7 +111,7 @@ def test_values_that_no_system_has_are_named(where, value, message, tmp_path):
     refused(path, message)
 
 
-def test_names_in_messagepack_are_texts(tmp_path):
+def test_names_in_messagepack_must_be_strings(tmp_path):
     msgpack = pytest.importorskip("msgpack")
     system = json.loads((SYSTEMS / "start.json").read_text())
     path = tmp_path / "s.msgpack"

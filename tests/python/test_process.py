@@ -1,4 +1,4 @@
-"""How the package behaves in a process: imports, Ctrl-C, threads, fork and spawn, constant memory."""
+"""The package in a process: imports, Ctrl-C, threads, fork and spawn, constant memory."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_nothing_heavy_is_imported():
     assert "carom" in new and not new & heavy, (new, err)
 
 
-def test_python_threads_play_at_once(break_scene):
+def test_python_threads_play_in_parallel(break_scene):
     hashes = set()
     record = carom.simulate(break_scene)
     times = np.linspace(0, record.duration, 200)
@@ -87,7 +87,7 @@ def test_python_threads_play_at_once(break_scene):
     assert hashes == {record.hash()}
 
 
-def test_the_gil_is_free_meanwhile(break_scene):
+def test_the_gil_is_released_during_play(break_scene):
     beats, done = [], threading.Event()
 
     def beat():
@@ -108,7 +108,7 @@ def _hash(scene):
 
 
 @pytest.mark.parametrize("method", ["spawn", "fork"])
-def test_processes_play_scenes_that_were_sent(draw_scene, method):
+def test_scenes_can_be_sent_to_processes(draw_scene, method):
     scenes = [draw_scene.replace(**{"cue.speed": v}) for v in (2.0, 3.0)]
     context = multiprocessing.get_context(method)
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
@@ -130,7 +130,7 @@ def resident():
         return int(file.read().split()[1]) * resource.getpagesize()
 
 
-def test_many_records_leave_no_memory_behind(draw_scene):
+def test_many_records_leak_no_memory(draw_scene):
     # CAROM_RECORDS=1000000 was required for a release; the suite runs part of it.
     count = int(os.environ.get("CAROM_RECORDS", 20_000))
     broken = carom.Scene(ball=[{"id": "a"}])
@@ -153,7 +153,7 @@ def test_many_records_leave_no_memory_behind(draw_scene):
     assert resident() - before < 8e6
 
 
-def test_the_instruction_set_of_the_environment_is_taken_or_refused(draw_scene, monkeypatch):
+def test_the_environments_instruction_set_is_used_or_refused(draw_scene, monkeypatch):
     wanted = carom.simulate(draw_scene).hash()
     monkeypatch.setenv("CAROM_ISA", "scalar")
     assert carom.simulate(draw_scene).hash() == wanted
@@ -162,7 +162,7 @@ def test_the_instruction_set_of_the_environment_is_taken_or_refused(draw_scene, 
         carom.simulate(draw_scene)
 
 
-def test_the_version_is_that_of_the_program():
+def test_the_version_matches_the_program():
     from conftest import carom_program
 
     assert carom.__version__ in carom_program("--version")

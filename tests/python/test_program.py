@@ -1,4 +1,4 @@
-"""The program's reports as data. C++ tests what they measure; these tests check that it arrives."""
+"""The program's reports as data. C++ tests check the measurements; these check that they arrive."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def test_accuracy_has_a_row_for_every_setting(draw_scene):
         carom.accuracy(draw_scene, target=-1.0)
 
 
-def test_the_command_is_the_program():
+def test_the_command_runs_the_program():
     done = subprocess.run([sys.executable, "-c", "from carom._program import main; main()", "--version"],
                           capture_output=True, text=True, check=True)
     assert carom.__version__ in done.stdout
 
 
-def test_sensitivity_is_that_of_the_program(draw_scene):
+def test_sensitivity_matches_the_program(draw_scene):
     report = carom.sensitivity(draw_scene, shots=20, seed=3)
     assert report == json.loads(carom_program(
         "sensitivity", SOURCE / "scenes/draw.toml", "--shots", 20, "--seed", 3, "--json"))

@@ -26,7 +26,7 @@ def test_a_record_has_the_bits_of_the_program(path):
         assert record.MOTIONS[record.motion(record.duration)[i]] == ball["state"]
 
 
-def test_states_are_those_of_the_samples(break_scene, tmp_path):
+def test_states_match_the_samples(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv",
                   "--sample-dt", 0.25)
     record = carom.simulate(break_scene)
@@ -81,14 +81,14 @@ def test_events_are_a_view_that_keeps_the_record_alive(break_scene):
     assert (events.tobytes(), segments[3].tobytes()) == hash_of
 
 
-def test_events_are_those_of_the_program(break_scene, tmp_path):
+def test_events_match_the_program(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--events", tmp_path / "e.csv")
     rows = rows_of(tmp_path / "e.csv")[1:]
     listed = carom.simulate(break_scene).event_list()
     assert [(float(time), kind, a, b) for time, kind, a, b, *_ in rows] == listed
 
 
-def test_segments_hold_the_closed_form(draw_scene):
+def test_segments_contain_the_closed_form(draw_scene):
     record = carom.simulate(draw_scene)
     for ball, segments in enumerate(record.segments):
         moving = segments[segments["state"] != record.MOTIONS.index("stationary")]
@@ -147,7 +147,7 @@ def test_the_final_scene_is_the_next_shot(break_scene):
     kept = [i for i, ball in enumerate(record.ids) if ball in after.ids]
     assert (after.positions == end[kept, 0, :2]).all()
     assert carom.simulate(after).event_list()[0].type == "cue_strike"
-    # Over many shots: a ball at rest keeps its place to the bit.
+    # Over many shots, a resting ball keeps its place bit for bit.
     for shot in range(1, 8):
         record = carom.simulate(after)
         end = dict(zip(record.ids, record.states(record.duration)[:, 0, :2]))
@@ -177,7 +177,7 @@ def test_limits_end_a_shot(break_scene):
             carom.simulate(break_scene, **bad)
 
 
-def test_the_table_is_there_for_drawing(break_scene):
+def test_a_record_includes_its_table(break_scene):
     record = carom.simulate(break_scene, until=0.0)
     table = record.table
     assert table.preset == "nine_foot" and len(table.pockets) == 6 and len(table.jaws) == 12
@@ -185,7 +185,7 @@ def test_the_table_is_there_for_drawing(break_scene):
     assert (record.radii == 0.028575).all() and record.masses.shape == (16,)
 
 
-def test_a_run_that_cannot_go_on_has_its_record():
+def test_a_failed_run_has_its_record():
     with pytest.raises(carom.SimulationError, match="simulation stopped at t = ") as caught:
         carom.simulate(stuck_scene(0.9999999))
     record = caught.value.record
@@ -194,7 +194,7 @@ def test_a_run_that_cannot_go_on_has_its_record():
     assert str(pickle.loads(pickle.dumps(carom.SimulationError("why")))) == "why"
 
 
-def test_what_is_left_out_although_it_is_needed_is_a_scene_error(draw_scene):
+def test_disabling_a_needed_effect_is_a_scene_error(draw_scene):
     scene = draw_scene.replace(effects={"sliding": False})
     with pytest.raises(carom.SceneError, match="effects.sliding = false, but the scene needs it"):
         carom.simulate(scene)

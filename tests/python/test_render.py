@@ -1,4 +1,4 @@
-"""Frames: the program's pixels, and what cannot be drawn."""
+"""Frames: the program's pixels, and refusals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def drawn(*options):
 
 
 @pytest.mark.parametrize("backend", ["egl", "osmesa"])
-def test_frames_are_those_of_the_program(backend):
+def test_frames_match_the_program(backend):
     try:
         wanted = drawn("--gl", backend, "--fps", 4)
     except subprocess.CalledProcessError as error:
@@ -40,7 +40,7 @@ def test_frames_are_those_of_the_program(backend):
     assert (frame == theirs).all()
 
 
-def test_the_scene_says_what_is_left_out(draw_scene):
+def test_the_scene_supplies_the_defaults(draw_scene):
     scene = draw_scene.replace(render={"fps": 2.0, "size": [96, 64], "camera": "rail"})
     frames = list(carom.render(scene))
     assert len(frames) == 1 + int(carom.simulate(scene).duration * 2) and frames[0].shape == (64, 96, 3)
@@ -51,7 +51,7 @@ def test_the_scene_says_what_is_left_out(draw_scene):
     assert (placed != frames[0]).any()
 
 
-def test_another_thread_does_not_draw(draw_scene):
+def test_another_thread_cannot_draw(draw_scene):
     frames = carom.render(draw_scene, size=(32, 32), fps=4)
     next(frames)
     raised = []
@@ -101,6 +101,6 @@ def test_drawings_side_by_side_and_dropped_elsewhere(draw_scene):
         (dict(backend="x11"), "backend='x11'"),
     ],
 )
-def test_what_does_not_exist_is_refused_at_once(draw_scene, arguments, message):
+def test_unknown_names_are_refused_at_once(draw_scene, arguments, message):
     with pytest.raises(ValueError, match=message):
         carom.render(draw_scene, **arguments)

@@ -32,7 +32,7 @@ def test_a_bad_scene_has_the_message_of_the_engine(path):
     with pytest.raises(carom.SceneError) as caught:
         carom.Scene.loads(text, path.name)
     error = caught.value
-    head = wanted.split("*")[0]  # a star stands for any words
+    head = wanted.split("*")[0]  # a star matches any words
     assert str(error).startswith(head) if "*" in wanted else str(error) == wanted
     assert error.file == path.name
     assert isinstance(error, ValueError)
@@ -63,7 +63,7 @@ def test_keywords_are_sections():
         carom.Scene(tabel={})
 
 
-def test_numpy_is_written_as_numbers():
+def test_numpy_values_are_written_as_numbers():
     place = np.array([0.3, 0.4])
     scene = carom.Scene(ball=[{"id": "a", "position": place, "velocity": (np.float64(0.1), np.float32(0.5))}],
                         stop={"events": np.int64(7)})
@@ -82,7 +82,7 @@ def test_numpy_is_written_as_numbers():
         ({3: {}}, "scene: the scene has the key 3; use strings as keys"),
     ],
 )
-def test_what_toml_does_not_have_is_refused(tree, message):
+def test_values_unknown_to_toml_are_refused(tree, message):
     with pytest.raises(carom.SceneError) as caught:
         carom.Scene.from_dict(tree)
     assert str(caught.value) == message
@@ -95,7 +95,7 @@ def test_a_dict_that_contains_itself_is_refused():
         carom.Scene.from_dict(loop)
 
 
-def test_ids_are_quoted_whatever_they_contain():
+def test_any_id_is_quoted():
     for bad in ['a"b', "a\\b", "a\nb", "a\x7fb", "\u2028", "</script>"]:
         tree = {"ball": [{"id": bad}]}
         try:
@@ -104,7 +104,7 @@ def test_ids_are_quoted_whatever_they_contain():
             assert "control" in error.message or "comma" in error.message or "quote" in error.message
 
 
-def test_replace_takes_the_keys_of_a_sweep(draw_scene):
+def test_replace_accepts_the_keys_of_a_sweep(draw_scene):
     ids = draw_scene.ids
     other = draw_scene.replace(**{"cue.speed": 3.25, "balls.mu_s": 0.18,
                                   f"ball.{ids[1]}.position": [0.5, 1.0], "physics.cushion": "stronge"})
@@ -120,7 +120,7 @@ def test_replace_takes_the_keys_of_a_sweep(draw_scene):
     assert draw_scene.replace() == draw_scene
 
 
-def test_replace_says_what_is_wrong(draw_scene):
+def test_replace_explains_errors(draw_scene):
     refused(
         carom.SceneError,
         draw_scene.replace,
@@ -131,6 +131,6 @@ def test_replace_says_what_is_wrong(draw_scene):
     )
 
 
-def test_a_file_that_cannot_be_read_is_a_scene_error(tmp_path):
+def test_an_unreadable_file_is_a_scene_error(tmp_path):
     with pytest.raises(carom.SceneError, match="there is no such file"):
         carom.Scene.load(tmp_path / "none.toml")

@@ -61,7 +61,7 @@ def test_a_check_ends_with_its_line(name, result, said, status, tmp_path, capsys
     assert (tmp_path / f"{name}.log").is_file()
 
 
-def test_a_fail_ends_the_run_unless_it_may_go_on(tmp_path, capsys):
+def test_a_failure_ends_the_run_unless_it_may_continue(tmp_path, capsys):
     names = ["absent", "broken", "command"]
     assert main(names, CHECKS, tmp_path) == 1
     assert capsys.readouterr().out.splitlines()[-1] == "slow: 0 passed, 1 failed, 1 skipped, 1 not run"

@@ -16,7 +16,7 @@ RULES = {
 
 
 def same(text, value):
-    """Whether a cell of a CSV file equals the value to the bit."""
+    """Whether a CSV cell equals the value bit for bit."""
     if value is None:
         return text == ""
     if isinstance(value, float):
@@ -25,7 +25,7 @@ def same(text, value):
 
 
 def all_the_same(header, rows, columns):
-    """Whether columns hold the same values as the rows of a CSV file."""
+    """Whether columns have the same values as the rows of a CSV file."""
     assert list(columns) == header
     for k, column in enumerate(header):
         wrong = [(row[k], value) for row,
@@ -35,7 +35,7 @@ def all_the_same(header, rows, columns):
 
 @pytest.mark.parametrize("name", RULES)
 @pytest.mark.parametrize("threads", [1, 3])
-def test_columns_are_those_of_the_program(tmp_path, name, threads):
+def test_columns_match_the_program(tmp_path, name, threads):
     path, count = SOURCE / f"scenes/{name}.toml", 60
     rules = RULES[name]
     header, rows = program_sweep(tmp_path, path, rules, count, 4)
@@ -50,7 +50,7 @@ def test_columns_are_those_of_the_program(tmp_path, name, threads):
         np.testing.assert_array_equal(values, columns[column][20:45])
 
 
-def test_a_mapping_says_the_same():
+def test_a_mapping_is_equivalent():
     scene = carom.Scene.load(SOURCE / "scenes/draw.toml")
     rules = ["cue.speed=list(2.0,2.5)", "cue.aim_deg=normal(1)"]
     one = sweep.columns(scene, rules, 10)
@@ -63,7 +63,7 @@ def test_a_mapping_says_the_same():
     assert set(other["cue.speed"]) == {2.0, 2.5} and set(other["cue.aim_deg"].tolist()) == {90}
 
 
-def test_what_is_wrong_is_said(draw_scene):
+def test_errors_are_explained(draw_scene):
     refused(
         ValueError,
         None,
@@ -77,7 +77,7 @@ def test_what_is_wrong_is_said(draw_scene):
     )
 
 
-def test_a_table_has_the_columns_and_where_they_come_from(draw_scene, tmp_path):
+def test_a_table_has_the_columns_and_their_origin(draw_scene, tmp_path):
     pyarrow = pytest.importorskip("pyarrow")
     parquet = pytest.importorskip("pyarrow.parquet")
     rules = RULES["draw"]

@@ -1,7 +1,8 @@
-"""Sweeps on many machines, which here are processes: Dask schedulers and workers on ports, and a stub of
+"""Sweeps on many machines, represented here by processes: Dask schedulers and workers on ports, and a stub of
 sbatch.
 
-They are killed, stopped and doubled; the folder must still hold the same files as after a run in one process.
+They are killed, stopped and doubled; the folder must still contain the same files as after a run in one
+process.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from sweep_support import break_plan, contents, draw_plan, stamps, unfinished, w
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 
-# A worker that is silent for this long is given up; a short time keeps the test of a returning worker quick.
+# Dask gives up a worker that is silent for this long; a short time keeps the test of a returning worker
+# quick.
 DASK = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "3s", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s",
         "DASK_DISTRIBUTED__COMM__RETRY__COUNT": "0"}
 slow = pytest.mark.skipif(not SLOW, reason="takes long; CAROM_SLOW_TESTS=1 runs it")
@@ -143,7 +145,7 @@ def once(tmp_path_factory):
     return plan, folder / "breaks.json", contents(folder / "breaks")
 
 
-def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
+def test_a_killed_worker_loses_nothing(tmp_path, cluster, once):
     plan, file, files = once
     victim, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
     client = client_of(cluster, file, tmp_path / "a")
@@ -154,12 +156,12 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
     assert re.match(r"dashboard: http://127\.0\.0\.1:\d+/status\n", out)
     played = re.search(
         r"a: 3600 rows \(at_rest 3600\), (\d+) of them played in [\d.]+ s, \d+ a second\n", out)
-    # If the dead worker had not reported a shard yet, another worker is asked for it and finds its file.
+    # If the dead worker had not reported a shard yet, another worker receives it and finds its file.
     assert played and int(played[1]) in (3450, 3600), out
     assert "24 of 24 shards, 0 left, 3600 rows, " in err
     assert before.items() <= stamps(tmp_path / "a").items()
     assert whole(tmp_path / "a", plan, files)
-    # Whoever makes the dead worker's shard removes its leftovers, if it is on the same machine.
+    # The process that makes the dead worker's shard removes its leftovers, if it is on the same machine.
     assert unfinished(tmp_path / "a") == []
 
     from distributed import Client
@@ -182,7 +184,7 @@ def test_workers_on_ports_one_of_which_is_killed(tmp_path, cluster, once):
 
 
 @slow
-def test_a_nanny_puts_another_worker_in_the_place_of_a_dead_one(tmp_path, cluster, once):
+def test_a_nanny_replaces_a_dead_worker(tmp_path, cluster, once):
     plan, file, files = once
     cluster.worker("--nworkers", "2")
     client = client_of(cluster, file, tmp_path / "a")
@@ -196,7 +198,7 @@ def test_a_nanny_puts_another_worker_in_the_place_of_a_dead_one(tmp_path, cluste
 
 
 @slow
-def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
+def test_a_shard_given_up_by_dask_is_resubmitted(tmp_path, once):
     pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
     plan, file, files = once
     (tmp_path / "dask").mkdir()
@@ -213,7 +215,7 @@ def test_a_shard_that_dask_gives_up_is_asked_for_again(tmp_path, once):
 
 
 @slow
-def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
+def test_a_worker_given_up_by_dask_returns(tmp_path, cluster, once):
     plan, file, files = once
     late, _ = cluster.worker("--no-nanny"), cluster.worker("--no-nanny")
     client = client_of(cluster, file, tmp_path / "a")
@@ -223,14 +225,14 @@ def test_a_worker_that_was_given_up_comes_back(tmp_path, cluster, once):
     ended_well(client)
     assert whole(tmp_path / "a", plan, files)
     before = stamps(tmp_path / "a")
-    assert of_process(tmp_path / "a", late)  # it is alive, so nobody cleans up after it
+    assert of_process(tmp_path / "a", late)  # it is alive, so its files stay
     late.send_signal(signal.SIGCONT)
     wait_for(lambda: not of_process(tmp_path / "a", late))
     assert stamps(tmp_path / "a") == before and whole(tmp_path / "a", plan, files)
 
 
 @slow
-def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path, cluster, once):
+def test_without_its_scheduler_the_client_ends_and_resumes_with_another(tmp_path, cluster, once):
     plan, file, files = once
     cluster.worker("--no-nanny")
     client = client_of(cluster, file, tmp_path / "a")
@@ -253,7 +255,7 @@ def test_without_its_scheduler_the_client_ends_and_goes_on_with_another(tmp_path
 
 @slow
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_without_its_client_the_cluster_is_left_for_the_next_one(tmp_path, cluster, once, number):
+def test_without_its_client_the_cluster_serves_the_next_one(tmp_path, cluster, once, number):
     plan, file, files = once
     cluster.worker("--no-nanny")
     client = client_of(cluster, file, tmp_path / "a")
@@ -314,7 +316,7 @@ print("4711;cluster")
 """
 
 
-def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, capsys, monkeypatch):
+def test_a_slurm_array_and_another_for_missing_shards(tmp_path, once, capsys, monkeypatch):
     plan, file, files = once
     (tmp_path / "bin").mkdir()
     stub, log = tmp_path / "bin/sbatch", tmp_path / "log"
@@ -343,7 +345,7 @@ def test_an_array_of_slurm_and_another_one_for_what_is_missing(tmp_path, once, c
         1, "carom.sweep: sbatch failed with status 1: sbatch: error: invalid partition\n")
 
 
-def test_the_command_makes_plans_runs_them_and_says_what_is_there(tmp_path, capsys, monkeypatch):
+def test_the_command_makes_plans_runs_them_and_reports_files(tmp_path, capsys, monkeypatch):
     file = tmp_path / "p.json"
     arguments = ["--scene", SOURCE / "scenes/draw.toml", "--vary", "cue.aim_deg=normal(2)", "--vary",
                  "cue.speed=uniform(1,4)", "--seed", 4, "--shard", 20]

@@ -1,5 +1,5 @@
-"""Sharded sweeps that go wrong: damaged and foreign files, full disks, and workers that are killed,
-interrupted or late."""
+"""Faults of sharded sweeps: damaged and foreign files, full disks, and workers that are killed, interrupted
+or late."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_a_worker_with_another_carom_refuses(tmp_path):
     assert contents(tmp_path / "a") == contents(tmp_path / "b") == {}
 
 
-def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
+def test_missing_and_foreign_files_are_reported(tmp_path):
     plan = draw_plan(40, 10)
     sweep.run(plan, tmp_path, shards=[2, 0])
     found = sweep.status(tmp_path)
@@ -47,7 +47,7 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
     assert sweep.open(tmp_path, partial=True).to_table()["shot"].to_pylist() == [*range(10), *range(20, 30)]
     before = stamps(tmp_path)
     assert sweep.run(plan, tmp_path).played == 20
-    assert before.items() <= stamps(tmp_path).items()  # complete files are not made again
+    assert before.items() <= stamps(tmp_path).items()  # complete files are kept
     with pytest.raises(sweep.SweepError, match="plan.json: another plan is already there"):
         sweep.run(draw_plan(41, 10), tmp_path)
     shutil.copy(tmp_path / "shard-0.parquet", tmp_path / "shard-00.parquet")
@@ -57,7 +57,7 @@ def test_what_is_missing_or_strange_is_not_read_over(tmp_path):
             sweep.open(tmp_path, verify=verify)
 
 
-def test_a_file_of_another_plan_or_place_is_named_by_everyone(tmp_path):
+def test_every_reader_names_a_file_of_another_plan_or_place(tmp_path):
     plan, other = draw_plan(30, 10), draw_plan(31, 10)
     sweep.run(plan, tmp_path / "a")
     sweep.run(other, tmp_path / "b")
@@ -77,7 +77,7 @@ def test_a_file_of_another_plan_or_place_is_named_by_everyone(tmp_path):
                 call()
 
 
-def test_a_truncated_file_is_named_by_everyone(tmp_path):
+def test_every_reader_names_a_truncated_file(tmp_path):
     plan = draw_plan(30, 10)
     sweep.run(plan, tmp_path)
     path = tmp_path / "shard-1.parquet"
@@ -113,7 +113,7 @@ def test_a_flipped_byte_is_found_or_changes_nothing(tmp_path):
     assert found > 0.6 * len(whole) / step
 
 
-def test_a_page_that_changes_after_the_check_is_not_read(tmp_path):
+def test_a_damaged_parquet_page_is_not_read(tmp_path):
     plan = draw_plan(20_000, 20_000, hashes="none")
     sweep.run(plan, tmp_path)
     path = tmp_path / plan.file(0)
@@ -126,7 +126,7 @@ def test_a_page_that_changes_after_the_check_is_not_read(tmp_path):
     assert "shard-0.parquet: its rows cannot be read" in sweep.check(tmp_path).faults["shard-0.parquet"]
 
 
-def test_a_full_disk_leaves_no_file_and_work_goes_on_when_there_is_room(tmp_path):
+def test_a_full_disk_leaves_no_file_and_work_resumes_with_room(tmp_path):
     plan = draw_plan(30_000, 10_000)
     plan.save(tmp_path / "plan.json")
     code = f"""
@@ -155,7 +155,7 @@ def _mounted(folder):
                           check=False).returncode == 0
 
 
-def test_a_small_disk_that_fills_up(tmp_path):
+def test_a_small_disk_fills_up(tmp_path):
     if not _mounted(tmp_path):
         pytest.skip("mounting a small disk takes root")
     try:
@@ -171,7 +171,7 @@ def test_a_small_disk_that_fills_up(tmp_path):
         subprocess.run(["umount", tmp_path], check=True)
 
 
-def test_a_worker_that_is_killed_while_it_writes_leaves_nothing_that_counts(tmp_path):
+def test_a_worker_killed_while_writing_leaves_no_valid_file(tmp_path):
     plan = break_plan(6000, 3000)
     plan.save(tmp_path / "plan.json")
     process = worker(tmp_path / "plan.json", 0, tmp_path)
@@ -224,7 +224,7 @@ def test_a_twin_with_other_results_is_reported(tmp_path):
         _shard._publish(plan, 0, str(tmp_path / "none"), path, about)
 
 
-def test_ctrl_c_ends_a_run_soon_and_the_next_one_goes_on(tmp_path):
+def test_ctrl_c_ends_a_run_soon_and_the_next_one_resumes(tmp_path):
     plan = break_plan(100_000, 300)
     plan.save(tmp_path / "plan.json")
     plan_file, folder = str(tmp_path / "plan.json"), str(tmp_path)
@@ -244,7 +244,7 @@ def test_ctrl_c_ends_a_run_soon_and_the_next_one_goes_on(tmp_path):
     assert sweep.check(tmp_path).faults == {}
 
 
-def test_a_dead_worker_of_a_pool_is_an_error_that_says_what_to_do(tmp_path):
+def test_a_dead_pool_worker_is_an_error_with_a_remedy(tmp_path):
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         victim = pool.submit(os.getpid).result()
 
@@ -277,7 +277,7 @@ class _GivesUp(concurrent.futures.ThreadPoolExecutor):
         return given_up
 
 
-def test_what_an_executor_gives_up_is_tried_again(tmp_path):
+def test_tasks_given_up_by_an_executor_are_retried(tmp_path):
     plan = draw_plan(30, 10)
     with _GivesUp(2) as executor:
         assert sweep.run(plan, tmp_path / "a", executor, retries=2).played == 30

@@ -1,5 +1,4 @@
-"""Runs the commands of docs/guide/clusters.md that need the package, as printed; docs_test runs the
-others."""
+"""Runs the commands of docs/guide/clusters.md that need the package, as printed; docs_test runs the rest."""
 
 from __future__ import annotations
 
@@ -36,8 +35,7 @@ echo 1
 
 
 def run(code, folder, bin_folder):
-    """Runs a block to its end, then ends the processes it started, which takes schedulers and workers a
-    while."""
+    """Runs a block to its end, then ends its processes; schedulers and workers need a while for that."""
     out, err = folder / "out", folder / "err"
     with out.open("w") as stdout, err.open("w") as stderr:
         environment = os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}:/usr/bin:/bin"}
@@ -51,7 +49,7 @@ def run(code, folder, bin_folder):
     return status, out.read_text(), err.read_text()
 
 
-def test_commands_print_what_the_page_says(tmp_path):
+def test_commands_print_the_output_on_the_page(tmp_path):
     (tmp_path / "scenes").symlink_to(SOURCE / "scenes")
     bin_folder = tmp_path / "bin"
     bin_folder.mkdir()

@@ -1,5 +1,5 @@
-"""Sharded sweeps: the rows of `carom sweep` whatever the shards and workers, checked plans, and files that
-state their origin."""
+"""Sharded sweeps: the rows of `carom sweep` for any shards and workers, checked plans, and files that state
+their origin."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from carom.sweep import _plan, _shard  # noqa: E402
 
 
 @pytest.mark.parametrize("name", RULES)
-def test_any_shards_and_workers_give_the_rows_of_the_program(tmp_path, name):
+def test_any_shards_and_workers_match_the_program(tmp_path, name):
     path, count, rules = SOURCE / f"scenes/{name}.toml", 60, RULES[name]
     header, rows = program_sweep(tmp_path, path, rules, count, 4)
     tables = []
@@ -38,11 +38,11 @@ def test_any_shards_and_workers_give_the_rows_of_the_program(tmp_path, name):
         tables.append(sweep.open(folder).to_table())
     assert all(table.equals(tables[0]) for table in tables)
     all_the_same(header, rows, tables[0].to_pydict())
-    # A file does not depend on who makes it, or on which other files are made.
+    # A file depends neither on the process that makes it nor on the other files.
     assert contents(tmp_path / "7-1") == contents(tmp_path / "7-2")
 
 
-def test_processes_that_were_spawned_make_the_same_files(tmp_path):
+def test_spawned_processes_make_the_same_files(tmp_path):
     plan = draw_plan()
     sweep.run(plan, tmp_path / "threads")
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
@@ -64,13 +64,13 @@ def _moments(table):
             "histogram": np.histogram(duration, 10, (0, 10))[0].tolist()}
 
 
-def test_a_reduction_is_that_of_the_rows_and_merges_in_order(tmp_path):
+def test_a_reduction_matches_the_rows_and_merges_in_order(tmp_path):
     plan = draw_plan(1000, 90)
     whole = sweep.reduce(plan, _moments, threads=3, merge=_add)
     duration = sweep.table(
         carom.Scene.load(SOURCE / "scenes/draw.toml"), DRAW, 1000, seed=4)["duration"].to_numpy()
     parts = [duration[k : k + 90] for k in range(0, 1000, 90)]
-    # Equal to the bit, because results are merged in the order of the shards.
+    # Equal bit for bit, because results are merged in the order of the shards.
     assert whole["sums"][0] == sum(part.sum() for part in parts)
     assert whole["histogram"] == np.histogram(duration, 10, (0, 10))[0].tolist()
     first = sweep.reduce(plan, lambda table: [table["shot"][0].as_py()], threads=4, merge=lambda a, b: a + b)
@@ -91,7 +91,7 @@ def _add(a, b):
     }
 
 
-def test_a_file_says_where_it_comes_from(tmp_path):
+def test_a_file_states_its_origin(tmp_path):
     scene = carom.Scene.load(SOURCE / "scenes/draw.toml")
     plan = draw_plan(20, 8, hashes="column")
     sweep.run(plan, tmp_path)
@@ -131,7 +131,7 @@ def test_a_file_says_where_it_comes_from(tmp_path):
     assert records("none", draw_plan(20, 8, hashes="none"), 1) == ""
 
 
-def test_the_hash_of_the_content_does_not_depend_on_how_a_table_is_cut(draw_scene):
+def test_the_content_hash_is_independent_of_a_tables_chunks(draw_scene):
     table = sweep.table(draw_scene, RULES["draw"], 100)
     assert table["duration"].null_count > 0
 
@@ -145,14 +145,14 @@ def test_the_hash_of_the_content_does_not_depend_on_how_a_table_is_cut(draw_scen
     assert whole == digest(table.slice(0, 0), table.slice(0, 33), table.slice(33, 1), table.slice(34))
     assert whole == digest(pyarrow.concat_tables([table.slice(0, 50), table.slice(50)]))
     assert whole != digest(table.slice(0, 99)) and whole != digest(table.slice(50), table.slice(0, 50))
-    # The digest distinguishes null from 0, and where one string ends and the next begins.
+    # The digest distinguishes null from 0, and the ends of strings.
     one, two = (pyarrow.table({"a": pyarrow.array(values)}) for values in (["ab", "c"], ["a", "bc"]))
     null, zero = (
         pyarrow.table({"a": pyarrow.array(values, pyarrow.int64())}) for values in ([1, None], [1, 0]))
     assert len({digest(part) for part in (one, two, null, zero)}) == 4
 
 
-def test_shots_that_fail_are_rows_and_are_counted(tmp_path):
+def test_failed_shots_are_rows_and_are_counted(tmp_path):
     plan = sweep.plan(carom.Scene.loads(STUCK, "s.toml"), ["balls.mu_s=list(0.6,0.0)"], 8, shard=3)
     told = []
     done = sweep.run(plan, tmp_path, progress=told.append, threads=1)
@@ -165,7 +165,7 @@ def test_shots_that_fail_are_rows_and_are_counted(tmp_path):
     assert sweep.check(tmp_path).outcomes == done.outcomes
 
 
-def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
+def test_a_plan_reads_back_and_is_refused_if_changed(tmp_path):
     path = tmp_path / "p.json"
     plan = draw_plan()
     plan.save(path)
@@ -200,7 +200,7 @@ def test_a_plan_is_read_back_and_refused_when_it_was_changed(tmp_path):
         sweep.status(tmp_path)
 
 
-def test_what_cannot_be_planned_is_said():
+def test_impossible_plans_are_explained():
     refused(
         ValueError,
         lambda **options: sweep.plan(
@@ -225,7 +225,7 @@ def test_what_cannot_be_planned_is_said():
 
 def test_the_last_shots_of_the_largest_sweep_are_played(tmp_path):
     large = draw_plan(2**53, 10**10)
-    # Cut so that the last shard has few shots: their values survive.
+    # Cut so that the last shard has few shots, whose values survive.
     small = large._replace(shard=2**53 - 5)
     sweep.run_shard(small, 1, tmp_path)
     table = parquet.read_table(tmp_path / small.file(1))

@@ -16,7 +16,7 @@ def moved(key: str, by: float) -> carom.Record:
     return carom.simulate(carom.Scene.from_dict(text))
 
 
-def test_the_jacobian_is_that_of_differences():
+def test_the_jacobian_matches_differences():
     record = carom.simulate(DRAW)
     times = np.array([0.1, 1.0])
     slopes = record.jacobian(["cue.speed", "cue.aim_deg"], times)
@@ -30,7 +30,7 @@ def test_the_jacobian_is_that_of_differences():
     assert (end[1] == 0).all()  # it has fallen
 
 
-def test_what_has_no_derivative():
+def test_shots_without_derivatives_are_refused():
     broken = carom.simulate(SOURCE / "scenes/snooker_break.toml")
     with pytest.raises(ValueError, match="it is a resting contact"):
         broken.jacobian(["cue.speed"])
@@ -38,7 +38,7 @@ def test_what_has_no_derivative():
         carom.simulate(DRAW).jacobian(["cue.spede"])
 
 
-def test_a_fit_finds_what_made_the_tracks():
+def test_a_fit_recovers_the_numbers_of_the_tracks():
     truth = carom.Scene.load(DRAW)
     guess = truth.to_dict()
     guess["cue"]["speed"] = 2.24

@@ -15,7 +15,7 @@ import pytest
 from conftest import SOURCE
 
 SCRIPTS = sorted((SOURCE / "examples/teaching").glob("*.py"))
-# A change that breaks the physics of each script, which one of its checks must notice.
+# For each script a change that breaks its physics; one of its checks must detect it.
 WRONG = {
     "aim_by_gradient": ("-np.linalg.pinv(slopes)", "-0.9 * np.linalg.pinv(slopes)"),
     "accuracy_and_margin": ("abs(order - 1)", "abs(order - 2)"),
@@ -27,8 +27,8 @@ WRONG = {
 
 
 def run(name, source, folder=None):
-    """Runs a script cell by cell, as a notebook does. Returns the number of colours in each picture; keeps
-    the pictures in the folder."""
+    """Runs a script cell by cell, as a notebook does; keeps the pictures in the folder. Returns the number of
+    colours in each picture."""
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -60,8 +60,8 @@ def run(name, source, folder=None):
 
 @pytest.fixture(scope="module", autouse=True)
 def accuracy_once():
-    """Makes one report per call of `carom.accuracy`, which takes seconds; the right and the wrong script each
-    get a copy."""
+    """Caches reports per call of `carom.accuracy`, which takes seconds; the correct and the wrong script each
+    receive a copy."""
     kept, reports = carom.accuracy, {}
 
     def accuracy(*arguments, **named):
@@ -75,12 +75,12 @@ def accuracy_once():
     carom.accuracy = kept
 
 
-def test_each_has_a_wrong_formula():
+def test_each_script_has_a_wrong_formula():
     assert [path.stem for path in SCRIPTS] == sorted(WRONG)
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
-def test_a_script_finds_what_it_expects(path, capsys):
+def test_a_scripts_expectations_hold(path, capsys):
     folder = pathlib.Path(os.environ["CAROM_PICTURES"]) if "CAROM_PICTURES" in os.environ else None
     source = path.read_text()
     pictures = run(path.stem, source, folder)
@@ -90,7 +90,7 @@ def test_a_script_finds_what_it_expects(path, capsys):
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda p: p.stem)
-def test_a_wrong_formula_is_noticed(path):
+def test_a_wrong_formula_is_detected(path):
     right, wrong = WRONG[path.stem]
     source = path.read_text()
     assert source.count(right) == 1

@@ -1,5 +1,4 @@
-// The pictures of balls for other programs show the patterns of the renderer's balls, and the look of all is
-// defined once.
+// Textures of balls for other programs match the renderer's balls, and each look is defined once.
 #include "carom/render/ball_texture.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +23,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kWidth = 512;
 
-/// The colour in a direction of the ball's own frame, 0..255.
+/// The colour in a direction of the ball's frame, 0..255.
 std::array<int, 3> colour_at(const Image& image, double x, double y, double z) {
     const double length = std::sqrt(x * x + y * y + z * z), theta = std::acos(x / length);
     double phi = std::atan2(z, y);
@@ -46,7 +45,7 @@ std::array<int, 3> own(const BallStyle& style) {
     return bytes(style.color[0], style.color[1], style.color[2]);
 }
 
-/// Pixels of ink on the half of the picture around one end of the z axis.
+/// Ink pixels on the half of the texture around one end of the z axis.
 long ink(const Image& image, bool upper) {
     long count = 0;
     for (int j = 0; j < image.size.height; ++j)
@@ -65,20 +64,20 @@ TEST(BallTexture, AStripeIsAroundTheXAxis) {
         EXPECT_EQ(colour_at(image, 0.62 * side, 0.784, 0.0), kIvory);
         EXPECT_EQ(colour_at(image, 0.58 * side, 0.814, 0.0), own(style));
         EXPECT_EQ(colour_at(image, 0.0, side, 0.0), own(style));
-        // The disc of the number: 0.52 of the radius.
+        // The number's disc: 0.52 of the radius.
         EXPECT_EQ(colour_at(image, 0.0, 0.49, 0.872 * side), kIvory);
         EXPECT_EQ(colour_at(image, 0.0, 0.55, 0.835 * side), own(style));
     }
 }
 
-TEST(BallTexture, ANumberIsAtBothEndsOfTheZAxis) {
+TEST(BallTexture, BothEndsOfTheZAxisShowTheNumber) {
     const Image one = ball_texture(ball_style("1", "nine_foot", 1), kWidth);
     EXPECT_GT(ink(one, true), 100);
     EXPECT_EQ(ink(one, true), ink(one, false));
-    // The stroke of the 1 goes through the middle, and nothing is on its right.
+    // The stroke of the 1 passes through the middle; its right is empty.
     EXPECT_EQ(colour_at(one, 0.0, 0.0, 1.0), kInk);
     EXPECT_EQ(colour_at(one, 0.0, 0.3, 0.954), kIvory);
-    // Upright for whoever has +y on the right: seen from above that is -x. The bar of the 6 is below it.
+    // Upright with +y on the right; from above that is -x. The bar of the 6 is below it.
     for (const double side : {-1.0, 1.0}) {
         const Image six = ball_texture(ball_style("6", "nine_foot", 6), kWidth);
         EXPECT_EQ(colour_at(six, 0.43 * side, 0.0, 0.903 * side), kInk);
@@ -110,7 +109,7 @@ std::set<std::array<double, 3>> colours_in(const std::filesystem::path& path) {
     return found;
 }
 
-TEST(Look, AColourIsTypedOnce) {
+TEST(Look, EachColourIsDefinedOnce) {
     const std::filesystem::path source = CAROM_SOURCE_DIR,
                                 header = source / "render/include/carom/render/look.h";
     const auto look = colours_in(header);

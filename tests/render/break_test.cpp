@@ -26,8 +26,8 @@ const Record& the_break() {
     return record;
 }
 
-// Where a ball is in the picture, found by removing it. It is painted white for this: red then only grows,
-// while its shadow only takes away.
+// Finds a ball in the picture by removing it. The ball is painted white: then red only increases where it is,
+// and only decreases in its shadow.
 std::optional<Vec2> measured_centre(Renderer& renderer, const DrawList& list, std::size_t ball) {
     DrawList with = list, without = list;
     with.balls[ball].style = BallStyle{};
@@ -61,7 +61,7 @@ TEST(Break, EveryBallIsWithinHalfAPixelOfTheRecord) {
     for (long k : {0L, 20L, frames / 2, frames - 1}) {
         const double t = frame_time(0.0, k, 60.0);
         DrawList list = stage.at(t);
-        // Nothing hides part of a white ball, and there is no other white on the table.
+        // Nothing hides part of a white ball, and nothing else on the table is white.
         for (DrawBall& ball : list.balls) {
             ball.style = BallStyle{};
             ball.style.color = {0.0F, 0.0F, 0.3F};
@@ -74,7 +74,7 @@ TEST(Break, EveryBallIsWithinHalfAPixelOfTheRecord) {
             EXPECT_LT((*centre - expected).norm(), 0.5) << "frame " << k << " ball " << i;
             ++measured;
         }
-        // The list itself shows the record's state.
+        // The draw list itself matches the record's state.
         std::size_t on_table = 0, drawn = 0;
         for (std::size_t i = 0; i < record.tracks.size(); ++i) {
             const BallState state = record.state_at(static_cast<int>(i), t);
@@ -111,9 +111,9 @@ long peak_memory_kb() {
     return -1;
 }
 
-// Mesa's own memory differs between releases by tens of megabytes, so the memory of a sequence is
-// counted from there.
-TEST(Break, A1080pSequenceTakesUnder240MegabytesBesideTheDriver) {
+// Mesa's own memory differs by tens of megabytes between releases, so a sequence's memory is counted from
+// there.
+TEST(Break, A1080pSequenceUsesUnder240MegabytesBesidesTheDriver) {
 #ifdef CAROM_SANITIZED
     GTEST_SKIP() << "the sanitizer's own memory counts";
 #endif

@@ -1,4 +1,4 @@
-// The table is drawn many times only where that shows.
+// The table is drawn with many samples only where they show.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ View view_from_above(const TableMesh& mesh) {
     return make_view(camera, mesh);
 }
 
-TEST(BusyTiles, NothingIsBusyInAnEvenPicture) {
+TEST(BusyTiles, AnEvenPictureHasNoBusyTiles) {
     EXPECT_TRUE(busy_tiles(grey_picture(), kSmallFrame, TableMesh{}, view_from_above({})).empty());
 }
 
@@ -58,8 +58,8 @@ TEST(BusyTiles, ContrastIsBusyOnBothSides) {
     }
 }
 
-// A strip so thin that no sample hits it.
-TEST(BusyTiles, EdgesAreBusyThoughNoSampleTellsThem) {
+// A strip too thin for any sample to hit.
+TEST(BusyTiles, EdgesAreBusyEvenIfNoSampleHitsThem) {
     TableMesh mesh;
     const auto corner = [](float x, float y) {
         return MeshVertex{x, y, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, static_cast<float>(Material::kWood)};
@@ -78,7 +78,7 @@ TEST(BusyTiles, EdgesAreBusyThoughNoSampleTellsThem) {
     EXPECT_FALSE(holds(boxes, static_cast<int>(far.x()), static_cast<int>(far.y())));
 }
 
-TEST(MeanPicture, IsTakenInLinearLightInItsBoxes) {
+TEST(MeanPicture, IsComputedInLinearLightWithinItsBoxes) {
     std::vector<std::uint8_t> first(16, 0);
     MeanPicture mean(first, 2, {{0, 0, 1, 2}});  // the left column of two by two pixels
     mean.add({200, 0, 0, 255, 200, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 0});
@@ -93,15 +93,15 @@ TEST(MeanPicture, IsTakenInLinearLightInItsBoxes) {
     EXPECT_EQ(first[8], 0);
 }
 
-TEST(MeanPicture, ScreenValuesComeBack) {
+TEST(MeanPicture, ScreenValuesSurviveTheRoundTrip) {
     const auto& linear = radiance_of_screen();
     for (int i = 0; i < 255; ++i) EXPECT_EQ(screen_of_radiance(linear[static_cast<std::size_t>(i)]), i);
 }
 
-// A picture with many samples equals one that was drawn four times as large with one sample and then reduced,
-// except for grain and the positions of samples. With every pixel drawn many times, or only the busy ones,
-// 192 and 22 channels are far off; with none, 2342 and 979.
-TEST(BusyTiles, ManySamplesLookLikeALargePictureMadeSmall) {
+// A picture with many samples equals one drawn four times as large with one sample and then reduced, except
+// for grain and sample positions. With all pixels sampled often, or only the busy ones, 192 and 22 channels
+// are far off; with none, 2342 and 979.
+TEST(BusyTiles, ManySamplesLookLikeAReducedLargePicture) {
     const Record record = render_test::rectangle_record();
     for (const char* camera : {"top", "player"}) {
         StageOptions options;

@@ -1,4 +1,4 @@
-// If threads cannot be started: an error, not the end of the program.
+// If threads cannot be started, the result is an error, not the end of the program.
 #include "frames/writer.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace carom::render {
 namespace {
 
-/// While it lives, every new thread takes 256 MiB of addresses, and there are enough for two.
+/// While it exists, every new thread uses 256 MiB of addresses, and only two fit.
 class RoomForTwoThreads {
   public:
     RoomForTwoThreads() {
@@ -47,7 +47,7 @@ class RoomForTwoThreads {
     bool set_ = false;
 };
 
-TEST(FrameWriter, AThreadThatCannotBeMadeIsAnError) {
+TEST(FrameWriter, AFailedThreadStartIsAnError) {
     SequenceOptions options;
     options.size = {64, 64};
     std::string message;

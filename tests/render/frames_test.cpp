@@ -21,7 +21,7 @@ namespace {
 
 using render_test::ScratchFolder;
 
-TEST(FrameCount, EndsAreIncludedAndComputedFromTheInteger) {
+TEST(FrameCount, EndsAreIncludedAndComputedFromIntegers) {
     EXPECT_EQ(frame_count(0.0, 0.0, 60.0), 1);
     EXPECT_EQ(frame_count(0.0, 0.1, 60.0),
               7);  // 6 / 60 is the double 0.1; 0.1 * 60 rounds to 6.000000000000001 or 6
@@ -44,14 +44,14 @@ TEST(FrameCount, CountsExactlyTheTimesThatFit) {
     }
 }
 
-TEST(FrameCount, RefusesWhatHasNoAnswer) {
+TEST(FrameCount, RefusesUncountableFrames) {
     const double infinity = std::numeric_limits<double>::infinity();
     EXPECT_THROW(frame_count(0.0, 1.0, 0.0), RenderError);
     EXPECT_THROW(frame_count(0.0, 1.0, -60.0), RenderError);
     EXPECT_THROW(frame_count(0.0, 1.0, std::nan("")), RenderError);
     EXPECT_THROW(frame_count(0.0, infinity, 60.0), RenderError);
     EXPECT_THROW(frame_count(-infinity, 1.0, 60.0), RenderError);
-    // If the next frame is at the same instant, counting them would not end.
+    // Frames at the same instant would be counted forever.
     for (const double late : {1e16, 1e17, 1e300}) EXPECT_THROW(frame_count(late, late, 60.0), RenderError);
 }
 
@@ -62,7 +62,7 @@ TEST(FramePath, FillsInTheNumber) {
     EXPECT_EQ(frame_path("100%%/%03d.png", 5), "100%/005.png");
     EXPECT_EQ(frame_path("%010d", 5), "0000000005");
     EXPECT_EQ(frame_path("%03d.png", 12345), "12345.png");
-    // Without a place for its number: the only frame.
+    // A pattern without a number is a single frame.
     EXPECT_EQ(frame_path("frame.png", 5), "frame.png");
     EXPECT_EQ(frame_path("%%d", 5), "%d");
     EXPECT_FALSE(is_numbered("frame.png"));
@@ -103,7 +103,7 @@ TEST(Png, ReadsBackTheSamePixels) {
     EXPECT_EQ(folder.entries(), 1U);
 }
 
-// A disk that fills up in the middle of a file, imitated by a limit on the file size.
+// Limits the file size to imitate a disk that fills up in the middle of a file.
 TEST(Files, AFullDiskLeavesNothing) {
     const ScratchFolder folder("full");
     std::signal(SIGXFSZ, SIG_IGN);
@@ -122,7 +122,7 @@ TEST(Files, AFullDiskLeavesNothing) {
     EXPECT_EQ(folder.entries(), 0U);
 }
 
-TEST(Files, AFolderInTheWayIsAnErrorThatLeavesNothing) {
+TEST(Files, AFolderWithTheFilesNameIsAnErrorThatLeavesNothing) {
     const ScratchFolder folder("inway");
     std::filesystem::create_directory(folder.file("00000.png"));
     EXPECT_THROW(write_file(folder.file("00000.png"), {1, 2, 3}), RenderError);
@@ -190,7 +190,7 @@ TEST(Sequence, AnEmptyPatternWritesNothing) {
     EXPECT_EQ(render_sequence(one_ball(), small_options("")).size(), 4U);
 }
 
-TEST(Sequence, AFileInTheWayOfTheFolderIsNamed) {
+TEST(Sequence, AFileWithTheFoldersNameIsReported) {
     const ScratchFolder folder("nofolder");
     std::ofstream(folder.file("frames")) << "a file";
     for (const char* name : {"frames/%d.png", "absent/frames/%d.png"}) {
@@ -209,7 +209,7 @@ TEST(Sequence, AFileInTheWayOfTheFolderIsNamed) {
 
 TEST(Sequence, AFrameThatCannotBeWrittenIsNamedAndLeavesNothing) {
     const ScratchFolder folder("unwritable");
-    // A folder with the name of the second frame, which also stops root, whom permissions do not stop.
+    // A folder with the second frame's name also stops root, whom permissions would not.
     std::filesystem::create_directory(folder.file("1.png"));
     try {
         render_sequence(one_ball(), small_options(folder.file("%d.png")));

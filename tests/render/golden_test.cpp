@@ -1,5 +1,5 @@
 // Six pictures kept in the repository. Another version of Mesa may round a pixel differently, so small
-// differences pass; on failure the picture and the difference (times eight) are kept in the working
+// differences pass. On failure the picture and the difference (times eight) are kept in the working
 // directory.
 //
 // CAROM_UPDATE_GOLDEN=1 rewrites the pictures and skips the comparison: look at them before committing them.
@@ -41,7 +41,7 @@ Segment moving(const Vec3& place, const Vec2& velocity, const Vec3& spin, Motion
     return segment;
 }
 
-// Fifteen balls in the places of a rack, in the order of their numbers.
+// Fifteen balls in a rack's places, in the order of their numbers.
 void add_rack(Record& record) {
     const Vec2 foot = foot_spot(record.table);
     int number = 0;
@@ -192,7 +192,7 @@ struct Case {
     MakePicture make;
 };
 
-// Google Test would print the bytes of the pointers, which change from run to run.
+// Google Test would print the bytes of the pointers, which differ between runs.
 void PrintTo(const Case& each, std::ostream* out) {
     *out << each.name;
 }
@@ -210,15 +210,14 @@ TEST_P(Golden, OsmesaAndEglGiveTheSamePixels) {
     try {
         egl = draw(picture, Backend::kEgl);
     } catch (const RenderError& error) {
-        // Only OSMesa is required; what is missing must be named.
+        // Only OSMesa is required; the message must name a missing one.
         EXPECT_NE(std::string(error.what()).find("libegl"), std::string::npos) << error.what();
         GTEST_SKIP() << error.what();
     }
     EXPECT_TRUE(render_test::same_pixels(osmesa, egl));
 }
 
-// A picture that a test could not distinguish from another would prove nothing.
-TEST(GoldenCompare, SeesABallThatMovedByTwoPixels) {
+TEST(GoldenCompare, DetectsABallMovedByTwoPixels) {
     Picture picture = nine_foot_rack();
     const Image before = draw(picture, Backend::kOsmesa);
     picture.record.tracks.back().segments[0].r.y() += 0.02;

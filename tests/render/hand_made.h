@@ -1,4 +1,4 @@
-// Records made by hand, so that drawing is tested without the rest of the engine.
+// Hand-made records, to test drawing without the rest of the engine.
 #pragma once
 
 #include <unistd.h>
@@ -60,7 +60,6 @@ inline bool same_pixels(const render::Image& a, const render::Image& b) {
     return a.size == b.size && a.rgbx == b.rgbx;
 }
 
-/// A temporary folder for one test.
 class ScratchFolder {
   public:
     explicit ScratchFolder(const std::string& name)

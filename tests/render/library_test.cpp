@@ -41,7 +41,7 @@ TEST(Backends, NamesAreReadAndUnknownOnesRefused) {
     EXPECT_EQ(default_backend(), gl::has_osmesa() ? Backend::kOsmesa : Backend::kEgl);
 }
 
-TEST(Backends, AContextKnowsTheFunctionsOfOpenGl) {
+TEST(Backends, AContextFindsTheFunctionsOfOpenGl) {
     const std::unique_ptr<gl::Context> context = gl::make_context(Backend::kAuto);
     context->make_current();
     EXPECT_NE(context->lookup()("glDrawArraysInstanced"), nullptr);

@@ -1,4 +1,4 @@
-// A camera that moves: one sample per pixel, and edges smoothed by the area that they cut off.
+// A moving camera: one sample per pixel, with edges smoothed by the area that they cut off.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint8_t kLeft = 1, kRight = 2;
 
-// A camera that maps x and y in pixels to these pixels, with depth 1.
+// A camera that maps x and y, in pixels, to the same pixels with depth 1.
 View flat_view(FrameSize size) {
     View view;
     view.view_projection[0] = 2.0F / static_cast<float>(size.width);
@@ -34,7 +34,7 @@ View flat_view(FrameSize size) {
     return view;
 }
 
-// Whether the centre of a pixel lies to the left of the line from a to b, seen with y downwards.
+// Whether a pixel's centre is left of the line from a to b, seen with y downwards.
 bool is_left(const Vec2& a, const Vec2& b, double x, double y) {
     return cross(Vec2(b - a), Vec2(Vec2(x, y) - a)) < 0.0;
 }
@@ -74,7 +74,7 @@ const std::vector<Line>& lines() {
     return kLines;
 }
 
-TEST(EdgeSmoother, GivesEveryPixelTheAreaBeyondTheEdge) {
+TEST(EdgeSmoother, WeightsEveryPixelByTheAreaBeyondTheEdge) {
     const FrameSize size{40, 24};
     for (const Line& line : lines()) {
         Image image = two_faces(size, line.a, line.b);
@@ -102,7 +102,7 @@ TEST(EdgeSmoother, LeavesHiddenEdgesAndPanelsAlone) {
     const FrameSize size{40, 24};
     for (const Line& line : lines()) {
         const Image raw = two_faces(size, line.a, line.b);
-        // Something else is in front of both faces.
+        // Another object is in front of both faces.
         Image hidden = raw;
         for (std::size_t i = 3; i < hidden.rgbx.size(); i += 4)
             hidden.rgbx[i] = hidden.rgbx[i] == kLeft ? 77 : 0;
@@ -121,7 +121,7 @@ TEST(EdgeSmoother, LeavesHiddenEdgesAndPanelsAlone) {
     }
 }
 
-TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
+TEST(TableEdges, BoundEveryFaceAndLieInsideNone) {
     const TableMesh mesh =
         make_table_mesh(make_table("nine_foot"), render_test::kR, {Vec2(0.5, 0.5)}, Edges::kSharp);
     const TableEdges found = find_edges(mesh);
@@ -131,7 +131,7 @@ TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
         EXPECT_EQ(found.faces[i] == kClothFace, cloth);
         EXPECT_TRUE(cloth || (found.faces[i] >= 1 && found.faces[i] <= kLastFace));
     }
-    // The rims of six holes in 96 pieces, and no more than some thousands from the mesh.
+    // The rims of six holes in 96 pieces, and at most a few thousand from the mesh.
     EXPECT_GT(found.edges.size(), 600U);
     EXPECT_LT(found.edges.size(), 6000U);
     for (const TableEdge& edge : found.edges) {
@@ -140,9 +140,9 @@ TEST(TableEdges, AreNotInsideAPlaneAndBoundEveryFace) {
     }
 }
 
-// If two edges are on one line, a pixel would be smoothed twice. Every pair is checked here; find_edges
-// checks those in one place.
-TEST(TableEdges, NoneLiesWithinALongOne) {
+// Two edges on one line would smooth a pixel twice. This checks every pair; find_edges compares only those in
+// one place.
+TEST(TableEdges, NoEdgeLiesWithinALongerOne) {
     for (const char* table : {"nine_foot", "snooker"}) {
         const TableEdges found =
             find_edges(make_table_mesh(make_table(table), render_test::kR, {}, Edges::kSharp));
@@ -167,7 +167,7 @@ TEST(TableEdges, NoneLiesWithinALongOne) {
     }
 }
 
-// Cutting along the squares around the holes changes no area, and only what is left in a square is tested.
+// Cutting along the squares around the holes changes no area; only the parts inside a square are tested.
 TEST(TableParts, HaveTheAreaOfTheMesh) {
     const TableMesh mesh = make_table_mesh(make_table("nine_foot"), render_test::kR, {Vec2(0.5, 0.5)});
     const auto area = [](const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
@@ -210,7 +210,7 @@ Image picture(Renderer& renderer, DrawList list, int samples) {
     return image;
 }
 
-// Mean difference of the colours of two pictures, and of what changed in both since the previous picture.
+// Mean difference between two pictures' colours, and between their changes since the previous picture.
 double apart(const Image& a, const Image& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.rgbx.size(); ++i) {
@@ -227,7 +227,7 @@ double flicker(const Image& a0, const Image& a1, const Image& b0, const Image& b
     return sum / static_cast<double>(a0.rgbx.size());
 }
 
-// Closer to a picture with 64 samples than a picture with 4, and steadier in a slow pan.
+// Closer to a picture with 64 samples than one with 4 samples is, and steadier in a slow pan.
 TEST(MovingCamera, LooksLikeManySamples) {
     StageOptions options;
     options.camera = "follow";
@@ -250,7 +250,7 @@ TEST(MovingCamera, LooksLikeManySamples) {
     }
 }
 
-// Half of a ball behind a cushion: the edge of the cushion is as smooth across the ball as across the cloth.
+// Half of a ball behind a cushion: the cushion's edge is as smooth across the ball as across the cloth.
 TEST(MovingCamera, ABallBehindACushionIsCutByASmoothEdge) {
     Record record = render_test::rectangle_record();
     render_test::add_ball(record, "cue", 0.5, render_test::kR + 0.001);
@@ -266,7 +266,7 @@ TEST(MovingCamera, ABallBehindACushionIsCutByASmoothEdge) {
     DrawList bare = list;
     bare.balls.clear();
     const Image no_ball = picture(renderer, bare, 64);
-    // Pixels that the ball changes: the worst of them would be far off if the cushion cut the ball in steps.
+    // Counts the pixels changed by the ball: if the cushion cut it in steps, the worst would be far off.
     int off = 0, seen = 0;
     for (std::size_t i = 0; i < fine.rgbx.size(); i += 4) {
         if (std::abs(fine.rgbx[i] - no_ball.rgbx[i]) < 20) continue;

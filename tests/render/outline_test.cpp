@@ -14,7 +14,7 @@
 namespace carom::render {
 namespace {
 
-// A lane that winds inwards, counter-clockwise: along its outer side and back along the inner one.
+// A lane that winds inwards, counter-clockwise: out along its outer side and back along the inner one.
 std::vector<Vec2> spiral(int sides) {
     const auto at = [](int i, double inwards) {
         const double angle = 0.1 * i, radius = 10.0 - 0.01 * i - inwards;
@@ -26,7 +26,7 @@ std::vector<Vec2> spiral(int sides) {
     return points;
 }
 
-TEST(Outline, TrianglesCoverALaneThatWinds) {
+TEST(Outline, TrianglesCoverAWindingLane) {
     for (const int sides : {4, 40, 900}) {
         const std::vector<Vec2> points = spiral(sides);
         ASSERT_GT(signed_area(points), 0.0);
@@ -44,7 +44,7 @@ TEST(Outline, TrianglesCoverALaneThatWinds) {
     }
 }
 
-// Textbook ear clipping: from the first point on, every time anew.
+// Textbook ear clipping, restarted at the first point each time.
 std::vector<int> ears_in_order(const std::vector<Vec2>& points) {
     std::vector<int> left(points.size()), triangles;
     std::iota(left.begin(), left.end(), 0);
@@ -68,10 +68,10 @@ std::vector<int> ears_in_order(const std::vector<Vec2>& points) {
     return triangles;
 }
 
-TEST(Outline, TrianglesAreThoseOfPlainEarClipping) {
+TEST(Outline, TrianglesMatchPlainEarClipping) {
     reference::Generator rng(7);
     for (int k = 0; k < 400; ++k) {
-        // A lane that goes up and down: its corners are in the triangles of others.
+        // A lane that goes up and down, so that its corners lie in other corners' triangles.
         const int bends = 3 + static_cast<int>(rng.uniform(0.0, 40.0));
         std::vector<double> height;
         for (int i = 0; i < bends; ++i) height.push_back(rng.uniform(-3.0, 3.0));

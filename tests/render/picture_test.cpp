@@ -1,4 +1,4 @@
-// Pictures, checked by statistics of their pixels.
+// Statistics of the pixels of pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,12 +49,12 @@ bool is_green(Color c) {
     return c.g > c.r + 30 && c.g > c.b + 10 && c.g > 60;
 }
 
-// Share of a pixel that differs from the cloth towards white: how much of it a white ball covers.
+// How much of a pixel a white ball covers: its difference from the cloth towards white.
 double whiteness(const Image& image, int x, int y) {
     return image.pixel(x, y)[0] / 255.0;
 }
 
-TEST(Picture, ClothInTheMiddleWoodAroundRoomOutside) {
+TEST(Picture, ClothIsInTheMiddleWoodAroundItAndTheRoomOutside) {
     Record record = render_test::rectangle_record();
     add_ball(record, "cue", 0.2, 0.3);
     const Image image = draw(record, {640, 360});
@@ -86,7 +86,7 @@ TEST(Picture, TheClothHasTheColourOfTheGameOrOfTheScene) {
     EXPECT_LT(red.g + red.b, 60);
 }
 
-TEST(Picture, LongSideAlongTheWideSideOfTheImage) {
+TEST(Picture, TheLongSideIsAlongTheImagesWideSide) {
     Record record = render_test::rectangle_record(1.0, 2.0);
     add_ball(record, "cue", 0.5, 0.2);
     for (FrameSize size : {FrameSize{640, 360}, FrameSize{360, 640}, FrameSize{400, 400}}) {
@@ -98,7 +98,7 @@ TEST(Picture, LongSideAlongTheWideSideOfTheImage) {
         } else if (size.width < size.height) {
             EXPECT_GT(along.y(), 100.0 * along.x());
         }
-        // Everything is inside, and fills one direction.
+        // The whole table is inside and fills one direction.
         for (double x : {-0.145, 1.145}) {
             for (double y : {-0.145, 2.145}) {
                 const Vec2 corner = *camera.project({x, y, 0.04});
@@ -137,8 +137,8 @@ TEST(Picture, ASnookerTableHasItsLinesAndSpots) {
     EXPECT_NEAR(redness(0.5 * w, 0.737 + 0.292), redness(0.5 * w + 0.05, 0.737 + 0.292 + 0.05), 8);
 }
 
-// Centre of a white ball from its pixels, weighted by how white they are, against the camera's projection.
-TEST(Picture, BallAtTheRightPixel) {
+// The centre of a white ball, weighted by whiteness, against the camera's projection.
+TEST(Picture, ABallIsAtItsProjectedPixel) {
     for (FrameSize size : {FrameSize{640, 360}, FrameSize{1280, 720}, FrameSize{450, 800}}) {
         for (const Vec2& place : {Vec2(0.5, 1.0), Vec2(0.1234, 0.3), Vec2(0.91, 1.877)}) {
             Record with = render_test::rectangle_record(), without = with;
@@ -155,8 +155,8 @@ TEST(Picture, BallAtTheRightPixel) {
                  ++y) {
                 for (int x = static_cast<int>(expected.x()) - reach;
                      x <= static_cast<int>(expected.x()) + reach; ++x) {
-                    // Red distinguishes ball from cloth; shadows only darken. 0.5
-                    // of the ball's red is saturation for its middle.
+                    // Red distinguishes ball from cloth, as shadows only darken. Half of the ball's red
+                    // saturates at its middle.
                     const double w =
                         std::clamp((whiteness(image, x, y) - whiteness(empty, x, y)) / 0.3, 0.0, 1.0);
                     weight += w;
@@ -177,7 +177,7 @@ TEST(Picture, EdgesAreSmooth) {
     const Camera camera = list_of(record, size).camera;
     const Vec2 center = *camera.project({0.5, 1.0, kR});
     const double radius = kR * camera.scale({0.5, 1.0, kR});
-    // Around the rim, pixels between cloth and ball take many values, not two.
+    // Along the rim, pixels between cloth and ball have many values, not two.
     std::set<int> values;
     int between = 0;
     for (int i = 0; i < 360; ++i) {
@@ -212,7 +212,7 @@ TEST(Picture, ABallThatTurnsChangesItsPixels) {
     }
 }
 
-TEST(Picture, AFullTurnBringsThePixelsBack) {
+TEST(Picture, AFullTurnRestoresThePixels) {
     const double pi = 3.14159265358979323846;
     const Record record = spinning("12", {0.0, 0.0, 2.0 * pi});
     const Image start = draw(record, {320, 180}, 0.0), quarter = draw(record, {320, 180}, 0.25);
@@ -226,8 +226,8 @@ TEST(Picture, AFullTurnBringsThePixelsBack) {
     EXPECT_GT(moved, 60);
 }
 
-// A turn about +x (right-hand rule) carries the top towards -y, which is to the left of a lying image.
-TEST(Picture, BallsTurnTheRightWay) {
+// A turn about +x (right-hand rule) moves the top towards -y, which is left in a horizontal image.
+TEST(Picture, BallsTurnInTheRightDirection) {
     const Record record = spinning("8", {1.0, 0.0, 0.0});
     const FrameSize size{1600, 900};
     const Camera camera = list_of(record, size).camera;
@@ -252,9 +252,9 @@ TEST(Picture, BallsTurnTheRightWay) {
     EXPECT_LT(std::abs(move.y()), 0.15 * radius);
 }
 
-TEST(Picture, BallsThrowSoftShadowsOnTheClothAlone) {
+TEST(Picture, BallsCastSoftShadowsOnTheClothOnly) {
     Record with = render_test::rectangle_record(), without = with;
-    // Beside the lamp, which is over the middle: the shadow lies on the side away from it.
+    // The lamp is over the middle: beside it, the shadow lies on the far side.
     add_ball(with, "cue", 0.8, 1.0);
     add_ball(without, "cue", 0.5, 0.4);
     const FrameSize size{1280, 720};
@@ -272,7 +272,7 @@ TEST(Picture, BallsThrowSoftShadowsOnTheClothAlone) {
     EXPECT_EQ(green(shaded, 4.0), green(plain, 4.0));
 }
 
-// The mirror image of the lamp lies on one half of an 8; its strokes are as dark there as in the other half.
+// The lamp's reflection covers one half of an 8, whose strokes must be as dark there as in the other half.
 TEST(Picture, NumbersAreLegibleUnderTheLamp) {
     Record record = render_test::rectangle_record();
     add_ball(record, "8", 0.5, 1.7);
@@ -282,7 +282,7 @@ TEST(Picture, NumbersAreLegibleUnderTheLamp) {
     const Vec2 center = *camera.project({0.5, 1.7, 2.0 * kR});
     const double radius = kR * camera.scale({0.5, 1.7, kR});
     std::array<int, 2> ink{};
-    // The lamp is long and narrow: its image lies at half the height of the number.
+    // The lamp is long and narrow; its reflection is at half the height of the number.
     for (int y = static_cast<int>(-0.15 * radius); y <= 0.15 * radius; ++y) {
         for (int x = static_cast<int>(-0.4 * radius); x <= 0.4 * radius; ++x)
             ink[x < 0 ? 0 : 1] += at(image, center.x() + x, center.y() + y).r < 90;
@@ -329,7 +329,7 @@ TEST(Picture, TheSameListGivesTheSamePixels) {
     }()));
 }
 
-// The largest difference between neighbours in the green of a picture straight down at the cloth.
+// The largest green difference between neighbours, in a picture straight down at the cloth.
 int contrast_of_cloth(double pixel) {
     constexpr FrameSize kSize{480, 270};
     DrawList list = list_of(render_test::rectangle_record(), kSize);
@@ -351,14 +351,14 @@ int contrast_of_cloth(double pixel) {
     return most;
 }
 
-// A thread is 1.3 mm wide. At 2160p the whole table has pixels of 0.75 mm.
+// A thread is 1.3 mm wide; at 2160p the whole table has pixels of 0.75 mm.
 TEST(Picture, TheWeaveShowsOnlyIfAThreadIsWiderThanTwoPixels) {
     EXPECT_LE(contrast_of_cloth(0.75e-3), 1);
     EXPECT_LE(contrast_of_cloth(0.65e-3), 1);
     EXPECT_GE(contrast_of_cloth(0.25e-3), 6);
 }
 
-TEST(Picture, LargerPicturesHaveAsManySamplesOfTheTableInAll) {
+TEST(Picture, LargerPicturesHaveTheSameTotalOfTableSamples) {
     const Record record = render_test::rectangle_record();
     const auto samples = [&](FrameSize size, int wanted) {
         StageOptions options;

@@ -64,7 +64,7 @@ TEST(Pipeline, ThreadsChangeNothingInTheFrames) {
     EXPECT_EQ(folder.entries(), 2 * count);
 }
 
-TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
+TEST(Pipeline, ResumeRendersOnlyMissingFrames) {
     const ScratchFolder folder("resume");
     const Record record = rolling_ball();
     SequenceOptions options = options_for(folder.file("%02d.png"));
@@ -76,7 +76,7 @@ TEST(Pipeline, ResumeDoesOnlyWhatIsMissing) {
     small.pattern = folder.file("0%d.png");
     small.size = {80, 45};
     small.frame = 9;
-    render_sequence(record, small);  // frame 9 exists, but in another size
+    render_sequence(record, small);  // frame 9 exists in another size
     const auto before = std::filesystem::last_write_time(folder.file("06.png"));
     options.resume = true;
     std::vector<long> progress;
@@ -133,7 +133,7 @@ TEST(Pipeline, BothWritersGiveTheSamePixels) {
     EXPECT_LT(changes.back().encoded_share, 0.5);
 }
 
-// Threads, their number and earlier contents of an encoder change no byte.
+// Threads, their number and an encoder's earlier contents change no byte.
 TEST(Pipeline, BytesDependOnThePixelsAlone) {
     const ScratchFolder folder("bytes");
     SequenceOptions options = options_for(folder.file("a%02d.png"));
@@ -160,8 +160,8 @@ TEST(Pipeline, BytesDependOnThePixelsAlone) {
     }
 }
 
-// The frames of a stream against the formulas of ITU-R BT.709 in floating point, at an odd size too.
-TEST(Pipeline, Y4mFramesHaveTheColorsOfTheirPixels) {
+// The frames of a stream against the formulas of ITU-R BT.709 in floating point, also at an odd size.
+TEST(Pipeline, Y4mFramesHaveTheirPixelsColours) {
     const ScratchFolder folder("y4m");
     for (const FrameSize size : {FrameSize{160, 90}, FrameSize{81, 45}}) {
         SequenceOptions options = options_for(folder.file("%02d.png"));
@@ -215,7 +215,7 @@ TEST(Pipeline, Y4mFramesHaveTheColorsOfTheirPixels) {
     }
 }
 
-TEST(Pipeline, TheHeaderOfAStreamHasTheRateAsARatio) {
+TEST(Pipeline, AStreamsHeaderStatesTheRateAsARatio) {
     const auto rate = [](double fps) {
         const std::string line = y4m_header({64, 36}, fps);
         return line.substr(0, line.find(" Ip "));
@@ -253,14 +253,14 @@ TEST(Pipeline, ProgressMayStopTheRun) {
         if (done == 8) throw std::runtime_error("interrupted");
     };
     EXPECT_THROW(render_sequence(rolling_ball(), options), std::runtime_error);
-    // Every existing file is whole.
+    // Every existing file is complete.
     for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
         EXPECT_EQ(render_test::read_png(entry.path().string()).size, options.size);
     }
     EXPECT_LE(folder.entries(), 8U);
 }
 
-TEST(Pipeline, RefusesWhatDoesNotGoTogether) {
+TEST(Pipeline, RefusesConflictingOptions) {
     SequenceOptions options = options_for("");
     options.resume = true;
     EXPECT_THROW(render_sequence(rolling_ball(), options), RenderError);
@@ -277,8 +277,8 @@ TEST(Sheet, ShowsTheShotRowByRow) {
     render_sheet(record, options, 3, 4, folder.file("sheet.png"));
     const Image sheet = render_test::read_png(folder.file("sheet.png"));
     EXPECT_EQ(sheet.size, (FrameSize{482, 362})) << "as wide as was asked for, with pictures of that shape";
-    // 3 x 4 pictures of 159 x 89 with 2 pixels between them;
-    // the middle of each is cloth, and first and last differ.
+    // 3 x 4 pictures of 159 x 89 with 2 pixels between them; the middle of each is cloth, and first and last
+    // differ.
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 3; ++column) {
             const std::uint8_t* p = sheet.pixel(column * 161 + 85, row * 91 + 60);

@@ -1,5 +1,5 @@
-// PNG files of which only changes are encoded: any decoder reads them, and their bytes depend on the pixels
-// alone.
+// PNG files in which only changes are re-encoded: any decoder reads them, and their bytes depend only on the
+// pixels.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -34,8 +34,8 @@ PixelBox whole(FrameSize size) {
     return {0, 0, size.width, size.height};
 }
 
-// Fills a box in one of the ways typical of pictures: one colour, a gradient, noise, few colours, long and
-// short runs. The fourth channel is arbitrary.
+// Fills a box as pictures typically do: one colour, a gradient, noise, few colours, long and short runs. The
+// fourth channel is arbitrary.
 void paint(Image& image, const PixelBox& box, Random& random) {
     const int way = below(random, 5);
     const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
@@ -64,7 +64,7 @@ PixelBox random_box(FrameSize size, Random& random) {
             y0 + 1 + below(random, std::min(20, size.height - y0))};
 }
 
-// The bytes of a file made in one go.
+// The bytes of a file encoded in one go.
 Bytes file_of(const Image& image) {
     Bytes bytes;
     KeptPng().encode(image, bytes);
@@ -83,8 +83,8 @@ std::uint32_t big(const Bytes& bytes, std::size_t at) {
            std::uint32_t{bytes.at(at + 2)} << 8U | bytes.at(at + 3);
 }
 
-// libpng may silently ignore: the checksum of every chunk, and that of the zlib stream, which must end
-// where the rows do.
+// Checks what libpng may silently ignore: every chunk's checksum, and that of the zlib stream, which must end
+// with the rows.
 void expect_sound(const Bytes& bytes, FrameSize size) {
     std::string types;
     for (std::size_t at = 8; at < bytes.size();) {
@@ -107,11 +107,11 @@ void expect_sound(const Bytes& bytes, FrameSize size) {
     ASSERT_EQ(types, "IHDRIDATIEND");
 }
 
-// In series, so that they run in parallel. Every picture is changed several times in boxes, and its file must
-// be the one made in one go.
+// Split into series that can run in parallel. Every picture is changed several times in boxes, and its file
+// must equal the one encoded in one go.
 class RandomPictures : public ::testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomPictures, AreReadBackAndEqualThoseMadeAtOnce) {
+TEST_P(RandomPictures, ReadBackAndEqualOneGoFiles) {
     Random random(GetParam());
     constexpr int kPictures = 1250, kChanges = 10;
     for (int made = 0; made < kPictures; made += kChanges) {
@@ -151,8 +151,8 @@ TEST(PngPieces, EncodesNoMoreThanTheBoxesAndTheirNeighbours) {
     pieces.encode(image, {}, bytes);
     EXPECT_EQ(pieces.share(), 0.0);
     EXPECT_EQ(bytes, file_of(image));
-    // Ten rows of one segment of ten, and the row below; two pixels
-    // before the end of the segment is far enough from the next one.
+    // Ten rows of one segment of ten, and the row below; two pixels before the end of the segment are far
+    // enough from the next one.
     pieces.encode(image, {{64, 20, 126, 30}}, bytes);
     EXPECT_DOUBLE_EQ(pieces.share(), 11.0 / 1000.0);
     pieces.encode(image, {{64, 20, 127, 30}}, bytes);
@@ -199,9 +199,9 @@ Stage stage_of(const View& view) {
 
 class Frames : public ::testing::TestWithParam<View> {};
 
-// Successive frames, read into two images alternately, with jumps in time, as encoders of several threads get
-// them.
-TEST_P(Frames, AnEncoderThatKeepsPiecesMakesTheSameFiles) {
+// Successive frames, read alternately into two images, with jumps in time, as the encoders of several threads
+// receive them.
+TEST_P(Frames, AnEncoderThatKeepsPiecesWritesTheSameFiles) {
     const Stage stage = stage_of(GetParam());
     Renderer renderer;
     std::array<KeptImage, 2> images;
@@ -222,7 +222,7 @@ TEST_P(Frames, AnEncoderThatKeepsPiecesMakesTheSameFiles) {
     EXPECT_LE(least, in_parts ? 0.3 : 1.0);
 }
 
-TEST_P(Frames, AreAtMostHalfLargerThanThoseOfLibpng) {
+TEST_P(Frames, AreAtMostHalfLargerThanLibpngs) {
     const Stage stage = stage_of(GetParam());
     Renderer renderer;
     Image image;
@@ -243,8 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
                       View{"odd", "top", "", {481, 271}}),
     [](const auto& view) { return std::string(view.param.name); });
 
-// A size that changes, an image about which nothing is known, and back again.
-TEST(KeptPngTest, StartsAnewWhereNothingIsKnown) {
+// A size that changes, then an image without known history, then back.
+TEST(KeptPngTest, RestartsWithoutHistory) {
     const Stage large = stage_of({"", "top", "", {480, 270}}), small = stage_of({"", "top", "", {320, 180}});
     Renderer renderer;
     KeptImage image;

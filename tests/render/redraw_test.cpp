@@ -1,4 +1,4 @@
-// Frames that are drawn and read back only in part have the pixels of whole ones.
+// Frames that are drawn and read back only in part have the pixels of whole frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Stage stage_of(const std::string& camera, const std::string& overlay = "") {
     return Stage(rack_to_redraw(), options);
 }
 
-// Draws from scratch: a picture from elsewhere makes both targets worthless.
+// Draws from scratch: a first picture from another camera makes both targets worthless.
 Image whole_picture(Renderer& renderer, const DrawList& list) {
     DrawList elsewhere = list;
     elsewhere.table_samples = 1;
@@ -46,7 +46,7 @@ Image whole_picture(Renderer& renderer, const DrawList& list) {
     return image;
 }
 
-// Steps from the rack to rest: balls at rest among moving ones, pockets, balls that meet in the picture.
+// Steps from the rack to rest: resting balls among moving ones, pockets, balls that meet in the picture.
 std::vector<double> instants() {
     std::vector<double> times;
     for (double t : {0.0, 0.02, 0.1, 0.1, 0.3, 0.9, 2.0, 2.05, 3.5, 5.0, 0.3}) times.push_back(t);
@@ -69,7 +69,7 @@ TEST_P(Redraw, PartsHaveThePixelsOfTheWhole) {
     }
 }
 
-// Frame after frame, as in a film, with lines that grow, fade, and lie over and under the balls.
+// Frame after frame, as in a film, with lines that grow, fade, and pass over and under the balls.
 TEST_P(Redraw, OverlaysHaveThePixelsOfTheWhole) {
     for (const char* overlay : {"events,spin,ghost,clock", "trails,margin"}) {
         const Stage stage = stage_of(GetParam(), overlay);
@@ -90,13 +90,13 @@ TEST_P(Redraw, OverlaysHaveThePixelsOfTheWhole) {
 INSTANTIATE_TEST_SUITE_P(Cameras, Redraw, ::testing::Values("top", "rail", "player", "follow"),
                          [](const auto& camera) { return std::string(camera.param); });
 
-TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
+TEST(RedrawLines, ATemporaryOverlayLeavesNoTrace) {
     const Stage bare = stage_of("rail"), lines = stage_of("rail", "trails,clock");
     Renderer renderer, reference;
     KeptImage image;
     int shown = 0;
     for (const double t : {0.2, 0.4, 0.5, 0.6, 0.7, 0.8}) {
-        // Each stage has its own table; sharing one keeps the whole from being redrawn anyway.
+        // Each stage has its own table; sharing one avoids redrawing everything.
         DrawList list = (++shown % 3 == 0 ? lines : bare).at(t);
         list.table = bare.table();
         renderer.draw(list);
@@ -105,7 +105,7 @@ TEST(RedrawLines, AnOverlayThatComesAndGoesLeavesNothing) {
     }
 }
 
-// A renderer that draws at another size remakes its targets, and nothing of the old ones shows.
+// A renderer that draws at another size recreates its targets without leftovers of the old ones.
 TEST(RedrawLines, TheSizeMayChange) {
     StageOptions options;
     options.camera = "top";
@@ -124,7 +124,7 @@ TEST(RedrawLines, TheSizeMayChange) {
     }
 }
 
-TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
+TEST(RedrawKept, ImagesReadInAnyOrderShowTheirFrame) {
     const Stage stage = stage_of("top");
     Renderer renderer, reference;
     std::array<KeptImage, 3> images;
@@ -140,7 +140,7 @@ TEST(RedrawKept, ImagesReadAtAnyOrderShowTheirFrame) {
     }
 }
 
-TEST(RedrawKept, AnImageMayGoFromOneRendererToAnother) {
+TEST(RedrawKept, AnImageMayMoveToAnotherRenderer) {
     const Stage stage = stage_of("top");
     Renderer first, second;
     KeptImage image;
@@ -155,8 +155,8 @@ TEST(RedrawKept, AnImageMayGoFromOneRendererToAnother) {
     }
 }
 
-// A frame is cheap: nothing to do if nothing moves, and only the moving balls if they do.
-TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
+// A frame costs nothing if nothing moves, and otherwise only the moving balls.
+TEST(RedrawWork, OnlyMovedBallsAreDrawn) {
     const Stage stage = stage_of("top");
     const ClothMap none;
     const FrameSize size{480, 270};
@@ -166,14 +166,13 @@ TEST(RedrawWork, OnlyWhatMovedIsDrawn) {
     EXPECT_TRUE(differing_boxes(picture(end), picture(end + 1.0), size).empty());
     const DrawnPicture rack = picture(0.0), cue_moved = picture(0.01);
     std::vector<PixelBox> boxes = differing_boxes(rack, cue_moved, size);
-    ASSERT_EQ(boxes.size(), 2U);  // where the cue ball was, and where it is
+    ASSERT_EQ(boxes.size(), 2U);  // the cue ball's old and new places
     const std::vector<bool> moved = inside(cue_moved, boxes, size).balls;
     EXPECT_EQ(std::count(moved.begin(), moved.end(), true), 1);
-    // A rack is drawn as a whole as soon as a ball of it is touched.
+    // Touching one ball of a rack redraws the whole rack.
     boxes = {rack.balls[5].box};
     const std::vector<bool> all = inside(rack, boxes, size).balls;
     EXPECT_EQ(std::count(all.begin(), all.end(), true), 15);
-    // Another table: everything.
     DrawnPicture other = rack;
     other.table = std::make_shared<TableDrawing>();
     EXPECT_EQ(differing_boxes(rack, other, size), (std::vector<PixelBox>{{0, 0, 480, 270}}));
@@ -189,7 +188,7 @@ DrawnPicture picture_of(const DrawList& list, const std::shared_ptr<const TableD
     return {table, visible_balls(list, ClothMap()), drawn_shapes(list)};
 }
 
-// An overlay costs what changes in it: the digits of a clock, and everything they touch, which is its panel.
+// An overlay redraws only its changes: a clock's digits and everything they touch, which is its panel.
 TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
     const Stage stage = stage_of("top", "clock");
     const FrameSize size{480, 270};
@@ -207,8 +206,8 @@ TEST(RedrawWork, AnOverlayIsDrawnWhereItChanges) {
     EXPECT_TRUE(differing_boxes(after, after, size).empty());
 }
 
-// Things drawn over the same places in another order may look different.
-TEST(RedrawWork, TheOrderOfShapesCounts) {
+// Overlapping shapes drawn in another order may look different.
+TEST(RedrawWork, TheOrderOfShapesMatters) {
     DrawList list = stage_of("top").at(0.0);
     list.boxes = {{{10.0, 10.0}, {30.0, 30.0}, {1.0F, 0.0F, 0.0F, 1.0F}, -1},
                   {{20.0, 20.0}, {40.0, 40.0}, {0.0F, 1.0F, 0.0F, 1.0F}, -1}};
@@ -218,10 +217,10 @@ TEST(RedrawWork, TheOrderOfShapesCounts) {
     EXPECT_FALSE(differing_boxes(before, picture_of(list, table), {480, 270}).empty());
 }
 
-TEST(RedrawWork, BallsOnBareClothAreTold) {
+TEST(RedrawWork, BallsOnBareClothAreRecognised) {
     const Stage stage = stage_of("top");
     const DrawList list = stage.at(0.0);
-    // Alpha of the picture is cloth: all of it here, then all except one pixel in the corner of a ball's box.
+    // Alpha marks cloth pixels: all here, then all but one in the corner of a ball's box.
     std::vector<std::uint8_t> alpha(std::size_t{4} * 480 * 270, 255);
     std::vector<DrawnBall> balls = visible_balls(list, ClothMap(alpha, {480, 270}));
     EXPECT_EQ(std::count_if(balls.begin(), balls.end(), [](const DrawnBall& b) { return b.plain; }), 16);

@@ -48,7 +48,7 @@ StageOptions view(const std::string& camera, FrameSize size = {640, 360}) {
 
 constexpr FrameSize kSizes[] = {{640, 360}, {360, 640}, {500, 500}, {2000, 300}};
 
-/// How far a ball that moves is from the middle of the image, at most: 1 is its edge.
+/// The largest distance of a moving ball from the middle of the image; 1 is the edge.
 double farthest_out(const Record& record, const Camera& camera) {
     double most = 0.0;
     for (int k = 0; k <= 40; ++k) {
@@ -64,7 +64,7 @@ double farthest_out(const Record& record, const Camera& camera) {
     return most;
 }
 
-/// A shot over all of the table: one ball from corner to corner, and one across, away from the first.
+/// A shot over the whole table: one ball from corner to corner, and one across, away from the first.
 Record long_shot() {
     Record record = shot();
     record.tracks.pop_back();
@@ -93,7 +93,7 @@ TEST(Cameras, RailAndPlayerShowTheBallsThatMoveAtEverySize) {
             EXPECT_GT(out, 0.7) << name << size.width << ": the picture is full";
         }
         const Camera rail = Stage(large, view("rail", size)).at(0.0).camera;
-        // The head rail is near: lower in the image than the foot rail.
+        // The head rail is nearer, so lower in the image than the foot rail.
         EXPECT_GT(rail.project({0.6, 0.0, 0.0})->y(), rail.project({0.6, 2.5, 0.0})->y());
     }
 }
@@ -120,7 +120,7 @@ TEST(Cameras, FollowIsSmoothAndKeepsTheBallInSight) {
         EXPECT_GT(ball.minCoeff(), 0.0);
         EXPECT_LT(ball.x(), 640.0);
         EXPECT_LT(ball.y(), 360.0);
-        // The ball itself starts at 1 m/s at once; the camera's step changes little from frame to frame.
+        // The ball starts at 1 m/s at once; the camera's step changes little from frame to frame.
         const Vec3 step = camera.eye - before;
         EXPECT_LT((step - step_before).norm(), 0.1 / 60.0) << t;
         before = camera.eye;
@@ -129,7 +129,7 @@ TEST(Cameras, FollowIsSmoothAndKeepsTheBallInSight) {
     EXPECT_TRUE(stage.at(1.8).camera == stage.at(1.9).camera) << "at rest the table need not be drawn again";
 }
 
-TEST(Cameras, FreeViewAndBadOnes) {
+TEST(Cameras, FreeViewsWorkAndBadOnesAreRefused) {
     const Record record = shot();
     StageOptions options = view("top");
     options.view.eye = Vec3(0.0, -1.0, 1.0);
@@ -152,7 +152,7 @@ TEST(Cameras, FreeViewAndBadOnes) {
     } catch (const RenderError& error) {
         EXPECT_STREQ(error.what(), "no ball '17' to follow; expected one of cue, 8");
     }
-    // Ids of a record come from a file.
+    // A record's ids come from a file.
     Record hostile = record;
     hostile.tracks[1].id = "\x1b[2J";
     for (int i = 0; i < 50; ++i) hostile.tracks.push_back(hostile.tracks[1]);
@@ -167,7 +167,7 @@ TEST(Cameras, FreeViewAndBadOnes) {
     }
 }
 
-// The cue aims, draws back, meets the ball at 0, follows through, and is taken away.
+// The cue aims, draws back, meets the ball at 0, follows through, and disappears.
 TEST(Cues, AreDrawnAroundTheStrike) {
     Record record = shot();
     const Stage stage(record, view("top"));
@@ -217,7 +217,7 @@ DrawList overlaid(const std::string& overlay, double t) {
     return Stage(record, options).at(t, FrameBudget{20.0, 10.0});
 }
 
-TEST(Overlays, TrailsReachTheBallAndNoFurther) {
+TEST(Overlays, TrailsEndAtTheBall) {
     EXPECT_TRUE(overlaid("trails", 0.0).lines.empty());
     const DrawList list = overlaid("trails", 0.4);
     ASSERT_EQ(list.lines.size(), 1U);
@@ -226,7 +226,7 @@ TEST(Overlays, TrailsReachTheBallAndNoFurther) {
     EXPECT_EQ(list.lines[0].layer, LineLayer::kUnderBalls);
 }
 
-// A path that bends is drawn within a quarter of a pixel of itself at any size.
+// A curved path is drawn within a quarter of a pixel at any size.
 TEST(Overlays, CurvedTrailsHaveNoCorners) {
     Record record = shot();
     Segment& segment = record.tracks[0].segments[0];
@@ -248,7 +248,7 @@ TEST(Overlays, CurvedTrailsHaveNoCorners) {
     EXPECT_NEAR(end, position_at(segment, 0.8).y(), 1e-9);
 }
 
-// A pocketed ball goes down from where it was, and lies still after 0.15 s.
+// A pocketed ball sinks from its place, and lies still after 0.15 s.
 TEST(Stages, APocketedBallSinks) {
     Record record = shot();
     const Pocket& pocket = record.table.pockets[0];
@@ -279,7 +279,7 @@ TEST(Overlays, EventsAppearWhenTheyHappen) {
     EXPECT_NEAR(old.lines[1].a.y(), 1.5, 1e-9) << "between the two balls";
 }
 
-TEST(Overlays, GhostStandsWhereTheBallWillMeetTheOther) {
+TEST(Overlays, GhostMarksTheBallsPlaceAtContact) {
     const DrawList list = overlaid("ghost", 0.2);
     ASSERT_GT(list.lines.size(), 10U);
     for (std::size_t i = 0; i + 1 < list.lines.size(); ++i) {
@@ -288,7 +288,7 @@ TEST(Overlays, GhostStandsWhereTheBallWillMeetTheOther) {
     EXPECT_TRUE(overlaid("ghost", 1.5).lines.empty());
 }
 
-TEST(Overlays, SpinArrowPointsWhereTheTopGoes) {
+TEST(Overlays, SpinArrowFollowsTheTopOfTheBall) {
     const DrawList list = overlaid("spin", 0.5);
     ASSERT_FALSE(list.lines.empty());
     const Vec3 arrow = list.lines[0].b - list.lines[0].a;
@@ -309,7 +309,7 @@ TEST(Overlays, ClockAndMarginAreBoxesInsideTheImage) {
     }
 }
 
-TEST(BallStyles, GoByIdAndTable) {
+TEST(BallStyles, DependOnIdAndTable) {
     EXPECT_EQ(ball_style("3", "nine_foot", 0).number, 3);
     EXPECT_EQ(ball_style("3", "nine_foot", 0).pattern, BallPattern::kSolid);
     EXPECT_EQ(ball_style("8", "", 0).pattern, BallPattern::kSolid);
@@ -332,7 +332,7 @@ TEST(BallStyles, GoByIdAndTable) {
     EXPECT_EQ(ball_style("123", "", 2).number, 0);
 }
 
-TEST(TableMesh, ThePresetsHaveEverything) {
+TEST(TableMesh, ThePresetsHaveAllParts) {
     for (const char* preset : {"seven_foot", "nine_foot", "carom"}) {
         const Table table = make_table(preset);
         const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
@@ -350,7 +350,7 @@ TEST(TableMesh, ThePresetsHaveEverything) {
     }
 }
 
-// Two boards meet in each corner of the frame: the grain of one does not continue in the other.
+// Two boards meet in each corner of the frame, and the grain of one ends there.
 TEST(TableMesh, WoodHasAMitreAtEveryCorner) {
     const Table table = make_table("nine_foot");
     const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
@@ -372,8 +372,8 @@ TEST(TableMesh, WoodHasAMitreAtEveryCorner) {
     }
 }
 
-// The drawn noses are the cushions and jaws that balls bounce off: at the height of the nose no vertex of a
-// cushion reaches into the table, and every point of the outline is drawn.
+// The drawn noses are the cushions and jaws that balls bounce off: at nose height no vertex of a cushion
+// reaches into the table, and every point of the outline is drawn.
 TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
     const Table table = make_table("nine_foot");
     const TableMesh mesh = make_table_mesh(table, kR, {Vec2(0.5, 0.5)});
@@ -396,7 +396,7 @@ TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
         EXPECT_TRUE(is_drawn(cushion.from)) << cushion.id;
         EXPECT_TRUE(is_drawn(cushion.to)) << cushion.id;
     }
-    // The middle of each jaw's arc: the point of its circle nearest to the table's middle or a pocket's
+    // The middle of each jaw's arc: the point of its circle nearest to the middle of the table or a pocket's
     // mouth.
     for (const Jaw& jaw : table.jaws) {
         int on_circle = 0;
@@ -405,7 +405,7 @@ TEST(TableMesh, NosesAreTheOutlineThatBallsBounceOff) {
     }
 }
 
-TEST(TableMesh, OddOutlinesGiveFiniteMeshes) {
+TEST(TableMesh, OddOutlinesYieldFiniteMeshes) {
     Table table;
     table.cushions = {{"a", {0, 0}, {1, 0}, 0.03}, {"b", {1, 0}, {1, 1}, 0.03}, {"c", {3, 3}, {4, 4}, 0.03}};
     table.jaws = {{"post", {2, 2}, 0.1, 0.03}};

@@ -23,8 +23,8 @@ namespace carom::test {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// A scene under construction. Every number is drawn in a separate statement: the compiler chooses the order
-/// in which a call's arguments are drawn.
+/// A scene under construction. Numbers are drawn in separate statements, because compilers differ in the
+/// order of arguments.
 class Crowd {
   public:
     Crowd(std::uint64_t seed, Level level) : rng_(seed), level_(level) {
@@ -93,7 +93,7 @@ class Crowd {
         if (kind == 1) w = spin(2.0 * v.norm());
         move(ball, v, w);
     }
-    /// Whether a ball has room there, with every wall at a sufficient distance.
+    /// Whether a ball fits there, at sufficient distance from every wall.
     bool fits(const Vec2& r, double slack = 1e-14) const {
         for (const BallStart& b : scene_.ball)
             if ((planar(b.position) - r).norm() < 2.0 * R() - slack) return false;
@@ -103,7 +103,7 @@ class Crowd {
             if ((j.center - r).norm() < R() + j.radius - slack) return false;
         return true;
     }
-    /// A ball that touches another one, or nearly; false if there was no room.
+    /// Adds a ball that touches another or nearly touches; false if there is no room.
     bool attach(int to) {
         constexpr double kGaps[] = {0.0, 0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6};
         const double gap = one_of(kGaps) * R();
@@ -115,12 +115,12 @@ class Crowd {
         ball(r);
         return true;
     }
-    /// A gap between things that nearly touch [m].
+    /// A gap between objects that nearly touch [m].
     double small_gap() {
         constexpr double kGaps[] = {0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3};
         return one_of(kGaps) * R();
     }
-    /// One ball from outside onto the others, from a distance of a few balls.
+    /// Shoots one ball at the others, from a distance of a few ball radii.
     void strike(int target, const Vec2& from) {
         const double away = 2.0 * R() + (chance(0.3) ? 0.0 : uniform(0.0, 4.0)) * R();
         const double off = uniform(-0.9, 0.9) * R() * (chance(0.4) ? 0.0 : 1.0);
@@ -130,7 +130,7 @@ class Crowd {
         ball(r);
         shoot(balls() - 1, -v * from);
     }
-    /// The spins of some balls, the first one included.
+    /// Spins some balls, always including the first.
     void spin_some(double share) {
         for (int i = 0; i < balls(); ++i) {
             const bool turns = i == 0 || chance(share);

@@ -175,7 +175,7 @@ void rings(Crowd& c) {
     for (int i = 0; i < count; ++i) {
         const SinCos a = sin_cos(2.0 * kPi * i / count);
         const double size = (alike ? 1.0 : c.uniform(0.2, 1.0)) * surface / c.R();
-        // Topspin towards the centre: the axis is at right angles to the direction there.
+        // Topspin towards the centre: its axis is perpendicular to that direction.
         c.move(i, {0.0, 0.0}, Vec3(a.sin, -a.cos, 0.0) * size);
     }
 }
@@ -190,7 +190,7 @@ void rail_cluster(Crowd& c) {
             c.attach(c.whole(0, c.balls() - 1));
             continue;
         }
-        // Beside another one, on the rail.
+        // Beside another ball, on the rail.
         const Vec2 r(c.place_of(c.balls() - 1).x() + 2.0 * c.R() + c.small_gap(), c.R());
         if (c.fits(r)) c.ball(r);
     }

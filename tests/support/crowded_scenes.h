@@ -23,8 +23,8 @@ enum class Level { kNatural, kWide, kExtreme };
 std::span<const char* const> crowded_families();
 
 /// The scene of a seed, or nothing for an unknown family or level: "rings", "rings/wide", "pool_frozen".
-/// Seeds of different families and levels are independent. `validate` may refuse the scene if the numbers
-/// leave no room.
+/// Seeds of different families and levels are independent. `validate` may refuse the scene if its balls do
+/// not fit.
 std::optional<Scene> family_scene(std::string_view family, std::uint64_t seed);
 
 }  // namespace carom::test

@@ -25,12 +25,12 @@ inline Vec3 vec3(const nlohmann::json& j) {
     return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
-/// With a single number as the friction between balls, as in formulas and reference solutions.
+/// With one constant friction between balls, as in formulas and reference solutions.
 inline BallParams pool_balls() {
     return make_ball_params("pool_classic");
 }
 
-/// Reads R, m, u_s, ... if given; the rest stays at the pool defaults.
+/// Reads R, m, u_s, ... where given; the rest keeps the pool defaults.
 inline BallParams balls_from(const nlohmann::json& p) {
     BallParams b = pool_balls();
     const auto take = [&p](const char* key, double& x) {
@@ -72,7 +72,7 @@ inline void add_ball(Scene& scene, const std::string& id, double x, double y, do
     add_ball(scene, id, Vec3(x, y, scene.balls.R), Vec3(vx, vy, 0.0), w);
 }
 
-/// The spin of a ball that rolls at this velocity.
+/// The spin of a ball rolling at this velocity.
 inline Vec3 rolling_spin(double vx, double vy, double R) {
     return {-vy / R, vx / R, 0.0};
 }

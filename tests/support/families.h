@@ -1,4 +1,4 @@
-// A table of families of seeded scenes: one row each, with its name.
+// A table of seeded scene families: one row each, with its name.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 
 namespace carom::test {
 
-/// The names of all rows.
 template <const auto& kRows>
 std::span<const char* const> names_of() {
     static const auto names = [] {
@@ -22,7 +21,7 @@ std::span<const char* const> names_of() {
     return names;
 }
 
-/// The row of a name, or nullptr.
+/// The row with this name, or nullptr.
 template <class Row, std::size_t kCount>
 const Row* row_of(const Row (&rows)[kCount], std::string_view name) {
     const Row* row = std::find_if(rows, rows + kCount, [&](const Row& r) { return r.name == name; });

@@ -1,4 +1,4 @@
-// Files of the tests, and the messages that they must give.
+// Files of the tests, and patterns for expected messages.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline std::string read_file(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// `*` in the pattern stands for any text.
+/// `*` in the pattern matches any text.
 inline bool matches(const std::string& pattern, const std::string& text, std::size_t p = 0,
                     std::size_t t = 0) {
     for (; p < pattern.size(); ++p, ++t) {

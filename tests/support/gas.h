@@ -11,8 +11,8 @@
 namespace carom::test {
 using reference::Generator;
 
-/// n balls on a jittered square grid (n a square), 1 m/s in random directions; balls cover a fifth of the
-/// area.
+/// n balls on a jittered square grid (n a square), moving at 1 m/s in random directions; balls cover a fifth
+/// of the area.
 inline Scene gas(int n, long events, std::uint64_t seed) {
     Scene scene = frictionless();
     scene.physics.clusters = ClusterModel::kSequential;

@@ -1,5 +1,5 @@
-// When do two balls meet? A derivative cascade in __float128, independent of the engine's: the roots of f''
-// split f', the roots of f' split f, every piece by bisection down to 2^-110 of the horizon.
+// The time when two balls meet, by a derivative cascade in __float128 independent of the engine's: the roots
+// of f'' split f', those of f' split f; each piece is bisected to 2^-110 of the horizon.
 #pragma once
 
 #include <array>

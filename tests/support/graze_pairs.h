@@ -1,4 +1,4 @@
-// Seeded pairs of balls that pass each other at a given depth, to judge detection. Needs engine/src.
+// Seeded pairs of balls that pass each other at a given depth, to test detection. Needs engine/src.
 #pragma once
 
 #include "carom/engine/math.h"
@@ -24,8 +24,8 @@ inline Path random_path(Generator& rng, int kind, double speed) {
     return {{0, 0}, v, 1.962 * Vec2(d.cos, d.sin), rng.uniform(0.05, 1.0) * speed / 1.962, false, true};
 }
 
-/// Puts ball 2 so that at the time t the two pass at right
-/// angles to their relative velocity, `depth` within reach.
+/// Places ball 2 so that at time t the two pass at right angles to their relative velocity, `depth` within
+/// reach.
 inline void set_to_graze(const Path& one, Path& two, double t, double depth, double reach, Generator& rng) {
     const Vec2 v = (two.v - one.v) + t * (two.a - one.a);
     const double speed = length(v);

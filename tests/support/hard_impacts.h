@@ -1,4 +1,5 @@
-// The impacts that broke the published code, H22 to H31 of tests/README.md, and what every march must answer.
+// The impacts that broke the published code, H22 to H31 of tests/README.md, and the status that every march
+// must return.
 #pragma once
 
 #include <cmath>

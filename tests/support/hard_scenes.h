@@ -1,4 +1,4 @@
-// Shared by the hard cases. Set CAROM_RESIDUALS=1 in the environment to print what each case measured.
+// Shared by the hard cases. CAROM_RESIDUALS=1 in the environment prints each case's measurements.
 #pragma once
 
 #include <cstdio>
@@ -22,7 +22,7 @@ inline Table spot_at(const Vec2& apex) {
     return table;
 }
 
-/// No friction anywhere, balls and cushions elastic.
+/// No friction anywhere; elastic balls and cushions.
 inline Scene frictionless() {
     Scene scene = empty_scene();
     BallParams& b = scene.balls;

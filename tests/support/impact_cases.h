@@ -18,7 +18,7 @@ namespace carom::test {
 struct ReferenceImpact {
     int id;
     kernel::Ball ball1, ball2;
-    kernel::ImpactParams params;                          // with the published cloth slip, like the vectors
+    kernel::ImpactParams params;                          // with the published cloth slip, as in the vectors
     std::map<std::string, kernel::ImpactResult> outputs;  // by the name of the model in the file
 };
 

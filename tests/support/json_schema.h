@@ -1,5 +1,5 @@
-// JSON against a JSON Schema (draft 7), as far as this project's schemas need it: an unknown keyword is an
-// error, so that a schema cannot promise what nothing checks.
+// Checks JSON against a JSON Schema (draft 7), as far as this project's schemas need it. An unknown keyword
+// is an error, so that a schema cannot state anything unchecked.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ class SchemaCheck {
   public:
     explicit SchemaCheck(const Json& schema) : root_(schema) {}
 
-    /// "" or the first fault: its location ("/tracks/0/id") and what it is.
+    /// "" or the first fault: its location ("/tracks/0/id") and description.
     std::string fault(const Json& value) const { return fault(root_, value, ""); }
 
   private:

@@ -1,5 +1,5 @@
-// Balls in contact, integrated plainly: Hertz springs with the unloading law of docs/reference/physics.md,
-// friction with almost sharp stick, and everything moves, positions too. It shares nothing with the kernel
+// A plain integration of balls in contact: Hertz springs with the unloading law of docs/reference/physics.md,
+// friction with almost sharp stick, and everything moves, positions too. It shares no code with the kernel
 // and is slow: the step is a two-thousandth of L/V. SI units.
 #pragma once
 
@@ -41,14 +41,14 @@ class MovingContacts {
         share_ = (1.0 - e2) * 0.4 / (0.4 - 1.0 / (2.5 + power_));
         for (std::size_t i = 0; i < balls_.size(); ++i) {
             for (std::size_t j = i + 1; j < balls_.size(); ++j) {
-                // The rounding of positions that should touch is not a gap.
+                // A gap that is only the rounding of touching positions counts as 0.
                 const double gap = distance(balls_[i], balls_[j]) - 2.0 * law.R;
                 if (gap < law.reach * length) pairs_.push_back({i, j, 0.0, gap < 1e-13 ? gap : 0.0});
             }
         }
     }
 
-    /// Runs to the end; returns its duration [s], or -1 if there is none within 200 L/V.
+    /// Runs to the end; returns the duration [s], or -1 if it exceeds 200 L/V.
     double run() {
         const double h = law_.step * unit_;
         double time = 0.0;
@@ -62,7 +62,7 @@ class MovingContacts {
         return -1.0;
     }
 
-    /// Runs for a duration [s], and on until no contact is closed. @return how long
+    /// Runs for a duration [s], and on until no contact is closed. @return the total duration
     double run_for(double duration) {
         const auto steps = static_cast<int>(std::ceil(duration / (law_.step * unit_)));
         const double h = duration / steps;
@@ -72,7 +72,7 @@ class MovingContacts {
     }
 
     const std::vector<MovingBall>& balls() const { return balls_; }
-    /// The balls at every instant from which no two of them touch for a while.
+    /// The balls at every instant after which no two touch for a while.
     const std::vector<std::vector<MovingBall>>& ends() const { return ends_; }
 
   private:
@@ -141,7 +141,7 @@ class MovingContacts {
         for (std::size_t b = 0; b < at.size(); ++b) {
             const double u[2] = {at[b].v[0] - R * at[b].w[1], at[b].v[1] + R * at[b].w[0]};
             const double u2 = u[0] * u[0] + u[1] * u[1], sharp = 0.02 * slip_;
-            // The weight is so small beside the contacts that its friction can stick more sharply.
+            // The weight is small compared with the contacts, so its friction can stick more sharply.
             const double k = std::min(up[b], 0.0) / std::sqrt(u2 + slip_ * slip_) -
                              law_.weight / std::sqrt(u2 + sharp * sharp);
             const double f[2] = {law_.mu_s * k * u[0], law_.mu_s * k * u[1]};

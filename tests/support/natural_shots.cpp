@@ -19,7 +19,7 @@
 namespace carom::test {
 namespace {
 
-/// A table with balls on it and one shot.
+/// A table with balls and one shot.
 class Shot {
   public:
     Shot(std::uint64_t seed, const char* table, const char* balls) : rng_(seed) {
@@ -65,7 +65,7 @@ class Shot {
         for (int tries = 0; tries < 200; ++tries)
             if (place(id, anywhere())) return;
     }
-    /// Touching a rail, a ball, or both, by chance.
+    /// Places the ball against a rail, a ball, or both, at random.
     void freeze(const std::string& id) {
         for (int tries = 0; tries < 200; ++tries) {
             Vec2 r = anywhere();
@@ -82,7 +82,7 @@ class Shot {
             if (place(id, r)) return;
         }
     }
-    /// A rack of which each ball stays with probability `stays`; the others are scattered.
+    /// A rack in which each ball stays with probability `stays`; the others are scattered.
     void rack(RackGame game, double gap, double stays) {
         Rack rack;
         rack.game = game;
@@ -94,7 +94,7 @@ class Shot {
                 scatter(b.id);
         }
     }
-    /// Strikes the cue ball at a ball, more or less.
+    /// Strikes the cue ball roughly at a ball.
     void strike(int target, double fastest) {
         const Vec2 cue = planar(scene_.ball.back().position);
         const Vec2 way = planar(scene_.ball[static_cast<std::size_t>(target)].position) - cue;
@@ -107,11 +107,10 @@ class Shot {
         c.height = uniform(-0.3, 0.3);
         scene_.cue = c;
     }
-    /// The cue of the last strike(), and the physics, to change them.
+    /// The cue of the last strike(), and the physics, for changes.
     Cue& cue() { return *scene_.cue; }
     Physics& physics() { return scene_.physics; }
     int balls() const { return static_cast<int>(scene_.ball.size()); }
-    /// The cue ball touching this one.
     bool touch_with_cue(int ball) {
         const SinCos a = sin_cos(uniform(0.0, 2.0 * std::numbers::pi));
         return place("cue", planar(scene_.ball[static_cast<std::size_t>(ball)].position) +
@@ -168,7 +167,7 @@ Scene eight_ball_break(std::uint64_t seed) {
     return shot.take();
 }
 
-// A break struck from a little above, as people do: the cue ball hops on its way to the rack.
+// A break struck slightly from above, as people do: the cue ball hops before it reaches the rack.
 Scene raised_break(std::uint64_t seed) {
     constexpr RackGame kGames[] = {RackGame::kEightBall, RackGame::kNineBall, RackGame::kTenBall,
                                    RackGame::kSnooker};

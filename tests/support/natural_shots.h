@@ -11,7 +11,8 @@
 namespace carom::test {
 
 /// Pool after a break, with frozen balls; snooker with the pack half open, with frozen balls; the cue ball
-/// at, in and into a touching pack; the eight-ball break; breaks of four games with a raised cue.
+/// touching, inside and shot into a touching pack; the eight-ball break; breaks of four games with a raised
+/// cue.
 std::span<const char* const> natural_families();
 
 /// The shot of a seed, or nothing for an unknown family.

@@ -1,5 +1,5 @@
-// Breaks with balls that differ in size: racks with odd balls, chains of balls that touch, and a cue ball of
-// its own size.
+// Breaks with balls of different sizes: racks with odd balls, chains of touching balls, and a cue ball of
+// another size.
 #pragma once
 
 #include <algorithm>
@@ -70,12 +70,12 @@ class OddBreak {
         const double R = scene_.balls.R, spaced = chance(0.5) ? R : 1.05 * R, share = chance(0.3) ? 0.0 : 0.3;
         for (const RackedBall& b : make_rack(rack, scene_.table, spaced)) {
             const bool is_odd = chance(share);
-            // Two of the largest touch where the rack has no gap.
+            // Two of the largest touch if the rack has no gap.
             place(b.id, b.position, is_odd ? odd(spaced) : scene_.balls.size());
         }
     }
 
-    // Each touches the one before; some the one before that, too.
+    // Each touches the previous one; some also the one before that.
     void chain() {
         const int count = 3 + static_cast<int>(uniform(0.0, 7.0));
         Vec2 at(0.5 * scene_.table.width + uniform(-0.1, 0.1), 0.6 * scene_.table.length);
@@ -120,7 +120,7 @@ class OddBreak {
         cue.velocity = {speed * std::cos(angle), speed * std::sin(angle), 0.0};
         if (chance(0.5)) cue.spin = rolling_spin(cue.velocity.x(), cue.velocity.y(), size.R);
         if (chance(0.3)) cue.spin.z() = uniform(-100.0, 100.0);
-        // Through the air, and hops at the cushions.
+        // It flies, and may hop at cushions.
         if (chance(0.1)) cue.velocity.z() = uniform(0.3, 2.0);
         if (chance(0.1)) scene_.balls.e_h = 0.2;
     }

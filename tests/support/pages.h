@@ -1,4 +1,4 @@
-// The pages in docs/ and the sources, for tests that compare them with the program.
+// The pages in docs/ and the sources, for comparison with the program.
 #pragma once
 
 #include <filesystem>

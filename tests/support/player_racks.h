@@ -1,4 +1,4 @@
-// Racks that players of carom/games/player.h play against each other.
+// Racks between players of carom/games/player.h.
 #pragma once
 
 #include <array>
@@ -14,14 +14,13 @@
 
 namespace carom::test {
 
-/// One shot of a rack.
 struct RackShot {
     games::State before;
     Scene table;  ///< before the shot, without what the advice changes
     games::Advice advice;
     games::Verdict verdict;
     games::Option taken;
-    /// Whether the shot kept the turn, or won.
+    /// Whether the shot kept the turn or won.
     bool made() const {
         const games::State& next = taken.state;
         return next.over ? next.winner == before.turn
@@ -41,7 +40,7 @@ inline Scene nine_foot_rack(games::Game game, std::uint64_t seed) {
     return pool_rack("nine_foot", game, seed);
 }
 
-/// The adviser of a player: games::advise(), or another player.
+/// A player's adviser: games::advise(), or another function.
 using Adviser = std::function<games::Advice(const games::State&, const Scene&, std::uint64_t seed)>;
 
 inline Adviser adviser(const games::Skill& skill, kernel::Isa isa = kernel::best_isa()) {
@@ -54,7 +53,7 @@ inline Adviser adviser(const games::Skill& skill, kernel::Isa isa = kernel::best
     };
 }
 
-/// How many of these racks keep the turn after the break.
+/// Number of these racks in which the breaker keeps the turn.
 inline int breaks_kept(const std::string& table, games::Game game, const games::Skill& skill, int racks,
                        std::uint64_t first_seed) {
     const kernel::Isa isa = kernel::best_isa();
@@ -74,8 +73,8 @@ inline int breaks_kept(const std::string& table, games::Game game, const games::
 
 inline constexpr int kLongestRack = 300;
 
-/// Plays a rack until `each` returns false, or it is over, or kLongestRack shots. Strikes have the errors of
-/// the players' skills. @return the winner, or -1
+/// Plays a rack until `each` returns false, it is over, or kLongestRack shots. Strikes have the errors of the
+/// players' skills. @return the winner, or -1
 inline int play_rack(games::Game game, const std::array<games::Skill, 2>& skills,
                      const std::array<Adviser, 2>& advisers, std::uint64_t seed, int breaker,
                      const std::function<bool(const RackShot&)>& each) {

@@ -1,4 +1,4 @@
-// Runs a program as a shell would, and keeps all its output. For tests of the command line.
+// Runs a program as a shell would, and captures all its output. For tests of the command line.
 #pragma once
 
 #include <fcntl.h>
@@ -23,7 +23,7 @@
 
 namespace carom::test {
 
-/// A temporary folder for one test, removed with everything in it.
+/// A temporary folder for one test, removed with its contents.
 class TemporaryFolder : public carom::TemporaryFolder {
   public:
     /// Writes a file and returns its path.
@@ -32,7 +32,7 @@ class TemporaryFolder : public carom::TemporaryFolder {
         return file(name);
     }
 
-    /// Names of all files in it, including folders, except the mark that says which shot frames belong to.
+    /// Names of all entries, including folders, except the mark that identifies the frames' shot.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path())) {
@@ -58,7 +58,7 @@ struct ProcessResult {
     std::string out, err;
 };
 
-/// A child whose three standard streams we hold.
+/// A child process with its three standard streams piped.
 class Process {
   public:
     Process(const std::vector<std::string>& arguments, const ProcessOptions& options) {
@@ -68,7 +68,7 @@ class Process {
         if (::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) {
             throw std::runtime_error("pipe2 failed");
         }
-        // Before the child runs: it could be done before its pipe is broken.
+        // Close it before the child runs, which might otherwise finish first.
         if (options.close_output) close_one(out[0]);
         pid_ = ::fork();
         if (pid_ < 0) throw std::runtime_error("fork failed");
@@ -94,13 +94,13 @@ class Process {
     void interrupt() const { send(SIGINT); }
     void send(int signal) const { ::kill(pid_, signal); }
 
-    /// How many threads it has now.
+    /// Current number of its threads.
     int threads() const {
         const std::string tasks = "/proc/" + std::to_string(pid_) + "/task";
         return static_cast<int>(std::distance(std::filesystem::directory_iterator(tasks), {}));
     }
 
-    /// Sends text, and reads standard output up to the next line end; "" at its end or after `milliseconds`.
+    /// Sends text, and reads standard output to the next line end; "" at its end or after `milliseconds`.
     std::string ask(const std::string& text, int milliseconds) {
         if (::write(to_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) return "";
         std::string line;
@@ -119,12 +119,12 @@ class Process {
         if (input.empty()) close_one(to_);
         while (from_[0] >= 0 || from_[1] >= 0) {
             pollfd ready[3] = {{from_[0], POLLIN, 0}, {from_[1], POLLIN, 0}, {to_, POLLOUT, 0}};
-            if (::poll(ready, 3, 240000) <= 0) break;  // four minutes of silence: ended by the destructor
+            if (::poll(ready, 3, 240000) <= 0) break;  // four minutes of silence: the destructor ends it
             for (int i = 0; i < 2; ++i) {
                 if (ready[i].revents != 0) read_some(from_[i], *texts[i]);
             }
             if (to_ >= 0 && ready[2].revents != 0) {
-                // Small enough for a ready pipe to take it at once.
+                // Small enough for a ready pipe to accept at once.
                 const std::size_t count = std::min<std::size_t>(input.size() - sent, 4096);
                 const ssize_t done = ::write(to_, input.data() + sent, count);
                 if (done > 0) sent += static_cast<std::size_t>(done);
@@ -154,7 +154,7 @@ class Process {
             const rlimit limit{static_cast<rlim_t>(options.file_limit),
                                static_cast<rlim_t>(options.file_limit)};
             ::setrlimit(RLIMIT_FSIZE, &limit);
-            // tools/coverage: it could write only the beginning of its counts.
+            // tools/coverage: it could only write the beginning of its counts.
             ::setenv("LLVM_PROFILE_FILE", "/dev/null", 1);
         }
         if (options.stack_limit >= 0) {

@@ -19,8 +19,8 @@
 namespace carom::test {
 using reference::Generator;
 
-/// The order in which the numbers of a vector, and those of a speed, are drawn: the same seed gives two
-/// scenes, of two otherwise independent families.
+/// The order in which the components of a vector or a speed are drawn. One seed thus defines two scenes, of
+/// two otherwise independent families.
 enum class DrawOrder { kLastFirst, kFirstFirst };
 
 class RandomScene {
@@ -67,7 +67,7 @@ class RandomScene {
         b.mu_r = one_of<double>({0.01, 0.01, 0.005, 0.05});
         b.mu_sp = one_of<double>({0.0127, 0.0127, 0.044});
         b.mu_b = one_of<double>({0.05, 0.05, 0.0, 0.2});
-        // Every other scene with the default of pool tables, a friction that falls with the slip.
+        // Every other scene has the default friction of pool tables, which falls with the slip.
         if (b.mu_b == 0.05 && seed_ % 2 == 1) {
             const BallParams pool = make_ball_params("pool");
             b.mu_b = pool.mu_b, b.mu_b_more = pool.mu_b_more, b.mu_b_fall = pool.mu_b_fall;
@@ -78,8 +78,8 @@ class RandomScene {
         Physics& p = scene_.physics;
         p.ball_ball = one_of<const BallBallModelInfo*>(
             {&kMathavan, &kMathavan, ball_ball_model("inelastic"), ball_ball_model("elastic")});
-        // The published march gains energy by construction if nothing is lost: 1e-4 of it at N = 1000 and e =
-        // 1.
+        // The published march gains energy by construction if the impact is lossless: 1e-4 of it at N = 1000
+        // and e = 1.
         if (p.ball_ball == &kMathavan && b.e_b == 1.0) b.e_b = 0.95;
         p.cushion = chance(0.7) ? &kHan2005 : &kSmooth;
         p.clusters = one_of<ClusterModel>({ClusterModel::kCompliant, ClusterModel::kCompliant,
@@ -113,8 +113,7 @@ class RandomScene {
         return {a.cos, a.sin};
     }
 
-    // One draw per statement, here and below: the compiler chooses the order in which a call's arguments are
-    // drawn.
+    // One draw per statement, here and below, because compilers differ in the order of arguments.
     Vec3 spin() {
         const auto size = [this] { return one_of<double>({1e-3, 10.0, 100.0, 400.0}); };
         const double first = last_first() ? size() : uniform(-1, 1);
@@ -231,7 +230,7 @@ inline std::size_t segments_of(const Record& record) {
     return count;
 }
 
-/// The scene as text, for a person who must look into it.
+/// The scene as text, for inspection.
 inline std::string dump(const Scene& scene) {
     std::string text;
     char line[400];
@@ -253,8 +252,8 @@ inline std::string dump(const Scene& scene) {
     return text;
 }
 
-/// The fault of a run of the scene: a broken law or an error; empty if nothing. `options` lets a caller
-/// watch the run and abandon it (by throwing from its progress function).
+/// The fault of a run of the scene: a broken law or an error, or "". `options` lets a caller watch the run
+/// and stop it by throwing from its progress function.
 inline std::string what_breaks(const Scene& scene, const SimulateOptions& options = {}) {
     const Plan plan = plan_of(scene);
     try {

@@ -13,8 +13,8 @@
 
 namespace carom::render_test {
 
-/// The pixels of the picture that `begin` opens, with 0xFF as fourth channel. Throws if it cannot be read;
-/// `name` is for the message.
+/// The pixels of the picture that `begin` opens, with 0xFF as fourth channel. Throws if unreadable; `name` is
+/// for the message.
 template <class Begin>
 render::Image read_png_by(const Begin& begin, const std::string& name) {
     png_image png{};

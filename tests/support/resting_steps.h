@@ -1,5 +1,5 @@
-// An independent reference of resting contacts: small time steps, contacts as stiff critically damped springs
-// without friction, sliding friction that ends a slip exactly within a step, and rolling resistance.
+// An independent reference for resting contacts: small time steps, contacts as stiff critically damped
+// springs without friction, sliding friction that ends a slip exactly within a step, and rolling resistance.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace carom::test {
 
-/// A ball on the cloth: centre, velocity and the velocity s at which its spin would roll.
+/// A ball on the cloth: centre, velocity, and the velocity s at which its spin would be rolling.
 struct SteppedBall {
     Vec2 r, v, s;
 };
 
-/// Steps the balls of a scene with equal balls, straight cushions and whole round walls around the balls, as
-/// in the file, until all rest or its stop time is over. `frequency` [1/s] is sqrt(stiffness / mass).
+/// Steps a scene with equal balls, straight cushions and whole round walls around the balls until all rest or
+/// its stop time is over. `frequency` [1/s] is sqrt(stiffness / mass).
 class RestingSteps {
   public:
     RestingSteps(const Scene& scene, double step, double frequency)
@@ -27,7 +27,7 @@ class RestingSteps {
         force_.resize(balls_.size());
     }
 
-    /// @return the balls at the end
+    /// @return the final balls
     const std::vector<SteppedBall>& run() {
         for (double t = 0.0; t < *scene_.stop.time; t += step_) {
             push();
@@ -39,7 +39,7 @@ class RestingSteps {
     }
 
   private:
-    // Force per mass of a contact with this overlap, which closes at this speed; `mass` is the reduced one.
+    // Force per mass of a contact with this overlap and closing speed; `mass` is the reduced mass.
     double spring(double overlap, double closing, double mass) const {
         return std::max(0.0, stiffness_ * overlap + 2.0 * std::sqrt(stiffness_ * mass) * closing);
     }
@@ -74,7 +74,7 @@ class RestingSteps {
         if (overlap > 0.0) force_[i] -= spring(overlap, dot(balls_[i].v, n), 1.0) * n;
     }
 
-    // @return the fastest of its speeds
+    // @return the largest of its speeds
     double move(std::size_t i) {
         SteppedBall& b = balls_[i];
         b.v += step_ * force_[i];

@@ -1,4 +1,4 @@
-// The messages of the reader of scenes about a text.
+// The scene reader's error messages for a text.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace carom::test {
 
-/// The message of a scene that must fail, or "" if it does not; the file is called s.toml.
+/// The error message of a scene, or "" if it is valid; the file is called s.toml.
 inline std::string error_of(const std::string& text) {
     try {
         parse_scene(text, "s.toml");

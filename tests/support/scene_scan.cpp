@@ -20,7 +20,7 @@
 namespace carom::test {
 namespace {
 
-constexpr double kSlowMs = 50.0, kGiveUpMs = 2500.0;  // of CPU
+constexpr double kSlowMs = 50.0, kGiveUpMs = 2500.0;  // CPU time
 
 double cpu_ms() {
     return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -82,7 +82,7 @@ Outcome judge(const Scene& scene) {
     return out;
 }
 
-/// Removes balls one by one, and then spins, as long as the same kind of fault remains.
+/// Removes balls one by one, and then spins, while the same kind of fault remains.
 Scene least(Scene scene) {
     const Fault fault = judge(scene).fault;
     for (bool smaller = true; smaller && fault != Fault::kNone;) {
@@ -108,7 +108,7 @@ Scene least(Scene scene) {
     return scene;
 }
 
-/// CPU times in bins whose limits are 2^(1/4) apart, from 1 us on, so that ranges can be added.
+/// CPU times in bins with limits 2^(1/4) apart, from 1 us on, so that ranges can be added.
 class Times {
   public:
     void add(double ms) {
@@ -117,7 +117,7 @@ class Times {
         ++all_;
         most_ = std::max(most_, ms);
     }
-    /// [ms] Upper limit of the bin that contains this share of the runs.
+    /// [ms] Upper limit of the bin in which this share of the runs is reached.
     double at(double share) const {
         long seen = 0;
         for (const auto& [bin, count] : count_)

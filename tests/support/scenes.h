@@ -1,4 +1,4 @@
-// Scenes that come with carom, and a file with little in it, for tests of what varies in it.
+// Shipped scenes, and a small file for tests of its variations.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Shots with their derivatives, and the differences that these are compared with.
+// Shots with their derivatives, and differences to compare them with.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,6 @@ inline Scene scene_of(const std::string& name) {
     return read_scene(std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml");
 }
 
-/// The shot and its derivatives.
 struct Shot {
     Shot(const Scene& scene, const std::vector<std::string>& inputs)
         : plan(plan_of(scene)), record(simulate(plan)), tangents(plan, record, inputs) {}
@@ -31,7 +30,7 @@ struct Shot {
     Tangents tangents;
 };
 
-/// The ends of all balls that stay, and when the others fell.
+/// The final states of all balls that stay, and the times at which the others fell.
 inline std::vector<double> results(const Record& record) {
     std::vector<double> all;
     for (std::size_t i = 0; i < record.tracks.size(); ++i) {
@@ -70,9 +69,9 @@ inline double apart(const std::vector<double>& one, const std::vector<double>& t
     return worst / largest;
 }
 
-/// The error of the derivatives against four-point differences, of the step that agrees best with the next
-/// larger and the next smaller one. Nothing if no three steps agree: an event is too near, or the shot
-/// multiplies its rounding too much. Two steps may agree by chance (seed 400 of han_2005).
+/// The error of the derivatives against four-point differences, at the step that agrees best with the next
+/// larger and smaller ones. Nothing if no three steps agree: an event is too near, or the shot amplifies its
+/// rounding too much. Two steps may agree by chance (seed 400 of han_2005).
 inline std::optional<double> error_of(const Scene& scene, const Shot& shot, const std::string& key,
                                       std::size_t input) {
     const SceneNumber number(scene, key);
@@ -107,7 +106,7 @@ inline std::optional<double> error_of(const Scene& scene, const Shot& shot, cons
     return error;
 }
 
-/// The cue ball meets one of three balls that touch, `off` radii beside its centre.
+/// The cue ball meets one of three touching balls, `off` radii beside its centre.
 inline Scene combination(double off) {
     Scene scene = empty_scene();
     const double R = scene.balls.R;

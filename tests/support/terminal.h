@@ -1,4 +1,4 @@
-// Runs a program on a terminal of its own, as for a person who watches it: what the screen shows, and Ctrl-C.
+// Runs a program on its own terminal, as seen by a person: the contents of the screen, and Ctrl-C.
 #pragma once
 
 #include <poll.h>
@@ -17,8 +17,8 @@
 
 namespace carom::test {
 
-/// The screen of a terminal of this width after all of `text`: lines without trailing spaces. Knows what the
-/// program writes: line ends, carriage returns, and "erase to the end of the line".
+/// The screen of a terminal of this width after all of `text`: lines without trailing spaces. Understands the
+/// program's output: line ends, carriage returns, and "erase to the end of the line".
 inline std::vector<std::string> screen_of(const std::string& text, std::size_t columns) {
     std::vector<std::string> lines(1);
     std::size_t column = 0;
@@ -72,7 +72,7 @@ class Terminal {
     Terminal(const Terminal&) = delete;
     Terminal& operator=(const Terminal&) = delete;
 
-    /// Reads until this was written; false if the program ended, or after two minutes.
+    /// Reads until this text appears; false if the program ended, or after two minutes.
     bool see(const std::string& what) {
         const auto enough = std::chrono::steady_clock::now() + std::chrono::minutes(2);
         while (seen_.find(what) == std::string::npos)

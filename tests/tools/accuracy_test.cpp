@@ -19,7 +19,7 @@ namespace {
 using namespace test;
 
 TEST(DeservedTolerance, IsTheLoosestPowerOfTenThatKeepsTheTarget) {
-    EXPECT_EQ(deserved_tolerance(1.0, 1e-2), 1e-3);  // looser is solved as 1e-3 anyway
+    EXPECT_EQ(deserved_tolerance(1.0, 1e-2), 1e-3);  // looser ones are solved as 1e-3
     EXPECT_EQ(deserved_tolerance(0.0, 1e-3), 1e-3);
     EXPECT_EQ(deserved_tolerance(2.0, 1e-3), 1e-4);
     EXPECT_EQ(deserved_tolerance(9.9e4, 1e-3), 1e-8);
@@ -30,8 +30,8 @@ TEST(DeservedTolerance, IsTheLoosestPowerOfTenThatKeepsTheTarget) {
     EXPECT_EQ(deserved_tolerance(NAN, 1e-3), std::nullopt);
 }
 
-// A setting that could not be finished is a row that says why, without figures.
-TEST(SceneAccuracy, ASettingThatFailsIsARow) {
+// A setting that cannot finish becomes a row with the reason and without figures.
+TEST(SceneAccuracy, AFailedSettingIsARow) {
     SceneAccuracy result;
     result.rows.resize(2);
     for (SceneAccuracyRow& r : result.rows) r.method = "march";
@@ -46,16 +46,16 @@ TEST(SceneAccuracy, ASettingThatFailsIsARow) {
     EXPECT_FALSE(rows.at(1).contains("ns_min"));
 }
 
-// A ball that rolls straight: displaced by d it ends displaced by d.
-TEST(Gain, IsOneWithoutAnyContact) {
+// A ball that rolls straight: a start moved by d moves the end by d.
+TEST(Gain, IsOneWithoutContacts) {
     Scene scene = empty_scene();
     add_ball(scene, "1", 0.0, 0.0, 1.0, 0.0, rolling_spin(1.0, 0.0, scene.balls.R));
     const Plan plan = plan_of(scene);
     EXPECT_NEAR(gain_of(plan, simulate(plan)), 1.0, 1e-3);
 }
 
-// A full hit turned by d: the object ball leaves at d / (2R), and runs s further.
-TEST(Gain, OfAFullHitIsTheLeverOfTheLineOfCentres) {
+// A full hit turned by d: the object ball leaves at d / (2R), and travels s further.
+TEST(Gain, OfAFullHitFollowsFromTheLineOfCentres) {
     Scene scene = empty_scene();
     scene.balls.mu_b = 0.0;
     const double R = scene.balls.R;
@@ -76,7 +76,7 @@ TEST(Gain, OfASceneAtRestIsOne) {
     EXPECT_EQ(gain_of(plan, simulate(plan)), 1.0);
 }
 
-TEST(FinalError, IsTheFarthestBallAndTheMiddleOne) {
+TEST(FinalError, IsTheWorstAndTheMedianBall) {
     const std::vector<Vec2> a = {{0, 0}, {1, 0}, {2, 0}}, b = {{0, 0}, {1, 3}, {2, 1}};
     EXPECT_DOUBLE_EQ(final_error(a, b).largest, 3.0);
     EXPECT_DOUBLE_EQ(final_error(a, b).median, 1.0);
@@ -105,8 +105,8 @@ Scene seeded_break(reference::Generator& rng, int seed) {
     return parse_scene(text, "break.toml");
 }
 
-// The promise of the recommendation: the tolerance that follows from the gain meets 1 mm on at least 95 of
-// every 100 breaks for which double precision allows it.
+// The recommendation promises: the tolerance derived from the gain meets 1 mm on at least 95 of every 100
+// breaks for which double precision suffices.
 TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
     constexpr double kTarget = 1e-3;
     reference::Generator rng(9);
@@ -136,7 +136,7 @@ TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
                 unresolved, looser);
     EXPECT_GE(allowed, 50);
     EXPECT_GE(20 * met, 19 * allowed);
-    // A tolerance chosen without looking at the shot does not: the recommendation is informative.
+    // A tolerance chosen without the shot does not: the recommendation is informative.
     EXPECT_LT(looser, met);
 }
 

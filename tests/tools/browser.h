@@ -21,8 +21,8 @@ inline bool has(const char* program) {
     return run_process({program, "--version"}).status == 0;
 }
 
-/// Lets the browser open all pages of a manifest. For people: CAROM_VIEW_PICTURES names a folder for its
-/// screenshots.
+/// Lets the browser open all pages of a manifest. To look at them, set CAROM_VIEW_PICTURES to a folder for
+/// its screenshots.
 inline void expect_no_fault(const TemporaryFolder& folder, const Json& manifest) {
     const char* const pictures = std::getenv("CAROM_VIEW_PICTURES");
     const ProcessResult seen =

@@ -15,7 +15,7 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-/// Runs a built program. The tests choose the instruction set, not the shell that starts them.
+/// Runs a built program. The tests choose the instruction set, not the calling shell.
 inline ProcessResult run_built(const char* program, std::vector<std::string> arguments,
                                ProcessOptions options) {
     arguments.insert(arguments.begin(), program);
@@ -23,7 +23,6 @@ inline ProcessResult run_built(const char* program, std::vector<std::string> arg
     return run_process(arguments, options);
 }
 
-/// Runs the built carom.
 inline ProcessResult carom(std::vector<std::string> arguments, ProcessOptions options = {}) {
     return run_built(CAROM_PROGRAM, std::move(arguments), std::move(options));
 }
@@ -57,7 +56,7 @@ fps = 60
 size = [320, 180]
 )";
 
-/// A valid scene whose one impact does not end: friction and spin hold the balls together, and the march
+/// A valid scene whose one impact does not end: friction and spin lock the balls together, and the march
 /// gives up.
 inline constexpr char kStuckScene[] = R"([balls]
 mu_s = 0.6
@@ -76,7 +75,6 @@ position = [0.6, 1.06]
 time = 1
 )";
 
-/// The scenes that come with carom.
 inline std::vector<std::string> shipped_scenes() {
     std::vector<std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))

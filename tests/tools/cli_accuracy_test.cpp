@@ -1,4 +1,4 @@
-// carom accuracy: what it prints and writes. No test asserts a measured time; errors are repeatable.
+// carom accuracy: its output and files. No test asserts a measured time; errors are repeatable.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -73,7 +73,7 @@ TEST_F(CliAccuracyScene, ErrorsAreRepeatable) {
         EXPECT_EQ(a.at("rows")[i].at("error_max"), b.at("rows")[i].at("error_max"));
 }
 
-TEST_F(CliAccuracyScene, ATargetBeyondDoublePrecisionIsSaidSo) {
+TEST_F(CliAccuracyScene, ATargetBeyondDoublePrecisionIsReported) {
     const ProcessResult result = quick({"--target", "1e-13", "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);

@@ -1,4 +1,4 @@
-// Answers that were wrong when the program was tried from outside: refusals, figures that disagree, clocks.
+// Wrong answers that outside users found: refusals, figures that disagree, clocks.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ class CliAnswers : public ::testing::Test {
   protected:
     std::string draw() const { return CAROM_SOURCE_DIR "/scenes/draw.toml"; }
     std::string three_cushion() const { return CAROM_SOURCE_DIR "/scenes/three_cushion.toml"; }
-    /// Exit status 2 and a message with this text.
+    /// Expects exit status 2 and a message that contains `why`.
     void refused(const std::vector<std::string>& arguments, const std::string& why) const {
         const ProcessResult result = carom(arguments);
         EXPECT_EQ(result.status, 2) << why << "\n" << result.out;
@@ -50,7 +50,7 @@ class CliAnswers : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(CliAnswers, AWantThatNoShotCanFulfilIsRefused) {
+TEST_F(CliAnswers, AnImpossibleGoalIsRefused) {
     const auto want = [this](const std::string& text, const std::string& why) {
         refused({"solve", draw(), "--want", text, "--shots", "1000"}, why);
     };
@@ -66,7 +66,7 @@ TEST_F(CliAnswers, AWantThatNoShotCanFulfilIsRefused) {
     refused({"sweep", draw(), "--vary", "cue.speed=uniform(1,2)", "--count", "2", "--measure",
              R"("9" in pocketed)", "-o", folder_.file("a.csv")},
             R"(the scene has no ball "9")");
-    // An expression that a shot can meet is not refused.
+    // An expression that a shot can meet is accepted.
     for (const char* fine : {R"(pocketed == "1")", R"(pocketed == "1;cue")", R"(pocket_of(1) == "out")",
                              R"(pocket_of(1) != "")", "cue near (1, 1, 0)"})
         EXPECT_EQ(carom({"sweep", draw(), "--vary", "cue.speed=uniform(1,2)", "--count", "1", "--measure",
@@ -92,7 +92,7 @@ TEST_F(CliAnswers, ANumberThatWouldReplaceAFitIsRefused) {
     EXPECT_EQ(fitted.status, 0) << fitted.err;
     const std::string drawn = tracks(draw(), "");
     refused({"fit", draw(), drawn, "--vary", "balls.mu_b"}, "balls.mu_b_fit.0");
-    // The key that the message names works, although only the preset has the fit.
+    // The key named in the message works, although only the preset has the fit.
     EXPECT_EQ(carom({"sweep", three_cushion(), "--vary", "balls.e_c_fit.0=uniform(0.8,0.9)", "--count", "2",
                      "-o", folder_.file("b.csv")})
                   .status,
@@ -103,7 +103,7 @@ TEST_F(CliAnswers, ANumberThatWouldReplaceAFitIsRefused) {
               0);
 }
 
-TEST_F(CliAnswers, AFitWhoseTracksAreOffIsRefusedWithoutDeviations) {
+TEST_F(CliAnswers, AFitOfInconsistentTracksIsRefusedWithoutDeviations) {
     const auto fit = [this](const std::string& change, const std::string& vary) {
         return carom({"fit", draw(), tracks(draw(), change), "--vary", vary, "--json"});
     };
@@ -119,7 +119,7 @@ TEST_F(CliAnswers, AFitWhoseTracksAreOffIsRefusedWithoutDeviations) {
         EXPECT_EQ(result.status, 1) << result.out;
         EXPECT_TRUE(contains(result.err, std::string("the places look like ") + unit)) << result.err;
     }
-    // With the clock among what varies, the stroke is found.
+    // If the clock may vary, the fit recovers the stroke.
     const ProcessResult found = fit("$1 += 0.1", "balls.mu_s,clock");
     ASSERT_EQ(found.status, 0) << found.err;
     EXPECT_NEAR(Json::parse(found.out).at("values").at(0).at("value").get<double>(), 0.2, 1e-5);
@@ -154,7 +154,7 @@ TEST_F(CliAnswers, TwoSweepsDoNotWriteOneTable) {
     EXPECT_EQ(sweep("2").status, 0);
 }
 
-TEST_F(CliAnswers, EveryShareSaysItsShotsAndNoTwoDisagree) {
+TEST_F(CliAnswers, EveryShareStatesItsShotsAndAllAgree) {
     const std::string scene = folder_.write("g.toml", R"([table]
 cushion = [{from=[0,0],to=[0.36,0]}, {from=[0.44,0],to=[0.8,0]}, {from=[0.8,0],to=[0.8,1.2]},
   {from=[0.8,1.2],to=[0.44,1.2]}, {from=[0.36,1.2],to=[0,1.2]}, {from=[0,1.2],to=[0,0]}]
@@ -181,7 +181,7 @@ offset = [0, 0]
     ASSERT_EQ(result.status, 0) << result.err;
     const Json found = Json::parse(result.out);
     for (const Json& solution : found.at("solutions")) {
-        // All falls of the only ball, in the same shots.
+        // All falls of the only ball, from the same shots.
         std::size_t fell = 0;
         for (const Json& fall : solution.at("falls")) fell += fall.at("count").get<std::size_t>();
         EXPECT_EQ(fell, solution.at("successes"));
@@ -270,7 +270,7 @@ aim_deg = 0
     EXPECT_GT(cost.at("success").at(1).get<double>(), 0.9) << cost;
 }
 
-TEST_F(CliAnswers, ATableComesWithItsOwnBalls) {
+TEST_F(CliAnswers, ATableImpliesItsBalls) {
     const auto balls = [this](const std::string& table, const std::string& rest, const std::string& told) {
         const std::string scene = folder_.write(
             "t.toml", "[table]\npreset = \"" + table + "\"\n" + rest + "[[ball]]\nposition = [0.4, 0.4]\n");
@@ -286,8 +286,8 @@ TEST_F(CliAnswers, ATableComesWithItsOwnBalls) {
     balls("snooker", "[balls]\npreset = \"pool\"\n", "pool");
 }
 
-TEST_F(CliAnswers, TheNoteNamesWhatAsksForTheElevation) {
-    // A ball behind the cue ball asks for more than the rail behind both.
+TEST_F(CliAnswers, TheNoteNamesTheObstacleBehindTheCueBall) {
+    // A ball behind the cue ball requires more elevation than the rail behind both.
     for (const char* place : {"0.14, 1.0", "0.13, 1.01", "0.1, 0.99"}) {
         const std::string scene = folder_.write(
             "n.toml", "[[ball]]\nid = \"cue\"\nposition = [0.2, 1.0]\n[[ball]]\nid = \"2\"\nposition = [" +
@@ -300,7 +300,7 @@ TEST_F(CliAnswers, TheNoteNamesWhatAsksForTheElevation) {
     EXPECT_TRUE(contains(carom({"check", rail}).err, "the cue would be in cushion c3 at"));
 }
 
-TEST_F(CliAnswers, ThePointOfThreeCushionIsJudgedWithItsState) {
+TEST_F(CliAnswers, AThreeCushionPointIsJudgedWithItsState) {
     const ProcessResult result =
         carom({"judge", three_cushion(), "--state", CAROM_SOURCE_DIR "/examples/games/three_cushion.json"});
     EXPECT_TRUE(contains(result.out, "1 point scored")) << result.out << result.err;

@@ -1,4 +1,4 @@
-// carom compare: what it prints and returns.
+// carom compare: its output and exit status.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 class Compare : public testing::Test {
   protected:
-    /// The scene with another speed of the cue.
+    /// The scene with another cue speed.
     std::string faster(const std::string& speed) {
         std::string text = kSmallScene;
         text.replace(text.find("4.0"), 3, speed);
@@ -53,7 +53,7 @@ TEST_F(Compare, ASceneAndItsRecordAreTheSameBitForBit) {
     EXPECT_EQ(same["a"]["hash"].get<std::string>() + "\n", carom({"simulate", scene_, "--hash"}).out);
 }
 
-TEST_F(Compare, AnotherShotIsATableAndAStatus) {
+TEST_F(Compare, AnotherShotYieldsATableAndAStatus) {
     const std::string other = faster("4.4");
     const ProcessResult result = carom({"compare", scene_, other});
     EXPECT_EQ(result.status, 1);
@@ -67,7 +67,7 @@ TEST_F(Compare, AnotherShotIsATableAndAStatus) {
     EXPECT_EQ(json["tolerance"], 1e-4);
     EXPECT_EQ(json["only_in_a"], Json::array());
     ASSERT_EQ(json["balls"].size(), 3u);
-    // One row per ball, with the numbers of the JSON.
+    // One row per ball, with the JSON's numbers.
     for (const Json& ball : json["balls"]) {
         const std::string id = ball["id"];
         std::string row;
@@ -90,7 +90,7 @@ TEST_F(Compare, AnotherShotIsATableAndAStatus) {
         << lines.back();
 }
 
-TEST_F(Compare, TheToleranceDecides) {
+TEST_F(Compare, TheToleranceDecidesTheStatus) {
     const std::string other = faster("4.0000001");
     const double largest = [&] {
         double most = 0.0;
@@ -110,7 +110,7 @@ TEST_F(Compare, TheToleranceDecides) {
     EXPECT_EQ(carom({"compare", scene_, other, "--tolerance", "0"}).status, 1);
 }
 
-TEST_F(Compare, OtherBallsAreSaidAndTheRestIsCompared) {
+TEST_F(Compare, OtherBallsAreListedAndTheRestIsCompared) {
     std::string text = kSmallScene;
     text.replace(text.find("\"ball 2\""), 8, "\"3\"");
     const std::string other = folder_.write("other.toml", text);
@@ -125,7 +125,7 @@ TEST_F(Compare, OtherBallsAreSaidAndTheRestIsCompared) {
     EXPECT_EQ(lines_of(carom({"compare", scene_, none}).out).back(), "different: no ball in common");
 }
 
-TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
+TEST_F(Compare, AStoppedShotIsComparedUpToItsEnd) {
     const std::string record = folder_.file("r.json");
     ASSERT_EQ(carom({"simulate", scene_, "--until", "0.5", "-o", record}).status, 0);
     const ProcessResult result = carom({"compare", scene_, record});
@@ -139,7 +139,7 @@ TEST_F(Compare, AShotThatWasStoppedIsComparedSoFar) {
     EXPECT_TRUE(json["events"]["first_other"]["b"].is_null()) << json["events"];
 }
 
-TEST_F(Compare, AllScenesThatComeWithCaromEqualThemselves) {
+TEST_F(Compare, AllShippedScenesEqualThemselves) {
     for (const std::string& scene : shipped_scenes()) {
         const Json same = json_of({scene, scene, "--tolerance", "0"}, 0);
         EXPECT_EQ(same["same_bits"], true) << scene;

@@ -24,7 +24,7 @@ std::string described(const std::string& format) {
     return result.out;
 }
 
-/// Completions that bash offers for a line whose last word is being typed.
+/// Completions that bash offers for the last word of a line.
 std::set<std::string> offered(const TemporaryFolder& folder, const std::vector<std::string>& words) {
     std::string line;
     for (const std::string& word : words) line += " '" + word + "'";
@@ -73,7 +73,7 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
     if (run_process({"zsh", "--version"}).status != 0) GTEST_SKIP() << "zsh is not installed";
     const ProcessResult result = shell("zsh", "zsh -n _carom", folder.path().string());
     EXPECT_EQ(result.status, 0) << result.err;
-    // The arguments of _arguments and _describe, seen by substitutes for them.
+    // Substitutes for _arguments and _describe print their arguments.
     const ProcessResult seen =
         shell("zsh",
               "_arguments() { print -l -- \"$@\"; }; _describe() { print -l -- ${(P)2}; }\n"
@@ -101,7 +101,7 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
     EXPECT_EQ(result.out, "");
 }
 
-TEST(Formats, ThePageOfTheCommandLineIsThatOfTheOptions) {
+TEST(Formats, TheCommandLinePageMatchesTheOptions) {
     const std::string page = described("command-line");
     EXPECT_TRUE(read_source("docs/reference/command_line.md") == page)
         << "docs/reference/command_line.md is stale; run tools/renew_formats.py";

@@ -1,4 +1,4 @@
-// carom diagram and plots of sweeps: files that other programs open, and what is refused.
+// carom diagram and plots of sweeps: files that other programs open, and refusals.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ class CliDiagram : public ::testing::Test {
     const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
 };
 
-TEST_F(CliDiagram, WritesTheFormatOfItsName) {
+TEST_F(CliDiagram, WritesTheFormatOfTheFileName) {
     const std::string svg = draw("shot.svg"), pdf = draw("shot.pdf"), png = draw("shot.png");
     EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
@@ -49,7 +49,7 @@ TEST_F(CliDiagram, TheSvgIsXml) {
     EXPECT_EQ(parsed.status, 0) << parsed.err;
 }
 
-TEST_F(CliDiagram, BlackAndWhiteHasGraysOnly) {
+TEST_F(CliDiagram, BlackAndWhiteUsesOnlyGrays) {
     const std::string svg = draw("shot.svg", {"--black-and-white"});
     std::size_t seen = 0;
     for (std::size_t at = svg.find("rgb("); at != svg.npos; at = svg.find("rgb(", at + 1), ++seen) {
@@ -72,7 +72,7 @@ TEST_F(CliDiagram, TheGridHasLinesAtQuartersOfADiamond) {
     EXPECT_EQ(draw("bw.svg", {"--bw"}), draw("long.svg", {"--black-and-white"}));
 }
 
-// Without colour, balls without numbers have letters, so that white, yellow and red differ.
+// Without colour, unnumbered balls have letters that distinguish white, yellow and red.
 TEST_F(CliDiagram, BlackAndWhiteBallsDiffer) {
     const auto drawn = [&](const char* id) {
         folder_.write("one.toml", std::string("[table]\npreset = \"carom\"\n[[ball]]\nid = \"") + id +

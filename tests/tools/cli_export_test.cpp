@@ -1,4 +1,4 @@
-// carom export: the file of every scene is valid glTF, and its positions and orientations are the engine's.
+// carom export: every scene's file is valid glTF with the engine's positions and orientations.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ struct Glb {
         return list;
     }
 
-    /// The sampler of a node's path; null if it is not animated.
+    /// The sampler of a node's path, or null if it is not animated.
     Json sampler(std::size_t node, const std::string& path) const {
         if (!json.contains("animations")) return nullptr;
         const Json& animation = json.at("animations").at(0);
@@ -63,7 +63,7 @@ struct Glb {
     }
 };
 
-/// The corners of the triangles of a primitive with small indices.
+/// The corners of a primitive's triangles, with small indices.
 std::vector<std::array<std::uint16_t, 3>> triangles_of(const Glb& glb, const Json& primitive) {
     const Json& accessor = glb.json.at("accessors").at(primitive.at("indices").get<std::size_t>());
     const Json& view = glb.json.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
@@ -73,7 +73,7 @@ std::vector<std::array<std::uint16_t, 3>> triangles_of(const Glb& glb, const Jso
     return list;
 }
 
-/// A value of an animation as the specification evaluates it, with `width` numbers per key.
+/// A value of an animation, evaluated as specified, with `width` numbers per key.
 std::vector<double> sampled(const Glb& glb, const Json& sampler, double t, std::size_t width) {
     const std::vector<float> times = glb.floats(sampler.at("input")),
                              values = glb.floats(sampler.at("output"));
@@ -101,8 +101,8 @@ struct Differences {
     double place = 0.0, turn = 0.0;  ///< largest [m], [rad]
 };
 
-/// Compares a file with the record, away from the instants at which a position jumps, by the width of a
-/// float.
+/// Compares a file with the record, except within a float's resolution of the instants at which a position
+/// jumps.
 Differences differences(const Glb& glb, const Record& record) {
     Differences largest;
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
@@ -146,10 +146,10 @@ TEST(Export, PlacesAreExactAndOrientationsNear) {
         const ProcessResult made = carom({"export", scene, "-o", file});
         ASSERT_EQ(made.status, 0) << made.err;
         const Differences found = differences(Glb(file), record_of(folder, scene));
-        // A float resolves 0.2 micrometres at 2 m, and a time of 10
-        // s to 1 microsecond, in which a ball goes 10 micrometres.
+        // A float resolves 0.2 micrometres at 2 m, and 1 microsecond at 10 s, in which a ball moves 10
+        // micrometres.
         EXPECT_LT(found.place, 1e-5) << scene;
-        // Between two keys, 0.4 rad apart, the rate may be off by 0.005 rad, and the axis changes.
+        // Between two keys 0.4 rad apart, the rate has an error of up to 0.005 rad, and the axis changes.
         EXPECT_LT(found.turn, 0.02) << scene;
         largest.place = std::max(largest.place, found.place);
         largest.turn = std::max(largest.turn, found.turn);
@@ -157,7 +157,7 @@ TEST(Export, PlacesAreExactAndOrientationsNear) {
     std::printf("largest difference: %.2g m, %.2g rad\n", largest.place, largest.turn);
 }
 
-TEST(Export, StraightLinesStayNear) {
+TEST(Export, StraightLinesStayClose) {
     const TemporaryFolder folder;
     const std::string scene = CAROM_SOURCE_DIR "/scenes/jump_pot.toml", file = folder.file("shot.glb");
     const Record record = record_of(folder, scene);
@@ -165,7 +165,7 @@ TEST(Export, StraightLinesStayNear) {
         EXPECT_EQ(carom({"export", scene, "-o", file, "--interpolation", "linear", "--fps", fps}).status, 0);
         return differences(Glb(file), record).place;
     };
-    // A parabola of the acceleration g is g / 8 fps^2 from its chord.
+    // A parabola of acceleration g deviates from its chord by g / 8 fps^2.
     EXPECT_LT(made("120"), 1.1 * 9.81 / 8.0 / 120.0 / 120.0);
     EXPECT_GT(made("30"), 0.2 * 9.81 / 8.0 / 30.0 / 30.0);
     const Glb glb(file);
@@ -173,7 +173,7 @@ TEST(Export, StraightLinesStayNear) {
         EXPECT_EQ(sampler.at("interpolation"), "LINEAR");
 }
 
-TEST(Export, TheTableHasItsHolesAndBallsTheirPictures) {
+TEST(Export, TheTableHasHolesAndTheBallsHaveTextures) {
     const TemporaryFolder folder;
     const std::string file = folder.file("shot.glb");
     ASSERT_EQ(carom({"export", folder.write("small.toml", kSmallScene), "-o", file}).status, 0);
@@ -212,7 +212,7 @@ TEST(Export, TheTableHasItsHolesAndBallsTheirPictures) {
     EXPECT_LT(area, 1.2 * record.table.width * record.table.length);
 }
 
-TEST(Export, TheFacesOfABallLookOutwards) {
+TEST(Export, TheFacesOfABallPointOutwards) {
     const TemporaryFolder folder;
     const std::string file = folder.file("shot.glb");
     ASSERT_EQ(carom({"export", folder.write("small.toml", kSmallScene), "-o", file}).status, 0);
@@ -229,8 +229,8 @@ TEST(Export, TheFacesOfABallLookOutwards) {
         area += 0.5 * normal.norm();
         picture += 0.5 * std::abs(cross(texture(b) - texture(a), texture(c) - texture(a)));
     }
-    // Nearly those of a sphere and of the whole picture, of
-    // which the triangles at the poles leave out halves.
+    // Nearly the areas of a sphere and of the whole picture, of which the triangles at the poles use only
+    // half.
     EXPECT_NEAR(area, 4.0 * 3.14159265, 0.1);
     EXPECT_NEAR(picture, 1.0 - 1.0 / 24.0, 1e-3);
 }

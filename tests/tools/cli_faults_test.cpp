@@ -1,5 +1,5 @@
-// Faults from outside: a full disk, a read-only folder, a reader that leaves, signals, a run that was killed.
-// Files are afterwards whole or absent, and the exit status says what happened.
+// External faults: a full disk, a read-only folder, a reader that closes the pipe, signals, a killed run.
+// Afterwards files are whole or absent, and the exit status states the result.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -72,7 +72,7 @@ class Faults : public ::testing::Test {
 };
 
 /// Every file that the program writes, by its option.
-TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
+TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftPartial) {
     const std::vector<std::vector<std::string>> commands = {
         {"simulate", scene_, "-o"},
         {"simulate", scene_, "--events"},
@@ -98,7 +98,7 @@ TEST_F(Faults, AFileThatMayNotGrowIsNamedAndNotLeftHalf) {
     }
 }
 
-TEST_F(Faults, AReaderThatLeavesEndsEveryCommandQuietly) {
+TEST_F(Faults, AClosedPipeEndsEveryCommandQuietly) {
     for (const std::vector<std::string>& command :
          std::vector<std::vector<std::string>>{{"simulate", scene_},
                                                {"simulate", scene_, "--json"},
@@ -128,7 +128,7 @@ TEST_F(Faults, ASignalKeepsFinishedFramesAndLeavesNoTemporaryFile) {
     }
 }
 
-TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
+TEST_F(Faults, ResumeFinishesAKilledRenderWithTheSameFrames) {
     const std::vector<std::string> command = {"render", scene_,   "-o",      pattern(), "--fps",
                                               "200",    "--size", "320x180", "--to",    "0.5"};
     ASSERT_EQ(carom(command).status, 0);
@@ -145,7 +145,7 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
         process.send(SIGKILL);
         process.finish("");
     }
-    // A file with a frame's name is whole: only a temporary file can be killed between two system calls.
+    // A file with a frame's name is whole: a kill between two system calls affects only a temporary file.
     for (int k = 0; k <= 100; ++k)
         if (fs::exists(frame(k))) {
             EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
@@ -156,7 +156,7 @@ TEST_F(Faults, AKilledRenderIsFinishedByResumeWithTheSameFrames) {
     for (int k = 0; k <= 100; ++k) EXPECT_EQ(read_file(frame(k)), whole[k]) << k;
 }
 
-// Over the frames of a longer film from another camera, killed after each frame: the files never mix two
+// Renders over the frames of a longer film from another camera, killed after each frame: no file mixes two
 // pictures.
 TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
     const auto command = [this](const char* camera, const char* to) {
@@ -193,7 +193,7 @@ TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
     }
 }
 
-// The turns of a ball that spins a million radians a second: minutes of work.
+// The rotations of a ball that spins at a million radians a second: minutes of work.
 TEST_F(Faults, ASignalEndsAnExport) {
     const std::string spins = folder_.write(
         "spins.toml",
@@ -205,7 +205,7 @@ TEST_F(Faults, ASignalEndsAnExport) {
     EXPECT_FALSE(fs::exists(folder_.file("spins.glb")));
 }
 
-// A file name may contain anything except "/" and 0. The output is still text.
+// A file name may contain any byte except "/" and 0; the output remains text.
 TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
     const std::string odd = folder_.file("b\xff\x01<.toml"), page = folder_.file("o.html");
     const auto made = [&](const char* ending) { return folder_.file(std::string("m\x1b[31m\xff") + ending); };
@@ -236,7 +236,7 @@ TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
     }
 }
 
-TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
+TEST_F(Faults, TheNextRunRemovesAKilledRunsFiles) {
     const std::string left = folder_.write(".carom.1.0.tmp", "half"),
                       other = folder_.write(".carom.2.0.tmp", "");
     const int writes = ::open(other.c_str(), O_RDWR);
@@ -245,7 +245,7 @@ TEST_F(Faults, TheNextRunRemovesWhatAKilledOneLeft) {
     const std::string pipe = folder_.file(".carom.3.0.tmp"), link = folder_.file(".carom.4.0.tmp");
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     fs::create_symlink(scene_, link);
-    // The unfinished file of another program stays.
+    // Another program's unfinished file stays.
     OutputFile begun(folder_.file("other.txt"));
     begun.write("whole");
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
@@ -272,7 +272,8 @@ TEST_F(Faults, TwoRendersDoNotShareFrames) {
         EXPECT_FALSE(fs::exists(frame(0)));
     }
     {
-        // Of another run over one frame: others of that kind may draw meanwhile, a film may not.
+        // Another run of a single frame holds the lock: other single frames may be drawn meanwhile, a film
+        // may not.
         const FileLock lock(pattern() + ".lock", false);
         EXPECT_EQ(carom(command).status, 1);
         EXPECT_FALSE(fs::exists(frame(0)));
@@ -285,7 +286,7 @@ TEST_F(Faults, TwoRendersDoNotShareFrames) {
     EXPECT_FALSE(fs::exists(pattern() + ".lock"));
 }
 
-TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
+TEST_F(Faults, ATooLargeRecordIsRefusedUnread) {
     const std::string path = folder_.write("huge.json", "{");
     fs::resize_file(path, (std::uintmax_t{256} << 20) + 1);  // sparse: takes no space
     const ProcessResult result = carom({"render", path, "-o", pattern()});
@@ -295,10 +296,10 @@ TEST_F(Faults, ARecordThatIsTooLargeIsRefusedUnread) {
                   ": is larger than 256 MiB; stop the shot earlier ([stop]) and write it in parts\n");
 }
 
-// The sanitizers need more addresses than these limits leave.
+// The sanitizers need more address space than these limits allow.
 #ifndef CAROM_SANITIZED
-/// 12 MB of next to nothing, which once became 400 MB that could not be freed without more memory.
-TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
+/// 12 MB of almost empty items, which once became 400 MB that could not be freed without more memory.
+TEST_F(Faults, ARecordBeyondTheMemoryLimitIsAMessage) {
     std::string text = "{\"format\":\"carom-record\",\"version\":2,\"x\":[";
     for (int i = 0; i < 4000000; ++i) text += "{},";
     const std::string path = folder_.write("hostile.json", text + "1]}");
@@ -325,8 +326,8 @@ TEST_F(Faults, ARecordForWhichThereIsNoMemoryIsAMessage) {
 }
 #endif
 
-// Stacks larger than all addresses: the system starts no thread at all.
-TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
+// Stacks larger than the address space: the system starts no thread.
+TEST_F(Faults, FailedThreadStartsAreAnErrorWithARemedy) {
 #if CAROM_TEST_TSAN
     GTEST_SKIP() << "the thread sanitizer lays out memory itself, and does not start with such stacks";
 #endif
@@ -345,13 +346,13 @@ TEST_F(Faults, ThreadsThatCannotBeMadeAreAnErrorThatSaysWhatToDo) {
     }
     EXPECT_FALSE(fs::exists(folder_.file("t.csv")));
     EXPECT_FALSE(fs::exists(frame(0)));
-    // Fewer helps.
+    // One job works.
     const ProcessResult alone =
         carom({"render", scene_, "--size", "64x36", "--to", "0.1", "--jobs", "1", "-o", pattern()}, options);
     EXPECT_EQ(alone.status, 0) << alone.err;
 }
 
-/// A name in a scene or a record is data: it never becomes a path.
+/// A name in a scene or a record is data and never becomes a path.
 TEST_F(Faults, NamesInAFileNeverBecomePaths) {
     std::string scene(kSmallScene);
     for (std::size_t at; (at = scene.find("ball 2")) != std::string::npos;) scene.replace(at, 6, "../../x");

@@ -1,5 +1,5 @@
-// carom render -o shot.mp4: films that ffmpeg makes, and what other programs read from frames and streams.
-// Missing programs are skipped.
+// carom render -o shot.mp4: films made by ffmpeg, and frames and streams as other programs read them. Missing
+// programs are skipped.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ namespace {
 
 class CliFilm : public ::testing::Test {
   protected:
-    /// A program in place of ffmpeg, first in the path.
+    /// A substitute for ffmpeg, first in the path.
     ProcessOptions with_ffmpeg(const std::string& script) const {
         std::filesystem::create_directory(folder_.path() / "bin");
         const std::string program = folder_.write("bin/ffmpeg", "#!/bin/sh\n" + script);
@@ -28,7 +28,7 @@ class CliFilm : public ::testing::Test {
         return options;
     }
 
-    /// Everything in the folder except the scene and the substitute for ffmpeg.
+    /// All files in the folder except the scene and the substitute for ffmpeg.
     std::vector<std::string> made() const {
         std::vector<std::string> names = folder_.names();
         std::erase_if(names, [](const std::string& name) { return name == "s.toml" || name == "ffmpeg"; });
@@ -55,7 +55,7 @@ std::string decoded(const std::vector<std::string>& input) {
     return result.out;
 }
 
-/// Root of the mean squared difference of two pictures, in steps of 8 bits.
+/// Root mean square difference of two pictures, in steps of 8 bits.
 double picture_difference(const std::string& a, const std::string& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -65,7 +65,7 @@ double picture_difference(const std::string& a, const std::string& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-TEST_F(CliFilm, EveryKindHasItsFramesAndColors) {
+TEST_F(CliFilm, EveryFormatHasItsFramesAndColors) {
     if (!kHasFfmpeg) GTEST_SKIP() << "there is no ffmpeg";
     const std::vector<std::string> part = {"--from", "0.2", "--to", "0.5", "--fps", "30"};
     const auto render = [&](const std::string& name) {
@@ -82,7 +82,7 @@ TEST_F(CliFilm, EveryKindHasItsFramesAndColors) {
         if (contains(result.err, "Unknown encoder")) continue;  // an ffmpeg built without it
         ASSERT_EQ(result.status, 0) << result.err;
         EXPECT_EQ(result.out, "10 frames, 320x180 at 30 fps: " + folder_.file("shot" + ending) + "\n");
-        if (ending == ".webp") continue;  // ffmpeg writes animated ones and does not read them
+        if (ending == ".webp") continue;  // ffmpeg writes animated ones but does not read them
         const std::string film = decoded({"-i", folder_.file("shot" + ending)});
         ASSERT_EQ(film.size(), frames.size()) << ending;
         for (const std::size_t k : {std::size_t{0}, std::size_t{9}}) {
@@ -146,9 +146,9 @@ TEST_F(CliFilm, WithoutFfmpegItsPackageIsNamed) {
     EXPECT_TRUE(made().empty());
 }
 
-TEST_F(CliFilm, AFailureOfFfmpegIsToldAndKeepsTheOldFile) {
+TEST_F(CliFilm, AFailureOfFfmpegIsReportedAndKeepsTheOldFile) {
     folder_.write("shot.mp4", "old");
-    // At once; after some frames, when a part is written; at the end.
+    // Fails at once; after some frames, when a part is written; at the end.
     for (const std::string script :
          {"echo 'no such thing' >&2; exit 3",
           "for f; do :; done; head -c 100000 > \"${f#file:}\"; echo 'no such thing' >&2; exit 3",
@@ -164,8 +164,8 @@ TEST_F(CliFilm, AFailureOfFfmpegIsToldAndKeepsTheOldFile) {
     }
 }
 
-TEST_F(CliFilm, AnInterruptLeavesNothing) {
-    // One that reads, and one that has stopped reading.
+TEST_F(CliFilm, AnInterruptLeavesNoFile) {
+    // One substitute reads, the other has stopped reading.
     for (const std::string script : {"cat > \"${f#file:}\"", "touch \"${f#file:}\"; sleep 100"}) {
         const ProcessOptions options =
             with_ffmpeg("for f; do :; done; echo > " + folder_.file("started") + "; exec sh -c '" +

@@ -1,4 +1,4 @@
-// carom fit: what it finds, prints and refuses.
+// carom fit: its results, output and refusals.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class CliFit : public ::testing::Test {
   protected:
-    /// Places of both balls of the draw shot, 50 times a second, to the bit.
+    /// Places of both balls of the draw shot, 50 times a second, bit for bit.
     std::string tracks() {
         const Record record = simulate(make_plan(read_scene(draw_), kernel::Isa::kScalar));
         std::string text = "x, y, ball, t\n";
@@ -41,7 +41,7 @@ class CliFit : public ::testing::Test {
     const std::string draw_ = CAROM_SOURCE_DIR "/scenes/draw.toml";
 };
 
-TEST_F(CliFit, FindsWhatMadeTheTracks) {
+TEST_F(CliFit, RecoversTheNumbersOfTheTracks) {
     const std::string file = folder_.file("fitted.toml"), rows = folder_.file("residuals.csv");
     const ProcessResult result = carom(
         {"fit", guess(), tracks(), "--vary", "balls.mu_s,cue.speed", "--json", "-o", file, "--csv", rows});
@@ -64,7 +64,7 @@ TEST_F(CliFit, ReadsTheSamplesOfAShot) {
     EXPECT_TRUE(contains(result.out, "cue.speed                             2.25")) << result.out;
 }
 
-TEST_F(CliFit, WarnsOfWhatTheTracksCannotTell) {
+TEST_F(CliFit, WarnsAboutUndeterminedNumbers) {
     const ProcessResult result =
         carom({"fit", guess(), tracks(), "--vary", "balls.mu_s", "--vary", "balls.e_c"});
     EXPECT_TRUE(contains(result.err, "balls.e_c moves nothing that was tracked")) << result.err;

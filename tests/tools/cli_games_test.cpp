@@ -1,4 +1,4 @@
-// carom judge, next and advise: a match from the shell, states that are refused, and advice.
+// carom judge, next and advise: a match from the shell, refused states, and advice.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -39,7 +39,7 @@ TEST_F(CliGames, AMatchIsPlayedByTwoCommands) {
         const std::string text = read_file(next);
         EXPECT_TRUE(contains(text, "player " + std::to_string(read.at("turn").get<int>() + 1) + " shoots"))
             << text;
-        // The output is a scene that plays.
+        // The output is a playable scene.
         ASSERT_EQ(carom({"check", next}).status, 0);
         scene = next;
         state = {"--state", after};
@@ -47,7 +47,7 @@ TEST_F(CliGames, AMatchIsPlayedByTwoCommands) {
     EXPECT_GE(shots, 3);
 }
 
-TEST_F(CliGames, AHandThatErrsMoreMakesAndWinsLess) {
+TEST_F(CliGames, ALessAccuratePlayerMakesAndWinsLess) {
     const std::string far = folder_.write("far.toml",
                                           "[table]\npreset = \"nine_foot\"\n"
                                           "[[ball]]\nid = \"cue\"\nposition = [0.6, 0.4]\n"
@@ -68,7 +68,7 @@ TEST_F(CliGames, AHandThatErrsMoreMakesAndWinsLess) {
 }
 
 TEST_F(CliGames, AFoulGivesTheCueBallInHand) {
-    // The cue ball hits nothing.
+    // The cue ball hits no ball.
     const std::string miss = folder_.write("miss.toml",
                                            "[table]\npreset = \"nine_foot\"\n"
                                            "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.4]\n"
@@ -92,7 +92,7 @@ TEST_F(CliGames, AFoulGivesTheCueBallInHand) {
     EXPECT_EQ(next.ball[0].position.y(), 0.7);
 }
 
-TEST_F(CliGames, OptionsOfTheRulesAreKeptInTheState) {
+TEST_F(CliGames, RuleOptionsAreKeptInTheState) {
     const std::string open = CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml";
     const ProcessResult judged = carom({"judge", open, "--game", "eight_ball", "--rules", "call=none",
                                         "--rules", "in_hand=behind_line", "--state-out", file("state.json")});

@@ -1,4 +1,4 @@
-// carom impact as an oracle: the published states, errors that do not stop it, answers that come at once.
+// carom impact as an oracle: the published states, errors that do not stop it, immediate responses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Json line_of(const ReferenceImpact& impact) {
         {"w2", list(impact.ball2.w)}};
 }
 
-/// All impacts of a file in one run of the program; the largest difference from the file's results.
+/// All impacts of a file in one run of the program: the largest difference from the file's results.
 double largest_difference(const std::string& file, const std::string& model, std::vector<std::string> options,
                           const std::string& isa) {
     const std::vector<ReferenceImpact> impacts = reference_impacts(file);
@@ -77,7 +77,7 @@ TEST(CliImpact, ReproducesPooltool) {
     EXPECT_LE(largest_difference("ball_ball.json", "frictional_mathavan_N100",
                                  {"--substeps", "100", "--cloth-slip", "as_published"}, ""),
               1e-9);
-    // The two signs of the cloth slip are two models: the default is not the published one.
+    // The two signs of the cloth slip are two models; the default differs from the published one.
     EXPECT_GT(largest_difference("ball_ball.json", "frictional_mathavan_N1000", {"--substeps", "1000"}, ""),
               1e-6);
 }
@@ -85,7 +85,7 @@ TEST(CliImpact, ReproducesPooltool) {
 TEST(CliImpact, AnErrorDoesNotStopTheRunAndExits1) {
     const std::string good = line_of(reference_impacts("paper_states.json").at(0)).dump();
     ProcessOptions options;
-    // a blank line is not a question; the last line has no line end
+    // A blank line is skipped; the last line has no line end.
     options.input = good + "\nnonsense\n\n" + good;
     const ProcessResult result = carom({"impact"}, options);
     EXPECT_EQ(result.status, 1);
@@ -97,7 +97,7 @@ TEST(CliImpact, AnErrorDoesNotStopTheRunAndExits1) {
     EXPECT_TRUE(Json::parse(lines[2]).contains("v1"));
 }
 
-TEST(CliImpact, NothingAskedIsNothingWrong) {
+TEST(CliImpact, EmptyInputIsNoError) {
     const ProcessResult result = carom({"impact"});
     EXPECT_EQ(result.status, 0);
     EXPECT_EQ(result.out, "");
@@ -113,7 +113,7 @@ TEST(CliImpact, ALineOfAnyLengthIsAnsweredOnce) {
               "missing\"}\n");
 }
 
-TEST(CliImpact, EveryAnswerComesAtOnce) {
+TEST(CliImpact, EveryLineIsAnsweredImmediately) {
     Process process({CAROM_PROGRAM, "impact"}, {});
     const std::string line = line_of(reference_impacts("paper_states.json").at(1)).dump() + "\n";
     for (int i = 0; i < 3; ++i) {
@@ -126,7 +126,7 @@ TEST(CliImpact, EveryAnswerComesAtOnce) {
 
 TEST(CliImpact, AnInterruptWhileWaitingExits130) {
     Process process({CAROM_PROGRAM, "impact"}, {});
-    // An answer shows that the program is running with its handler in place.
+    // A response shows that the program is running with its handler installed.
     ASSERT_FALSE(process.ask("{}\n", 20000).empty());
     process.interrupt();
     EXPECT_EQ(process.finish("").status, 130);

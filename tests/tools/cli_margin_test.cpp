@@ -1,4 +1,4 @@
-// carom margin: what it prints and writes. No test asserts a measured time.
+// carom margin: its output and files. No test asserts a measured time.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -55,7 +55,7 @@ void expect_margin_json(const Json& json, bool rendered) {
             EXPECT_GT(values.at("max").get<double>(), 0.0) << stage;
         }
     }
-    EXPECT_EQ(stages["cluster"]["max"].get<double>(), 0.0);  // balls far apart: none meets two at once
+    EXPECT_EQ(stages["cluster"]["max"].get<double>(), 0.0);  // distant balls: none hits two at once
     EXPECT_LE(stages["kernel"]["max"].get<double>(), stages["simulate"]["max"].get<double>());
     const Json& worst = json.at("worst");
     ASSERT_EQ(worst.size(), 4u);
@@ -70,7 +70,7 @@ void expect_margin_json(const Json& json, bool rendered) {
     EXPECT_GT(json.at("serial").at("wall_ms").get<double>(), 0.0);
 }
 
-TEST_F(CliMargin, JsonIsTheDesigns) {
+TEST_F(CliMargin, JsonHasTheDocumentedShape) {
     const ProcessResult result =
         carom({"margin", scene_, "--fps", "20", "--json", "--repeat", "2", "--csv", folder_.file("m.csv")});
     ASSERT_EQ(result.status, 0) << result.err;
@@ -88,7 +88,7 @@ TEST_F(CliMargin, JsonIsTheDesigns) {
     EXPECT_EQ(lines.size(), json.at("frames").get<std::size_t>() + 1);
 }
 
-TEST_F(CliMargin, FramesThatWereWrittenAreRemoved) {
+TEST_F(CliMargin, WrittenFramesAreRemoved) {
     ProcessOptions options;
     options.environment = {{"TMPDIR", folder_.path().string()}};
     ASSERT_EQ(carom({"margin", scene_, "--fps", "5"}, options).status, 0);
@@ -114,7 +114,7 @@ TEST_F(CliMargin, WithoutRenderingCountsEveryEventOnce) {
     EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
 }
 
-TEST_F(CliMargin, ForPeople) {
+TEST_F(CliMargin, TheSummaryIsReadable) {
     const ProcessResult result =
         carom({"margin", scene_, "--size", "160x90", "--fps", "20", "--repeat", "2"});
     ASSERT_EQ(result.status, 0) << result.err;

@@ -1,6 +1,5 @@
-// Command lines that the program refuses, with their messages: rows of tests/data/messages (a file per
-// command). Every row obeys one law: this status, this message and nothing else, no output, and no file made
-// or changed.
+// Command lines that the program refuses, and their messages: rows of tests/data/messages (a file per
+// command). Each row must produce this status and this message alone, no output, and no new or changed file.
 #include <gtest/gtest.h>
 
 #include <toml++/toml.h>
@@ -35,7 +34,7 @@ std::vector<std::string> words_of(const std::string& line) {
 }
 
 /// A folder with a scene, its record, half of that record, a scene that stops with an error, one whose balls
-/// overlap, the scenes of the repository, and a program in place of ffmpeg; and what the table adds.
+/// overlap, the repository's scenes, and a substitute for ffmpeg; plus the table's own files.
 class Folder {
   public:
     explicit Folder(const toml::table& table) {
@@ -63,7 +62,6 @@ class Folder {
         return carom(words_of(line), options);
     }
 
-    /// The names and contents of all files.
     std::string contents() const {
         std::string all;
         for (const std::string& file : folder_.names()) all += file + "\n";
@@ -77,7 +75,7 @@ class Folder {
 
 class CliMessages : public testing::TestWithParam<std::string> {};
 
-TEST_P(CliMessages, AreThoseOfTheTableAndNothingElseHappens) {
+TEST_P(CliMessages, MatchTheTableWithoutOtherEffects) {
     const toml::table table = toml::parse_file(CAROM_TEST_DATA "/messages/" + GetParam() + ".toml");
     const Folder folder(table);
     const std::string before = folder.contents();
@@ -108,8 +106,8 @@ std::vector<std::string> commands() {
 INSTANTIATE_TEST_SUITE_P(Of, CliMessages, testing::ValuesIn(commands()),
                          [](const auto& name) { return name.param; });
 
-// The messages of scenes are those of the engine (scene_rules_test), with the path as it was given.
-TEST(CliScene, ABadSceneIsRefusedWithTheWordsOfTheEngine) {
+// The engine's messages about scenes (scene_rules_test), with the path as given.
+TEST(CliScene, ABadSceneIsRefusedWithTheEnginesMessage) {
     for (const fs::path& path : toml_files(CAROM_TEST_DATA "/bad_scenes")) {
         const std::string text = read_file(path);
         const ProcessResult result = carom({"check", path.string()});

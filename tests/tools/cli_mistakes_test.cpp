@@ -1,4 +1,4 @@
-// Mistyped files, names and numbers, and obstacles that others put in the way.
+// Mistyped files, names and numbers, and obstacles placed by others.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 class Mistakes : public testing::Test {
   protected:
-    /// Expects an exit with status 2, this message and no output.
+    /// Expects exit status 2, this message and no output.
     static void refused(const std::string& message, const std::vector<std::string>& arguments) {
         const ProcessResult result = carom(arguments);
         EXPECT_EQ(result.status, 2) << result.err;
@@ -38,7 +38,7 @@ class Mistakes : public testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-TEST_F(Mistakes, HelpAndVersionAreWordsToo) {
+TEST_F(Mistakes, HelpAndVersionAreAlsoCommands) {
     EXPECT_EQ(carom({"help"}).out, carom({"--help"}).out);
     EXPECT_EQ(carom({"help", "sweep"}).out, carom({"sweep", "--help"}).out);
     for (const char* version : {"version", "-V"}) EXPECT_EQ(carom({version}).out, carom({"--version"}).out);
@@ -50,7 +50,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     fs::create_symlink(scene_, link);
     refused("would overwrite the input", {"simulate", scene_, "-o", link});
     refused("would overwrite the input", {"simulate", scene_, "-o", folder_.path().string() + "/./s.toml"});
-    // Files that do not exist yet, under two names.
+    // Files that do not exist yet, each under two names.
     fs::create_symlink(same, folder_.file("to_same"));
     fs::create_symlink("to_same", folder_.file("to_link"));
     fs::create_directory_symlink(".", folder_.file("here"));
@@ -68,7 +68,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     refused("would overwrite the input", {"render", "./s.toml", "-o", "s.toml"});
     fs::current_path(cwd);
     EXPECT_EQ(read_file(scene_), before);
-    // One file that has two names on the disk.
+    // One file with two names on the disk.
     fs::create_hard_link(scene_, folder_.file("twin.toml"));
     refused("would overwrite the input", {"simulate", scene_, "-o", folder_.file("twin.toml")});
     EXPECT_EQ(carom({"simulate", scene_, "-o", "/dev/null", "--events", "/dev/null"}).status, 0);
@@ -76,7 +76,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
                      "0.1"})
                   .status,
               0);
-    // Not all that is below /dev is a device.
+    // Not everything below /dev is a device.
     if (!fs::is_directory("/dev/shm")) return;
     const std::string shared = "/dev/shm/carom." + std::to_string(::getpid()) + ".json";
     refused("name the same file", {"simulate", scene_, "-o", shared, "--events", shared});
@@ -87,7 +87,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     fs::remove(shared);
 }
 
-// A pattern becomes names: the scene was drawn over, or removed as a frame of another picture.
+// A pattern expands to names; the scene was once drawn over, or removed as a frame of another picture.
 TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
     const std::string before = read_file(scene_);
     const std::string as_frame = folder_.file("s00002.png"), in_percent = folder_.file("p%d.png");
@@ -114,14 +114,14 @@ TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
         EXPECT_EQ(read_file(name), before) << name;
 }
 
-TEST_F(Mistakes, OnePictureHasTheNameThatItWasGiven) {
+TEST_F(Mistakes, OnePictureHasItsGivenName) {
     const std::string one = folder_.file("f.png");
     const ProcessResult result = carom({"render", scene_, "--at", "0.1", "--size", "32x18", "-o", one});
     EXPECT_EQ(result.out, "1 frame: " + one + "\n") << result.err;
     EXPECT_TRUE(fs::exists(one));
 }
 
-TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
+TEST_F(Mistakes, ResumeRecognisesFramesOfItsShot) {
     const std::string pattern = folder_.file("f%d.png");
     const auto render = [&](const std::vector<std::string>& more) {
         std::vector<std::string> all = {"render", scene_,   "--fps", "10", "--to",
@@ -132,7 +132,7 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
     folder_.write("f1.png", "of nobody");
     EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the existing frames show"));
     fs::remove(folder_.file("f1.png"));
-    ASSERT_EQ(render({"--resume"}).status, 0);  // all of it
+    ASSERT_EQ(render({"--resume"}).status, 0);  // all frames
     ASSERT_EQ(render({}).status, 0);
     EXPECT_TRUE(contains(render({"--resume"}).out, "all frames already exist"));
     const std::vector<std::vector<std::string>> others = {{"--camera", "rail"},
@@ -151,7 +151,7 @@ TEST_F(Mistakes, ResumeKnowsWhichShotFramesAreOf) {
     EXPECT_EQ(render({"--resume"}).status, 1);
 }
 
-TEST_F(Mistakes, OlderFramesAreNotInTheFilm) {
+TEST_F(Mistakes, OlderFramesStayOutOfTheFilm) {
     const std::string pattern = folder_.file("a film %d.png");
     const ProcessResult result =
         carom({"render", scene_, "--fps", "10", "--to", "0.3", "--size", "32x18", "-o", pattern});
@@ -159,7 +159,7 @@ TEST_F(Mistakes, OlderFramesAreNotInTheFilm) {
         << result.out;
 }
 
-TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
+TEST_F(Mistakes, NumbersInAnotherUnitCauseAWarning) {
     const struct {
         const char *scene, *warning;
     } kCases[] = {
@@ -180,15 +180,15 @@ TEST_F(Mistakes, NumbersOfAnotherUnitAreWarnedAbout) {
         EXPECT_FALSE(contains(carom({"check", shipped}).err, "are in m")) << shipped;
 }
 
-TEST_F(Mistakes, StandardOutputIsAFileToo) {
+TEST_F(Mistakes, StandardOutputMayBeAFile) {
     const ProcessResult samples = carom({"simulate", scene_, "--samples", "-", "--sample-dt", "0.5"});
     EXPECT_EQ(lines_of(samples.out)[0].substr(0, 10), "time,ball,") << samples.out;
     EXPECT_FALSE(contains(samples.out, "final positions"));
     EXPECT_FALSE(fs::exists("-"));
 }
 
-// A shell's >>: earlier contents stay, and the output comes after them.
-TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
+// A shell's >>: earlier contents stay, and the output follows them.
+TEST_F(Mistakes, OutputIsAppendedToAnOpenFile) {
     const std::string log = folder_.file("log.txt");
     const std::string hash = carom({"simulate", scene_, "--hash"}).out;
     const std::string events = carom({"simulate", scene_, "--events", "-"}).out;
@@ -207,7 +207,7 @@ TEST_F(Mistakes, StandardOutputMayBeAFileThatGoesOn) {
     EXPECT_TRUE(shell(sweep("/dev/stdout")).starts_with("before\n" + read_file(table)));
 }
 
-TEST_F(Mistakes, TheLargestSeedIsASeed) {
+TEST_F(Mistakes, TheLargestSeedIsAccepted) {
     EXPECT_EQ(carom(sweep("/dev/null", {"--seed", "18446744073709551615"})).status, 0);
 }
 
@@ -219,8 +219,8 @@ TEST_F(Mistakes, AShardReplacesNoOther) {
     EXPECT_EQ(read_file(output), first);
 }
 
-// Others may also write in the folder.
-TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
+// Others may also write to the folder.
+TEST_F(Mistakes, TemporaryFilesAreNewAndNotLinks) {
     const std::string record = folder_.file(std::string(240, 'r') + ".json");
     EXPECT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     EXPECT_TRUE(fs::exists(record));
@@ -236,7 +236,7 @@ TEST_F(Mistakes, ATemporaryFileIsNewAndNoLink) {
     EXPECT_TRUE(fs::is_regular_file(target));
 }
 
-TEST_F(Mistakes, NothingSteersTheTerminal) {
+TEST_F(Mistakes, NamesCannotControlTheTerminal) {
     const std::string record = folder_.file("r.json");
     ASSERT_EQ(carom({"simulate", scene_, "-o", record}).status, 0);
     std::string text = read_file(record);

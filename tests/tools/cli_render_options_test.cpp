@@ -1,5 +1,5 @@
-// carom render: the view, overlays, contact sheets, raw frames,
-// resuming, OpenGL libraries, and what a disk refuses.
+// carom render: the view, overlays, contact sheets, raw frames, resuming, OpenGL libraries, and refusals of a
+// disk.
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
@@ -64,7 +64,7 @@ TEST_F(CliRenderOptions, ViewsDiffer) {
 }
 
 TEST_F(CliRenderOptions, EveryOverlayShows) {
-    // On its way to the first hit, whose place the ghost shows.
+    // Before the first hit, whose place the ghost shows.
     const std::string at = "0.1";
     std::vector<std::string> seen = {picture({}, at)};
     for (const char* layer : {"trails", "events", "spin", "ghost", "clock", "margin", "all", "diamonds"}) {
@@ -74,8 +74,8 @@ TEST_F(CliRenderOptions, EveryOverlayShows) {
     }
 }
 
-// From a scene, the margin bar counts the simulation too.
-TEST_F(CliRenderOptions, TheMarginOverlayTakesAScene) {
+// For a scene, the margin bar also counts the simulation.
+TEST_F(CliRenderOptions, TheMarginOverlayAcceptsAScene) {
     const ProcessResult result =
         carom({"render", scene_, "--overlay", "margin", "--fps", "8", "--from", "0.3", "--to", "0.6",
                "--size", "96x54", "-o", folder_.file("m%d.png")});
@@ -83,7 +83,7 @@ TEST_F(CliRenderOptions, TheMarginOverlayTakesAScene) {
     EXPECT_EQ(folder_.names().size(), 2u + 3u);
 }
 
-TEST_F(CliRenderOptions, ASheetIsOnePicture) {
+TEST_F(CliRenderOptions, ASheetIsASinglePicture) {
     const std::string sheet = folder_.file("sheet.png");
     const ProcessResult result =
         carom({"render", record_, "--sheet", "3x2", "--size", "300x180", "-o", sheet});
@@ -104,7 +104,7 @@ TEST_F(CliRenderOptions, RawFramesAreRgbInOrder) {
     EXPECT_NE(result.err.find("ffmpeg -f rawvideo -pix_fmt rgb24 -s 64x36 -framerate 4 -i - "),
               std::string::npos)
         << result.err;
-    // The last frame by itself is the last of the three.
+    // The last frame alone equals the last of the three.
     const ProcessResult last = carom({"render", record_, "--raw", "--at", "0.5", "--size", "64x36"});
     EXPECT_TRUE(last.out == result.out.substr(2 * kFrame));
     EXPECT_EQ(folder_.names().size(), 2u);  // no file
@@ -123,7 +123,7 @@ TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
         "render", record_, "-o", folder_.file("f%d.png"), "--fps", "4", "--to", "0.75", "--size", "64x36"};
     ASSERT_EQ(carom(arguments).status, 0);
     const std::string second = read_file(folder_.file("f1.png"));
-    // One frame is missing, one is truncated, one is another frame, and one is complete.
+    // One frame is missing, one truncated, one from another picture, and one complete.
     std::filesystem::remove(folder_.file("f0.png"));
     folder_.write("f1.png", second.substr(0, 20));
     const std::string third = read_file(folder_.file("f2.png")), last = read_file(folder_.file("f3.png"));
@@ -139,7 +139,7 @@ TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
     EXPECT_EQ(std::filesystem::last_write_time(folder_.file("f3.png")), written);
     EXPECT_TRUE(std::filesystem::exists(folder_.file("f0.png")));
     EXPECT_EQ(folder_.names().size(), 6u);
-    // All exist: having nothing to do is not a failure. Files of another size are not examined.
+    // All exist: nothing to do is no failure. Files of another size are not examined.
     ASSERT_EQ(carom(again).status, 0);
     again.insert(again.end(), {"--size", "32x18"});
     again.erase(again.begin() + 8, again.begin() + 10);
@@ -153,7 +153,8 @@ TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
     if (egl.status == 1 && egl.err.find("libegl1") != std::string::npos) GTEST_SKIP() << egl.err;
     ASSERT_EQ(egl.status, 0) << egl.err;
     EXPECT_TRUE(read_file(folder_.file("e0.png")) == picture({"--gl", "osmesa"}));
-    // Without OSMesa the default is EGL: files with its names that are not libraries come first in the path.
+    // Without OSMesa the default is EGL: files with OSMesa's names that are not libraries come first in the
+    // path.
     TemporaryFolder fake;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
         fake.write(name, "no library");
@@ -177,7 +178,7 @@ TEST_F(CliRenderOptions, AMissingLibraryNamesItsPackage) {
     expect_refused(1, "libegl1", {}, options);
 }
 
-TEST_F(CliRenderOptions, AFolderThatIsReadOnlyIsNamed) {
+TEST_F(CliRenderOptions, AReadOnlyFolderIsNamed) {
     if (::geteuid() == 0) GTEST_SKIP() << "permissions do not stop root";
     const std::string locked = folder_.file("locked");
     ASSERT_EQ(::mkdir(locked.c_str(), 0555), 0);

@@ -1,4 +1,4 @@
-// carom render: numbered whole frames.
+// carom render: complete, numbered frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class CliRender : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-/// Width and height that a PNG file states; {0, 0} if it is not a complete PNG file.
+/// Width and height stated by a PNG file; {0, 0} if it is incomplete.
 std::pair<unsigned, unsigned> png_size(const std::string& path) {
     const std::string bytes = read_file(path);
     const std::string end("IEND\xAE\x42\x60\x82", 8);
@@ -40,7 +40,7 @@ std::pair<unsigned, unsigned> png_size(const std::string& path) {
     return {number(16), number(20)};
 }
 
-TEST_F(CliRender, FramesAreNumberedFromZeroAndWhole) {
+TEST_F(CliRender, FramesAreNumberedFromZeroAndComplete) {
     const ProcessResult result =
         carom({"render", scene_, "-o", pattern(), "--fps", "10", "--from", "0.5", "--to", "0.8"});
     ASSERT_EQ(result.status, 0) << result.err;
@@ -53,7 +53,7 @@ TEST_F(CliRender, FramesAreNumberedFromZeroAndWhole) {
     EXPECT_NE(read_file(frame(0)), read_file(frame(3)));
 }
 
-TEST_F(CliRender, ARecordGivesTheSameFramesAsItsScene) {
+TEST_F(CliRender, ARecordHasTheSameFramesAsItsScene) {
     ASSERT_EQ(carom({"simulate", scene_, "-o", folder_.file("r.json")}).status, 0);
     const std::vector<std::string> options = {"--fps", "10", "--to", "0.3", "--size", "160x90"};
     for (const auto& [input, name] : {std::pair{scene_, "a"}, {folder_.file("r.json"), "b"}}) {

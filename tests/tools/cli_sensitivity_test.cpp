@@ -1,4 +1,4 @@
-// carom sensitivity: what it prints and refuses.
+// carom sensitivity: its output and refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 const std::string kDraw = CAROM_SOURCE_DIR "/scenes/draw.toml";
 
-// The shot lies on a diagonal of the table and of the pocket, so everything is symmetric about that line.
+// The shot lies on a diagonal of the table and of the pocket, so it is symmetric about that line.
 TEST(CliSensitivity, OfADiagonalShot) {
     const ProcessResult result = carom({"sensitivity", kDraw, "--json"});
     ASSERT_EQ(result.status, 0) << result.err;
@@ -29,7 +29,7 @@ TEST(CliSensitivity, OfADiagonalShot) {
     const Json& window = ball.at("aim_window_deg");
     EXPECT_NEAR(window.at(0).get<double>(), -window.at(1).get<double>(), 1e-4);
     EXPECT_GT(window.at(1).get<double>(), 0.5);
-    // Speed and height of the tip move the cue ball along the diagonal, aim and side across it.
+    // Speed and tip height move the cue ball along the diagonal, aim and side across it.
     const double R = 0.028575, speed = 0.03 * 2.25;
     const auto along = [&](std::size_t k) {
         return std::sqrt(2.0) * std::abs(cue.at("derivatives").at(k).at(0).get<double>());
@@ -43,7 +43,7 @@ TEST(CliSensitivity, OfADiagonalShot) {
                 0.01);
 }
 
-TEST(CliSensitivity, SpeaksToAPlayer) {
+TEST(CliSensitivity, SummarisesForAPlayer) {
     const ProcessResult result = carom({"sensitivity", kDraw, "--shots", "50"});
     ASSERT_EQ(result.status, 0) << result.err;
     for (const char* words : {"aim 0.1 degrees to the left", "1 at its pocket, mm", "1 falls into p3",
@@ -60,7 +60,7 @@ TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
     ASSERT_EQ(result.status, 0) << result.err;
     const std::string svg = read_file(file);
     EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
-    // Versions of cairo write an attribute or a style.
+    // Depending on its version, cairo writes an attribute or a style.
     std::size_t dots = 0;
     for (const std::string dot : {"fill-opacity=\"0.35\"", "fill-opacity:0.35;"})
         for (std::size_t at = svg.find(dot); at != svg.npos; at = svg.find(dot, at + 1)) ++dots;
@@ -70,7 +70,7 @@ TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
 
 TEST(CliSensitivity, ABreakHasDerivatives) {
     const TemporaryFolder folder;
-    // Off the middle of the rack; a full hit lies at a corner.
+    // Off the middle of the rack; a full hit lies at a corner, where derivatives jump.
     std::string thin = read_file(CAROM_SOURCE_DIR "/scenes/nine_ball_break.toml");
     thin.replace(thin.find("aim_deg = 81.620"), 16, "aim_deg = 81");
     const ProcessResult result =

@@ -1,4 +1,4 @@
-// carom simulate: one hash, exact headers, the JSON of the design, files that are whole or absent.
+// carom simulate: one hash, exact headers, the documented JSON, files that are whole or absent.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class CliSimulate : public ::testing::Test {
     std::string scene_ = folder_.write("s.toml", kSmallScene);
 };
 
-TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) {
+TEST_F(CliSimulate, HashIsOneLineAndTheSameOnEveryRunAndInstructionSet) {
     const ProcessResult first = run({"--hash"});
     ASSERT_EQ(first.status, 0) << first.err;
     ASSERT_EQ(first.out.size(), 17u) << first.out;
@@ -42,13 +42,13 @@ TEST_F(CliSimulate, HashAloneIsOneLineTheSameEveryTimeAndOnEveryInstructionSet) 
         EXPECT_EQ(carom_isa(kernel::name(isa), {"simulate", scene_, "--hash"}).out, first.out)
             << kernel::name(isa);
     }
-    // Measuring changes nothing, nor does writing a file.
+    // Neither profiling nor writing a file changes the hash.
     EXPECT_EQ(lines_of(run({"--hash", "--profile"}).out).at(0) + "\n", first.out);
     EXPECT_EQ(run({"--hash", "-o", folder_.file("r.json")}).out, first.out);
     EXPECT_EQ(read_record(folder_.file("r.json")).hash() + "\n", first.out);
 }
 
-TEST_F(CliSimulate, LinesMayEndAsInWindows) {
+TEST_F(CliSimulate, LinesMayHaveWindowsEnds) {
     const auto as_in_windows = [](const std::string& text) {
         std::string out;
         for (const std::string& line : lines_of(text)) out += line + "\r\n";
@@ -83,7 +83,7 @@ TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     EXPECT_EQ(good.status, 0) << good.err;
     EXPECT_EQ(good.out, run({"--hash"}).out);
     EXPECT_EQ(good.err, "");
-    // The published march with few steps gains energy if an impact loses none.
+    // The published march with few steps gains energy in a lossless impact.
     const std::string scene =
         folder_.write("gain.toml",
                       "[balls]\ne_b = 1.0\nmu_b = 0.05\n[physics]\nsubsteps = 100\n"
@@ -105,7 +105,7 @@ TEST_F(CliSimulate, AnotherSceneHasAnotherHash) {
     EXPECT_NE(carom({"simulate", other, "--hash"}).out, run({"--hash"}).out);
 }
 
-TEST_F(CliSimulate, JsonIsTheDesigns) {
+TEST_F(CliSimulate, JsonHasTheDocumentedShape) {
     const ProcessResult result = run({"--json"});
     ASSERT_EQ(result.status, 0) << result.err;
     const Json json = Json::parse(result.out);
@@ -127,7 +127,7 @@ TEST_F(CliSimulate, JsonIsTheDesigns) {
     EXPECT_EQ(json.at("balls")[2].at("id"), "ball 2");
 }
 
-TEST_F(CliSimulate, JsonNumbersReadBackToTheBitsOfTheRecord) {
+TEST_F(CliSimulate, JsonNumbersHaveTheBitsOfTheRecord) {
     const Json json = Json::parse(run({"--json", "-o", folder_.file("r.json")}).out);
     const Record record = read_record(folder_.file("r.json"));
     EXPECT_EQ(json.at("duration").get<double>(), record.duration);
@@ -141,7 +141,7 @@ TEST_F(CliSimulate, JsonNumbersReadBackToTheBitsOfTheRecord) {
     }
 }
 
-TEST_F(CliSimulate, SummarySaysWhatHappened) {
+TEST_F(CliSimulate, SummaryDescribesTheShot) {
     const ProcessResult result = run();
     ASSERT_EQ(result.status, 0) << result.err;
     for (const char* part :
@@ -151,7 +151,7 @@ TEST_F(CliSimulate, SummarySaysWhatHappened) {
     }
 }
 
-TEST_F(CliSimulate, ALongShotIsToldByItsLandmarksAndWholeWithList) {
+TEST_F(CliSimulate, ALongShotIsSummarisedAndListIsComplete) {
     const std::string rack = CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml";
     const std::string told = carom({"simulate", rack}).out, whole = carom({"simulate", rack, "--list"}).out;
     EXPECT_TRUE(contains(told, "balls at once")) << told;
@@ -183,7 +183,7 @@ TEST_F(CliSimulate, SummaryNamesPocketedBalls) {
     EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 2) << text;
 }
 
-TEST_F(CliSimulate, ARunThatCannotGoOnSaysWhereItStood) {
+TEST_F(CliSimulate, AFailedRunReportsItsState) {
     const std::string stuck = folder_.write("stuck.toml", kStuckScene);
     const ProcessResult result = carom({"simulate", stuck, "-o", folder_.file("r.json")});
     EXPECT_EQ(result.status, 1);
@@ -208,14 +208,14 @@ TEST_F(CliSimulate, StopsAfterItsEvents) {
     EXPECT_NE(result.out.find(" 3 events; stopped at the event limit\n"), std::string::npos) << result.out;
 }
 
-TEST_F(CliSimulate, UntilStops) {
+TEST_F(CliSimulate, UntilStopsTheRun) {
     const Json json = Json::parse(run({"--json", "--until", "0.125"}).out);
     EXPECT_EQ(json.at("duration").get<double>(), 0.125);
     EXPECT_EQ(json.at("balls")[0].at("state"), "sliding");
     EXPECT_NE(run({"--until", "0.125"}).out.find("stopped at the time limit"), std::string::npos);
 }
 
-TEST_F(CliSimulate, SaysThatBallsMoveForever) {
+TEST_F(CliSimulate, ReportsEndlessMotion) {
     const std::string spins = folder_.write(
         "events.toml",
         "[balls]\nmu_sp = 0\n[[ball]]\nposition = [0.6, 0.5]\nspin = [0, 0, 5]\n[stop]\nevents = 4\n");
@@ -270,7 +270,7 @@ TEST_F(CliSimulate, SamplesFile) {
     std::size_t times = 0;
     while (static_cast<double>(times) * 0.1 <= record.duration) ++times;
     ASSERT_EQ(lines.size(), 1 + 3 * times);
-    // Row k of the cue ball holds the bits of state_at(k dt).
+    // Row k of the cue ball has the bits of state_at(k dt).
     for (std::size_t k = 0; k < times; ++k) {
         const double time = static_cast<double>(k) * 0.1;
         const BallState s = record.state_at(0, time);
@@ -285,7 +285,7 @@ TEST_F(CliSimulate, SamplesFile) {
     }
 }
 
-TEST_F(CliSimulate, FilesAreReplacedWholeThroughLinksToo) {
+TEST_F(CliSimulate, FilesAreReplacedWholeAlsoThroughLinks) {
     folder_.write("real.json", "old");
     std::filesystem::create_symlink(folder_.file("real.json"), folder_.file("link.json"));
     ASSERT_EQ(run({"-o", folder_.file("link.json")}).status, 0);

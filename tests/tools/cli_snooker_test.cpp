@@ -1,4 +1,4 @@
-// Snooker's touching ball, jump shot and snooker behind the free ball, as carom judge sees them.
+// Snooker's touching ball, jump shot and snooker behind the free ball, judged by carom judge.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -49,7 +49,7 @@ TEST_F(CliSnooker, ATouchingBallThatIsOnCountsAsHit) {
     const std::string colour =
         judged(cue + "pink 0.9 2.2\n1 0.5 3.4\n" + far, away, R"("points": [1, 0], "on": "colour")", "pink");
     EXPECT_EQ(colour.substr(0, 4), "fair") << colour;
-    // One that is not on does not count, and neither does one that is near.
+    // A ball that is not on does not count, nor does one that is merely near.
     EXPECT_TRUE(contains(judged(cue + "pink 0.9 2.2\n2 0.5 3.4\n" + far, away, kRed), "no ball hit"));
     EXPECT_TRUE(contains(judged(cue + "1 0.901 2.2\n2 0.5 3.4\n" + far, away, kRed), "no ball hit"));
 }
@@ -68,7 +68,7 @@ TEST_F(CliSnooker, AJumpOverABallBeforeOneIsHitIsAFoul) {
     const std::string blue = judged("cue 0.889 0.6\npink 0.889 0.96\nblue 0.889 1.9\nblack 0.889 3.245\n",
                                     jump, R"("points": [0, 0], "on": "blue")");
     EXPECT_TRUE(contains(blue, "5 points for the other player")) << blue;
-    // A jump past a ball, and one after a hit, are fair.
+    // A jump past a ball, or after a hit, is fair.
     const std::string beside =
         judged("cue 0.889 0.6\nbrown 0.8 0.96\n1 0.889 1.9\nblack 0.889 3.245\n", jump, kRed);
     EXPECT_EQ(beside.substr(0, 4), "fair") << beside;

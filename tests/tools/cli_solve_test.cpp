@@ -1,4 +1,4 @@
-// carom solve and carom break: what they print, write and refuse.
+// carom solve and carom break: their output, files and refusals.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -58,7 +58,7 @@ TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
     const Record record = simulate(make_plan(scene, kernel::Isa::kScalar));
     EXPECT_LT((planar(record.state_at(0, record.duration).position) - Vec2(1.0, 1.56)).norm(), 1e-5);
     EXPECT_TRUE(contains(carom(call).out, "   exactly there, within "));
-    // Shots of different kinds that lead to one exact shot print it once.
+    // If shots of different kinds lead to one exact shot, it is printed once.
     call[call.size() - 2] = "3";
     const auto count = [&](const std::string& text) {
         std::size_t found = 0;
@@ -92,7 +92,7 @@ TEST_F(CliSolve, RecommendsABreak) {
     }
 }
 
-TEST_F(CliSolve, ASweepMeasuresAndSumsUp) {
+TEST_F(CliSolve, ASweepMeasuresAndSummarises) {
     const std::string table = folder_.file("m.csv");
     const std::vector<std::string> sweep = {
         "sweep",     draw_,      "--vary",    "cue.aim_deg=normal(0.5)", "--count",   "200",

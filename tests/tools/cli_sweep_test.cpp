@@ -1,4 +1,4 @@
-// carom sweep: one table, whatever the number of threads and parts, and whatever happened on the way.
+// carom sweep: the same table for any number of threads and parts, and after any interruption.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ void expect_ok(const ProcessResult& result) {
     EXPECT_EQ(result.status, 0) << result.err;
 }
 
-/// The folder that a stopped sweep leaves, or "".
+/// The folder left by a stopped sweep, or "".
 std::string parts_in(const TemporaryFolder& folder) {
     for (const auto& entry : fs::directory_iterator(folder.path()))
         if (entry.path().extension() == ".parts") return entry.path().string();
@@ -67,7 +67,7 @@ std::vector<std::string> rows_in(const std::string& parts) {
     return rows;
 }
 
-/// Waits until a sweep has kept this many parts.
+/// Waits until a sweep has written this many parts.
 std::string wait_for_parts(const TemporaryFolder& folder, std::size_t count = 1) {
     for (int i = 0; i < 2000; ++i) {
         const std::string parts = parts_in(folder);
@@ -77,7 +77,7 @@ std::string wait_for_parts(const TemporaryFolder& folder, std::size_t count = 1)
     return "";
 }
 
-/// Lets a sweep run until it has kept some rows, and interrupts it. Returns its folder.
+/// Interrupts a sweep once it has written some rows. Returns its folder.
 std::string interrupted_parts(const TemporaryFolder& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), CAROM_PROGRAM);
     Process process(arguments, {});
@@ -116,7 +116,7 @@ TEST(CliSweep, TheTableIsTheSameForAnyJobsAndAsShards) {
     }
 }
 
-TEST(CliSweep, GoesOnAfterAKill) {
+TEST(CliSweep, ResumesAfterAKill) {
     const TemporaryFolder folder;
     const std::string whole = folder.file("whole.csv"), killed = folder.file("killed.csv");
     const std::vector<std::string> command = breaks(1200, killed, {"--jobs", "2"});
@@ -130,7 +130,7 @@ TEST(CliSweep, GoesOnAfterAKill) {
         // The destructor kills it with SIGKILL.
     }
     EXPECT_FALSE(fs::exists(killed));
-    // Half a part, as a crash may leave it, before it gets its name.
+    // Half a part without its final name, as a crash may leave it.
     std::ofstream(parts + "/.carom.1.0.tmp") << "123,90.0";
     const ProcessResult result = carom(command);
     expect_ok(result);
@@ -140,7 +140,7 @@ TEST(CliSweep, GoesOnAfterAKill) {
     EXPECT_EQ(read_file(killed), read_file(whole));
 }
 
-TEST(CliSweep, PlaysOnTheThreadsOfJobsOnly) {
+TEST(CliSweep, UsesOnlyTheThreadsOfJobs) {
     for (const int jobs : {1, 2}) {
         const TemporaryFolder folder;
         std::vector<std::string> arguments =
@@ -155,13 +155,13 @@ TEST(CliSweep, PlaysOnTheThreadsOfJobsOnly) {
         }
         process.interrupt();
         EXPECT_EQ(process.finish("").status, 130);
-        // Three more write the rows, write a part and wait for their turn; the thread sanitizer has one.
+        // Three more threads write rows, write a part and wait; the thread sanitizer adds one.
         EXPECT_LE(most, jobs + 4);
         EXPECT_GT(most, jobs);
     }
 }
 
-TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
+TEST(CliSweep, AnInterruptKeepsFinishedParts) {
     const TemporaryFolder folder;
     const std::string output = folder.file("a.csv");
     std::vector<std::string> arguments = breaks(100000, output);
@@ -181,7 +181,7 @@ TEST(CliSweep, AnInterruptLeavesWhatWasDone) {
     EXPECT_EQ(folder.names().size(), files_in(parts).size());
 }
 
-TEST(CliSweep, APartIsLookedAt) {
+TEST(CliSweep, ExistingPartsAreChecked) {
     const TemporaryFolder folder;
     const std::vector<std::string> command = breaks(100000, folder.file("a.csv"));
     const std::string parts = interrupted_parts(folder, command);
@@ -205,7 +205,7 @@ TEST(CliSweep, APartIsLookedAt) {
         refused("differ from those that were written");
     }
 
-    // From another build, which has other bits.
+    // From another build with other bits.
     const auto signed_again = [&](std::string other) {
         Fnv hash;
         hash.add_long(other);
@@ -222,13 +222,12 @@ TEST(CliSweep, APartIsLookedAt) {
     signed_again(rows.substr(0, rows.size() - 1) + "9\n" + said);
     refused("its last row is not what this program computes; remove it to start again");
 
-    // A part that is removed is made again.
     fs::remove(part);
     EXPECT_EQ(interrupted_parts(folder, command), parts);
     EXPECT_EQ(rows_in(parts)[0] + "\n", rows.substr(0, rows.find('\n') + 1));
 }
 
-// Others may also write in the folder.
+// Others may also write to the folder.
 TEST(CliSweep, ALinkIsNotFollowed) {
     const TemporaryFolder folder, elsewhere;
     const std::vector<std::string> command = breaks(100000, folder.file("a.csv"));
@@ -248,7 +247,7 @@ TEST(CliSweep, ALinkIsNotFollowed) {
     EXPECT_TRUE(elsewhere.names().empty());
 }
 
-TEST(CliSweep, AStatusFileSaysHowFarItIs) {
+TEST(CliSweep, AStatusFileReportsProgress) {
     const TemporaryFolder folder;
     const std::string status = folder.file("status.json"), output = folder.file("a.csv");
     expect_ok(carom(breaks(30, output, {"--shard", "2/3", "--status", status})));
@@ -291,7 +290,7 @@ TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     EXPECT_EQ(stopped["rows"], rows.size());
     EXPECT_EQ(rows.back().find(std::to_string(9007190247532730 + rows.size() - 1) + ","), 0u) << rows.back();
 
-    // The same command continues, and reports existing rows without playing them again.
+    // The same command continues, and reports existing rows without replaying them.
     const std::size_t count = files_in(parts).size();
     Process again(arguments, {});
     EXPECT_EQ(wait_for_parts(folder, count + 1), parts);
@@ -301,7 +300,7 @@ TEST(CliSweep, TheLastShardOfTheLargestSweepHasItsNumbers) {
     EXPECT_EQ(later["rows"].get<std::uint64_t>() - later["played"].get<std::uint64_t>(), rows.size());
 }
 
-TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
+TEST(CliSweep, InvalidShotsAreAlsoRows) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene), output = folder.file("a.csv");
     expect_ok(carom(
@@ -316,7 +315,7 @@ TEST(CliSweep, ShotsThatCannotBePlayedAreRowsToo) {
     EXPECT_GT(hit, 3);
 }
 
-TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
+TEST(CliSweep, AFailedShotIsARowAndAnExitStatus) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kStuckScene), output = folder.file("a.csv");
     const ProcessResult result =
@@ -334,7 +333,7 @@ TEST(CliSweep, AShotThatFailsIsARowAndAnExitStatus) {
     EXPECT_EQ(failed + stopped, 8);
 }
 
-TEST(CliSweep, FailuresThatAreThereCount) {
+TEST(CliSweep, FailuresInExistingPartsCount) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kStuckScene), output = folder.file("a.csv");
     std::vector<std::string> command = {"sweep",   scene,   "--vary", "balls.mu_s=list(0.6,0.0)",

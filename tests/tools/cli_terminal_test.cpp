@@ -1,5 +1,4 @@
-// Long work as seen by somebody at a terminal: a line that moves, no trace of it under the final output, and
-// Ctrl-C that ends it.
+// Long work at a terminal: a moving progress line, no trace of it under the final output, and Ctrl-C.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,38 +14,38 @@ class OnATerminal : public LongWork {
     OnATerminal() : LongWork(CAROM_PROGRAM) {}
 };
 
-TEST_F(OnATerminal, RenderMoves) {
+TEST_F(OnATerminal, RenderShowsProgress) {
     const std::string frames = folder_.file("f/%05d.png");
     moves_and_stops({"render", scene_, "--fps", "90000", "--size", "320x180", "-o", frames}, "rendering: [");
 }
 
 // The only visible part of one large picture is its table.
-TEST_F(OnATerminal, OneLargePictureMoves) {
+TEST_F(OnATerminal, OneLargePictureShowsProgress) {
     moves_and_stops({"render", scene_, "--at", "0", "--size", "3200x1800", "-o", folder_.file("%d.png")},
                     "rendering: the table, ");
 }
 
-TEST_F(OnATerminal, ASheetMoves) {
+TEST_F(OnATerminal, ASheetShowsProgress) {
     moves_and_stops(
         {"render", kBreak, "--sheet", "100x50", "--size", "12800x7200", "-o", folder_.file("s.png")},
         "rendering: [");
 }
 
-TEST_F(OnATerminal, MarginMoves) {
+TEST_F(OnATerminal, MarginShowsProgress) {
     moves_and_stops({"margin", kBreak, "--repeat", "1000", "--size", "640x360"}, "run ");
 }
 
-TEST_F(OnATerminal, AccuracyMoves) {
+TEST_F(OnATerminal, AccuracyShowsProgress) {
     moves_and_stops({"accuracy", kBreak, "--repeat", "1000"}, "accuracy, times: [");
 }
 
-TEST_F(OnATerminal, SweepMoves) {
+TEST_F(OnATerminal, SweepShowsProgress) {
     moves_and_stops({"sweep", kBreak, "--vary", "rack.seed=integer(1,9)", "--count", "10000000", "--jobs",
                      "1", "-o", "/dev/null"},
                     "sweep [");
 }
 
-TEST_F(OnATerminal, SimulateMoves) {
+TEST_F(OnATerminal, SimulateShowsProgress) {
     std::string endless(kSmallScene);
     endless +=
         "[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\nmu_b = 0\ne_b = 1\ne_c = 1\nf_c = 0\n[physics]\nball_ball = "
@@ -62,8 +61,8 @@ TEST_F(OnATerminal, SimulateMoves) {
     moves_and_stops({"compare", scene_, scene}, "simulating: ");
 }
 
-// The summary has its own line, and so has every line after it.
-TEST_F(OnATerminal, NothingIsLeftUnderTheSummary) {
+// The summary has its own line, as does every line after it.
+TEST_F(OnATerminal, ProgressLeavesNoTraceUnderTheSummary) {
     Terminal terminal(
         {CAROM_PROGRAM, "render", scene_, "--size", "1280x720", "--to", "1", "-o", folder_.file("%d.png")});
     ASSERT_EQ(terminal.finish(), 0) << terminal.seen();
@@ -74,7 +73,7 @@ TEST_F(OnATerminal, NothingIsLeftUnderTheSummary) {
     EXPECT_EQ(screen[1].substr(0, 19), "to make a film of t") << terminal.seen();
 }
 
-TEST_F(OnATerminal, ANarrowOneHasOneLineToo) {
+TEST_F(OnATerminal, ANarrowTerminalAlsoHasOneLine) {
     for (const unsigned short columns : {50, 20, 10}) {
         Terminal terminal({CAROM_PROGRAM, "sweep", kBreak, "--vary", "rack.seed=integer(1,9)", "--count",
                            "10000000", "--jobs", "1", "-o", "/dev/null"},

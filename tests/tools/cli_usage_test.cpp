@@ -29,7 +29,7 @@ TEST(CliUsage, VersionAndHelpExit0) {
 TEST(CliUsage, HelpNamesEveryDefault) {
     for (const char* command :
          {"simulate", "render", "compare", "margin", "accuracy", "sweep", "check", "impact", "describe"}) {
-        // Options begin with two spaces and a dash; their text may continue on the lines below.
+        // Options begin with two spaces and a dash; their text may continue on the following lines.
         std::string option;
         const auto has_default = [&option] {
             return option.empty() || contains(option, "--help") || contains(option, "default:") ||
@@ -48,7 +48,7 @@ TEST(CliUsage, HelpNamesEveryDefault) {
     }
 }
 
-TEST(CliUsage, OneIsNotMany) {
+TEST(CliUsage, SingularAndPluralAgree) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", "[[ball]]\n[cue]\n[stop]\nevents = 1\n");
     EXPECT_TRUE(contains(carom({"simulate", scene}).out, ": 1 ball, 0.0000 s, 1 event; "));
@@ -66,7 +66,7 @@ TEST(CliUsage, AFullDiskIsAnError) {
     EXPECT_EQ(result.err, "carom: standard output: No space left on device\n");
 }
 
-TEST(CliUsage, AClosedOutputIsAnErrorAndGetsNoFilesNumber) {
+TEST(CliUsage, AClosedOutputIsAnErrorAndIsNotReusedForAFile) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.toml", kSmallScene);
     const std::string record = folder.file("r.json");
@@ -109,7 +109,7 @@ TEST(CliCheck, PrintsThePlan) {
           "isa       scalar (available: scalar", "\ncushions  ", "\njaws      ", "\npockets   "}) {
         EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
     }
-    // By default, every kernel has its own.
+    // By default, every kernel has its own instruction set.
     const std::string free = carom_isa("", {"check", scene}).out;
     const std::string impacts = kernel::name(kernel::fastest_isa(kernel::KernelKind::kTolerance)),
                       clusters = kernel::name(kernel::fastest_isa(kernel::KernelKind::kContactPhase));
@@ -120,7 +120,7 @@ TEST(CliCheck, PrintsThePlan) {
     }
 }
 
-TEST(CliCheck, ShowsFrictionBySlipAndBallsOfTheirOwn) {
+TEST(CliCheck, ShowsFrictionBySlipAndUnlikeBalls) {
     const TemporaryFolder folder;
     const std::string scene =
         folder.write("s.toml",

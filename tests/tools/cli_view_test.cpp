@@ -1,5 +1,5 @@
-// carom view and carom play: pages. The states that their script computes are the engine's, to the bit; a
-// browser shows them, moves in them by keys and pointer, prints nothing on its console, and loads nothing.
+// carom view and carom play: their pages. The script computes the engine's states bit for bit; a browser
+// shows them, navigates by keys and pointer, prints nothing on its console, and loads nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::string stem(const std::string& path) {
 }
 
 /// A record whose balls have names that would end the script, begin a tag, or end a line. Scenes refuse such
-/// names, but a record may come from anywhere.
+/// names, but records may come from anywhere.
 std::string hostile_record(const TemporaryFolder& folder) {
     const std::string file = folder.file("hostile.json");
     EXPECT_EQ(carom({"simulate", folder.write("small.toml", kSmallScene), "-o", file, "--hash"}).status, 0);
@@ -38,8 +38,8 @@ std::string hostile_record(const TemporaryFolder& folder) {
     return folder.write("hostile.json", record.dump());
 }
 
-/// Times at which a page is compared with the engine: outside the
-/// shot, even ones, events and their neighbours, random ones.
+/// Times at which a page is compared with the engine: outside the shot, regular ones, events and their
+/// neighbours, random ones.
 std::vector<double> times_of(const Record& record) {
     std::vector<double> times = {-1.0, 0.0, record.duration, record.duration + 1.0};
     for (int k = 1; k < 300; ++k) times.push_back(record.duration * k / 300.0);
@@ -158,7 +158,7 @@ TEST(View, ABrowserShowsEveryScene) {
         EXPECT_LT(bytes, 200000u) << "the page of a break";
         RecordProperty("bytes_of_the_page_of_a_break", std::to_string(bytes));
     }
-    // Two shots in one page, and how far apart their cue balls are at some instant.
+    // Two shots in one page, and the distance of their cue balls at some instant.
     const std::string other = CAROM_SOURCE_DIR "/scenes/follow.toml";
     const TemporaryFolder more;
     const MadePage two = make_page(more, CAROM_SOURCE_DIR "/scenes/draw.toml", {other});
@@ -176,15 +176,15 @@ TEST(View, ABrowserShowsEveryScene) {
     expect_no_fault(folder, manifest);
 }
 
-TEST(View, APageHoldsItsRecordAndItsPolicy) {
+TEST(View, APageContainsItsRecordAndPolicy) {
     const TemporaryFolder folder;
     const MadePage page = make_page(folder, hostile_record(folder));
     const std::string html = read_file(page.file);
     EXPECT_TRUE(contains(
         html, "content=\"default-src 'none'; base-uri 'none'; form-action 'none'; style-src 'sha256-"));
     EXPECT_FALSE(contains(html, "unsafe"));
-    // Only what the page itself brings ends a script: names of balls cannot. The policy has one hash for the
-    // style and one for each script; the data are two more elements.
+    // Only the page's own scripts end a script; names of balls cannot. The policy has one hash for the style
+    // and one for each script; the data are two more elements.
     const auto count = [&html](const char* text) {
         std::size_t found = 0;
         for (std::size_t at = 0; (at = html.find(text, at)) != std::string::npos; ++at) ++found;
@@ -199,7 +199,7 @@ TEST(View, APageHoldsItsRecordAndItsPolicy) {
     EXPECT_EQ(held.tracks.at(0).id, "</script><script>document.title='x'</script>");
 }
 
-TEST(View, ARecordIsShownAsItIs) {
+TEST(View, ARecordIsShownUnchanged) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("small.toml", kSmallScene), json = folder.file("shot.json"),
                       page = folder.file("shot.html");
@@ -218,7 +218,7 @@ TEST(View, ARecordIsShownAsItIs) {
     EXPECT_TRUE(contains(read_file(page), "simulation only; "));
 }
 
-TEST(View, WithMarginThePageHasEveryFrame) {
+TEST(View, MarginAddsEveryFrameToThePage) {
     const TemporaryFolder folder;
     const std::string page = folder.file("shot.html");
     const ProcessResult made =

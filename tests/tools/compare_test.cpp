@@ -1,4 +1,4 @@
-// Differences between two shots with answers known on paper.
+// Differences between two shots with results known on paper.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string lone(const std::string& position, const std::string& velocity = "[0,
            "\nvelocity = " + velocity + "\n" + more;
 }
 
-TEST(Difference, OfAShotAndItselfIsNone) {
+TEST(Difference, OfAShotToItselfIsZero) {
     const ShotDifference d = between(lone("[0, 0]", "[1, 0.5]"), lone("[0, 0]", "[1, 0.5]"));
     EXPECT_TRUE(d.same_bits);
     EXPECT_TRUE(d.within(0.0));
@@ -41,7 +41,7 @@ TEST(Difference, OfAShotAndItselfIsNone) {
     EXPECT_EQ(d.balls[0].largest, 0.0);
 }
 
-TEST(Difference, OfAShiftIsTheShift) {
+TEST(Difference, OfAShiftedShotIsTheShift) {
     const ShotDifference d = between(lone("[0, 0]", "[1, 0.5]"), lone("[0.03, 0.04]", "[1, 0.5]"));
     EXPECT_FALSE(d.same_bits);
     EXPECT_NEAR(d.balls[0].end, 0.05, 1e-15);
@@ -52,7 +52,7 @@ TEST(Difference, OfAShiftIsTheShift) {
     EXPECT_FALSE(d.events.first_apart);
 }
 
-// A ball thrown up is v^2 / 2g above one at rest after v / g: between two events, and back at the end.
+// A ball thrown up is v^2 / 2g above a resting one after v / g, between two events, and back at the end.
 TEST(Difference, FindsTheLargestBetweenEvents) {
     for (const double v : {1.0, 2.0}) {
         const std::string up = "[0, 0, " + std::to_string(v) + "]";
@@ -64,8 +64,8 @@ TEST(Difference, FindsTheLargestBetweenEvents) {
     }
 }
 
-// The same from samples: no instant of a real shot is farther apart than the largest distance, and one is as
-// far.
+// The same from samples: no sampled instant of a real shot exceeds the largest distance, and one nearly
+// reaches it.
 TEST(Difference, IsTheLargestOfManySamples) {
     const auto scene = [](const char* name) {
         return std::string(CAROM_SOURCE_DIR) + "/scenes/" + name + ".toml";
@@ -85,8 +85,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
                 largest = std::max(largest, (x.position - y.position).norm());
         }
         EXPECT_LE(largest, ball.largest + 1e-12) << ball.id;
-        // At 12 m/s, the faster of both, half a sample is 2.4 mm of path for each; a ball that is gone in one
-        // shot may continue.
+        // At 12 m/s, the faster of both, half a sample is 2.4 mm of path for each ball; a ball that is gone
+        // in one shot may continue in the other.
         if (!ball.a.gone() && !ball.b.gone()) {
             EXPECT_GE(largest, ball.largest - 0.005) << ball.id;
         }
@@ -94,9 +94,8 @@ TEST(Difference, IsTheLargestOfManySamples) {
     }
 }
 
-// Balls in the same pocket are equal, however they fell; it does not count either that they are put on the
-// bottom at once, a little later in one shot than in the other.
-TEST(Difference, OfBallsInOnePocketIsNone) {
+// Balls in the same pocket are equal, however they fell, even if one is placed at the bottom slightly later.
+TEST(Difference, OfBallsInOnePocketIsZero) {
     const auto shot = [](const char* speed) {
         return std::string("[[ball]]\nid = \"a\"\nposition = [0.2, 0.2]\nvelocity = [") + speed + ", " +
                speed + "]\nspin = [-20, 20, 0]\n";
@@ -119,7 +118,7 @@ TEST(Difference, OfBallsInOnePocketIsNone) {
     EXPECT_FALSE(other.within(1e3)) << "one in a pocket and one on the table are never equal";
 }
 
-TEST(Difference, GoesAsFarAsBothAreKnown) {
+TEST(Difference, EndsWhereEitherShotEnds) {
     const std::string whole = lone("[0, 0]", "[1, 0]"),
                       stopped = lone("[0, 0]", "[1, 0]", "[stop]\ntime = 0.25\n");
     const ShotDifference d = between(whole, stopped);
@@ -128,13 +127,13 @@ TEST(Difference, GoesAsFarAsBothAreKnown) {
     EXPECT_GT(d.balls[0].end, 0.1);
     EXPECT_FALSE(d.within(0.1));
     EXPECT_FALSE(d.events.ends_alike());
-    // At rest is known forever: the longer shot counts.
+    // Rest is known forever, so the longer shot counts.
     const Record slow = played(lone("[0, 0]", "[0.1, 0]")), fast = played(whole);
     EXPECT_EQ(difference(slow, fast).until, fast.duration);
     EXPECT_NEAR(difference(slow, fast).balls[0].largest, difference(slow, fast).balls[0].end, 1e-15);
 }
 
-TEST(Difference, ComparesTheBallsThatBothHaveByTheirNames) {
+TEST(Difference, ComparesCommonBallsByName) {
     const auto two = [](const char* first, const char* second) {
         return std::string("[[ball]]\nid = \"") + first +
                "\"\nposition = [0.5, 0.5]\nvelocity = [0, 0.5]\n[[ball]]\nid = \"" + second +
@@ -148,7 +147,7 @@ TEST(Difference, ComparesTheBallsThatBothHaveByTheirNames) {
     EXPECT_EQ(d.balls[0].id, "b");
     EXPECT_EQ(d.balls[0].largest, 0.0);
     EXPECT_FALSE(d.within(1.0)) << "other balls are another shot";
-    // The same balls in another order are the same, and so are events that name them in another order.
+    // Reordered balls are the same, and so are events that name them in another order.
     const std::string swapped =
         "[[ball]]\nid = \"b\"\nposition = [0.5, 0.8]\n[[ball]]\nid = \"a\"\nposition = [0.5, 0.5]\nvelocity "
         "= [0, 0.5]\n";

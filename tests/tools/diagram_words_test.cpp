@@ -1,4 +1,4 @@
-// The words below a drawing, and the title above it.
+// The words below a drawing and the title above it.
 #include "report/diagram_words.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ Record played_scene(const std::string& scene) {
     return simulate(make_plan(read_scene(CAROM_SOURCE_DIR "/scenes/" + scene), kernel::Isa::kScalar));
 }
 
-TEST(DiagramWords, LeaveOutWhatIsZero) {
+TEST(DiagramWords, OmitZeros) {
     Cue cue;
     cue.speed = 2.0;
     cue.aim_deg = 90.0;
@@ -30,7 +30,7 @@ TEST(DiagramWords, LeaveOutWhatIsZero) {
               "cue 4.5 mph, aim 90.00 deg, elevation 20 deg, tip 0.20 left, 0.30 low radii");
 }
 
-TEST(DiagramWords, SayThePointOfACaromShotAndNothingFallsOnlyWherePocketsAre) {
+TEST(DiagramWords, StateCaromPointsAndFallsOnlyWithPockets) {
     EXPECT_TRUE(outcome_words(played_scene("three_cushion.toml"))
                     .starts_with("4 cushions before the second ball: a point of three cushions; "))
         << outcome_words(played_scene("three_cushion.toml"));
@@ -38,7 +38,7 @@ TEST(DiagramWords, SayThePointOfACaromShotAndNothingFallsOnlyWherePocketsAre) {
     EXPECT_TRUE(outcome_words(played_scene("draw.toml")).starts_with("1 falls into the "));
 }
 
-TEST(DiagramWords, StatePlacesAndRadiusInTheUnitsAsked) {
+TEST(DiagramWords, StatePlacesAndRadiusInTheChosenUnits) {
     const Record shot = played_scene("three_cushion.toml");
     EXPECT_EQ(places_words(shot, Units::kMetric),
               "metres: white at 0.500, 0.710; yellow at 0.710, 0.710; red at 0.710, 2.130; radius 0.0307");
@@ -47,7 +47,7 @@ TEST(DiagramWords, StatePlacesAndRadiusInTheUnitsAsked) {
     EXPECT_EQ(places_words(played_scene("eight_ball_break.toml"), Units::kMetric), "") << "too many";
 }
 
-TEST(DiagramWords, TakeTheTitleFromTheFirstComment) {
+TEST(DiagramWords, UseTheTitleInTheFirstComment) {
     EXPECT_EQ(scene_title("# Stop shot: straight in.\n[table]\n"), "Stop shot");
     EXPECT_EQ(scene_title("# On a table of 2.3 m, as in cafes. More.\n"), "On a table of 2.3 m, as in cafes");
     EXPECT_EQ(scene_title("# Two balls.\n"), "Two balls");

@@ -1,10 +1,10 @@
 // Every command that README.md, CONTRIBUTING.md and docs/ print works as printed, and prints what they say.
 //
-// A ```sh block is run as it is, in a folder that looks like a clone after its build; the blocks of one page
-// run in order in one folder. Lines of a ```text block right after it must appear in the output, in this
-// order; "..." stands for any lines. Two comments before a block change that:
+// A ```sh block runs as it is, in a folder like a clone after its build; the blocks of one page run in order
+// in one folder. The lines of a ```text block right after it must appear in the output, in this order; "..."
+// stands for any lines. Two comments before a block change that:
 //   <!-- not run by the tests: WHY -->
-//   <!-- run by the tests where this succeeds: COMMAND --> Such a command asks for a package of kConditions;
+//   <!-- run by the tests where this succeeds: COMMAND --> Such a command tests for a package of kConditions;
 //   if that is installed, the block must run. A page with a block that did not run is skipped, with the
 //   reason, after all others have run.
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ class Clone {
         ProcessOptions options;
         options.folder = folder_.path().string();
         options.environment = {{"CAROM_ISA", ""}, {"HOME", folder_.file("home")}};
-        // The system's own tools first: another Python without packages may come first.
+        // The system's own tools first: another Python without packages might precede them.
         options.environment.emplace_back("PATH", std::string("/usr/bin:/bin:") + std::getenv("PATH"));
         return run_process({"/bin/bash", "-euo", "pipefail", "-c", script}, options);
     }
@@ -132,7 +132,7 @@ const std::map<std::string, std::string> kConditions = {
     {"ffmpeg -version && ffmpeg -encoders | grep libwebp_anim", "ffmpeg"},
 };
 
-/// Why a block is not run here; "" if it is run. A comment that only resembles a reason is a failure.
+/// Why a block does not run here, or "" if it does. A comment that only resembles a reason is a failure.
 std::string reason_not_to_run(const Clone& clone, const std::string& condition) {
     if (condition.empty()) return "";
     const auto known = kConditions.find(condition);
@@ -149,7 +149,7 @@ std::string reason_not_to_run(const Clone& clone, const std::string& condition) 
     return package + " is not installed";
 }
 
-/// A paragraph of a page with the comments in front of it that say where its numbers come from:
+/// A paragraph of a page with the comments before it that state the sources of its numbers:
 ///     <!-- figure: TEXT ; COMMAND -->         COMMAND prints TEXT
 ///     <!-- constant: TEXT ; NAME FILE -->     TEXT begins with the value of NAME in FILE
 struct Paragraph {
@@ -188,7 +188,7 @@ double constant_of(const std::string& name, const std::string& file) {
     return found ? std::stod(value.str(1)) : std::nan("");
 }
 
-/// The wrong figures of a page. @param run  returns what a command prints
+/// The wrong figures of a page. @param run  returns a command's output
 std::vector<std::string> figure_faults(const std::string& page,
                                        const std::function<std::string(const std::string&)>& run) {
     std::vector<std::string> faults;
@@ -216,8 +216,8 @@ std::vector<std::string> figure_faults(const std::string& page,
     return faults;
 }
 
-/// Matches of `claim` in a page's sentences that are in no comment of their paragraph. Headings, tables, code
-/// and targets of links do not count.
+/// Matches of `claim` in a page's sentences that no comment of their paragraph mentions. Headings, tables,
+/// code and link targets do not count.
 std::vector<std::string> unchecked(const std::string& page, const std::regex& claim) {
     static const std::regex left_out("`[^`]*`|\\]\\([^)]*\\)");
     std::vector<std::string> found;
@@ -238,7 +238,7 @@ std::vector<std::string> unchecked_numbers(const std::string& page) {
     return unchecked(page, number);
 }
 
-/// Shares and counts that sentences promise: "four of five", "81 %", "6 scripts".
+/// Shares and counts stated in sentences: "four of five", "81 %", "6 scripts".
 std::vector<std::string> unchecked_promises(const std::string& page) {
     static const std::string number =
         "(one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|[0-9][0-9.]*)";
@@ -248,7 +248,7 @@ std::vector<std::string> unchecked_promises(const std::string& page) {
     return unchecked(page, promise);
 }
 
-TEST(Figures, AFalseOneIsSeen) {
+TEST(Figures, AFalseOneIsDetected) {
     const auto run = [](const std::string& command) { return command == "c" ? "gain 2.02" : "nothing"; };
     EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\n\nA gain of 2.02\nis small.\n", run).size(), 0u);
     EXPECT_EQ(figure_faults("<!-- figure: 2.02 ; c -->\nA gain of 2.03.\n\n2.02\n", run).size(), 1u);
@@ -269,12 +269,12 @@ TEST(Figures, AFalseOneIsSeen) {
     EXPECT_EQ(unchecked_promises("It pots four of five.\n\nFive lessons, in `81 %`, within 3 s.\n").size(),
               2u);
     EXPECT_EQ(unchecked_promises("<!-- figure: 81 % ; c -->\nIt pots 81 %, not 82 %.\n").size(), 1u);
-    // A sentence without an empty line above it is one, too.
+    // A sentence directly below another element also counts.
     for (const char* above : {"```\n81 %\n```", "```sh\na\n\n# 81 %\n```", "# Title", "| 81 % |", "- 3 s"})
         EXPECT_EQ(unchecked_promises(above + std::string("\nIt pots four of five.\n")).size(), 1u) << above;
 }
 
-TEST(Figures, EveryShareAndCountThatAGuidePromisesHasItsSource) {
+TEST(Figures, EveryShareAndCountInAGuideHasItsSource) {
     for (const std::string& name : pages())
         if (name == "README.md" || starts_with(name, "docs/guide/"))
             for (const std::string& text : unchecked_promises(read_page(name)))
@@ -288,7 +288,7 @@ TEST(Figures, EveryNumberOfTheHardCasesHasItsSource) {
 
 class Docs : public testing::TestWithParam<std::string> {};
 
-TEST_P(Docs, FiguresAreWhatTheProgramPrints) {
+TEST_P(Docs, FiguresMatchTheProgramsOutput) {
     const Clone clone;
     for (const std::string& fault :
          figure_faults(read_page(GetParam()), [&clone](const std::string& command) {
@@ -326,15 +326,15 @@ TEST_P(Docs, CommandsWorkAsPrinted) {
     if (!not_run.empty()) GTEST_SKIP() << not_run;
 }
 
-// A command with a file belongs in a block, where it is run; a mention may only name existing options.
-TEST_P(Docs, MentionsOfTheProgramAreRight) {
+// A command with a file belongs in a block, where it runs; a mention may only name existing options.
+TEST_P(Docs, MentionsOfTheProgramAreCorrect) {
     static std::map<std::string, std::string> helps;
     const std::regex span("`(?:build/release/)?carom ([a-z]+)([^`]*)`"), option("--[a-z][a-z-]*");
     const std::string page = read_page(GetParam());
     for (std::sregex_iterator it(page.begin(), page.end(), span), end; it != end; ++it) {
         const std::string whole = it->str(0), command = it->str(1), rest = it->str(2);
         EXPECT_EQ(rest.find(".toml"), rest.npos) << whole << " is not run: make it a ```sh block";
-        // "bench kernel": the options of both count.
+        // "bench kernel": both have options.
         std::smatch word;
         const std::string inner = std::regex_search(rest, word, std::regex("^ ([a-z]+)")) ? word.str(1) : "";
         const std::string key = command + " " + inner;
@@ -376,7 +376,7 @@ TEST(Readme, PrintsCommandsAndNamesEveryFolder) {
     for (const auto& entry : fs::directory_iterator(CAROM_SOURCE_DIR)) {
         const std::string folder = entry.path().filename().string();
         if (!entry.is_directory() || folder[0] == '.' || folder == "build" || folder == "out") continue;
-        if (folder == "frames") continue;  // what a reader who tries README.md leaves behind
+        if (folder == "frames") continue;  // left by a reader who tried README.md
         EXPECT_NE(readme.find("| `" + folder + "/` |"), std::string::npos) << folder;
     }
 }

@@ -1,5 +1,5 @@
-// docs/ says about file formats what the program says about itself. If a test fails here, renew the pages
-// with tools/renew_formats.py.
+// docs/ describes file formats as the program does. If a test fails here, renew the pages with
+// tools/renew_formats.py.
 #include "commands/describe/formats.h"
 
 #include <gtest/gtest.h>
@@ -18,18 +18,18 @@ using Json = nlohmann::json;
 
 constexpr const char* kStale = " is stale; run tools/renew_formats.py";
 
-TEST(Formats, TheSchemaOfScenesIsThatOfTheTables) {
+TEST(Formats, TheSchemaOfScenesMatchesTheTables) {
     EXPECT_TRUE(test::read_source("docs/reference/scene.schema.json") == scene_schema())
         << "docs/reference/scene.schema.json" << kStale;
 }
 
-TEST(Formats, TheSchemaOfRecordsIsThatOfTheTables) {
+TEST(Formats, TheSchemaOfRecordsMatchesTheTables) {
     EXPECT_TRUE(test::read_source("docs/reference/record.schema.json") == record_schema())
         << "docs/reference/record.schema.json" << kStale;
     EXPECT_EQ(record_schema().find("null\n"), std::string::npos) << "a part of the tables is missing";
 }
 
-TEST(Formats, ThePageOfSceneFilesIsWhatTheProgramPrints) {
+TEST(Formats, ThePageOfSceneFilesMatchesTheProgram) {
     const std::string printed = scene_format();
     EXPECT_TRUE(test::read_source("docs/reference/scene_format.md") == printed)
         << "docs/reference/scene_format.md" << kStale;

@@ -1,4 +1,4 @@
-// Every event belongs to exactly one frame, and the sums lose nothing.
+// Every event belongs to exactly one frame, and the sums are complete.
 #include "base/frame_costs.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(FrameOf, AnEventAtAFrameBelongsToThatFrame) {
     }
 }
 
-TEST(FrameOf, HoldsItsDefinitionForAnyTime) {
+TEST(FrameOf, MatchesItsDefinitionAtAnyTime) {
     reference::Generator rng(3);
     for (int i = 0; i < 100000; ++i) {
         const double fps = rng.uniform(1.0, 300.0), from = rng.uniform(0.0, 5.0),
@@ -49,14 +49,14 @@ TEST(FrameOf, HoldsItsDefinitionForAnyTime) {
     }
 }
 
-TEST(FrameOf, OutsideGoesToTheFirstOrLast) {
+TEST(FrameOf, TimesOutsideBelongToTheFirstOrLastFrame) {
     EXPECT_EQ(frame_of(-1.0, 0.0, 60.0, 10), 0);
     EXPECT_EQ(frame_of(0.5, 1.0, 60.0, 10), 0);
     EXPECT_EQ(frame_of(1e300, 0.0, 60.0, 10), 9);
     EXPECT_EQ(frame_of(3.0, 0.0, 60.0, 1), 0);
 }
 
-TEST(CostsByFrame, SumsByFrameAndLosesNothing) {
+TEST(CostsByFrame, SumsByFrameAreComplete) {
     const std::vector<FrameCost> sums =
         costs_by_frame(record_with_events({0.0, 0.05, 0.1, 0.1, 0.19999, 0.5}), 0.0, 10.0, 4);
     ASSERT_EQ(sums.size(), 4u);
@@ -64,13 +64,13 @@ TEST(CostsByFrame, SumsByFrameAndLosesNothing) {
     EXPECT_EQ(sums[1].events, (std::vector<std::size_t>{2, 3, 4}));
     EXPECT_TRUE(sums[2].events.empty());
     EXPECT_EQ(sums[3].events, std::vector<std::size_t>{5});
-    EXPECT_DOUBLE_EQ(sums[0].simulate_ms(), 5000e-6 + 2 * 1200e-6);  // with the first detection
+    EXPECT_DOUBLE_EQ(sums[0].simulate_ms(), 5000e-6 + 2 * 1200e-6);  // including the first detection
     EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 3 * 1200e-6);
     EXPECT_DOUBLE_EQ(sums[1].kernel_ms, 3 * 30e-6);
     EXPECT_EQ(sums[2].simulate_ms(), 0.0);
 }
 
-TEST(CostsByFrame, PartsAddUpAndClustersAreNotKernel) {
+TEST(CostsByFrame, PartsAddUpAndClustersCountSeparately) {
     Record record = record_with_events({0.05, 0.05, 0.15});
     record.events[1].type = EventType::kBallCluster;
     const std::vector<FrameCost> sums = costs_by_frame(record, 0.0, 10.0, 2);
@@ -83,12 +83,12 @@ TEST(CostsByFrame, PartsAddUpAndClustersAreNotKernel) {
     EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 1200e-6);
 }
 
-// The times are given: what happens between frame_done and next_starts belongs to no frame.
-TEST(FrameWalls, CountsFramesAndNotWhatIsBetweenThem) {
+// The times are given: work between frame_done and next_starts belongs to no frame.
+TEST(FrameWalls, ExcludesTheTimeBetweenFrames) {
     std::vector<double> moments = {10.0, 11.0, 14.5, 20.0, 22.0, 22.5};
     std::size_t at = 0;
     FrameWalls walls([&] { return moments.at(at++); });
-    walls.frame_done();   // at 10: the first frame, whose start is not known
+    walls.frame_done();   // at 10: the first frame, with unknown start
     walls.next_starts();  // at 11
     walls.frame_done();   // at 14.5
     walls.next_starts();  // at 20
@@ -102,7 +102,7 @@ TEST(CostsByFrame, AgreesWithTheRendererOnTheFrames) {
     for (int i = 0; i < 1000; ++i) {
         const double fps = rng.uniform(1.0, 200.0), duration = rng.uniform(0.0, 20.0);
         const long frames = render::frame_count(0.0, duration, fps);
-        // The last event of a shot is at its duration: never past the last frame's interval.
+        // A shot's last event is at its duration, never past the last frame's interval.
         EXPECT_EQ(frame_of(duration, 0.0, fps, frames + 5), frames - 1);
     }
 }
@@ -118,7 +118,7 @@ TEST(Percentile, IsTheNearestRank) {
     EXPECT_EQ(percentile({7.0}, 99.0), 7.0);
 }
 
-TEST(Median, TakesTheMiddle) {
+TEST(Median, IsTheMiddleValue) {
     EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
     EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 2.5);
 }

@@ -1,4 +1,4 @@
-// carom impact, line by line: right answers to right lines, an error and no crash for all others.
+// carom impact, line by line: correct lines have correct results, all others an error and no crash.
 #include "commands/impact/impact_line.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ Json cushion_line() {
             {"w", {0.0, 2.0, 3.0}}};
 }
 
-TEST(ImpactLine, MassesThatDiffer) {
+TEST(ImpactLine, UnequalMasses) {
     ImpactSettings by_tolerance = settings();
     by_tolerance.substeps.reset();
     by_tolerance.tolerance = 1e-9;
@@ -58,7 +58,8 @@ TEST(ImpactLine, MassesThatDiffer) {
     const ImpactAnswer answer = answer_impact(line.dump(), by_tolerance);
     ASSERT_TRUE(answer.ok) << answer.json;
     const Json out = Json::parse(answer.json);
-    // Along the line of centres the cloth takes little: (m1 - e m2)/(m1 + m2) of the approach speed remains.
+    // Along the line of centres the cloth matters little: (m1 - e m2)/(m1 + m2) of the approach speed
+    // remains.
     EXPECT_NEAR(out["v1"][0].get<double>(), (1.0 - 2.0 * 0.95) / 3.0, 5e-3);
     EXPECT_NEAR(out["v2"][0].get<double>(), 1.95 / 3.0, 5e-3);
     const auto error_of = [](const Json& wrong, const ImpactSettings& with) {
@@ -66,13 +67,12 @@ TEST(ImpactLine, MassesThatDiffer) {
         EXPECT_FALSE(refused.ok);
         return Json::parse(refused.json)["error"].get<std::string>();
     };
-    // Marched, the same within its error.
     const ImpactAnswer marched = answer_impact(line.dump(), settings());
     ASSERT_TRUE(marched.ok) << marched.json;
     EXPECT_NEAR(Json::parse(marched.json)["v2"][0].get<double>(), out["v2"][0].get<double>(), 2e-3);
     EXPECT_EQ(error_of(line, settings(ImpactSettings::Method::kInelastic)),
               "\"m2\": only --method mathavan solves different balls; leave it out");
-    // A larger ball 2 stands higher, and the small one is pressed on the cloth.
+    // A larger ball 2 is higher, and presses the small one onto the cloth.
     line["params"]["R2"] = 0.03;
     line["r2"] = {2.0 * std::sqrt(0.028575 * 0.03), 0.0, 0.03};
     const ImpactAnswer tilted = answer_impact(line.dump(), by_tolerance);
@@ -85,7 +85,7 @@ TEST(ImpactLine, MassesThatDiffer) {
     EXPECT_EQ(error_of(line, by_tolerance), "\"m2\": expected at most a factor of 1000000 from m");
 }
 
-TEST(ImpactLine, BallBallIsTheKernelsResult) {
+TEST(ImpactLine, BallBallMatchesTheKernel) {
     const ImpactAnswer answer = answer_impact(ball_ball_line().dump(), settings());
     ASSERT_TRUE(answer.ok) << answer.json;
     const Json out = Json::parse(answer.json);
@@ -105,7 +105,7 @@ TEST(ImpactLine, BallBallIsTheKernelsResult) {
     EXPECT_EQ(out.size(), 6u);
 }
 
-TEST(ImpactLine, ByToleranceUnlessSubstepsAreAskedFor) {
+TEST(ImpactLine, ByToleranceUnlessSubstepsAreGiven) {
     ImpactSettings by_tolerance = settings();
     by_tolerance.substeps.reset();
     const ImpactAnswer answer = answer_impact(ball_ball_line().dump(), by_tolerance);
@@ -131,7 +131,7 @@ TEST(ImpactLine, ElasticExchangesTheNormalVelocities) {
     EXPECT_EQ(out["w1"], (Json{0.0, 3.0, 4.0}));
 }
 
-TEST(ImpactLine, InelasticLosesWhatTheRestitutionSays) {
+TEST(ImpactLine, InelasticLosesEnergyByTheRestitution) {
     Json line = ball_ball_line();
     line["params"]["mu_b"] = 0.0;
     const Json out =
@@ -140,7 +140,7 @@ TEST(ImpactLine, InelasticLosesWhatTheRestitutionSays) {
     EXPECT_EQ(out["v1"][1], 0.25);
 }
 
-TEST(ImpactLine, CushionIsTheEnginesResult) {
+TEST(ImpactLine, CushionMatchesTheEngine) {
     const ImpactAnswer answer = answer_impact(cushion_line().dump(), settings());
     ASSERT_TRUE(answer.ok) << answer.json;
     Vec3 v(1.0, 0.5, 0.0), w(0.0, 2.0, 3.0);
@@ -154,7 +154,7 @@ TEST(ImpactLine, CushionIsTheEnginesResult) {
     EXPECT_LT(v.x(), 0.0);
 }
 
-TEST(ImpactLine, EveryModelOfTheEnginesTableIsThere) {
+TEST(ImpactLine, EveryModelOfTheEngineIsAvailable) {
     Json line = cushion_line();
     line["model"] = "";
     std::string known;
@@ -179,7 +179,7 @@ void expect_list(const Json& got, std::initializer_list<double> want) {
     for (const double x : want) EXPECT_NEAR(got.at(k++).get<double>(), x, 1e-13 * std::max(1.0, std::abs(x)));
 }
 
-// The reference values of landings, of balls in the air and of a nose above the cloth
+// The reference values of landings, airborne balls and a nose above the cloth
 // (tests/engine/airborne_laws_test.cpp).
 TEST(ImpactLine, Cloth) {
     const Json line = {
@@ -223,7 +223,7 @@ TEST(ImpactLine, ANoseInTheAir) {
     expect_list(out["w"], {4.17851395710517, 41.4059844837882, -13.4953753931198});
 }
 
-TEST(ImpactLine, BallsThatDoNotApproachLeaveAsTheyCame) {
+TEST(ImpactLine, BallsThatDoNotApproachAreUnchanged) {
     Json line = ball_ball_line();
     line["v1"] = {-1.0, 0.0, 0.0};
     const ImpactAnswer answer = answer_impact(line.dump(), settings());
@@ -232,7 +232,7 @@ TEST(ImpactLine, BallsThatDoNotApproachLeaveAsTheyCame) {
     EXPECT_EQ(Json::parse(answer.json)["steps"], 0);
 }
 
-TEST(ImpactLine, HandsTheIdBack) {
+TEST(ImpactLine, ReturnsTheId) {
     Json line = cushion_line();
     line["id"] = {"any", 1};
     EXPECT_EQ(Json::parse(answer_impact(line.dump(), settings()).json)["id"], line["id"]);
@@ -257,7 +257,7 @@ std::string changed(const Json& line, const std::string& pointer, const Json& va
     return changed_json(line, pointer, value).dump();
 }
 
-// Four digits make a unit vector: its length is normalised.
+// Four digits suffice for a unit vector, which is then normalised.
 TEST(ImpactLine, ANormalMayBeRounded) {
     const Json line = cushion_line();
     const Json exact = Json::parse(answer_impact(changed(line, "/normal", {-0.6, 0.8}), settings()).json);
@@ -267,7 +267,7 @@ TEST(ImpactLine, ANormalMayBeRounded) {
         EXPECT_NEAR(rounded["v"][i].get<double>(), exact["v"][i].get<double>(), 1e-15);
 }
 
-// Every key of a line, of its params and of its answer is in the row of its kind.
+// The row of each kind lists all keys of a line, its params and its result.
 TEST(ImpactLine, TheHelpListsTheKeys) {
     const std::string help = impact_keys();
     for (const Json& line : {ball_ball_line(), cushion_line()}) {
@@ -287,7 +287,7 @@ TEST(ImpactLine, TheHelpListsTheKeys) {
     }
 }
 
-TEST(ImpactLine, SaysWhatIsWrong) {
+TEST(ImpactLine, ExplainsErrors) {
     EXPECT_EQ(error_of(""), "not valid JSON (at byte 1)");
     EXPECT_EQ(error_of("[1, 2]"), "expected a JSON object");
     EXPECT_EQ(error_of("{}"), "the key \"kind\" is missing");
@@ -350,7 +350,7 @@ TEST(ImpactLine, HostileLinesAreErrors) {
     nan.replace(nan.find("0.95"), 4, "NaN");
     EXPECT_NE(error_of(nan).find("not valid JSON"), std::string::npos);
     EXPECT_NE(error_of(whole + whole).find("not valid JSON"), std::string::npos);
-    // Finite, but its square is not: the answer is an error or finite, never NaN.
+    // Finite, but its square is not: the result is an error or finite, never NaN.
     const std::string huge = changed(ball_ball_line(), "/v1/0", 1e300);
     const ImpactAnswer answer = answer_impact(huge, settings());
     EXPECT_EQ(answer.json.find("null"), std::string::npos) << answer.json;
@@ -369,7 +369,7 @@ TEST(ImpactLine, AnyChangedLineIsAnsweredInOneLine) {
         const std::size_t at = rng.next() % line.size();
         line[at] = static_cast<char>(rng.next());
         const ImpactAnswer answer = answer_impact(line, settings());
-        const Json json = Json::parse(answer.json);  // throws if it is no JSON
+        const Json json = Json::parse(answer.json);  // throws if it is not JSON
         ASSERT_TRUE(json.is_object());
         ASSERT_EQ(answer.json.find('\n'), std::string::npos);
         ASSERT_EQ(answer.ok, !json.contains("error"));

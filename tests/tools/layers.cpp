@@ -1,4 +1,4 @@
-// The layers of the design, and the rooms inside them, as a check of what every file includes.
+// The design's layers, and the rooms inside them, as a check of every file's includes.
 #include "layers.h"
 
 #include <algorithm>
@@ -17,13 +17,13 @@ namespace fs = std::filesystem;
 /// From the bottom up: a layer may use itself and those before it.
 constexpr std::array<std::string_view, 6> kLayers = {"kernel", "engine", "games", "render", "tools", "lab"};
 constexpr int kNoLayer = -1;
-/// The C interface is beside the games: it uses what they may use, and nothing uses it.
+/// The C interface is beside the games: it may use the same layers, and no layer uses it.
 constexpr std::string_view kCInterface = "capi";
 constexpr int kCInterfaceLayer = 2;
-/// The Python package is beside the program: it uses what the program may use, and nothing uses it.
+/// The Python package is beside the program: it may use the same layers, and no layer uses it.
 constexpr std::string_view kPython = "python";
 constexpr int kPythonLayer = 4;
-/// So is carom.wasm: the outlines of its tables and the words of its verdicts are the program's.
+/// So is carom.wasm, which uses the program's table outlines and verdict texts.
 constexpr std::string_view kWeb = "web";
 constexpr int kWebLayer = 4;
 /// The laboratory may include anything, and nothing includes it, not even tests of the product or examples.
@@ -31,7 +31,7 @@ constexpr std::string_view kLab = "lab";
 constexpr std::array<std::string_view, 2> kBesideTheProduct = {"tests", "examples"};
 
 /// The rooms of one layer. A toolbox includes toolboxes to its left; a station, one step on the data's path,
-/// includes toolboxes. Stations never include each other: they meet only in public types. Files in the folder
+/// includes toolboxes. Stations never include each other: they share only public types. Files in the folder
 /// itself are left of all.
 struct Rooms {
     std::string_view folder;
@@ -43,17 +43,17 @@ const std::array<Rooms, 5> kRooms = {{
     {"kernel/src", {"unlike"}, {"march", "tolerance", "contact_phase"}},
     {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch", "tangent"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
-    // Inner rooms come before the rooms that contain them.
+    // Inner rooms precede the rooms that contain them.
     {"tools/carom/commands",
      {},
      {"simulate", "render", "view", "export", "compare", "sweep", "check", "impact", "describe", "accuracy",
       "diagram", "judge", "play", "fit", "sensitivity", "solve", "margin"}},
     {"tools/carom", {"base", "page", "report"}, {"commands"}, true},
 }};
-/// Public headers about what a station of the engine made or does. No toolbox of the engine knows them.
+/// Public headers about products or work of an engine station. No toolbox of the engine includes them.
 constexpr std::array<std::string_view, 4> kHeadersOfStations = {
     "carom/engine/plan.h", "carom/engine/simulate.h", "carom/engine/variation.h", "carom/engine/verify.h"};
-/// Folders that others may use although they are not public headers: who, and what.
+/// Folders that some others may use although they are not public headers.
 struct Door {
     std::string_view from, to;
 };
@@ -86,7 +86,7 @@ struct Include {
     int line = 0;
 };
 
-/// The directive of one line, if it is an include: with any spacing, and #import and #include_next as well.
+/// Parses one line as an include, with any spacing; also #import and #include_next.
 bool parse_include(std::string_view line, Include& include) {
     const auto skip_space = [&line] {
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -160,8 +160,8 @@ std::string house_of(const std::string& path) {
     return path.substr(0, second == path.npos ? first : second);
 }
 
-/// Position of a room from the left: -1 for the folder itself, toolboxes, then stations; -2 if there is no
-/// such room.
+/// Position of a room from the left: -1 for the folder itself, then toolboxes, then stations; -2 for an
+/// unknown room.
 int place_of(const Rooms& rooms, std::string_view path) {
     const std::string_view rest = path.substr(rooms.folder.size() + 1);
     const std::size_t slash = rest.find('/');
@@ -175,7 +175,7 @@ int place_of(const Rooms& rooms, std::string_view path) {
     return -2;
 }
 
-/// `from` and `to` lie in the folder of these rooms.
+/// `from` and `to` are in the folder of these rooms.
 std::string room_violation(const Rooms& rooms, const std::string& from, const std::string& to) {
     const int here = place_of(rooms, from), there = place_of(rooms, to);
     if (here == -1 && rooms.top_uses_rooms) return "";
@@ -228,7 +228,7 @@ std::string public_violation(const fs::path& root, const std::string& from, int 
     return "";
 }
 
-/// The file that a quoted include names, below `root`: beside the file, then by room. Empty if there is none.
+/// The file that a quoted include names, below `root`: beside the file, then by room. Empty if not found.
 std::string included_file(const fs::path& root, const fs::path& file, std::string_view name) {
     std::vector<fs::path> folders = {file.parent_path(), root / house_of(path_below(root, file))};
     for (const std::string_view base : {"", "kernel", "kernel/src", "engine/src", "render/src", "games/src",
@@ -239,7 +239,7 @@ std::string included_file(const fs::path& root, const fs::path& file, std::strin
     return "";
 }
 
-/// The C interface's own header, which lies in no folder of a layer's name.
+/// The C interface's header, which is in no folder with a layer's name.
 constexpr std::string_view kCHeader = "carom/carom.h";
 
 std::string include_violation(const fs::path& root, const fs::path& file, int layer, const Include& include) {

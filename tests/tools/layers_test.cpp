@@ -1,4 +1,4 @@
-// No include points upwards; and the check itself detects one that does.
+// No include points upwards; and the check detects one that does.
 #include "layers.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ std::vector<std::string> missing(const std::set<std::string>& all, const std::se
     return some;
 }
 
-TEST(Layers, TheDesignPageDrawsTheArrowsThatExist) {
+TEST(Layers, TheDesignPageDrawsTheExistingArrows) {
     const std::set<std::string> exist = layer_arrows(CAROM_SOURCE_DIR);
     const std::set<std::string> drawn =
         described_arrows(read_file(CAROM_SOURCE_DIR "/docs/design/architecture.md"));
@@ -97,11 +97,11 @@ class LayersSelfTest : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(LayersSelfTest, AcceptsWhatPointsDownwards) {
+TEST_F(LayersSelfTest, AcceptsDownwardIncludes) {
     for (const std::string& violation : check()) ADD_FAILURE() << violation;
 }
 
-// One arrow more in the tree, and one less on the page, are seen.
+// Detects one arrow too many in the tree, and one too few on the page.
 TEST_F(LayersSelfTest, ReadsArrowsFromTheTreeAndFromThePage) {
     const std::string page =
         "# A\n\nkernel -> games\n\n## Layers\n\n```\n"
@@ -122,7 +122,7 @@ TEST_F(LayersSelfTest, ReadsArrowsFromTheTreeAndFromThePage) {
     EXPECT_EQ(missing(described_arrows(page + "\n"), layer_arrows(folder_.path())).size(), 0u);
 }
 
-TEST_F(LayersSelfTest, SeesEveryKindOfViolation) {
+TEST_F(LayersSelfTest, DetectsEveryKindOfViolation) {
     const struct {
         const char* file;
         const char* line;

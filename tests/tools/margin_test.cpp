@@ -8,7 +8,7 @@
 namespace carom::tools {
 namespace {
 
-/// A run with these simulate and draw costs; the other stages of rendering take 1 ms each.
+/// A run with these simulate and draw costs; the other stages of rendering cost 1 ms each.
 MarginRun run_of(const std::vector<double>& simulate, const std::vector<double>& draw) {
     MarginRun run;
     run.frames.resize(simulate.size());
@@ -20,7 +20,7 @@ MarginRun run_of(const std::vector<double>& simulate, const std::vector<double>&
     return run;
 }
 
-TEST(Margin, AFrameIsTheSumOfItsStagesAndEveryFrameTheMedianOfItsRuns) {
+TEST(Margin, AFrameSumsItsStagesAndIsTheMedianOfItsRuns) {
     const std::vector<MarginRun> runs = {run_of({1, 0, 0}, {5, 6, 7}), run_of({3, 0, 0}, {5, 9, 7}),
                                          run_of({2, 0, 1}, {5, 7, 80})};
     const Margin margin = combine(runs, 100.0, true);
@@ -28,9 +28,9 @@ TEST(Margin, AFrameIsTheSumOfItsStagesAndEveryFrameTheMedianOfItsRuns) {
     EXPECT_EQ(margin.total, (std::vector<double>{2 + 5 + 3, 7 + 3, 7 + 3}));
     EXPECT_EQ(margin.missed, 0);  // exactly in time is in time
     EXPECT_EQ(margin.missed_runs.low, 0.0);
-    EXPECT_EQ(margin.missed_runs.high, 2.0);  // frames 0 and 1 of the second; the third has one
+    EXPECT_EQ(margin.missed_runs.high, 2.0);  // frames 0 and 1 of the second run; the third has one
     EXPECT_EQ(margin.slack(0), 0.0);
-    EXPECT_DOUBLE_EQ(margin.frame_spread, 0.3);  // (12 - 9) / 10 is the middle one
+    EXPECT_DOUBLE_EQ(margin.frame_spread, 0.3);  // (12 - 9) / 10 is the median
 }
 
 TEST(Margin, MissedFramesAndTheWorst) {
@@ -49,7 +49,7 @@ TEST(Margin, WithoutRenderingAFrameIsItsSimulation) {
     EXPECT_TRUE(margin.has(kCluster));
 }
 
-TEST(Accounting, LeavesOutTheFirstFrameWhoseStartNobodySees) {
+TEST(Accounting, OmitsTheFirstFrameWhoseStartIsUnknown) {
     MarginRun run = run_of({1, 2, 3}, {100, 10, 20});
     run.simulate_wall_ms = 6.5;
     run.frame_walls = {13.5, 23.0};

@@ -17,12 +17,12 @@ inline std::string all_of(const std::vector<std::string>& lines) {
     return text;
 }
 
-/// A break with more frames and shots than anybody would wait for.
+/// A break with more frames and shots than anyone would wait for.
 inline const std::string kBreak = std::string(CAROM_SOURCE_DIR) + "/scenes/eight_ball_break.toml";
 
 class LongWork : public ::testing::Test {
   protected:
-    /// The work is far too much: once its line appears, Ctrl-C ends it, and removes the line.
+    /// The work would last far too long: once its line appears, Ctrl-C ends it and removes the line.
     void moves_and_stops(const std::vector<std::string>& arguments, const std::string& line) {
         std::vector<std::string> command{program_};
         command.insert(command.end(), arguments.begin(), arguments.end());

@@ -1,5 +1,5 @@
-// The documents hold together: links lead somewhere, pages of the guide are short and state their purpose,
-// notes of the lab state their sources, and everything can be read in an afternoon.
+// The documents are consistent: links lead somewhere, guide pages are short and state their purpose, lab
+// notes state their sources, and everything can be read in an afternoon.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Pages all_pages() {
     return pages;
 }
 
-/// The page without what is between fences, where "](" is code.
+/// The page without fenced text, where "](" is code.
 std::string prose(const std::string& page) {
     std::istringstream in(page);
     std::string text;
@@ -63,8 +63,8 @@ std::vector<std::string> links_of(const std::string& page) {
     return found;
 }
 
-/// The anchors of the headings, as GitHub and the site make them: lower case, spaces become dashes,
-/// punctuation goes.
+/// The anchors of the headings, made as on GitHub and the site: lower case, dashes for spaces, no
+/// punctuation.
 std::set<std::string> anchors_of(const std::string& page) {
     std::set<std::string> anchors;
     std::istringstream in(prose(page));
@@ -82,8 +82,7 @@ std::set<std::string> anchors_of(const std::string& page) {
     return anchors;
 }
 
-/// The dead links of a page. `exists` knows the files and folders by their paths from the top
-/// folder.
+/// The dead links of a page. `exists` checks files and folders by their paths from the top folder.
 std::vector<std::string> dead_links(const Pages& pages, const std::string& name,
                                     const std::function<bool(const std::string&)>& exists) {
     std::vector<std::string> dead;
@@ -123,7 +122,7 @@ TEST(Pages, EveryLinkLeadsToAFileAndAHeading) {
     EXPECT_GE(links, 100u);
 }
 
-TEST(Pages, DeadLinksAreSeen) {
+TEST(Pages, DeadLinksAreDetected) {
     const Pages pages = {{"docs/a.md",
                           "# A b, c\n[x](b.md) [x](#a-b-c) [x](../README.md) [x](https://no.where)\n"
                           "```\n[x](code.md)\n```\n"},
@@ -152,7 +151,7 @@ TEST(Pages, TheIndexNamesEveryPage) {
     }
 }
 
-TEST(Pages, ThoseOfTheGuideAreShortAndBeginWithWhatTheReaderWillHave) {
+TEST(Pages, GuidePagesAreShortAndBeginWithTheirPurpose) {
     const Pages guide = pages_of("docs/guide");
     EXPECT_GE(guide.size(), 7u);
     for (const auto& [name, text] : guide) {
@@ -162,7 +161,7 @@ TEST(Pages, ThoseOfTheGuideAreShortAndBeginWithWhatTheReaderWillHave) {
     }
 }
 
-TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
+TEST(Pages, LabNotesStateDateMachineAndCommit) {
     const Pages notes = pages_of("lab/notes");
     EXPECT_GE(notes.size(), 12u);
     for (const auto& [name, text] : notes) {
@@ -173,9 +172,9 @@ TEST(Pages, NotesOfTheLabSayWhenWhereAndAtWhichCommit) {
     }
 }
 
-// A word contains a letter or a digit; the rules of a table and comments do not count. The generated page of
-// the command line counts.
-TEST(Pages, GuideReferenceAndDesignAreNoLongerThanAnAfternoon) {
+// A word contains a letter or a digit; table rules and comments do not count. The generated command line page
+// does.
+TEST(Pages, GuideReferenceAndDesignCanBeReadInAnAfternoon) {
     EXPECT_EQ(words_of("| a | 1.5 m |\n|---|---|\n<!-- figure: 1.5 m ; c -->\n"), 3u);
     std::size_t words = 0;
     for (const char* folder : {"docs/guide", "docs/reference", "docs/design"})

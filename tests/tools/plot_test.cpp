@@ -1,4 +1,4 @@
-// Plots: well-formed, the same bytes each time, and no values that are not numbers.
+// Plots are well-formed and reproducible byte for byte, and contain no NaN.
 #include "report/plot.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Plot, ALogarithmicAxisIsStraightInDecades) {
     EXPECT_GT(x[1], x[0]);
 }
 
-TEST(Plot, LeavesOutWhatCannotBeDrawn) {
+TEST(Plot, OmitsUndrawableValues) {
     Plot plot = example();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     plot.series[0].points.insert(plot.series[0].points.end(),
@@ -63,7 +63,7 @@ TEST(Plot, LeavesOutWhatCannotBeDrawn) {
     EXPECT_EQ(count(svg, "inf"), 0);
 }
 
-TEST(Plot, BarsAndMarksOfItsOwn) {
+TEST(Plot, BarsAndCustomMarks) {
     Plot plot;
     plot.x.marks = {{1.0, "first"}, {2.0, "second"}};
     plot.series = {{"bars", {{1.0, 5.0}, {2.0, 6.0}, {3.0, 7.0}}, false}};
@@ -74,7 +74,7 @@ TEST(Plot, BarsAndMarksOfItsOwn) {
     EXPECT_EQ(count(svg, "stroke=\"#0072b2\""), 2) << "a bar without a finite end is not drawn";
 }
 
-TEST(Plot, NothingAndOnePointAreFine) {
+TEST(Plot, EmptyAndSinglePointPlotsAreFine) {
     for (const bool logarithmic : {false, true}) {
         Plot plot;
         plot.x.logarithmic = plot.y.logarithmic = logarithmic;
@@ -86,7 +86,7 @@ TEST(Plot, NothingAndOnePointAreFine) {
     }
 }
 
-TEST(Plot, TheNameMustSayTheFormat) {
+TEST(Plot, TheNameMustImplyTheFormat) {
     EXPECT_NO_THROW(check_plot_path(""));
     EXPECT_NO_THROW(check_plot_path("a/b.svg"));
     EXPECT_THROW(check_plot_path("a.jpg"), UsageError);

@@ -1,5 +1,5 @@
-// docs/reference/record_format.md and record.schema.json against what is written: the same keys, all scenes'
-// records valid, and nothing else valid.
+// docs/reference/record_format.md and record.schema.json against written records: the same keys; the records
+// of all scenes are valid, and nothing else is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,13 +43,13 @@ std::vector<Scene> scenes() {
     for (const auto& entry : std::filesystem::directory_iterator(CAROM_SOURCE_DIR "/scenes"))
         if (entry.path().extension() == ".toml") all.push_back(read_scene(entry.path().string()));
     EXPECT_GE(all.size(), 10u);
-    // Missing from the folder's scenes: friction that falls with the slip, a ball with its own size, an eye.
+    // Not in the folder's scenes: friction that falls with the slip, a ball with its own size, an eye.
     all.push_back(parse_scene(
         "[balls]\nmu_b_fit = [0.009951, 0.108, 1.088]\n[render]\neye = [1, 1, 1]\ntarget = [0, 1, 0]\n"
         "[stop]\nevents = 3\n[[ball]]\nid = \"a\"\nposition = [0.6, 1]\nvelocity = [0, 1]\nmass = 0.2\n"
         "[[ball]]\nid = \"b\"\nposition = [0.6, 1.3]\n[physics]\nball_ball = \"inelastic\"\n",
         "fit.toml"));
-    // And a round wall, and pucks.
+    // A round wall, and pucks.
     all.push_back(
         parse_scene("[balls]\nshape = \"disc\"\nrolls = false\nmu_b = 0\nf_c = 0\n[[table.arc]]\ncenter = "
                     "[0, 0]\nradius = 1\n"
@@ -58,7 +58,7 @@ std::vector<Scene> scenes() {
     return all;
 }
 
-TEST(RecordSchema, RecordsOfAllScenesAreDescribedByItAndReadBackWhole) {
+TEST(RecordSchema, DescribesTheRecordsOfAllScenesWhichReadBackWhole) {
     const Json rules = schema();
     const SchemaCheck check(rules);
     for (const Scene& scene : scenes()) {
@@ -73,7 +73,7 @@ TEST(RecordSchema, RecordsOfAllScenesAreDescribedByItAndReadBackWhole) {
     }
 }
 
-// One path for every object and value of a record: "/tracks/3/segments/7/r" stands for all of its kind.
+// One path per kind of object or value: "/tracks/3/segments/7/r" represents all of its kind.
 void each_kind(const Json& value, const std::string& kind, const std::string& at,
                std::map<std::string, std::string>& found) {
     found.emplace(kind, at);
@@ -85,7 +85,7 @@ void each_kind(const Json& value, const std::string& kind, const std::string& at
             each_kind(value[i], kind + "/#", at + "/" + std::to_string(i), found);
 }
 
-// With every existing key.
+// A record with every existing key.
 Json profiled_break() {
     Scene scene = read_scene(CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml");
     use_cue(*scene.cue, "lossless");
@@ -121,7 +121,7 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     std::map<std::string, std::string> kinds;
     each_kind(good, "", "", kinds);
     EXPECT_GE(kinds.size(), 90u);
-    // A key without which the record is still valid.
+    // Keys that a valid record may lack.
     const std::set<std::string> free = {"/events/#/balls",       "/events/#/nose",
                                         "/events/#/slow",        "/table/bed",
                                         "/table/jaws/#/side",    "/table/jaws/#/from_deg",
@@ -148,7 +148,7 @@ TEST(RecordSchema, RefusesUnknownKeysMissingKeysAndOtherTypes) {
     }
 }
 
-// The objects of a record, and where the schema has them.
+// The objects of a record, and their places in the schema.
 const std::pair<const char*, const char*> kObjects[] = {{"The record", ""},
                                                         {"render", "/properties/render"},
                                                         {"table", "/properties/table"},
@@ -160,8 +160,8 @@ const std::pair<const char*, const char*> kObjects[] = {{"The record", ""},
                                                         {"tracks.segments", "/definitions/segment"},
                                                         {"events", "/definitions/event"}};
 
-// The page leaves the keys to the schema, and explains the values that they choose from.
-TEST(RecordDocs, ThePageHasTheNamesOfTheSchema) {
+// The page leaves the keys to the schema, and explains the choices of values.
+TEST(RecordDocs, ThePageExplainsTheNamesOfTheSchema) {
     const Json rules = schema();
     const std::string page = test::read_source("docs/reference/record_format.md");
     for (const auto& [heading, place] : kObjects)
@@ -210,9 +210,9 @@ TEST(RecordDocs, TheExampleIsARecord) {
     EXPECT_EQ(parse_record(example, "page").tracks.size(), 2u);
 }
 
-// The scripts of the pages: a sentence for every event, except where a resting contact begins or ends, and
+// The pages' scripts have a sentence for every event, except where a resting contact begins or ends, and for
 // the part of the table that it names.
-TEST(RecordDocs, PageScriptsKnowEveryEvent) {
+TEST(RecordDocs, PageScriptsDescribeEveryEvent) {
     std::string scripts;
     for (const char* folder : {"tools/carom/page", "tools/carom/commands/play"})
         for (const auto& entry :

@@ -1,4 +1,4 @@
-// Records as files: everything comes back, and nothing half-written stays.
+// Records as files: all data read back, and no partial file remains.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,10 +22,11 @@ using test::TemporaryFolder;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// All that a record file must keep. If you add a field to one of these structs, the compiler leads you here:
-// the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in read.cpp
-// beside it, describe it in docs/reference/ (a record that lacks it needs a default and a note), and give it
-// a distinct value in sample_record(). Balls, table and render settings have rows: scene_rows_test.cpp.
+// All data that a record file must keep. If you add a field to one of these structs, the compiler leads you
+// here: the names below no longer match. Then write the field in engine/src/record/write.cpp, read it in
+// read.cpp beside it, describe it in docs/reference/ (a record without it needs a default and a note), and
+// give it a distinct value in sample_record(). Balls, table and render settings have rows:
+// scene_rows_test.cpp.
 struct FieldsOfARecord {
     Table table;
     BallParams balls;
@@ -42,20 +43,20 @@ struct FieldsOfARecord {
 static_assert(sizeof(Record) == sizeof(FieldsOfARecord),
               "Record has another field: see the comment above, record files have to keep it");
 
-// Every value differs from its neighbours and from the initial value of its struct, so that a lost or swapped
-// one shows.
+// Every value differs from its neighbours and from its struct's initial value, so that a lost or swapped one
+// shows.
 void expect_unusual(std::vector<double> values) {
     for (const double value : values) EXPECT_NE(value, 0.0);
     std::sort(values.begin(), values.end());
     EXPECT_EQ(std::adjacent_find(values.begin(), values.end()), values.end());
 }
 
-TEST(RecordFile, TheSampleHasAValueOfItsOwnInEveryField) {
+TEST(RecordFile, TheSampleHasADistinctValueInEveryField) {
     const Record record = sample_record();
     const auto& [preset, cloth, width, length, corner, cushions, jaws, pockets, measures, bed] = record.table;
     ASSERT_TRUE(bed);
     expect_unusual({(*bed)[0], (*bed)[1], (*bed)[2], (*bed)[3]});
-    EXPECT_FALSE(cloth);  // its friction is in the balls
+    EXPECT_FALSE(cloth);  // the balls contain its friction
     EXPECT_NE(preset, Table().preset);
     expect_unusual({width, length, corner.x(), corner.y()});
     const auto& [nose, rail, corners, sides, size] = measures;
@@ -115,14 +116,14 @@ TEST(RecordFile, ReadsBackWhole) {
     EXPECT_TRUE(b == a);
     EXPECT_EQ(b.hash(), a.hash());
     EXPECT_EQ(b.partner_id(b.events[5]), "p,1");
-    // A second round trip gives the same file, byte for byte: signed zeros, which compare equal, are kept
-    // too.
+    // A second round trip yields the same file byte for byte, which also keeps signed zeros, although they
+    // compare equal.
     EXPECT_TRUE(std::signbit(b.table.cushions.at(0).from.y()));
     write_record(b, folder.file("b.json"));
     EXPECT_EQ(test::read_file(folder.file("a.json")), test::read_file(folder.file("b.json")));
 }
 
-TEST(RecordFile, KeepsMethodsThatThisVersionDoesNotKnow) {
+TEST(RecordFile, KeepsUnknownMethods) {
     const TemporaryFolder folder;
     Record record = sample_record();
     const std::string longer(200, 'm');
@@ -131,7 +132,7 @@ TEST(RecordFile, KeepsMethodsThatThisVersionDoesNotKnow) {
     EXPECT_EQ(read_record(folder.file("a.json")).costs.at(2).method, longer);
 }
 
-TEST(Record, ACopyThatGrowsHasOrientationsOfItsOwn) {
+TEST(Record, AGrowingCopyHasItsOwnOrientations) {
     const auto roll = [](double start) {
         Segment s;
         s.start = start;
@@ -164,7 +165,7 @@ TEST(RecordFile, LeavesNoTemporaryFile) {
     EXPECT_EQ(test::read_file(folder.file("a.json")), record_json(sample_record()));
 }
 
-TEST(RecordFile, AFailureNamesTheFileAndKeepsTheOldOne) {
+TEST(RecordFile, AFailureNamesTheFileAndKeepsTheOldFile) {
     const TemporaryFolder folder;
     Record broken = sample_record();
     broken.costs.pop_back();
@@ -181,7 +182,7 @@ TEST(RecordFile, AFailureNamesTheFileAndKeepsTheOldOne) {
     EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
 }
 
-TEST(RecordFile, ADeviceIsWrittenToAndNotReplaced) {
+TEST(RecordFile, ADeviceIsWrittenNotReplaced) {
     write_record(sample_record(), "/dev/null");
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }

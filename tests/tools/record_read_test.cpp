@@ -1,4 +1,4 @@
-// The reader of records: what it says about a wrong, old or hostile file. No file crashes it.
+// The record reader: its messages about wrong, old or hostile files. No file crashes it.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -24,17 +24,17 @@ using test::record_error;
 using test::sample_record;
 using test::TemporaryFolder;
 
-TEST(RecordFile, SaysWhatIsWrong) {
+TEST(RecordFile, ExplainsErrors) {
     EXPECT_EQ(record_error(changed("", nullptr)), "no error");
-    // A place in the sample, the value that it gets, and the message.
+    // A place in the sample, its new value, and the message.
     const Json rows = Json::parse(test::read_file(CAROM_TEST_DATA "/record_messages.json"));
     for (const Json& row : rows) EXPECT_EQ(record_error(changed(row.at(0), row.at(1))), row.at(2)) << row;
     EXPECT_GE(rows.size(), 30u);
 }
 
-// 1e25 rad/s for 1e25 s on a fixed axis, and on one that
-// swerves: every number that a record may have gives a state.
-TEST(RecordFile, TheLargestNumbersGiveStates) {
+// 1e25 rad/s for 1e25 s on a fixed axis, and on a turning one: every number allowed in a record yields a
+// state.
+TEST(RecordFile, TheLargestNumbersYieldStates) {
     Json largest = Json::parse(changed("", nullptr));
     largest["duration"] = 1e25;
     for (Json& track : largest["tracks"]) {
@@ -117,7 +117,7 @@ TEST(RecordFile, UnknownKeysAreLeftOutWithANote) {
               "3 keys are unknown to this program and were left out, the first of them ");
 }
 
-TEST(RecordFile, AnyWayOfWritingTheSameJsonIsRead) {
+TEST(RecordFile, EquivalentJsonIsRead) {
     const std::string text = changed("", nullptr);
     // Indented, keys and ids as escapes, a byte order mark in front.
     std::string other = "\xef\xbb\xbf" + Json::parse(text).dump(3);
@@ -141,7 +141,7 @@ TEST(RecordFile, AnyWayOfWritingTheSameJsonIsRead) {
     EXPECT_TRUE(std::signbit(gravity("-0.0")));
 }
 
-TEST(Printable, NothingSteersATerminal) {
+TEST(Printable, NamesCannotControlATerminal) {
     EXPECT_EQ(printable("cue 8 \xc3\xa9 \xe7\x90\x83 \xf0\x9f\x8e\xb1"),
               "cue 8 \xc3\xa9 \xe7\x90\x83 \xf0\x9f\x8e\xb1");
     EXPECT_EQ(printable("a\x1b[2J\r\n\t\x7f"), "a?[2J????");

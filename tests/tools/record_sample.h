@@ -1,4 +1,4 @@
-// A record with a distinct value in every field, and what the reader says about a changed one.
+// A record with a distinct value in every field, and the reader's message about a changed one.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ using reference::Generator;
 
 using Json = nlohmann::json;
 
-/// Any double that a record may have, all exponents equally likely, including signed zeros and subnormals.
+/// Any double allowed in a record, all exponents equally likely, including signed zeros and subnormals.
 inline double any_double(Generator& rng) {
     for (;;) {
         const double value = std::bit_cast<double>(rng.next());

@@ -49,7 +49,7 @@ class Release(unittest.TestCase):
     def test_the_repository_has_no_fault(self):
         self.assertEqual(release.faults_of(ROOT), [])
 
-    def test_a_version_that_differs_is_seen_in_every_place(self):
+    def test_a_different_version_is_detected_everywhere(self):
         for name, pattern in release.PLACES[1:]:
             with self.subTest(name=name):
                 text = (self.root / name).read_text()
@@ -60,7 +60,7 @@ class Release(unittest.TestCase):
                 self.assertTrue(any("no version matches" in fault for fault in release.faults_of(self.root)))
                 (self.root / name).write_text(text)
 
-    def test_the_source_package_of_python_has_what_the_build_reads(self):
+    def test_pythons_source_package_has_the_files_of_the_build(self):
         rules = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["scikit-build"]["sdist"]
         read = set()
         for name in ("CMakeLists.txt", "*/CMakeLists.txt", "tools/*/CMakeLists.txt", "cmake/*.cmake"):
@@ -76,7 +76,7 @@ class Release(unittest.TestCase):
         self.change("CHANGELOG.md", "### Added", "### News")
         self.one_fault("### News: expected one of")
 
-    def test_a_heading_stands_once(self):
+    def test_headings_are_unique(self):
         self.change("CHANGELOG.md", "### Fixed", "### Changed")
         self.one_fault("has ### Changed twice")
 
@@ -92,33 +92,33 @@ class Release(unittest.TestCase):
         self.change("CHANGELOG.md", r"\*\*\(changes bits\)\*\*( The contact of two)", r"(changes bits\1)")
         self.one_fault("expected **(changes bits)**")
 
-    def test_a_declaration_that_goes_is_a_fault_and_one_that_comes_is_none(self):
+    def test_removing_a_declaration_is_a_fault_and_adding_one_is_not(self):
         self.change("capi/include/carom/carom.h", r"CAROM_API double carom_record_duration",
                     "CAROM_API int carom_new(void);\nCAROM_API double carom_record_duration")
         self.assertEqual(release.faults_of(self.root), [])
         self.change("capi/include/carom/carom.h", r"double restitution;", "float restitution;")
         self.one_fault("no longer declares")
 
-    def test_a_type_of_the_npm_package_that_goes_is_a_fault_and_one_that_comes_is_none(self):
+    def test_removing_an_npm_type_is_a_fault_and_adding_one_is_not(self):
         self.change("web/npm/index.d.ts", "(export interface Cue {\n)", r"\1  chalk: number; // new\n")
         self.assertEqual(release.faults_of(self.root), [])
-        # The same line is still in other interfaces.
+        # Other interfaces still have the same line.
         self.change("web/npm/index.d.ts", r"(?s)(export interface BallPlace \{.*?)  x: number;\n", r"\1")
         self.one_fault("index.d.ts no longer declares")
 
-    def test_a_comment_is_no_declaration(self):
+    def test_a_comment_is_not_a_declaration(self):
         self.change("capi/include/carom/carom.h", r"/\* of the cue \[m/s\] \*/", "/* quite another; word */")
         self.assertEqual(release.faults_of(self.root), [])
 
-    def test_bits_that_change_are_a_fault(self):
+    def test_changed_bits_are_a_fault(self):
         self.change("tests/data/engine/golden_hashes.json", r'("draw": ")[0-9a-f]{4}', r"\g<1>0000")
         self.one_fault('the bits of "draw" changed')
 
-    def test_a_record_version_that_changes_is_a_fault(self):
+    def test_a_changed_record_version_is_a_fault(self):
         self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)3', r"\g<1>4")
         self.one_fault("records have version 4 instead of 3")
 
-    def test_what_is_cut_has_no_fault(self):
+    def test_a_cut_release_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
         major, minor, patch = map(int, release.version_here(self.root).split("."))
         for version in (f"{major}.{minor}.{patch + 1}", f"{major}.{minor + 1}.0", f"{major + 1}.0.0"):
@@ -133,7 +133,7 @@ class Release(unittest.TestCase):
                     (self.root / "CITATION.cff").read_text().count("date-released: 2030-01-02"), 1)
                 self.assertIn(f"* New in {version}.", release.notes(self.root))
 
-    def test_promises_of_the_next_minor_version_leave_no_patch(self):
+    def test_promises_of_the_next_minor_version_forbid_a_patch(self):
         major, minor, patch = release.number(release.version_here(self.root))
         release.write_promise(self.root, f"{major}.{minor + 1}")
         self.assertEqual(release.faults_of(self.root), [])
@@ -149,7 +149,7 @@ class Release(unittest.TestCase):
         self.one_fault("no longer declares")
 
     @unittest.skipUnless(shutil.which("git"), "git is not installed")
-    def test_cutting_brings_commit_and_tag_only_when_all_went_well(self):
+    def test_cutting_commits_and_tags_only_on_success(self):
         def git(*words):
             return subprocess.run(["git", "-C", self.root, *words], check=True, text=True,
                                   stdout=subprocess.PIPE).stdout.strip()

@@ -31,7 +31,7 @@ TEST(Table, TextIsAlignedAndHasNotes) {
               "c           5  failed: no end\n");
 }
 
-TEST(Table, CsvReadsBackToTheSameBitsAndLeavesOutRowsThatEndEarly) {
+TEST(Table, CsvReadsBackToTheSameBitsWithoutShortRows) {
     EXPECT_EQ(table_csv(sample()),
               "name,n,ns,same\n"
               "a,3,0.3333333333333333,1\n"
@@ -40,14 +40,14 @@ TEST(Table, CsvReadsBackToTheSameBitsAndLeavesOutRowsThatEndEarly) {
               "\"a,b\",\"say \"\"no\"\"\",two lines,7,\n");
 }
 
-TEST(Table, JsonHasWhatIsThere) {
+TEST(Table, JsonHasTheExistingCells) {
     const nlohmann::ordered_json rows = nlohmann::ordered_json::parse(table_json(sample()).dump());
     EXPECT_EQ(rows.dump(),
               R"([{"name":"a","n":3,"ns":0.3333333333333333,"same":true,"hidden":1.5},)"
               R"({"name":"b","n":null,"ns":null,"same":false,"hidden":2.5},{"name":"c","n":5}])");
 }
 
-TEST(Bins, OfAGridAreItsStepsAndOthersReachFromEndToEnd) {
+TEST(Bins, FollowAGridsStepsOrSpanTheRange) {
     const std::vector<double> grid = {1.0, 1.5, 2.0, 2.5, 1.0};
     const Bins steps = bins_of(grid, 2);
     EXPECT_EQ(steps.count, 4u);
@@ -58,7 +58,7 @@ TEST(Bins, OfAGridAreItsStepsAndOthersReachFromEndToEnd) {
     std::vector<double> many;
     for (int i = 0; i < 400; ++i) many.push_back(std::pow(i / 399.0, 2));
     const Bins wide = bins_of(many, 1);
-    EXPECT_EQ(wide.count, 20u);  // the root of 400
+    EXPECT_EQ(wide.count, 20u);  // the square root of 400
     EXPECT_EQ(wide.of(0.0), 0u);
     EXPECT_EQ(wide.of(1.0), 19u);
     EXPECT_EQ(wide.of(0.051), 1u);

@@ -1,4 +1,4 @@
-// The page of examples/web, from a server of this test, in headless Chromium.
+// The page of examples/web, served by this test, in headless Chromium.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdtempSync, readFileSync, rmSync} from "node:fs";
@@ -11,7 +11,7 @@ import {PACKAGE, SOURCE} from "./support.mjs";
 
 const TYPES = {".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm"};
 
-/** Serves the example and the package, and nothing else. */
+/** Serves only the example and the package. */
 function answer(request, response) {
   const asked = path.posix.normalize(request.url), own = "/examples/web/", package_ = "/build/wasm/npm/";
   const file = asked === own ? path.join(SOURCE, own, "index.html")

@@ -1,4 +1,4 @@
-// How the page of `carom play` feels: screens, fingers, keys, words, sounds, and what a screen reader finds.
+// Use of the page of `carom play`: screens, fingers, keys, words, sounds, and screen readers.
 import assert from "node:assert/strict";
 import {existsSync, readFileSync, writeFileSync} from "node:fs";
 import * as path from "node:path";
@@ -101,7 +101,7 @@ test("a finger on the table aims and does not scroll; beside it, it does not aim
   const aimed = await aim();
   await browser.drag([await player.placeOf(".help"), [200, 500]], "touch");
   assert.equal(await aim(), aimed);
-  // The cue in the bar is pulled back; in Play, letting go strikes.
+  // The cue in the bar is pulled back; in Play, releasing it strikes.
   const [left, middle] = await value("(({left, top, height}) => [left, top + height / 2])" +
     "(document.querySelector('.pull').getBoundingClientRect())");
   const pull = () => browser.drag([[left + 30, middle], [left + 220, middle]], "touch");
@@ -146,7 +146,7 @@ test("zoom, fine aim, and the cue pulled back", skip, async () => {
   await player.settled();
   assert.ok(Math.abs(await scale() / whole - 2) < 0.05, `${await scale() / whole}`);
   await browser.key("0");
-  // The cue, from its tip backwards: the power follows, and letting go strikes.
+  // Pulling the cue back from its tip sets the power; releasing it strikes.
   const pulled = await value(`(() => { const {cue} = caromPlay.scene(), b = caromPlay.state.struck(),
     a = cue.aim_deg * Math.PI / 180, at = (d) => [b.x - d * Math.cos(a), b.y - d * Math.sin(a)];
     return [at(0.4), at(0.5)]; })()`);
@@ -168,7 +168,7 @@ test("arrows do not scroll after a click on a button, and one line says what a d
   assert.match(await value("document.querySelector('.help').textContent"), /^Drag the cloth: aim/);
 });
 
-test("sounds are made when they are asked for, louder for harder impacts", skip, async () => {
+test("sounds play if enabled, louder for harder impacts", skip, async () => {
   await player.open();
   await player.press("Shoot");
   await browser.until("caromPlay.state.clock.now > 0.3");
@@ -192,7 +192,7 @@ test("the words of the game", skip, async () => {
   assert.equal(await value("document.querySelector('[aria-label=\"Speed\"]').max"), "12");
 });
 
-test("messages are of this shot, and the engine's warnings are among them", skip, async () => {
+test("messages concern this shot and include the engine's warnings", skip, async () => {
   await player.open();
   await value(`caromPlay.begin(${JSON.stringify(sceneText("masse.toml"))})`);
   await player.press("Shoot");
@@ -247,7 +247,7 @@ test("the cue is raised over a ball behind it", skip, async () => {
   assert.equal(await value("caromPlay.scene().cue.elevation_deg"), 0);
 });
 
-test("titles are whole, and a scene says what to look for", skip, async () => {
+test("titles are complete, and a scene has its hint", skip, async () => {
   await player.open();
   const titles = await value("[...document.querySelector('select.open').options].map((o) => o.textContent)");
   assert.ok(titles.some((title) => title.includes("eight_ball_break.toml with the cue raised by 5 degrees")));
@@ -292,7 +292,7 @@ test("axe finds nothing serious", withAxe, async () => {
   assert.deepEqual(bad, []);
 });
 
-test("how fast it is, is told", skip, async (t) => {
+test("timings are reported", skip, async (t) => {
   await sized(1920, 1080);
   await player.open();
   const usable = await value("performance.getEntriesByName('usable')[0].startTime.toFixed(0)");

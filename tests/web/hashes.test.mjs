@@ -1,5 +1,5 @@
-// The hashes in WebAssembly are those of the native program: for every scene of scenes/, and for 2000
-// variations of them with other models, marches and numbers.
+// WebAssembly has the native program's hashes: for every scene of scenes/, and for 2000 variations of them
+// with other models, marches and numbers.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
@@ -30,7 +30,7 @@ function randomNumbers(seed) {
   };
 }
 
-/** Changes of a scene: always the stroke, and now and then each of the models and numbers. */
+/** Changes of a scene: always the stroke, and sometimes each of the models and numbers. */
 function changes(random) {
   const one = (list) => list[Math.floor(random() * list.length)];
   const between = (low, high) => low + (high - low) * random();
@@ -81,7 +81,7 @@ test(`the hashes of ${VARIATIONS} variations`, {skip: withoutProgram}, (t) => {
         hash = shot.hash;
         shot.free();
       } catch (error) {
-        // The native program must fail, too.
+        // The native program must also fail.
         assert.ok(["simulation", "scene"].includes(error.kind), error.stack);
         hash = "";
       }

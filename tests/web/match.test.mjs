@@ -1,5 +1,5 @@
-// Matches on the page of `carom play`, against carom and between two people, in real browsers: by mouse, by
-// touch and by keyboard.
+// Matches on the page of `carom play`, against carom and between two people, in real browsers: by mouse,
+// touch and keyboard.
 import assert from "node:assert/strict";
 import {after, before, describe, test} from "node:test";
 import {Player, missing} from "./play_page.mjs";
@@ -8,7 +8,6 @@ const OVER = "caromPlay.state.verdict?.options[0].state.over === true && !caromP
 const YOURS = "caromPlay.state.free && caromPlay.state.level === ''";
 const BALLS = {cue: [0.6, 0.7], 8: [0.9, 1.7], 9: [0.3, 2.0]};
 
-/** Tabs to a button and presses it. */
 async function pressByKeys(player, text) {
   for (let i = 0; i < 90; ++i) {
     const begins = `document.activeElement.textContent.startsWith(${JSON.stringify(text)})`;
@@ -18,7 +17,7 @@ async function pressByKeys(player, text) {
   throw new Error(`no key leads to ${text}`);
 }
 
-/** Asks for a hint, takes the first one and shoots. */
+/** Requests a hint, uses the first one and shoots. */
 async function takeHint(player, by) {
   const {browser} = player;
   const press = (what) => by === "keys" ? pressByKeys(player, what) : player.press(what, by);
@@ -37,12 +36,12 @@ async function takeHint(player, by) {
   }
 }
 
-/** Plays a frame of nine-ball to its end. @returns how often a person shot, and carom */
+/** Plays a frame of nine-ball to its end. @returns the numbers of shots by the person and by carom */
 async function playOut(player, by) {
   await player.open();
   await player.value("void (Object.assign(caromPlay.state, {quick: true}).clock.speed = 8)");
   await player.frame("nine_ball", BALLS, {players: ["", "beginner"]});
-  // A shot at nothing: carom comes to the table, with the ball in hand.
+  // A shot at nothing: carom then plays with ball in hand.
   const aim = await player.value("caromPlay.scene().cue.aim_deg");
   if (by === "keys") for (let i = 0; i < 5; ++i) await player.browser.key("ArrowLeft");
   else await player.drag([[1.0, 0.4], [1.1, 0.6]], by);
@@ -74,7 +73,7 @@ function matches(player, name) {
       assert.match(await player.value("document.querySelector('.over').textContent"), /win/);
     });
 
-  test("carom thinks visibly, can be stopped, and goes on", async () => {
+  test("carom thinks visibly, can be stopped, and continues", async () => {
     await player.open();
     await player.press("New game");
     await player.value(`(() => { const [game, ...players] = ["Game", "First player", "Second player"]
@@ -105,7 +104,7 @@ function survivals(player) {
     await player.value("caromPlay.show(1e9)");
     await player.browser.until("caromPlay.state.aiming && caromPlay.state.game.state.turn === 0", 1200);
     await player.settled();
-    // The cue ball is in hand: the rules ask about the shot before.
+    // The cue ball is in hand: the rules need the previous shot.
     const ball = await player.value("(({x, y}) => [x, y])(caromPlay.state.struck())");
     await player.drag([ball, [0.9, 0.5]]);
     const moved = await player.value("(({x, y}) => [x, y])(caromPlay.state.struck())");
@@ -122,7 +121,7 @@ function survivals(player) {
     await player.value("localStorage.clear()");
   });
 
-  test("after a scratch without rules the cue ball comes in hand", async () => {
+  test("after a scratch without rules the cue ball is in hand", async () => {
     await player.open();
     await player.frame("nine_ball", {cue: [1.0, 2.27], 9: [0.3, 0.4]});
     await player.value("void Object.assign(caromPlay.state, {game: null, match: null})");

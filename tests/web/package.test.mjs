@@ -90,7 +90,7 @@ test("a wrong type is a TypeError that names the argument", () => {
   assert.throws(() => new Scene(), TypeError);
 });
 
-test("a value that is no number is told by its key", () => {
+test("a value that is not a number is reported by its key", () => {
   const scene = draw();
   for (const value of [NaN, Infinity, -Infinity]) {
     const message = new RegExp(`^cue.speed is ${value}; expected a finite number$`);
@@ -100,7 +100,7 @@ test("a value that is no number is told by its key", () => {
   assert.throws(() => scene.with({cue: {offset: [0, NaN]}}), {message: /^cue.offset\[1\] is NaN/});
 });
 
-test("many keys at once are the same as one by one", () => {
+test("many keys at once equal one by one", () => {
   const keys = ["cue.speed", "cue.aim_deg", "balls.mu_s", "balls.e_b", "ball.cue.position.x"], changes = {};
   let one = draw();
   for (let k = 0; k < 500; ++k) {
@@ -119,7 +119,7 @@ test("the quick path and the file give the same bits", () => {
   const hash = simulate(quick).hash;
   assert.equal(simulate(read).hash, hash);
   assert.equal(simulate(written).hash, hash);
-  // A racked ball can be moved; then the balls are placed one by one.
+  // A racked ball can be moved; from then on the balls are placed one by one.
   const moved = scene.with({"ball.3.position.x": 0.2, "ball.3.position.y": 0.3});
   assert.equal(simulate(Scene.parse(moved.toml)).hash, simulate(moved).hash);
 });
@@ -145,7 +145,7 @@ test("a shot has events, states, an outcome and a record", () => {
   assert.throws(() => shot.states(0), /freed/);
 });
 
-test("a look has outlines, and the numbers of the diamonds", () => {
+test("a look has outlines and diamond numbers", () => {
   const {shape} = draw().look();
   assert.ok(shape.cloth.length > 0);
   assert.deepEqual(shape.numbers.map(({number}) => number).sort(),
@@ -169,7 +169,7 @@ test("until and seconds end a shot", () => {
   assert.throws(() => simulate(broken, {events: 60}), (error) => error.kind === "limit");
 });
 
-test("many shots are the single shots", () => {
+test("many shots equal the single shots", () => {
   const scene = draw(), speeds = [1, 1.5, 2.25, -1], aims = [90, 90.5, 89, 90];
   const batch = simulateMany(scene, {"cue.speed": speeds, "cue.aim_deg": aims}, {hash: true});
   assert.deepEqual([batch.shots, batch.balls], [4, scene.balls.length]);
@@ -184,7 +184,7 @@ test("many shots are the single shots", () => {
   assert.throws(() => simulateMany(scene, {"cue.sped": [1]}), CaromError);
 });
 
-test("games judge shots and give the next scene", () => {
+test("games judge shots and return the next scene", () => {
   const scene = Scene.parse(sceneText("nine_ball_break.toml")), start = games.start("nine_ball");
   assert.deepEqual(games.legal(start, scene).first, ["1"]);
   const shot = simulate(scene), verdict = games.judge(start, shot);
@@ -247,7 +247,7 @@ test("every exported name has a type", () => {
     assert.match(types, new RegExp(`export (function|class|const) ${name}\\b`), name);
 });
 
-test("motion has the tracks of the record, to the bit", () => {
+test("motion has the tracks of the record, bit for bit", () => {
   for (const name of ["eight_ball_break.toml", "jump_pot.toml", "bar_break.toml"]) {
     const {motion, record} = simulate(Scene.parse(sceneText(name)));
     assert.deepEqual([motion.duration, motion.gravity], [record.duration, record.gravity]);
@@ -261,7 +261,7 @@ test("motion has the tracks of the record, to the bit", () => {
   }
 });
 
-test("a scene says what its cue would be in, and a shot what may be wrong", () => {
+test("a scene names obstacles of its cue, and a shot has warnings", () => {
   const ball = (id, y) => `[[ball]]\nid = "${id}"\nposition = [0.6, ${y}]\n`;
   const cue = '[cue]\nball = "cue"\nspeed = 2\naim_deg = 90\n';
   const behind = Scene.parse(ball("cue", 1.2) + ball("1", 1) + cue);
@@ -272,7 +272,7 @@ test("a scene says what its cue would be in, and a shot what may be wrong", () =
   assert.match(simulate(Scene.parse(sceneText("masse.toml"))).warnings.join(), /elevat/);
 });
 
-test("an advised strike has the errors of its level, and the player who may choose does", () => {
+test("an advised strike has the errors of its level, and the player entitled to choose chooses", () => {
   const scene = Scene.parse(sceneText("nine_ball_break.toml")), state = games.start("nine_ball");
   const strikes = [1, 2].map((seed) =>
     games.advise(state, scene, {skill: "beginner", seed, best: 1, shots: 0})[0]);

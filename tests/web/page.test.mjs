@@ -11,7 +11,7 @@ const faults = [], skip = {skip: missing("chromium")}, withProgram = {skip: skip
 const player = new Player("chromium");
 let browser, url = pageUrl;
 
-/** Opens the page at an address; every message and every request counts as a fault. */
+/** Opens the page at an address; every message and every request counts as an error. */
 async function open(fragment = "") {
   await browser.send("Page.navigate", {url: "about:blank"});
   await browser.send("Page.navigate", {url: url + fragment});
@@ -19,7 +19,6 @@ async function open(fragment = "") {
 }
 const value = (expression) => browser.value(expression);
 const hash = () => value("caromPlay.shot().hash");
-/** Clicks the button with this text. */
 const press = (text) => value(`[...document.querySelectorAll("button")]
   .find((b) => b.textContent === ${JSON.stringify(text)}).click()`);
 const settled = () => player.settled(), placeOf = (x, y) => player.onTable(x, y);
@@ -69,7 +68,7 @@ test("it fits every screen, and every control has a name", skip, async () => {
   assert.deepEqual(unnamed, []);
 });
 
-test("pointer and keys aim, and what they aim is undone", skip, async () => {
+test("pointer and keys aim, and undo reverts them", skip, async () => {
   await open();
   const first = await hash(), ball = await value(cueBall);
   const at = await placeOf(ball.x, ball.y);
@@ -126,7 +125,7 @@ test("games are played by their rules", skip, async () => {
   }
 });
 
-test("an address is the shot: it has the same bits in another tab and in the program", skip, async () => {
+test("an address contains the shot: the same bits in another tab and in the program", skip, async () => {
   await open();
   await value(`caromPlay.change({"cue.speed": 3.21, "cue.aim_deg": 77.7})`);
   await value("caromPlay.share()");
@@ -148,7 +147,7 @@ test("a bad address is refused with a sentence", skip, async () => {
   }
 });
 
-test("a locked page lets only the rest be moved", withProgram, async () => {
+test("a locked page allows changing only the rest", withProgram, async () => {
   const page = path.join(folder, "locked.html"), scene = path.join(folder, "draw.toml");
   writeFileSync(scene, sceneText("draw.toml"));
   native(["play", scene, "--lock", "cue.speed,ball,balls,table,physics", "-o", page]);
@@ -171,7 +170,7 @@ test("a locked page lets only the rest be moved", withProgram, async () => {
   }
 });
 
-test("every scene that comes with carom opens with its hash", withProgram, async () => {
+test("every shipped scene opens with its hash", withProgram, async () => {
   await open();
   for (const name of scenes) {
     await value(`(() => { const s = document.querySelector("select[aria-label='Open a scene']");
@@ -220,7 +219,7 @@ test("a thousand damaged addresses: refused or played, no script, no hang", skip
   await value("caromPlay.share()");
   const whole = await value("document.body.dataset.shared");
   const hostile = ["<script>document.body.dataset.harmed=1</script>", "%00", "A", "&s=", "'\"", "\u{1f3b1}"];
-  // The browser allows 200 addresses in some seconds, so most of them go straight to what reads them.
+  // The browser allows 200 addresses in some seconds, so most go straight to the reading function.
   const [refused, played] = await value(`(async () => {
     const whole = ${JSON.stringify(whole)}, hostile = ${JSON.stringify(hostile)};
     let seed = 11, refused = 0, played = 0;
@@ -262,7 +261,7 @@ test("a script from elsewhere does not run, and nothing is loaded", skip, async 
   faults.splice(0);
 });
 
-test("printing gives the shot on white", skip, async () => {
+test("printing shows the shot on white", skip, async () => {
   await open();
   await browser.send("Emulation.setEmulatedMedia", {media: "print"});
   await value(`dispatchEvent(new Event("beforeprint"))`);

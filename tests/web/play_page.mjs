@@ -13,7 +13,7 @@ export const folder = mkdtempSync(path.join(tmpdir(), "carom-play-"));
 const page = process.env.CAROM_PLAY_PAGE || path.join(folder, "play.html");
 export const pageUrl = pathToFileURL(page).href;
 
-/** Why tests with this browser are skipped; false if they are not. */
+/** Why tests with this browser are skipped, or false. */
 export function missing(program) {
   try {
     execFileSync(program, ["--version"], {stdio: "ignore"});
@@ -28,7 +28,7 @@ export function missing(program) {
 
 const KINDS = {"chromium": Browser, "firefox-esr": Firefox};
 
-/** A browser, with what a person does on the page. */
+/** A browser, with a person's actions on the page. */
 export class Player {
   constructor(name) { Object.assign(this, {name, profile: path.join(folder, `${name}-${process.pid}`)}); }
   async start() {
@@ -50,7 +50,7 @@ export class Player {
   settled() {
     return this.value(TWO_FRAMES);
   }
-  /** The middle of the first element that a selector finds, or that has this text. */
+  /** The middle of the first element that matches a selector, or has this text. */
   placeOf(what) {
     const found = /^[.#[]/.test(what) ? `document.querySelector(${JSON.stringify(what)})`
       : `[...document.querySelectorAll("button")].find((b) => b.checkVisibility() && ` +
@@ -62,7 +62,7 @@ export class Player {
     await this.browser.drag([await this.placeOf(what)], type);
     await this.settled();
   }
-  /** The place on the screen of a place of the table [m]. */
+  /** The screen place of a table place [m]. */
   onTable(x, y) {
     return this.value(`(() => { const {view} = caromPlay.state, b = view.over.getBoundingClientRect(),
       [px, py] = view.projection.at(${x}, ${y});
@@ -74,7 +74,7 @@ export class Player {
     await this.browser.drag(at, type);
     await this.settled();
   }
-  /** Begins a game in the middle: with these balls, {id: [x, y]}. */
+  /** Starts in the middle of a game, with these balls, {id: [x, y]}. */
   async frame(game, balls, {players = ["", "machine"], more = {}} = {}) {
     const toml = Object.entries(balls).map(([id, at]) => `[[ball]]\nid = "${id}"\nposition = [${at}]\n`);
     const text = JSON.stringify(`[table]\npreset = "nine_foot"\n[balls]\npreset = "pool"\n${toml.join("")}` +

@@ -1,5 +1,5 @@
-// The program in node is the native one: same texts, statuses, files and bits. Tested as npm installs it, by
-// the node that runs this test, or by the words of CAROM_NODE (tools/slow: other versions, and Windows').
+// The program in node equals the native one in texts, statuses, files and bits. Tested as npm installs it, by
+// the node that runs this test, or by the command in CAROM_NODE (tools/slow: other versions, and Windows').
 import assert from "node:assert/strict";
 import {execFileSync, spawn, spawnSync} from "node:child_process";
 import {closeSync, existsSync, mkdirSync, mkdtempSync, openSync, readFileSync, readdirSync, rmSync,
@@ -18,7 +18,7 @@ const folder = mkdtempSync(path.join(tmpdir(), "carom-npx-"));
 const installed = path.join(folder, "node_modules/carom/bin/carom.mjs");
 
 /** Each program has its own folder, so that both write the same names. Its streams are files, because node
- * cannot start threads with pipes of wine. */
+ * cannot start threads with wine's pipes. */
 function inFolder(which, command, args, {input = ""} = {}) {
   const cwd = path.join(folder, which), streams = ["in", "out", "err"].map((name) => path.join(folder, name));
   mkdirSync(cwd, {recursive: true});
@@ -88,7 +88,7 @@ test("reports and files of a shot", {skip}, () => {
   const checked = (run) => run(["check", "masse.toml"]).out.replace(/^isa .*$/m, "");
   assert.equal(checked(inNode), checked(native));
   same(["view", "break.json", "-o", "break.html"], ["break.html"]);
-  // The pictures of balls are compressed by other code, without libpng.
+  // The program in node compresses the balls' pictures by other code, without libpng.
   const exported = (run) => run(["export", "three_cushion.toml", "-o", "shot.glb"]).out.replace(/\d+ kB/, "");
   assert.equal(exported(inNode), exported(native));
   same(["compare", "draw.toml", "follow.toml"]);
@@ -98,7 +98,7 @@ test("reports and files of a shot", {skip}, () => {
   same(["describe", "man"]);
 });
 
-test("the interactive page is the same but for the compression of carom.wasm", {skip}, () => {
+test("the interactive page is the same except for the compression of carom.wasm", {skip}, () => {
   for (const {status, err} of [native(["play", "draw.toml"]), inNode(["play", "draw.toml"])])
     assert.equal(status, 0, err);
   const parts = (which) => {
@@ -137,7 +137,7 @@ test("bad usage and bad scenes", {skip}, () => {
     assert.notEqual(same(args).status, 0);
 });
 
-test("what needs OpenGL or cairo says so in one sentence", {skip}, () => {
+test("commands that need OpenGL or cairo say so in one sentence", {skip}, () => {
   for (const args of [["render", "draw.toml"], ["render", "draw.toml", "-o", "x.mp4"],
     ["margin", "draw.toml"], ["diagram", "draw.toml", "-o", "x.svg"]]) {
     const {status, out, err} = inNode(args);
@@ -171,7 +171,7 @@ test("the output may go to a pipe that closes", {skip: skip || onWindows}, () =>
     inFolder("native", "bash", ["-c", shell, "bash", PROGRAM, ...args]).status);
 });
 
-test("Ctrl-C keeps the rows of a sweep that are finished", {skip}, async () => {
+test("Ctrl-C keeps a sweep's finished rows", {skip}, async () => {
   const args = ["sweep", "eight_ball_break.toml", "--vary", "cue.aim_deg=normal(0.5)",
     "--count", "10000", "-o", "stopped.csv"];
   const cwd = path.join(folder, "node"), said = path.join(folder, "err"), err = openSync(said, "w");
@@ -190,7 +190,7 @@ test("Ctrl-C keeps the rows of a sweep that are finished", {skip}, async () => {
   assert.ok(written("node", "stopped.csv").equals(written("native", "stopped.csv")));
 });
 
-test("a signal ends a program that waits for its input", {skip: skip || onWindows}, async () => {
+test("a signal ends a program waiting for input", {skip: skip || onWindows}, async () => {
   const child = started(["impact"], ["pipe", "pipe", "inherit"]);
   child.stdin.write("{}\n");
   await new Promise((resolve) => child.stdout.once("data", resolve));
@@ -210,7 +210,7 @@ test("one lock, one process", {skip: skip || onWindows}, async () => {
   const second = inNode(args);
   assert.match(second.err, /lock: another program is writing the files that this lock protects/);
   assert.equal(second.status, 1);
-  // A killed one leaves its lock, which holds nobody.
+  // A killed one leaves its lock, which blocks nobody.
   child.kill("SIGKILL");
   await ended(child);
   const third = started(args, ["ignore", "ignore", "pipe"]);

@@ -17,7 +17,7 @@ export const scenes =
   readdirSync(path.join(SOURCE, "scenes")).filter((name) => name.endsWith(".toml")).sort();
 export const sceneText = (name) => readFileSync(path.join(SOURCE, "scenes", name), "utf8");
 
-/** Runs the native program. @returns what it prints, or "" if it fails */
+/** Runs the native program. @returns its output, or "" if it fails */
 export function native(args, options = {}) {
   try {
     return execFileSync(PROGRAM, args, {encoding: "utf8", stdio: ["ignore", "pipe", "ignore"],

@@ -1,4 +1,4 @@
-// The declarations of the package, compiled by TypeScript if tools/web --test has installed it.
+// The package's declarations, compiled by TypeScript if tools/web --test has installed it.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {existsSync, mkdtempSync, rmSync, writeFileSync} from "node:fs";
@@ -10,7 +10,7 @@ import {PACKAGE, SOURCE} from "./support.mjs";
 const tsc = process.env.CAROM_TSC || path.join(SOURCE, "build/npm/node_modules/.bin/tsc");
 const skip = existsSync(tsc) ? false : `${tsc} is missing; tools/web --test installs it`;
 
-test("the declarations hold for a program that uses all of them", {skip}, () => {
+test("the declarations suit a program that uses all of them", {skip}, () => {
   const folder = mkdtempSync(path.join(tmpdir(), "carom-types-"));
   try {
     const settings = {files: [path.join(SOURCE, "tests/web/types.ts")], compilerOptions: {strict: true,

@@ -9,8 +9,8 @@
 namespace carom::tools {
 namespace {
 
-/// Box2D units per metre. Its constants are sized for objects of 0.1 to 10 units: 10 reduces its slop to 0.5
-/// mm, and the speed below which nothing bounces to 0.1 m/s, and still lets a ball move 12 m/s at 60 Hz.
+/// Box2D units per metre. Its constants suit objects of 0.1 to 10 units: 10 reduces its slop to 0.5 mm, and
+/// the speed below which nothing bounces to 0.1 m/s, and still allows a ball 12 m/s at 60 Hz.
 constexpr double kScale = 10.0;
 constexpr int kVelocityIterations = 8, kPositionIterations = 3;  // as its manual suggests
 

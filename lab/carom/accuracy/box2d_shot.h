@@ -1,4 +1,4 @@
-// The same shot in a Box2D world that is stepped as in a game: the result of an engine with fixed time steps.
+// The same shot in a Box2D world stepped as in a game: the result of an engine with fixed time steps.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace carom::tools {
 
 struct Box2dOutcome {
-    /// At the end, in the order of Record::tracks [m]; of a pocketed ball, the pocket
+    /// At the end, in the order of Record::tracks [m]; for a pocketed ball, the pocket's place
     std::vector<Vec2> positions;
     std::vector<int> pockets;   ///< per ball, -1: on the table
     std::string first_contact;  ///< the ball that the first moving ball hits first, or ""
@@ -18,10 +18,10 @@ struct Box2dOutcome {
 
 /// Plays the start of a record (table, balls, velocities after the cue) in steps of 1/hz.
 ///
-/// Discs without depth. Restitution and friction between discs, and against cushions and jaws, are those of
-/// the record; rolling resistance is linear damping, set in every step to mu_r g / speed, the deceleration of
-/// rolling. There is no sliding, no top or back spin, no swerve, and no cushion height; all numbers are
-/// float. Ends when all balls rest, or after twice the record's duration and a second.
+/// Discs without depth. Restitution and friction between discs, and against cushions and jaws, match the
+/// record; rolling resistance is linear damping, set in every step to mu_r g / speed, the deceleration of
+/// rolling. There is no sliding, top or back spin, swerve or cushion height; all numbers are float. Ends when
+/// all balls rest, or after twice the record's duration and a second.
 Box2dOutcome run_box2d(const Record& record, double hz);
 
 }  // namespace carom::tools

@@ -27,7 +27,7 @@ namespace {
 
 using namespace kernel;
 
-/// Least processor time of one sample [ns]: much more than one reading of the clock.
+/// Least processor time of one sample [ns]: far longer than reading the clock.
 constexpr double kSample = 2e6;
 
 /// One method at one setting, for impacts one by one or as arrays.
@@ -36,7 +36,7 @@ struct Subject : KernelCall {
 
     KernelAccuracyRow row;
     int n;  ///< of a march
-    /// number of impacts in a sample, from the start of the list: a march takes the same time for all
+    /// number of impacts in a sample, from the start of the list: a march needs the same time for all
     std::size_t timed = 1;
     int calls = 1;
     std::unique_ptr<BatchArrays> arrays;
@@ -53,7 +53,7 @@ struct Subject : KernelCall {
         return (thread_ns() - start) / (static_cast<double>(timed) * calls);
     }
 
-    /// Chooses the size of a sample, and runs the code once before it is timed.
+    /// Chooses the sample size, and runs the code once before timing it.
     void prepare(const std::vector<Impact>& impacts) {
         const std::size_t least = one ? 8 : 64;
         timed = std::min(least, impacts.size());
@@ -129,7 +129,7 @@ void add_marches(std::vector<Subject>& list, Isa isa, long most, const std::vect
 
 void add_tolerances(std::vector<Subject>& list, Isa isa) {
     for (int p = 2; p <= 12; ++p) {
-        // Read from text, so that it is exactly the number a scene file would give.
+        // Read from text, so that it is exactly the number of a scene file.
         const std::string setting = fmt::format("1e-{}", p);
         const double tolerance = std::strtod(setting.c_str(), nullptr);
         for (const bool batch : {false, true}) {
@@ -155,8 +155,8 @@ void add_formulas(std::vector<Subject>& list) {
     }
 }
 
-/// The converged solution of every impact, twice: power series in extended precision, and collocation at the
-/// tightest tolerance. They share no code.
+/// The converged solution of every impact, twice, by independent code: power series in extended precision,
+/// and collocation at the tightest tolerance.
 struct Converged {
     std::vector<Impact> impacts;  ///< those on which both agree
     std::vector<reference::ImpactTruth> truth;
@@ -165,7 +165,7 @@ struct Converged {
 };
 
 /// The effect of rounding on an impact, as a fraction of the approach speed: a fast glancing ball has large
-/// speeds and a small approach.
+/// speeds but approaches slowly.
 double rounding_share(const Impact& impact, double approach) {
     double most = approach;
     for (const Ball* ball : {&impact.ball1, &impact.ball2})

@@ -31,13 +31,13 @@ struct KernelAccuracyRow {
     bool other_model = false;  ///< a formula for simpler physics: its error is the model's, not numerical
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double error_median = 0.0, error_p99 = 0.0, error_max = 0.0;
-    /// Tolerance only: the largest error as a fraction of the bound for that impact, which is the tolerance
-    /// plus what rounding does to its speeds.
+    /// Tolerance only: the largest error as a fraction of the bound for its impact, which is the tolerance
+    /// plus the effect of rounding on its speeds.
     std::optional<double> share_of_bound;
 };
 
-/// The time a method needs to reach an error: that of its fastest setting that reaches it for half of all
-/// impacts, and for all of them. Infinite if no setting does.
+/// The time a method needs to reach an error: its fastest setting that reaches it for half of all impacts,
+/// and for all of them. Infinite if none does.
 struct KernelReach {
     std::string method, kind;
     double error = 0.0, ns_median = 0.0, ns_all = 0.0;
@@ -47,7 +47,7 @@ struct KernelAccuracy {
     std::string isa;
     /// impacts on which the two converged methods agree; only these are judged
     int count = 0;
-    int disagreeing = 0;           ///< the other impacts, for which no error is given
+    int disagreeing = 0;           ///< the other impacts, whose errors are not stated
     double worst_agreement = 0.0;  ///< largest difference of the two, as a fraction of the approach speed
     double slope = 0.0;            ///< of log median error over log N, march, N >= 100
     std::vector<KernelAccuracyRow> rows;
@@ -70,7 +70,6 @@ std::string kernel_accuracy_csv(const KernelAccuracy& result);
 Plot kernel_accuracy_plot(const KernelAccuracy& result);
 Report kernel_accuracy_report(const KernelAccuracy& result);
 
-/// Adds `carom-lab accuracy kernel`.
 void add_accuracy_kernel(Options& accuracy);
 
 }  // namespace carom::tools

@@ -19,7 +19,7 @@ std::string title_of(const KernelAccuracyRow& row) {
     return row.kind == "batch" && !said ? row.method + ", batch" : row.method;
 }
 
-/// Errors below this are rounding noise, and are drawn here on a logarithmic axis.
+/// Errors below this are rounding noise, and drawn at this value on a logarithmic axis.
 constexpr double kFloor = 1e-17;
 
 Table rows_of(const KernelAccuracy& result) {

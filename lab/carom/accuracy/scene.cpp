@@ -1,4 +1,4 @@
-// carom-lab accuracy: the report of `carom accuracy` as a plot or a page, with Box2D beside it, and the same
+// carom-lab accuracy: the report of `carom accuracy` as a plot or a page, compared with Box2D, and the same
 // for one impact.
 #include <fmt/format.h>
 

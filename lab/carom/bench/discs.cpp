@@ -59,7 +59,7 @@ struct DiscsRun {
         options.progress_rounds = 1;
         double start = 0.0;
         std::size_t first = 0;
-        // The first call comes after the first event. Later ones cost next to nothing.
+        // The first call follows the first event. Later calls cost almost nothing.
         options.progress = [&](std::size_t done, double) {
             if (start != 0.0) return;
             first = done;

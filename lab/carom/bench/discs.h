@@ -1,4 +1,4 @@
-// carom-lab bench discs: events a second beside a code for hard discs.
+// carom-lab bench discs: events per second compared with a hard-disc code.
 #pragma once
 
 #include "bench/hard_discs.h"
@@ -6,7 +6,7 @@
 
 namespace carom::tools {
 
-/// The discs of a gas (gas_scene()), whose plan this is: straight walls, no friction, nothing lost.
+/// The discs of the gas (gas_scene()) in this plan: straight walls, no friction, no losses.
 HardDiscs hard_discs(const Plan& plan);
 
 }  // namespace carom::tools

@@ -8,7 +8,7 @@ namespace carom::tools {
 
 HardDiscs::HardDiscs(std::vector<Vec2> places, std::vector<Vec2> velocities, double reach, const Vec2& size)
     : reach_(reach), size_(size), discs_(places.size()) {
-    // A cell holds about one disc, and is never narrower than a collision reaches.
+    // A cell contains about one disc, and is at least as wide as the collision distance.
     const double side = std::max(
         reach, std::sqrt(size.x() * size.y() / static_cast<double>(std::max<std::size_t>(1, places.size()))));
     columns_ = std::max(1, static_cast<int>(size.x() / side));
@@ -50,7 +50,7 @@ double HardDiscs::run(long collisions) {
         } else if (disc.partner >= 0) {
             const int j = disc.partner;
             Disc& other = discs_[j];
-            // Otherwise the partner has been hit by another disc, and this one only looks again.
+            // Otherwise another disc has hit the partner, and this disc only predicts again.
             if (other.partner == i && other.event == now) {
                 move(other, now);
                 collide(disc, other);
@@ -90,12 +90,12 @@ void HardDiscs::move(Disc& disc, double time) {
     disc.time = time;
 }
 
-// Sets the next event of disc i, which is where it is now.
+// Predicts the next event of disc i, whose position is current.
 void HardDiscs::predict(int i, double now) {
     Disc& disc = discs_[i];
     double first = kNever;
     int partner = kNothing;
-    // Where it leaves its cell; that is the border of the box for the cells at the border.
+    // The time when it leaves its cell; at the border of the box, the time when it hits the border.
     for (int axis = 0; axis < 2; ++axis) {
         const double v = disc.v[axis];
         if (v == 0.0) continue;
@@ -116,7 +116,7 @@ void HardDiscs::predict(int i, double now) {
             for (int j = head(column, row); j >= 0; j = discs_[j].next) {
                 if (j == i) continue;
                 const double time = time_to(disc, discs_[j], now);
-                // A partner that has an earlier event is found again after it.
+                // A partner with an earlier event is found again after that event.
                 if (time >= first || time >= discs_[j].event) continue;
                 first = time;
                 partner = j;
@@ -126,12 +126,12 @@ void HardDiscs::predict(int i, double now) {
     disc.partner = partner;
     set(i, first);
     if (partner < 0) return;
-    // The former partner of the partner, if there is one, finds out when its event comes.
+    // The partner's former partner, if any, learns of it at its own event.
     discs_[partner].partner = i;
     set(partner, first);
 }
 
-// When two discs touch. The first is where it is now.
+// When two discs touch. The position of the first is current.
 double HardDiscs::time_to(const Disc& a, const Disc& b, double now) const {
     const Vec2 r = b.r + (now - b.time) * b.v - a.r, v = b.v - a.v;
     const double closing = r.dot(v);

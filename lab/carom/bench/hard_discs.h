@@ -1,6 +1,6 @@
-// Elastic hard discs in a box, as molecular dynamics does it: the code that `carom-lab bench discs` compares
-// carom with. Cell lists find the neighbours, every disc has one predicted event, and a binary heap holds the
-// events. A disc is moved only by its own events.
+// Elastic hard discs in a box, as in molecular dynamics: the code that `carom-lab bench discs` compares with
+// carom. Cell lists find the neighbours, every disc has one predicted event, and a binary heap orders the
+// events. Only its own events move a disc.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace carom::tools {
 
 class HardDiscs {
   public:
-    /// Discs of equal mass, whose centres bounce where their distance is `reach`, and at the borders of the
-    /// box from 0 to `size`.
+    /// Discs of equal mass, whose centres bounce at the distance `reach` and at the borders of the box from 0
+    /// to `size`.
     HardDiscs(std::vector<Vec2> places, std::vector<Vec2> velocities, double reach, const Vec2& size);
 
-    /// Plays until this number of collisions since the start. @returns the time of the last one [s]
+    /// Plays up to this number of collisions since the start. @returns the time of the last one [s]
     double run(long collisions);
 
     /// Number of collisions of two discs, and of a disc and a border, since the start.

@@ -49,13 +49,13 @@ constexpr int kSubsteps = 1000;
 void time_all(std::vector<TimedKernel>& list, const ImpactSet& five, const ImpactSet& random, int repeats) {
     std::vector<ImpactResult> results(std::max(five.impacts.size(), random.impacts.size()));
     ProgressLine warming("bench kernel, warming up");
-    // warms up, and finds how many calls take much longer than reading the clock
+    // warms up, and finds how many calls far exceed one clock reading
     for (TimedKernel& s : list) {
         throw_if_interrupted();
         warming.show_bar(&s - list.data(), static_cast<long>(list.size()));
         const double once = s.time(five, kSubsteps, 2, results) * static_cast<double>(s.size(five));
         s.five_calls = std::max(1, static_cast<int>(3e5 / std::max(once, 1.0)));
-        // The same for random impacts. If one call is enough, no earlier run is needed to fill the caches.
+        // The same for random impacts. If one call suffices, the caches need no earlier run.
         const double all = s.time(random, kSubsteps, 1, results) * static_cast<double>(s.size(random));
         s.random_calls = std::max(1, static_cast<int>(5e6 / std::max(all, 1.0)));
         s.random_calls = std::min(s.random_calls, 4);
@@ -134,7 +134,7 @@ std::vector<GrowthRow> growth_of(const std::vector<TimedKernel>& list, const Imp
     return rows;
 }
 
-/// Reads and writes more than any cache holds.
+/// Reads and writes more than any cache can contain.
 void evict_caches() {
     static std::vector<char> memory(96u << 20);
     for (std::size_t i = 0; i < memory.size(); i += 64) memory[i] = static_cast<char>(memory[i] + 1);
@@ -202,8 +202,8 @@ KernelBench measure_kernel(const BenchKernelArgs& options) {
     bench.random = options.random;
     bench.cycle_ns = cycle_ns();
     bench.probe_ns = cost_of_a_probe();
-    // The baseline is the v3 build if available, even under CAROM_ISA=scalar or v4, so that all ratios mean
-    // the same.
+    // The baseline is the v3 build if available, even under CAROM_ISA=scalar or v4, so that all ratios are
+    // comparable.
     const Isa baseline_isa = available(Isa::kV3) ? Isa::kV3 : Isa::kScalar;
     bench.baseline_isa = name(baseline_isa);
     const TimedKernel baseline(

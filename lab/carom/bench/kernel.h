@@ -40,7 +40,7 @@ struct GrowthRow {
     double ns_min, ns_median;
 };
 
-/// The parts of one call's time [ns], and its time when neither code nor data are cached.
+/// The parts of one call's time [ns], and its time with cold code and data.
 struct ShareRow {
     std::string name;
     kernel::Isa isa;

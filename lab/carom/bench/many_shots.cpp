@@ -23,7 +23,7 @@ struct Kind {
     double off = 0.0;  ///< the largest distance of the cue ball's path from ball 1's centre, over 2 R
 };
 
-/// A break as people play it: from any place behind the line, ball 1 hit between full and a tenth full.
+/// A natural break: from any place behind the line, ball 1 hit between full and a tenth full.
 Kind drawn_break(const char* name) {
     return {
         name,
@@ -92,7 +92,7 @@ void ManyShots::play(std::size_t shots) {
     shots_ += shots;
 }
 
-// As cue.aim_hit does it: the cue ball's path passes the centre of ball 1 at a distance.
+// As cue.aim_hit does: the cue ball's path passes the centre of ball 1 at a distance.
 void ManyShots::aim_at_rack() {
     Scene& scene = simulator_.scene();
     const auto place = [&scene](const char* id) {

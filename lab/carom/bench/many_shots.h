@@ -1,4 +1,4 @@
-// Batches of carom-lab bench shot: random shots one after the other, as a search or a learner plays them.
+// Batches of carom-lab bench shot: successive random shots, as in a search or in training.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,15 @@
 
 namespace carom::tools {
 
-/// One kind of batch. Each shot draws its numbers, sets, checks, plans and plays them, and reads the outcome.
+/// One kind of batch. Each shot draws its numbers, is set, checked, planned and played, and its outcome read.
 class ManyShots {
   public:
     /// @param name one of many_names() @throws std::invalid_argument for an unknown one
     ManyShots(const std::string& name, kernel::Isa isa);
 
-    /// The next `shots` shots of an endless sequence that is the same in every run. @throws
-    /// std::runtime_error if one has no result
+    /// The next `shots` shots of an endless sequence, the same in every run. @throws std::runtime_error if
+    /// one has no result
     void play(std::size_t shots);
-    /// Starts the sequence again.
     void rewind();
 
     /// Shots in a round of the benchmark: a few milliseconds.
@@ -28,7 +27,7 @@ class ManyShots {
     /// Mean number per shot since rewind().
     double events() const { return static_cast<double>(events_) / static_cast<double>(shots_); }
     double clusters() const { return static_cast<double>(clusters_) / static_cast<double>(shots_); }
-    /// Balls pocketed since rewind(); this makes sure that outcomes are read.
+    /// Balls pocketed since rewind(), to make sure that outcomes are read.
     long pocketed() const { return pocketed_; }
 
   private:

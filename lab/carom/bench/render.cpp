@@ -75,7 +75,7 @@ StageOptions stage_options(const Picture& picture) {
     return options;
 }
 
-// The child of set_up_ms(): it writes its CPU time into the pipe.
+// Runs in the child of set_up_ms() and writes its CPU time into the pipe.
 [[noreturn]] void draw_once_and_exit(const Record& record, const Picture& picture, Backend backend,
                                      int pipe_end) {
     int status = 1;
@@ -95,8 +95,8 @@ StageOptions stage_options(const Picture& picture) {
     _exit(status);
 }
 
-// CPU time of one picture in a separate process: in this process, every row after the first would find the
-// driver ready. Call it before anything is drawn, because a child has none of its parent's threads.
+// CPU time of one picture in a separate process; in this one, every row after the first would find the driver
+// ready. Call it before drawing anything, because a child has none of its parent's threads.
 double set_up_ms(const Record& record, const Picture& picture, Backend backend) {
     std::array<int, 2> ends{};
     if (pipe(ends.data()) != 0) throw RenderError("no pipe for measuring the set-up");
@@ -111,7 +111,7 @@ double set_up_ms(const Record& record, const Picture& picture, Backend backend) 
     return got ? spent : 0.0;
 }
 
-// Measures frame by frame, while nothing else runs in the process.
+// Measures frame by frame, with nothing else running in the process.
 void measure_stages(const Record& record, const Picture& picture, int frames, Backend backend,
                     const std::string& file, Steps& steps, RenderBenchRow& row) {
     const Stage stage(record, stage_options(picture));

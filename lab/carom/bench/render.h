@@ -11,19 +11,19 @@ namespace carom::tools {
 
 struct RenderBenchRow {
     std::string name;  ///< "720p", "1080p", "1080p follow", "2160p"
-    /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, so that
-    /// the driver's threads count too, except write_ms, which is wall time.
+    /// Medians over the frames after the first, one frame at a time: CPU time of the whole process, including
+    /// the driver's threads; write_ms is wall time.
     double draw_ms = 0.0, readback_ms = 0.0, encode_ms = 0.0, write_ms = 0.0;
     /// 95th percentile of draw plus readback: a frame in which most balls move
     double slow_ms = 0.0;
-    /// Median share of the picture that is encoded anew, 0..1
+    /// Median share of the picture that is re-encoded, 0..1
     double encoded_share = 0.0;
-    /// CPU time of a separate process from its first call to its first picture, without shaders that Mesa
-    /// kept from an earlier process: the OpenGL library, the shaders, and the table once
+    /// CPU time of a separate process from its first call to its first picture, without shaders cached by
+    /// Mesa in an earlier process: the OpenGL library, the shaders, and the table once
     double setup_ms = 0.0;
     /// frames per second from the first to the last, written to files, with a thread per core
     double fps = 0.0;
-    /// CPU time of the process per frame of these, the driver and the system included
+    /// CPU time of the process per such frame, including the driver and the system
     double cpu_ms = 0.0;
 };
 

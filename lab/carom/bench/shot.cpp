@@ -23,8 +23,8 @@
 namespace carom::tools {
 namespace {
 
-/// The unit of all costs [ns]: one impact of the published march at N = 1000, averaged over the five states
-/// of the paper.
+/// The unit of all costs [ns]: one impact of the published march at N = 1000, averaged over the paper's five
+/// states.
 double baseline_impact(kernel::Isa isa) {
     const kernel::MarchFunction march = kernel::march_function(isa);
     kernel::ImpactResult result;
@@ -107,7 +107,7 @@ struct Gas {
         std::size_t first = 0;
         const double before = heap_bytes();
         SimulateOptions options;
-        // The first call comes after the first event, when the set-up is finished and its memory allocated.
+        // The first call follows the first event, after the set-up and its allocations.
         options.progress_rounds = 1;
         options.progress = [&](std::size_t events, double) {
             if (begin != 0.0) return;
@@ -126,7 +126,7 @@ struct Gas {
     }
 };
 
-/// A shot of a batch, averaged over a round; the row has the minimum and maximum of the rounds.
+/// A shot of a batch, averaged over a round; the row has the minimum and maximum over the rounds.
 ShotRow row_of(const ManyShots& many, const std::string& name, const std::vector<double>& ns,
                double baseline_ns) {
     ShotRow row;
@@ -149,7 +149,7 @@ double time_round(ManyShots& many) {
     return (thread_ns() - start) / static_cast<double>(many.shots_a_round());
 }
 
-// With more balls than this, the search through all boxes is not measured: it is far slower.
+// Above this number of balls, the search through all boxes is not measured: it is far slower.
 constexpr int kMostDirect = 2000;
 
 std::vector<GasRow> growth_of(const BenchShotArgs& options, kernel::Isa isa) {

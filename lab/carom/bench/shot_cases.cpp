@@ -14,7 +14,7 @@ namespace {
 
 using reference::Generator;
 
-// Every coefficient, so that no changed preset or default moves what these shots measure.
+// All coefficients are explicit, so that changed presets or defaults do not affect these shots.
 constexpr const char* kCoefficients = R"(
 [table]
 preset = "nine_foot"
@@ -55,7 +55,7 @@ id = "cue"
 position = [{x}, 0.50]
 )";
 
-// Cue ball and object ball a metre apart; the cue ball hits it up to two thirds full on either side.
+// Cue ball and object ball are a metre apart; the hit is up to two thirds full on either side.
 constexpr const char* kTwoBalls = R"(
 [[ball]]
 id = "cue"
@@ -155,7 +155,7 @@ Scene many_scene(const std::string& name) {
                                                fmt::arg("clusters", "compliant")),
                            name);
     };
-    // Presets as they ship.
+    // Presets as shipped.
     const auto drawn = [&](const char* game) {
         return parse_scene(fmt::format("[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n"
                                        "[rack]\ngame = \"{}\"\n[[ball]]\nid = \"cue\"\n"

@@ -1,5 +1,5 @@
-// The scenes of carom-lab bench shot and of lab/measure/callgrind_shot.py:
-// seeded, so that a name and a seed mean the same shot everywhere.
+// The scenes of carom-lab bench shot and of lab/measure/callgrind_shot.py: seeded, so that name and seed
+// define the same shot everywhere.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ Scene shot_scene(const std::string& name, std::uint64_t seed);
 /// an unknown name
 Scene many_scene(const std::string& name);
 
-/// n frictionless, elastic balls that move at 1 m/s in random directions in a box of reflecting cushions, on
-/// a jittered grid: balls cover a fifth of the area, whatever n is. Stops after `events`.
+/// n frictionless, elastic balls moving at 1 m/s in random directions in a box of reflecting cushions, on a
+/// jittered grid; balls cover a fifth of the area for any n. Stops after `events`.
 Scene gas_scene(int n, long events, std::uint64_t seed);
 
 }  // namespace carom::tools

@@ -19,7 +19,7 @@ Table shots_of(const ShotBench& bench) {
                 Column("kernel_ns", "kernel", ">8.0f"), Column("cluster_ns", "cluster", ">8.0f"),
                 Column("queue_ns", "queue", ">8.0f"), Column("shots_per_cpu_s", "shots/s", ">9.0f"));
     for (const ShotRow& r : bench.rows) {
-        // A batch is not profiled, and a single shot is not a batch.
+        // A batch is not profiled; a single shot has no batch figures.
         const bool many = r.shots_per_cpu_s > 0.0;
         const auto part = [many](double ns) { return many ? Cell() : Cell(ns); };
         table.add({r.name, r.cost_in_impacts, r.cost_least, r.cost_most, r.ns_min, r.ns_median, r.events,

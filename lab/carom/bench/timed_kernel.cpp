@@ -35,12 +35,11 @@ std::vector<TimedKernel> subjects(const std::vector<Isa>& isas) {
     return list;
 }
 
-/// Whether `wanted` is the name itself (exact), or its first words.
+/// Whether `wanted` is the whole name (exact), or its first words.
 bool is_meant(const std::string& name, const std::string& wanted, bool exact) {
     return exact ? name == wanted : name.rfind(wanted + " ", 0) == 0;
 }
 
-/// Keeps the requested rows.
 void choose(std::vector<TimedKernel>& list, const std::vector<std::string>& only) {
     if (only.empty()) return;
     std::vector<bool> keep(list.size(), false);

@@ -1,5 +1,5 @@
-// Times for carom-lab bench kernel: every variant of the ladder
-// and every tolerance, on single impacts or on batches.
+// Times for carom-lab bench kernel: every variant of the ladder and every tolerance, on single impacts or on
+// batches.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ struct ImpactSet {
     std::size_t in_arrays;
 };
 
-/// A kernel for one impact or for a batch; the other one is empty. n counts only for a march.
+/// A kernel for one impact or for a batch; the other member is empty. Only a march uses n.
 struct KernelCall {
     std::function<void(const Impact&, int n, ImpactResult&)> one;
     std::function<void(const BatchArrays&, int n)> many;
@@ -45,7 +45,7 @@ struct KernelCall {
 KernelCall call_of(const kernel::Variant& variant);
 KernelCall tolerance_call(kernel::Isa isa, double tolerance, bool batch);
 
-/// One thing to measure: a variant, or a tolerance.
+/// One subject: a variant, or a tolerance.
 struct TimedKernel : KernelCall {
     explicit TimedKernel(KernelCall call) : KernelCall(std::move(call)) {}
 
@@ -53,7 +53,6 @@ struct TimedKernel : KernelCall {
     std::vector<double> five_ns, random_ns;  ///< per impact, one entry per round
     int five_calls = 1, random_calls = 1;
 
-    /// Runs every impact of the set once.
     void run(const ImpactSet& set, int n, std::vector<ImpactResult>& results) const {
         if (one) {
             for (std::size_t i = 0; i < set.impacts.size(); ++i) one(set.impacts[i], n, results[i]);
@@ -71,8 +70,8 @@ struct TimedKernel : KernelCall {
     }
 };
 
-/// All forms on the instruction sets of this run (CAROM_ISA, or all that the processor has), or those that
-/// `only` names.
+/// All forms on the instruction sets of this run (CAROM_ISA, or all of the processor), or those named in
+/// `only`.
 /// @throws UsageError listing them all if one is unknown
 std::vector<TimedKernel> timed_kernels(const std::vector<std::string>& only);
 

@@ -17,9 +17,9 @@ namespace carom::tools {
 namespace {
 
 constexpr int kGrey = 7, kBallColours = 7;  // of the palette of plots
-constexpr std::size_t kMostNames = 22;      // in the legend; the frame has no room for more
+constexpr std::size_t kMostNames = 22;      // in the legend; the frame fits no more
 
-/// Maps the cloth to the paper, and collects what the paper must hold.
+/// Maps the cloth to the paper, and collects the extent of the drawing.
 class PaperPlane {
   public:
     explicit PaperPlane(bool turned) : turned_(turned) {}
@@ -52,7 +52,7 @@ class PaperPlane {
     Vec2 low_ = Vec2(kFar, kFar), high_ = Vec2(-kFar, -kFar);
 };
 
-/// Times along the path: at the ends of its pieces, and between them as close as a line needs.
+/// Times along the path: at the ends of its segments, and in between as close as a line needs.
 std::vector<double> times_on(const BallWay& way) {
     const double step = std::max(0.02, way.last() / 2000.0);  // [s]
     std::vector<double> times;

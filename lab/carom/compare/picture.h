@@ -9,8 +9,8 @@
 namespace carom::tools {
 
 /// The table of `a` from above, its longer side across, and the path of every ball: solid for `a`, dashed for
-/// `b`, in one colour if the ball has the same name. A dot marks the final position. The title names `a` and
-/// `b` by `name_a`, `name_b`.
+/// `b`, in one colour for balls with the same name. A dot marks the final position. The title names the shots
+/// `name_a` and `name_b`.
 Plot ways_plot(const Record& a, const std::string& name_a, const Record& b, const std::string& name_b);
 
 }  // namespace carom::tools

@@ -1,5 +1,5 @@
-// carom-lab margin: the report of `carom margin`, as a plot,
-// a page or a trace, and at every accuracy and frame rate.
+// carom-lab margin: the report of `carom margin` as a plot, a page or a trace, and at every accuracy and
+// frame rate.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ struct LabMarginArgs : MarginArgs {
     std::string trace, html;
 };
 
-/// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the previous one is done,
-/// as in a loop that simulates, draws and waits.
+/// The frames of one run as Chrome trace events: frame k begins at k / fps, or when the previous one ends, as
+/// in a loop that simulates, draws and waits.
 std::string margin_trace(const MarginRun& run, double fps);
 
 /// --sweep: every accuracy at every frame rate. Returns the exit status.

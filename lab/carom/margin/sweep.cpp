@@ -25,8 +25,8 @@ namespace carom::tools {
 namespace {
 
 constexpr double kRates[] = {30.0, 60.0, 120.0, 240.0, 480.0, 1000.0};
-/// Frames are drawn once, at this rate. At other rates, a frame has the cost of the drawn frame nearest in
-/// time, because it shows nearly the same picture.
+/// Frames are drawn once, at this rate. At other rates, a frame is assigned the cost of the drawn frame
+/// nearest in time, which shows nearly the same picture.
 constexpr double kDrawnRate = 60.0;
 
 struct Setting {
@@ -143,7 +143,7 @@ Table table_of(const std::vector<SettingRow>& rows) {
     return table;
 }
 
-/// One row per setting: the fastest rate up to which no frame was missed.
+/// One row per setting: the fastest rate up to which it missed no frame.
 Table frontier_of(const std::vector<SettingRow>& rows) {
     Table table(Column("method"), Column("setting"), Column("fps"));
     for (const SettingRow& row : rows)

@@ -1,4 +1,4 @@
-// Sortable tables: {title, columns: [{title}], rows: [[value, ...], ...]}; values after them are notes.
+// Sortable tables: {title, columns: [{title}], rows: [[value, ...], ...]}; extra values are notes.
 
 import {make, shown} from "../../../tools/carom/page/dom.js";
 

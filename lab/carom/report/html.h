@@ -1,4 +1,4 @@
-// Reports as pages: charts that can be read by hovering, tables that sort, and their sources.
+// Reports as pages: charts with values on hover, sortable tables, and their sources.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,22 +10,20 @@
 
 namespace carom::tools {
 
-/// A table as page/table.js shows it: the columns that have a key. Rows that lack values keep their note.
+/// A table as page/table.js shows it: the columns that have a key. Rows without values keep their note.
 nlohmann::ordered_json sorted_table_json(const std::string& title, const Table& table);
 
-/// Adds --html.
 void add_html(Options& command, std::string& html);
 
 struct Report {
     std::string title, lead;
-    /// Sentences.
     std::vector<std::string> notes;
     /// JSON of chart_json() and sorted_table_json().
     std::vector<std::string> charts, tables;
 };
 
-/// Written under a temporary name and renamed; nothing if the
-/// path is empty. @throws std::runtime_error naming the file
+/// Written under a temporary name and renamed; not written if the path is empty. @throws std::runtime_error
+/// naming the file
 void write_html_report(const Report& report, const std::string& path);
 
 }  // namespace carom::tools

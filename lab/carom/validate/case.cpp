@@ -1,4 +1,3 @@
-// Reads validation cases.
 #include "validate/case.h"
 
 #include <fmt/format.h>
@@ -20,7 +19,7 @@ SourceLocation place_of(const toml::source_region& region) {
     return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-/// One table of a case file. Every key must be known, and of the right type.
+/// One table of a case file. Every key must be known and have the right type.
 class Reader {
   public:
     Reader(const toml::table& table, const std::string& file, std::initializer_list<std::string_view> keys)
@@ -167,7 +166,7 @@ Variant read_variant(const toml::table& table, const std::string& file) {
     return variant;
 }
 
-/// Every number has a claim; that of a share or a mean is a value.
+/// Every number needs a claim; for a share or a mean, the claim is a value.
 void check_claims(const ValidationCase& c, const Variant& variant, const SourceLocation& where) {
     std::size_t at = 0;
     for (const ValidationShot& shot : c.shots)

@@ -1,5 +1,4 @@
-// Validation cases: shots on real tables, the measured numbers, and what carom is claimed to compute for
-// each.
+// Validation cases: shots on real tables, their measured numbers, and claims about carom's results.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,7 @@
 
 namespace carom::tools {
 
-/// The measured quantity: of one ball, or, for a share and a mean, of many shots.
+/// The measured quantity, of one ball or, for a share or a mean, of many shots.
 enum class Quantity : std::uint8_t {
     kSpeed,
     kSpeedRatio,
@@ -55,18 +54,17 @@ inline bool is_of_many(Quantity quantity) {
 
 /// When it is measured.
 enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
-/// In case files, and for people: right after the ball's first impact with another ball, right after its
+/// Names in case files and reports: right after the ball's first impact with another ball, right after its
 /// first impact with a cushion, when it rolls (again) after its first impact, and when everything is at rest.
 inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
 
-/// One measured number.
 struct Measured {
     Quantity quantity = Quantity::kSpeed;
     Instant when = Instant::kStart;
     double after = 0.0;  ///< [s] after that instant
     std::string ball = "cue";
     double value = 0.0;  ///< in the unit of the quantity; 0 for a place
-    /// in the same unit; how well the number is known, including the unknowns of the shot
+    /// in the same unit; uncertainty of the number, including unknowns of the shot
     double uncertainty = 0.0;
     Vec2 place = Vec2::Zero();
     std::string name;   ///< in reports; empty: the quantity
@@ -75,7 +73,7 @@ struct Measured {
     std::string note;
 };
 
-/// One way to play the template: the values of {name} in it, and what was measured then.
+/// One instance of the template: the values of its {name}s, and the measured numbers.
 struct ValidationShot {
     std::string name;
     std::string group;  ///< shots joined by one curve
@@ -83,8 +81,7 @@ struct ValidationShot {
     std::vector<Measured> measured;
 };
 
-/// The claim about a variant for one number. Empty: a value within the uncertainty; otherwise the
-/// value itself.
+/// The claim about a variant for one number. Empty: within the uncertainty; otherwise the value itself.
 using Claim = std::optional<double>;
 
 /// Preset and models with which all shots of a case are played.
@@ -102,11 +99,11 @@ struct Variant {
 enum class About : std::uint8_t { kCushion, kBallBall, kClusters, kCloth, kCue };
 inline constexpr const char* kAbout[] = {"cushion", "ball_ball", "clusters", "cloth", "cue"};
 
-/// How far to trust the numbers.
+/// Reliability of the numbers.
 inline constexpr const char* kTrust[] = {"measured", "published", "second hand", "forum"};
 
 /// The figure of a case: the first number of each shot over one of the template's values, or over the shots.
-/// Shots that begin with a different quantity than the first shot are left out.
+/// Shots whose first quantity differs from the first shot's are omitted.
 struct CasePlot {
     std::string x;        ///< a value of the template; empty: the shots side by side
     std::string over;     ///< a value by which the quantity is divided; empty: none
@@ -131,8 +128,8 @@ struct ValidationCase {
     std::vector<Variant> variants;
 };
 
-/// A file of lab/data/validation. The build embeds them in the program, so that an installed one has them,
-/// too.
+/// A file of lab/data/validation, embedded in the program by the build, so that an installed program also has
+/// it.
 struct CaseFile {
     std::string_view name, text;
 };

@@ -1,4 +1,3 @@
-// Reads measured quantities in records.
 #include "validate/measure.h"
 
 #include <fmt/format.h>
@@ -31,7 +30,7 @@ bool involves(const Record& record, const Event& event, int ball) {
     return std::find(members.begin(), members.end(), ball) != members.end();
 }
 
-/// The time of the ball's first impact that `matters`.
+/// The time of the ball's first impact accepted by `matters`.
 template <class Matters>
 std::optional<double> first_impact(const Record& record, int ball, const Matters& matters) {
     for (const Event& e : record.events)
@@ -44,7 +43,7 @@ std::optional<double> first_impact(const Record& record, int ball) {
     return first_impact(record, ball, [](EventType) { return true; });
 }
 
-/// When the ball rolls, from its first impact on.
+/// When the ball rolls, at or after its first impact.
 std::optional<double> rolls(const Record& record, int ball) {
     const double from = first_impact(record, ball).value_or(0.0);
     for (const Segment& s : record.tracks[ball].segments)

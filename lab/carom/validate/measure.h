@@ -6,8 +6,8 @@
 
 namespace carom::tools {
 
-/// The measured number of one shot, in the unit of its quantity; not for many shots.
-/// @throws std::runtime_error if the shot has no such instant, such as that of a cushion that is not hit
+/// The measured number of one shot, in the unit of its quantity; not for quantities of many shots.
+/// @throws std::runtime_error if the shot lacks the instant, such as a cushion impact
 double measure(const Record& record, const Measured& what);
 
 }  // namespace carom::tools

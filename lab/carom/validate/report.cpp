@@ -1,4 +1,3 @@
-// Reports of a validation.
 #include "validate/report.h"
 
 #include <fmt/format.h>
@@ -16,7 +15,7 @@
 namespace carom::tools {
 namespace {
 
-/// "within", or how far the claimed value misses: "27 % low", "0.06 m off".
+/// "within", or the deviation from the claimed value: "27 % low", "0.06 m off".
 std::string claim_text(const ValidationRow& row) {
     if (!row.claim) return "within";
     const double measured = row.measured->value, off = *row.claim - measured;
@@ -93,7 +92,7 @@ Series series_of(const std::string& name, const std::vector<ValidationRow>& rows
             continue;
         const double over = plot.over.empty() ? 1.0 : number(*row.shot, plot.over);
         const double place = static_cast<double>(row.shot - row.of->shots.data()) + 1.0;
-        // Variants are side by side if there is room.
+        // Variants are drawn side by side if there is room.
         const double step = 0.08 * static_cast<double>(row.variant - row.of->variants.data() + 1);
         const double x = plot.x.empty() ? place + (measured ? 0.0 : step) : number(*row.shot, plot.x);
         series.points.emplace_back(x, (measured ? row.measured->value : row.computed) / over);

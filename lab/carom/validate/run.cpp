@@ -1,4 +1,3 @@
-// Runs validation cases.
 #include "validate/run.h"
 
 #include <fmt/format.h>
@@ -46,13 +45,13 @@ std::string model_of(const ValidationCase& of, const Scene& scene) {
     return kAbout[static_cast<std::size_t>(of.about)];
 }
 
-/// The model and the computed numbers of one shot under one variant, with their standard deviations.
+/// The model and the computed numbers of one shot with one variant, and their standard deviations.
 struct Computed {
     std::string model;
     std::vector<double> numbers, sampled;
 };
 
-/// Mean of what was seen, and its standard deviation.
+/// Mean of the samples, and its standard deviation.
 struct Mean {
     double sum = 0.0, squares = 0.0;
     int count = 0;

@@ -27,7 +27,7 @@ struct ValidationRow {
     double deviation() const;
     bool within() const;
     /// Whether the claim holds: within; or outside, and within a quarter of the uncertainty of the claimed
-    /// value; or, of many shots, within three standard deviations of the claimed value.
+    /// value; or, for many shots, within three standard deviations of the claimed value.
     bool as_claimed() const;
 };
 
@@ -37,7 +37,6 @@ struct ValidationRow {
 std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
                                     const std::function<void(long)>& progress);
 
-/// Number of runs of a case.
 long runs_of(const ValidationCase& of);
 
 }  // namespace carom::tools

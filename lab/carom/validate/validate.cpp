@@ -1,4 +1,4 @@
-// carom-lab validate: shots measured on real tables, beside what carom computes.
+// carom-lab validate: shots measured on real tables, compared with carom's results.
 #include <string>
 #include <vector>
 

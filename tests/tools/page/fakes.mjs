@@ -1,7 +1,7 @@
-// carom for the state of the interactive page: scenes whose shots last as many seconds as their speed.
+// A fake carom for the interactive page's state: each shot lasts as many seconds as its speed.
 import {State} from "../../../tools/carom/commands/play/state.js";
 
-/** The scene that a text of JSON describes: its cue, and balls by their names. */
+/** The scene that a JSON text describes: its cue, and balls by name. */
 class FakeScene {
   constructor(told) {
     Object.assign(this, told, {told, freed: false});
@@ -32,7 +32,7 @@ class FakeShot {
   free() { this.freed = true; }
 }
 
-/** The options that decide a verdict: those that judge() returns. */
+/** The options of a verdict, as judge() returns them. */
 export const OPTIONS = [{decision: "play", text: "player 2 plays", state: {game: "nine_ball", turn: 1}}];
 
 export const carom = {
@@ -52,7 +52,7 @@ export const carom = {
 export const START = JSON.stringify({cue: {ball: "cue", speed: 3, aim_deg: 90, side: 0, height: 0},
   balls: {cue: [0.5, 0.25], 1: [0.5, 1.5]}});
 
-/** A state without a page, and the list of what it says. */
+/** A state without a page, and the list of its messages. */
 export function freshState(lock = []) {
   const state = new State({lock}, carom), said = [];
   state.on("says", (text) => said.push(text));

@@ -1,4 +1,4 @@
-// Games: the states from shot to shot, with rules that a test decides.
+// Games: states from shot to shot, with rules set by the test.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {judge, legal, newGame, nextShot} from "../../../tools/carom/commands/play/game.js";
@@ -13,7 +13,7 @@ function playing() {
   return made;
 }
 
-test("without a game the balls go on from where they rest, and nothing is judged", () => {
+test("without a game the balls continue from where they rest, and nothing is judged", () => {
   const {state} = freshState();
   begin(state, START);
   judge(state);
@@ -36,24 +36,24 @@ test("a verdict leads to the next state, and undo to the one before", () => {
   assert.deepEqual(state.game.judged.announced.pocket, "p1");
   assert.deepEqual(state.announced, {ball: "1", pocket: "", safety: false, pushOut: false});
   assert.equal(state.verdict, null);
-  // The verdict still asks about its shot.
+  // The verdict still needs its shot.
   assert.equal(shot.freed, false);
   takeBack(state);
   assert.equal(state.game, first);
 });
 
-test("a game that is over, or whose balls are racked again", () => {
+test("a game ends, or its balls are racked again", () => {
   const {state, said} = playing(), {game} = state;
   judge(state);
   state.verdict.options = [{text: "player 1 wins", state: {over: true}}];
   nextShot(state);
   assert.deepEqual([state.game, said.at(-1)], [game, "Player 1 wins."]);
-  // The fake scenes are JSON, so that a rack is refused after the rules have asked for it.
+  // The fake scenes are JSON, so a rack is refused after the rules have requested it.
   state.verdict.options = [{rerack: true, text: "", state: {game: "nine_ball"}}];
   assert.throws(() => nextShot(state), SyntaxError);
 });
 
-test("rules that cannot judge are said, and the shot stays", (t) => {
+test("a failure to judge is reported, and the shot stays", (t) => {
   const {state, said} = playing();
   t.mock.method(carom.games, "judge", () => { throw new Error("no such pocket"); });
   nextShot(state);
@@ -61,7 +61,7 @@ test("rules that cannot judge are said, and the shot stays", (t) => {
   assert.equal(state.ball("cue").x, 0.5);
 });
 
-test("what a player may do, in words", () => {
+test("words state what a player may do", () => {
   const {state} = playing();
   assert.equal(legal(state).text, "Player 1 shoots. Hit first: 1.");
   Object.assign(state.game.state,

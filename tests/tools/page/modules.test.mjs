@@ -1,4 +1,4 @@
-// The modules of the pages, as tools/carom/page/embed.cmake embeds them: each finds what it imports.
+// The pages' modules, as tools/carom/page/embed.cmake embeds them: each finds its imports.
 import assert from "node:assert/strict";
 import {readFileSync, readdirSync} from "node:fs";
 import * as path from "node:path";
@@ -24,7 +24,7 @@ test("every imported name is exported on a line of its own", () => {
     }
 });
 
-test("no text spans lines, because pages leave out indentation", () => {
+test("no text spans lines, because pages omit indentation", () => {
   for (const file of files)
     for (const line of text(file).split("\n"))
       assert.equal(line.split("`").length % 2, 1, `${file}: ${line}`);

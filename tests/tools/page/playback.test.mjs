@@ -1,4 +1,4 @@
-// The clock of the pages, driven by frames that the test gives it.
+// The pages' clock, driven by the test's frames.
 import assert from "node:assert/strict";
 import {beforeEach, test} from "node:test";
 import {Playback, eventBefore} from "../../../tools/carom/page/playback.js";
@@ -14,14 +14,14 @@ beforeEach(() => {
 const made = (more = {}) => new Playback({end: () => 3, events: () => EVENTS,
   show: (...about) => log.push(["show", ...about]), label: () => log.push(["label"]),
   starts: () => log.push(["starts"]), ended: () => log.push(["ended"]), ...more});
-/** Lets `ms` pass. @returns the time that is shown then */
+/** Lets `ms` pass. @returns the time then shown */
 function pass(clock, ms) {
   const draw = frames.shift();
   draw(clock.drawn + ms);
   return clock.now;
 }
 
-test("an instant outside the shot is its start or its end", () => {
+test("an instant outside the shot shows its start or end", () => {
   const clock = made();
   for (const [t, now] of [[-1, 0], [1.5, 1.5], [9, 3]]) {
     clock.show(t, "about");
@@ -54,14 +54,14 @@ test("it stops at the end, and starts again from there", () => {
   assert.deepEqual(log.at(-1), ["starts"]);
 });
 
-test("it goes from event to event, and to the ends", () => {
+test("it jumps from event to event, and to the ends", () => {
   const clock = made(), times = (direction) => [...Array(4)].map(() => (clock.jump(direction), clock.now));
   assert.deepEqual(times(1), [1, 2.5, 3, 3]);
   assert.deepEqual(times(-1), [2.5, 1, 0, 0]);
   assert.deepEqual([-1, 0, 0.5, 1, 9].map((t) => eventBefore(EVENTS, t)), [-1, 0, 0, 2, 3]);
 });
 
-test("who prefers less motion sees stills", () => {
+test("reduced motion shows stills", () => {
   const clock = made({still: (ms) => (ms < 900 ? null : clock.eventTime(1))});
   clock.run(true);
   const {drawn} = clock;

@@ -1,4 +1,4 @@
-// Addresses that carry a scene: they come back as they were, and damaged ones are refused with a sentence.
+// Addresses that contain a scene read back unchanged, and damaged ones are refused with a sentence.
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import * as path from "node:path";
@@ -9,7 +9,7 @@ import {fragmentOf, sceneInFragment} from "../../../tools/carom/commands/play/sh
 const SCENES = fileURLToPath(new URL("../../../scenes", import.meta.url));
 const sceneText = (name) => readFileSync(path.join(SCENES, name), "utf8");
 const HASH = "0123456789abcdef";
-/** Why these tests are skipped; false if they are not. */
+/** Why these tests are skipped, or false. */
 const skip = (() => {
   try {
     return !new CompressionStream("deflate-raw");
@@ -18,14 +18,14 @@ const skip = (() => {
   }
 })();
 
-test("a scene comes back as it was", {skip}, async () => {
+test("a scene reads back unchanged", {skip}, async () => {
   const toml = sceneText("three_cushion.toml") + "# an umlaut: ä\n";
   const fragment = await fragmentOf(toml, HASH);
   assert.match(fragment, /^#[\w=&-]+$/);
   assert.deepEqual(await sceneInFragment(fragment), {hash: HASH, toml});
 });
 
-test("an address without a scene is none", async () => {
+test("an address without a scene yields none", async () => {
   for (const fragment of ["", "#", "#t=1.5"]) assert.equal(await sceneInFragment(fragment), null);
 });
 
@@ -33,7 +33,7 @@ test("a scene that would fill the memory is refused", {skip}, async () => {
   await assert.rejects(sceneInFragment(await fragmentOf("#".repeat(50e6), HASH)), /address/);
 });
 
-test("a thousand damaged addresses are refused or give a text", {skip}, async () => {
+test("a thousand damaged addresses are refused or yield a text", {skip}, async () => {
   const whole = await fragmentOf(sceneText("draw.toml"), HASH);
   let seed = 3, refused = 0;
   const random = (n) => { seed = (Math.imul(seed, 1103515245) + 12345) & 0x7fffffff; return seed % n; };

@@ -1,4 +1,5 @@
-// The state of the interactive page: every change is a shot, what fails changes nothing, and all is undone.
+// The interactive page's state: every change is a shot, failures change nothing, and everything can be
+// undone.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {put, refusal} from "../../../tools/carom/commands/play/place.js";
@@ -24,7 +25,7 @@ test("a change is a new scene and a new shot, and the old ones are freed", () =>
   assert.deepEqual([state.scene.freed, state.shot.freed], [false, false]);
 });
 
-test("what carom refuses changes nothing and is said", () => {
+test("a change that carom refuses is reported and changes nothing", () => {
   const {state, said} = begun(), {scene, shot} = state;
   assert.equal(change(state, {"cue.speed": 11}), false);
   assert.equal(change(state, {"cueball.speed": 1}), false);
@@ -34,7 +35,7 @@ test("what carom refuses changes nothing and is said", () => {
   assert.deepEqual([state.scene, state.past.length], [scene, 0]);
 });
 
-test("undo takes back changes one by one, other tables, and says when nothing is left", () => {
+test("undo reverts changes one by one, also of tables, and says when none is left", () => {
   const {state, said} = begun();
   change(state, {"cue.speed": 4});
   change(state, {"cue.speed": 5});
@@ -50,13 +51,13 @@ test("undo takes back changes one by one, other tables, and says when nothing is
   assert.equal(state.scene.toml, START);
 });
 
-test("undo goes back two hundred steps", () => {
+test("undo covers two hundred steps", () => {
   const {state} = begun();
   for (let i = 1; i <= 250; ++i) change(state, {"cue.speed": i / 100});
   assert.equal(state.past.length, 200);
 });
 
-test("who follows the table hears of it with the new shot", () => {
+test("listeners of the table hear of it with the new shot", () => {
   const {state} = freshState(), heard = [];
   state.on("table", () => heard.push(["table", state.shot.duration]));
   state.on("time", () => heard.push(["time", state.clock.now]));
@@ -65,7 +66,7 @@ test("who follows the table hears of it with the new shot", () => {
   assert.deepEqual(heard, [["table", 3], ["time", 0], ["time", 0]]);
 });
 
-test("steps of the stroke", () => {
+test("the stroke changes in steps", () => {
   assert.deepEqual([0, 180, 181, -181, 540, 720].map(wrapped), [0, -180, -179, 179, -180, 0]);
   assert.equal(aimAt({x: 0.5, y: 0.25}, 0.5, 1), 90);
   assert.equal(aimAt({x: 0, y: 0}, -1, -1), -135);
@@ -79,7 +80,7 @@ test("steps of the stroke", () => {
   assert.equal(held.scene.cue.speed, 3);
 });
 
-test("the tip stays where it does not slip off", () => {
+test("the tip stays within the miscue limit", () => {
   assert.deepEqual(reachable(0.1234, -0.2), [0.123, -0.2]);
   const [side, height] = reachable(3, -4);
   assert.ok(Math.abs(Math.hypot(side, height) - 0.5) < 2e-3 && Math.hypot(side, height) < 0.5);
@@ -94,7 +95,7 @@ test("a locked page says which keys are fixed", () => {
   assert.equal(put(state, "1", 0.5, 0.5), false);
 });
 
-test("keys of a scene file are those of its sections", () => {
+test("a key is removed from its own section only", () => {
   const toml = '[table]\n  cloth = "club"\ncorners = [\n[0.5, 1],\n]\nwidth = 1 # m\n' +
     '[physics]\ncloth = "y"\ncushion_touch = "nose"\n';
   assert.equal(without(toml, "table.cloth"), toml.replace('  cloth = "club"\n', ""));
@@ -105,7 +106,7 @@ test("keys of a scene file are those of its sections", () => {
   assert.equal(toml.slice(...rangeOf(toml, 6)), "width = 1 # m");
 });
 
-test("titles and what to look for are whole, and balls come and go", () => {
+test("titles and hints are complete, and balls come and go", () => {
   const toml = "# A break at 9.5 m/s. Second.\n# Look for: the 1,\n# and the 2.5 m.\n[table]\n";
   assert.deepEqual([titleOf(toml), lookFor(toml)], ["A break at 9.5 m/s", "the 1, and the 2.5 m."]);
   assert.deepEqual(["# Draw shot: straight in.\n", "# as scene.toml raised\n", ""].map(titleOf),
@@ -115,7 +116,7 @@ test("titles and what to look for are whole, and balls come and go", () => {
   assert.equal(withoutBall(two, "1"), withBall("[table]\n", "2", [0.25, 1]));
 });
 
-/** A shot in which the ball "cue" meets the ball "1", half of it, at 1 s. */
+/** A shot in which the ball "cue" hits half of the ball "1" at 1 s. */
 function halfBall() {
   const [c, s] = [Math.cos(Math.PI / 6), 0.5];
   const piece = (start, state, r, v) =>
@@ -139,13 +140,13 @@ test("the first contact: the ghost ball, the lines of both balls, and an obvious
   assert.equal(firstContact({...shot, events: []}, "cue"), null);
 });
 
-test("the cue is where it is drawn", () => {
+test("the cue is hit where it is drawn", () => {
   const cue = {speed: 3, aim_deg: 90, elevation_deg: 0}, ball = {x: 0, y: 0, radius: 0.03};
   assert.deepEqual([[0, -0.5], [0, 0.5], [0.1, -0.5], [0, -3]].map((at) => onCue(cue, ball, at, 0.03)),
     [true, false, false, false]);
 });
 
-test("a person may not aim for carom, but for it when it was stopped", () => {
+test("a person may aim for carom only after stopping it", () => {
   const {state} = begun();
   Object.assign(state, {game: {state: {turn: 1, over: false}}, match: {players: ["", "club"]}});
   assert.deepEqual([state.level, state.free], ["club", false]);

@@ -1,4 +1,4 @@
-// Every event of the engine is told in words, and meets the part of the table that it should.
+// Every event of the engine has a sentence and meets the correct part of the table.
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
@@ -20,7 +20,7 @@ test("every type of event has its own words", () => {
   assert.equal(KINDS.length, 19);
   const told = KINDS.map(({type}) => eventWords(event(type), "metric"));
   assert.equal(new Set(told).size, KINDS.length);
-  // Events of resting contacts are only in the list of all events, under their names.
+  // Events of resting contacts appear only in the list of all events, by their names.
   const named = KINDS.filter(({type}, i) => told[i] === `The cue ball: ${type.replaceAll("_", " ")} 1`);
   assert.deepEqual(named, KINDS.filter(({type}) => /_(hold|release)$/.test(type)));
 });
@@ -40,7 +40,7 @@ test("contacts are types of events", () => {
     "ball_pocket", "ball_out"]);
 });
 
-test("an event meets the part that the engine says", () => {
+test("an event meets the part named by the engine", () => {
   const record = {tracks: [{id: "Ball"}], table: {jaws: [{id: "Jaw"}], pockets: [{id: "Pocket"}],
     cushions: [{id: "Cushion"}]}};
   for (const {type, meets} of KINDS)
@@ -54,7 +54,7 @@ test("verdicts in a sentence", () => {
     "Foul: no rail (6.3), scratch.");
 });
 
-test("a stroke in the words of the game", () => {
+test("a stroke is described in players' terms", () => {
   assert.deepEqual([0.5, 2, 3, 9].map(speedWord), ["soft", "medium", "hard", "break"]);
   assert.equal(tipWords(0, 0), "centre");
   assert.equal(tipWords(0.3, -0.4), "full draw, half left English");

@@ -14,14 +14,14 @@ const fault = (page, text) => { ++faults; console.log(`${page}: ${text}`); };
 const near = (a, b, by = 1e-9) => Math.abs(a - b) <= by;
 const settled = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))";
 
-/** Statements that read the upper canvas: `canvas`, and its bytes as `data`. */
+/** Statements that read the upper canvas into `canvas` and its bytes into `data`. */
 const copied = `const canvas = document.querySelectorAll(".table canvas")[1];
     const copy = new OffscreenCanvas(canvas.width, canvas.height)
       .getContext("2d", {willReadFrequently: true});
     copy.drawImage(canvas, 0, 0);
     const data = copy.getImageData(0, 0, canvas.width, canvas.height).data;`;
 
-/** The upper canvas at these discs: the number of pixels, how many are opaque, and the mean colour. */
+/** The upper canvas at these discs: number of pixels, number of opaque ones, and mean colour. */
 function pixels(places) {
   return `(() => { ${copied}
     return ${JSON.stringify(places)}.map(([x, y, r]) => {
@@ -43,7 +43,7 @@ const ready = (what) =>
   `document.body && document.body.dataset.ready === "true" && document.querySelector(${what})`;
 const painted = `${ready('".table canvas"')}.width > 0`;
 
-/** Where a place of the table is on the canvas, in fractions of its width and height. */
+/** A table place on the canvas, in fractions of its width and height. */
 function share({low, high}, lying, x, y) {
   const [u, v] = [(x - low[0]) / (high[0] - low[0]), (y - low[1]) / (high[1] - low[1])];
   return lying ? [v, u] : [u, 1 - v];
@@ -64,7 +64,7 @@ async function checkInstants(browser, page) {
       for (const key of ["id", "state", "x", "y", "z"])
         if (here[i][key] !== ball[key])
           fault(page.name, `at ${t} s ${ball.id} has ${key} ${here[i][key]} instead of ${ball[key]}`);
-    if (!exact) continue;  // a very narrow outline is not drawn to the edges of the canvas
+    if (!exact) continue;  // a very narrow outline does not reach the edges of the canvas
     const gone = ["pocketed", "out", "falling", "airborne"];
     const inPlay = expected.filter((ball) => !gone.includes(ball.state));
     const diagonal = Math.hypot(...sides), lying = width > height;
@@ -143,7 +143,7 @@ async function checkTexts(browser, page) {
     fault(page.name, "has scripts that it should not have");
 }
 
-/** Two shots: over, beside and off, and the distance between their balls in the list. */
+/** Two shots: overlaid, side by side and off, and their balls' distance in the list. */
 async function checkSecond(browser, page) {
   const drawn = () => browser.value(`(() => { ${copied}
     let sum = 0; for (const x of data) sum = (31 * sum + x) % 1000000007; return sum; })()`);
@@ -287,7 +287,7 @@ async function checkReport(browser, report) {
   for (const text of messages) fault(report.name, text);
 }
 
-/** The time of a frame of the page, for the report; nothing is asserted. */
+/** The time of one frame of the page, reported without an assertion. */
 async function frameTimes(browser, page) {
   await browser.size(1400, 1000);
   await browser.send("Page.navigate", {url: "about:blank"});

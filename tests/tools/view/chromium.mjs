@@ -6,10 +6,10 @@ import {writeFileSync} from "node:fs";
 export const TWO_FRAMES =
   "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))";
 
-/** A browser with two pipes, file descriptors 3 and 4: messages are JSON, each followed by a 0. */
+/** A browser with two pipes, file descriptors 3 and 4; messages are JSON, each followed by a 0. */
 export class Browser {
-  /** `pictures`: a folder for screenshots. `server`: the address of a test's own server; nothing else can be
-   * reached. */
+  /** `pictures`: a folder for screenshots. `server`: the address of a test's own server; all else is
+   * unreachable. */
   constructor({chromium = "chromium", profile, pictures = "", server = ""}) {
     this.pictures = pictures;
     const hosts = `MAP * ~NOTFOUND${server ? `, EXCLUDE ${server}` : ""}`;
@@ -84,7 +84,7 @@ export class Browser {
     const buttons = type === "mouseReleased" ? 0 : 1;
     await this.send("Input.dispatchMouseEvent", {type, x, y, button: "left", buttons, clickCount: 1});
   }
-  /** Presses at the first place, moves to the others and lets go; `type`: "mouse" or "touch". */
+  /** Presses at the first place, moves to the others and releases; `type`: "mouse" or "touch". */
   async drag(places, type = "mouse") {
     const finger = ([x, y]) => ({x, y, id: 1, radiusX: 5, radiusY: 5, force: 1});
     const touch = (name, at) => this.send("Input.dispatchTouchEvent",
@@ -103,7 +103,7 @@ export class Browser {
       await (type === "touch" ? touch("touchMove", at) : this.mouse("mouseMoved", ...at));
     await this.value(TWO_FRAMES);
     await (type === "touch" ? touch("touchEnd") : this.mouse("mouseReleased", ...last));
-    // A touch right after a swipe would only stop the swipe, and click nothing.
+    // A touch right after a swipe would only stop the swipe without a click.
     if (type === "touch" && more.length > 0) await new Promise((resolve) => setTimeout(resolve, 400));
   }
   async picture(name) {

@@ -1,9 +1,9 @@
-// Headless Firefox for tests, driven by Marionette, its own protocol: "length:JSON" on a socket.
+// Headless Firefox for tests, driven by its own protocol Marionette: "length:JSON" on a socket.
 import {spawn} from "node:child_process";
 import {mkdirSync, writeFileSync} from "node:fs";
 import {connect} from "node:net";
 
-/** As Browser of chromium.mjs, with fewer functions. */
+/** Like Browser of chromium.mjs, with fewer functions. */
 export class Firefox {
   constructor({firefox = "firefox-esr", profile, pictures = "", port = 20000 + process.pid % 20000}) {
     Object.assign(this, {pictures, port, waiting: new Map(), next: 0, actions: 0});
@@ -80,7 +80,7 @@ export class Firefox {
       Escape: "\ue00c", Enter: "\ue007", Tab: "\ue004"}[key] ?? key;
     await this.perform({type: "key", actions: [{type: "keyDown", value}, {type: "keyUp", value}]});
   }
-  /** Presses at the first place, moves to the others and lets go; `type`: "mouse" or "touch". */
+  /** Presses at the first place, moves to the others and releases; `type`: "mouse" or "touch". */
   async drag(places, type = "mouse") {
     const [from, ...more] = places.map(([x, y]) => ({type: "pointerMove", x: Math.round(x), y: Math.round(y),
       duration: 20}));

@@ -25,7 +25,7 @@ for (const line of readFileSync(states, "utf8").trim().split("\n")) {
     + (here.pocket !== Number(pocket));
   if (wrong > 0 && differ < 5) console.log(`differs: ${line}: ${JSON.stringify(here)}`);
   differ += wrong;
-  // The angle between two orientations, from the vector part of their quotient; q and -q are one orientation.
+  // The angle between two orientations, from the vector part of their quotient; q and -q are the same.
   const q = orientation(Number(ball), Number(t)), p = numbers.slice(9);
   const same = Math.sign(q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3]);
   turned = Math.max(turned, 2 * Math.hypot(...q.map((x, k) => x - same * p[k])));

@@ -1,5 +1,5 @@
-// node validate.mjs MODULES FILE.glb ...: prints what the Khronos glTF validator, installed in the folder
-// MODULES, finds in each file. Exit status 1: it finds something.
+// node validate.mjs MODULES FILE.glb ...: prints the findings of the Khronos glTF validator, installed in the
+// folder MODULES, for each file. Exit status 1: there are findings.
 import {readFileSync} from "node:fs";
 import {createRequire} from "node:module";
 import {resolve} from "node:path";
