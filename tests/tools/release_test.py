@@ -23,7 +23,7 @@ release = importlib.util.module_from_spec(importlib.util.spec_from_loader("relea
 loader.exec_module(release)
 READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h",
                                                "web/npm/index.d.ts", "docs/reference/record.schema.json",
-                                               "tests/data/engine/golden_hashes.json"}
+                                               "tests/data/engine/golden_hashes.json", "games/src/rule_options.cpp"}
 
 
 class Release(unittest.TestCase):
@@ -105,6 +105,16 @@ class Release(unittest.TestCase):
         # Other interfaces still have the same line.
         self.change("web/npm/index.d.ts", r"(?s)(export interface BallPlace \{.*?)  x: number;\n", r"\1")
         self.one_fault("index.d.ts no longer declares")
+
+    def test_a_new_option_of_a_rule_is_no_fault_but_a_new_default_is(self):
+        self.change("games/src/rule_options.cpp", r'\{"fair", "foul"\}', '{"fair", "foul", "rerack"}')
+        self.assertEqual(release.faults_of(self.root), [])
+        self.change("games/src/rule_options.cpp", r'\{"all", "eight", "none"\}', '{"eight", "all", "none"}')
+        self.assertTrue(any("EightBall: call = all (default)" in f for f in release.faults_of(self.root)))
+
+    def test_removing_npms_program_is_a_fault(self):
+        self.change("web/npm/package.json", r'"bin": \{"carom"', '"bin": {"billiards"')
+        self.one_fault("npx carom")
 
     def test_a_comment_is_not_a_declaration(self):
         self.change("capi/include/carom/carom.h", r"/\* of the cue \[m/s\] \*/", "/* quite another; word */")

@@ -15,7 +15,7 @@
 namespace carom::tools {
 
 /// The table appears when it is complete. Until then its rows are kept in a folder, `path`.<id>.parts, by the
-/// rules of all sweeps (docs/guide/clusters.md, "What a resumed sweep relies on"). A part is named after its
+/// rules of all sweeps (docs/guide/clusters.md). A part is named after its
 /// first shot. After its rows it says what it holds, and the last line is the hash of everything before. The
 /// next run with this path and id continues after them. A lock keeps two programs from doing the same work.
 class TableInParts {
