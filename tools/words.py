@@ -3,9 +3,9 @@
 
     tools/words.py [FILE ...]     without files: every file of the project that git knows
 
-No line of code or prose is wider than 110 columns, except what cannot be broken: tables, links, addresses and
-commands in Markdown, and data. No comment or page uses the
-phrases below, which were this project's worst habits.
+No line of code or prose is wider than 110 columns, except tables, links, addresses and commands in
+Markdown, and data. No comment or page uses the phrases below, which were this project's worst habits. Without
+files, the number of places with a weak word must be the one below, which may only shrink.
 Exit status 1: there are findings, each printed as FILE:LINE: what is wrong.
 """
 import pathlib
@@ -31,6 +31,16 @@ PHRASES = {
     r"\bin touch\b": "touching",
     r"\btells\b": "says, prints, states or shows",
     r"^[\s/<*]*(?-i:What|Whatever|Those of|That of)\b(?!.*\?)": "a subject that is no clause",
+}
+# Words that are right in some places, and the number of places where they are left: verbs that a machine or a
+# formula can have as its subject, and clauses used as nouns.
+WEAK = {
+    r"\btakes?\b": (0, "accept, need, last, use"),
+    r"\b(go|goes) on\b": (0, "continue"),
+    r"\banswers?\b": (0, "return, print, respond"),
+    r"\bstands?\b": (0, "be, be listed, be stated"),
+    r"\b(those|that) of\b": (0, "the noun again"),
+    r"\b(what|whatever|whoever)\b": (0, "a noun"),
 }
 
 
@@ -62,7 +72,7 @@ def too_wide(path, lines):
 def main(arguments):
     listed = subprocess.run(["git", "ls-files"], capture_output=True, text=True, check=True).stdout
     named = arguments or listed.split("\n")
-    found = 0
+    found, weak = 0, dict.fromkeys(WEAK, 0)
     for path in map(pathlib.Path, filter(None, named)):
         if str(path).startswith(LEFT_OUT) or not path.is_file():
             continue
@@ -76,10 +86,17 @@ def main(arguments):
         if path.name == pathlib.Path(__file__).name:
             continue
         for number, text in texts(path, lines):
+            for word in WEAK:
+                weak[word] += len(re.findall(word, text, re.IGNORECASE))
             for phrase, better in PHRASES.items():
                 if bad := re.search(phrase, text, re.IGNORECASE):
                     print(f'{path}:{number}: "{bad.group()}": write {better}')
                     found += 1
+    for word, (left, better) in WEAK.items():
+        if not arguments and weak[word] != left:
+            print(f"tools/words.py: {word} is in {weak[word]} places instead of {left}: " +
+                  (f"write {better}" if weak[word] > left else "lower the number here"))
+            found += 1
     return found > 0
 
 

@@ -212,7 +212,7 @@ TEST(HardRuns, StoppedRunsAreTheBeginning) {
 
 // Three of the million breaks of lab/notes/2026-11-million_breaks.md in which a held ball kept 1e-13 m/s and
 // took days to stop.
-TEST(HardRuns, WhatFrictionStopsAtOnceDoesNotCreep) {
+TEST(HardRuns, BallsThatFrictionStopsDoNotCreep) {
     const struct {
         const char *aim, *speed, *seed;
     } kBreaks[] = {{"86.62569300366489", "2.7659426616848983", "416425230"},

@@ -115,7 +115,7 @@ TEST(RoundWalls, NoBallLeaves) {
 
 class RoundTables : public testing::TestWithParam<int> {};
 
-TEST_P(RoundTables, NothingLeavesTwoThousand) {
+TEST_P(RoundTables, NoBallLeavesTwoThousand) {
     nothing_leaves(2000, 2 + static_cast<std::uint64_t>(GetParam()));
 }
 

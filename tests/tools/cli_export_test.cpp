@@ -138,7 +138,7 @@ Record record_of(const TemporaryFolder& folder, const std::string& scene) {
     return read_record(file);
 }
 
-TEST(Export, PlacesAreExactAndOrientationsNear) {
+TEST(Export, PlacesAreExactAndOrientationsClose) {
     const TemporaryFolder folder;
     Differences largest;
     for (const std::string& scene : shipped_scenes()) {
@@ -235,7 +235,7 @@ TEST(Export, TheFacesOfABallPointOutwards) {
     EXPECT_NEAR(picture, 1.0 - 1.0 / 24.0, 1e-3);
 }
 
-TEST(Export, TheKhronosValidatorSaysNothing) {
+TEST(Export, TheKhronosValidatorReportsNothing) {
     if (run_process({"npm", "--version"}).status != 0) GTEST_SKIP() << "npm is not installed";
     const TemporaryFolder folder;
     // Not a dependency of the project: fetched for this test if possible.

@@ -158,7 +158,7 @@ TEST_F(Faults, ResumeFinishesAKilledRenderWithTheSameFrames) {
 
 // Renders over the frames of a longer film from another camera, killed after each frame: no file mixes two
 // pictures.
-TEST_F(Faults, ARenderThatIsKilledOverOtherFramesIsFinishedByResumeWithItsOwn) {
+TEST_F(Faults, ResumeFinishesAKilledRenderOverOtherFrames) {
     const auto command = [this](const char* camera, const char* to) {
         return std::vector<std::string>{"render", scene_,  "-o",   pattern(), "--fps",    "100",
                                         "--size", "64x36", "--to", to,        "--camera", camera};
@@ -206,7 +206,7 @@ TEST_F(Faults, ASignalEndsAnExport) {
 }
 
 // A file name may contain any byte except "/" and 0; the output remains text.
-TEST_F(Faults, NamesThatAreNoTextAreWrittenAsText) {
+TEST_F(Faults, NamesThatAreNotUtf8AreEscaped) {
     const std::string odd = folder_.file("b\xff\x01<.toml"), page = folder_.file("o.html");
     const auto made = [&](const char* ending) { return folder_.file(std::string("m\x1b[31m\xff") + ending); };
     fs::copy_file(scene_, odd);

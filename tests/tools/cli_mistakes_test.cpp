@@ -88,7 +88,7 @@ TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
 }
 
 // A pattern expands to names; the scene was once drawn over, or removed as a frame of another picture.
-TEST_F(Mistakes, NoFrameReplacesWhatIsRead) {
+TEST_F(Mistakes, FramesNeverReplaceInputs) {
     const std::string before = read_file(scene_);
     const std::string as_frame = folder_.file("s00002.png"), in_percent = folder_.file("p%d.png");
     fs::copy_file(scene_, as_frame);

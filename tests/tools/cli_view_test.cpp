@@ -87,7 +87,7 @@ MadePage make_page(const TemporaryFolder& folder, const std::string& scene,
     return {file, read_record(json)};
 }
 
-TEST(View, ThePagesStatesAreTheEnginesToTheBit) {
+TEST(View, PageStatesEqualTheEnginesBits) {
     if (!has("node")) GTEST_SKIP() << "node is not installed";
     const TemporaryFolder folder;
     std::vector<std::string> scenes = shipped_scenes();

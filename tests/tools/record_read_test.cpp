@@ -102,7 +102,7 @@ TEST(RecordFile, NestingNeedsNoStack) {
     EXPECT_EQ(messages[2], "no error");
 }
 
-TEST(RecordFile, UnknownKeysAreLeftOutWithANote) {
+TEST(RecordFile, UnknownKeysAreIgnoredWithANote) {
     std::vector<std::string> notes;
     Json json = Json::parse(changed("/tracks/1/segments/2/jerk\x1b", {{"of", {1, "]}", nullptr}}}));
     EXPECT_TRUE(parse_record(json.dump(), "r.json", &notes) == sample_record());

@@ -23,7 +23,8 @@ release = importlib.util.module_from_spec(importlib.util.spec_from_loader("relea
 loader.exec_module(release)
 READ = {name for name, _ in release.PLACES} | {"CHANGELOG.md", release.PROMISED, "capi/include/carom/carom.h",
                                                "web/npm/index.d.ts", "docs/reference/record.schema.json",
-                                               "tests/data/engine/golden_hashes.json", "games/src/rule_options.cpp"}
+                                               "tests/data/engine/golden_hashes.json",
+                                               "games/src/rule_options.cpp"}
 
 
 class Release(unittest.TestCase):

@@ -14,7 +14,7 @@ inline constexpr double kChatterSpan = 1e-5;
 // [-] Treat a contact as resting after the number of bounces that would leave this fraction of the speed,
 // within limits: a row of 15 elastic balls, resolved pair by pair, needs 30.
 // A hundredth: Jams.BallsWithoutFrictionAreSolvedWithoutIt. At least 50 bounces:
-// Jams.AnImpactDoesNotGoBackAndForthForLong.
+// Jams.ImpactsBetweenRailsSoonEnd.
 inline constexpr double kSpeedLeft = 1e-3;
 inline constexpr int kFewestBounces = 20, kMostBounces = 200;
 // [of the closing speed at the first of them] Elastic bounces leave more, however quickly they follow each
@@ -39,7 +39,7 @@ inline constexpr double kStopNoise = 1e-12;
 // hour.
 inline constexpr double kSlideNoise = 1e-16;
 // [of a closing speed] Impulses that leave a smaller fraction count as progress.
-// Without it: Jams.ClosingSpeedsAreTakenOutAsFarAsRoundingLetsThem.
+// Without it: Jams.ClosingSpeedsVanishDownToRounding.
 inline constexpr double kNearer = 0.5;
 // [m] Largest gap of a contact that continues: an invisible fifth of the wavelength of light.
 inline constexpr double kGapLeft = 1e-7;
@@ -99,7 +99,7 @@ inline constexpr int kNewtonSteps = 40;
 // balls lock; from the second one on there is none, which leaves a convex problem.
 inline constexpr int kFallsFrom = 8, kNoneFrom = 14;
 // [-] From this step on, a solution is accepted if its wrong rates change no gap noticeably.
-// From the first step on: Jams.WhatRoundingAddsUpToIsNoOverlap.
+// From the first step on: Jams.AccumulatedRoundingIsNoOverlap.
 inline constexpr int kHarmlessFrom = 5;
 // [m] Tolerance of a position for the friction between balls.
 inline constexpr double kFrictionPlace = 1e-11;
