@@ -162,7 +162,7 @@ TEST(Verify, ARunStopsInsideACluster) {
         if (s.state == MotionState::kColliding) colliding = &s;
     ASSERT_NE(colliding, nullptr);
     const double middle = colliding->start + 0.5 * colliding->duration;
-    const Record part = simulate(plan, {.until = middle});
+    const Record part = simulate(plan, {.until = middle, .progress = {}});
     EXPECT_EQ(part.duration, middle);
     EXPECT_EQ(part.state_at(1, middle).state, MotionState::kColliding);
     EXPECT_GT(part.tracks[1].segments.back().start, middle);
@@ -178,7 +178,7 @@ TEST(Verify, EnergyMayNotRiseInTheLastCluster) {
     double hit = 0.0;
     for (const Event& e : whole.events)
         if (e.type == EventType::kBallCluster && hit == 0.0) hit = e.time;
-    Record record = simulate(plan, {.until = hit + 2e-3});
+    Record record = simulate(plan, {.until = hit + 2e-3, .progress = {}});
     ASSERT_EQ(record.events.back().type, EventType::kBallCluster);
     ASSERT_EQ(verify(record, plan), std::nullopt);
     for (BallTrack& track : record.tracks) track.segments.back().v *= 1.2;

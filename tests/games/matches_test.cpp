@@ -165,7 +165,9 @@ class Match {
     void check(const Verdict& verdict, const Record& record) const {
         ASSERT_FALSE(verdict.options.empty());
         EXPECT_TRUE(verdict.chooser >= -1 && verdict.chooser <= 1);
-        if (verdict.options.size() == 1) EXPECT_EQ(verdict.chooser, -1);
+        if (verdict.options.size() == 1) {
+            EXPECT_EQ(verdict.chooser, -1);
+        }
         for (const Option& option : verdict.options) {
             const State& next = option.state;
             EXPECT_EQ(next.game, state_.game);
@@ -178,7 +180,9 @@ class Match {
             EXPECT_EQ(next.points[1 - me] - state_.points[1 - me], verdict.penalty);
             EXPECT_TRUE(next.fouls[0] >= 0 && next.fouls[1] >= 0);
             EXPECT_EQ(next.group[0] == games::Group::kOpen, next.group[1] == games::Group::kOpen);
-            if (next.group[0] != games::Group::kOpen) EXPECT_NE(next.group[0], next.group[1]);
+            if (next.group[0] != games::Group::kOpen) {
+                EXPECT_NE(next.group[0], next.group[1]);
+            }
             std::vector<std::string> back;
             for (const games::Respot& r : option.respots) back.push_back(r.ball);
             std::sort(back.begin(), back.end());
@@ -194,12 +198,16 @@ class Match {
                 EXPECT_TRUE(on_bed || was_there) << r.ball << " by " << name(option.decision);
             }
         }
-        if (verdict.fouls.empty() && verdict.points > 0 && !verdict.next().over)
+        if (verdict.fouls.empty() && verdict.points > 0 && !verdict.next().over) {
             EXPECT_EQ(verdict.next().turn, state_.turn);
-        if (!verdict.fouls.empty()) EXPECT_LE(verdict.points, 0);
+        }
+        if (!verdict.fouls.empty()) {
+            EXPECT_LE(verdict.points, 0);
+        }
         if (!verdict.fouls.empty() && !verdict.next().over && !verdict.options[0].rerack() &&
-            verdict.chooser != state_.turn)
+            verdict.chooser != state_.turn) {
             EXPECT_EQ(verdict.next().turn, 1 - state_.turn);
+        }
     }
     /// Whether the game scores its verdicts' points.
     bool counts() const {

@@ -28,7 +28,8 @@ TEST(RecordFile, ExplainsErrors) {
     EXPECT_EQ(record_error(changed("", nullptr)), "no error");
     // A place in the sample, its new value, and the message.
     const Json rows = Json::parse(test::read_file(CAROM_TEST_DATA "/record_messages.json"));
-    for (const Json& row : rows) EXPECT_EQ(record_error(changed(row.at(0), row.at(1))), row.at(2)) << row;
+    for (const Json& row : rows)
+        EXPECT_EQ(record_error(changed(row.at(0), row.at(1))), row.at(2).get<std::string>()) << row;
     EXPECT_GE(rows.size(), 30u);
 }
 
