@@ -13,7 +13,7 @@ pytest.importorskip("pettingzoo", reason="pettingzoo is not installed: pip insta
 from carom.gym import match  # noqa: E402
 from pettingzoo.test import api_test, seed_test  # noqa: E402
 
-NAMES = ["EightBall", "NineBall", "Snooker"]
+NAMES = ["EightBall", "NineBall", "TenBall", "Snooker"]
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_calls_are_part_of_the_action():
             if not lucky.agents or any(lucky.terminations.values()) or any(called.terminations.values()):
                 break
     assert differ > 0
-    with pytest.raises(ValueError, match="only eight-ball has calls"):
+    with pytest.raises(ValueError, match="only eight-ball and ten-ball have calls"):
         match.env("NineBall", called=True)
     with pytest.raises(ValueError, match="game='Chess'"):
         match.env("Chess")

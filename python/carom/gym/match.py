@@ -33,8 +33,11 @@ if TYPE_CHECKING:
 _GAMES: dict[str, tuple[GameName, TableName, tuple[float, float]]] = {
     "EightBall": ("eight_ball", "nine_foot", (0.5, 0.2)),
     "NineBall": ("nine_ball", "nine_foot", (0.35, 0.2)),
+    "TenBall": ("ten_ball", "nine_foot", (0.35, 0.2)),
     "Snooker": ("snooker", "snooker", (0.43, 0.19)),
 }
+#: The rules that have calls.
+_CALLED = ("eight_ball", "ten_ball")
 _MOST_EVENTS = 1_000_000
 #: The values of observation["phase"].
 _PHASES = ("strike", "place")
@@ -42,7 +45,7 @@ _PHASES = ("strike", "place")
 
 @checked
 def env(game: str, **options: Any) -> MatchEnv:
-    """A game by name: "EightBall", "NineBall" or "Snooker". Raises ValueError for any other."""
+    """A game by name: "EightBall", "NineBall", "TenBall" or "Snooker". Raises ValueError for any other."""
     return MatchEnv(game, **options)
 
 
@@ -53,8 +56,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
     The winner gets 1, the loser -1.
 
     aim, speed, elevation_deg, noise: as for `carom.gym.TableEnv`, except that speed is (0.3, 8.0)
-    called=False: eight-ball: two more numbers of an action call the ball, among those that may be called, and
-        the pocket. Otherwise your first ball to fall counts as called, so luck helps
+    called=False: eight-ball and ten-ball: two more numbers of an action call the ball, among those that may
+        be called, and the pocket. Otherwise your first ball to fall counts as called, so luck helps
     opponent: a level of `carom.games.SKILLS` that plays player_1 inside `step`; None: you play both
     most_shots=1000: a game with this many shots is truncated
     render_mode, size: as for `carom.gym.TableEnv`
@@ -86,8 +89,8 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         super().__init__()
         if game not in _GAMES:
             raise ValueError(f"game={game!r}: expected {', '.join(_GAMES)}")
-        if called and game != "EightBall":
-            raise ValueError("called: only eight-ball has calls; leave it out")
+        if called and _GAMES[game][0] not in _CALLED:
+            raise ValueError("called: only eight-ball and ten-ball have calls; leave it out")
         if opponent is not None and game == "Snooker":
             raise ValueError("opponent: there is no player of snooker; leave it out")
         self._player = None if opponent is None else games.Player(opponent)
@@ -303,7 +306,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         return games.Call(may[int(part[0] * len(may))] if may else "", pockets[int(part[1] * len(pockets))])
 
     def _lucky_call(self, scene: Scene, record: Record) -> games.Call:
-        if self._rules != "eight_ball":
+        if self._rules not in _CALLED:
             return games.Call()
         may = games.legal(self._state, scene).callable
         down = (event for event in record.event_list() if event.type == "ball_pocket")
