@@ -21,7 +21,7 @@ C_INTERFACE = "reference/c_interface.md"
 SECTIONS = ("guide", "reference", "design")
 
 
-def navigation():
+def navigation(pages):
     index = (ROOT / "docs/README.md").read_text()
     paths = list(dict.fromkeys(re.findall(r"\]\(((?:%s)/[a-z0-9_-]+\.md)" % "|".join(SECTIONS), index, re.I)))
     paths.append(C_INTERFACE)
@@ -31,7 +31,8 @@ def navigation():
     sections = [
         {name.capitalize(): [f"docs/{path}" for path in paths if path.startswith(name + "/")]}
         for name in SECTIONS]
-    return [{"carom": "README.md"}, {"Documents": "docs/README.md"}, *sections,
+    play = [{"Play": "play.md"}] if (pages / "play.md").exists() else []
+    return [{"carom": "README.md"}, *play, {"Documents": "docs/README.md"}, *sections,
             {"Laboratory": ["lab/README.md", *notes]}, {"Contributing": "CONTRIBUTING.md"},
             {"What is asserted": "tests/README.md"}, {"Changes": "CHANGELOG.md"}, {"Security": "SECURITY.md"}]
 
@@ -58,7 +59,7 @@ def configure(path):
     pathlib.Path(path).write_text(json.dumps({
         "site_name": "carom",
         "docs_dir": "pages",
-        "nav": navigation(),
+        "nav": navigation(pathlib.Path(path).parent / "pages"),
         "use_directory_urls": False,
         "theme": {"name": "material", "font": False,
                   "features": ["navigation.sections", "navigation.top", "search.highlight"]},
