@@ -10,6 +10,7 @@
 
 #include "carom/engine/cushion.h"
 #include "contact/pocket_edge.h"
+#include "contact/resting_constants.h"
 #include "contact/touch.h"
 #include "loop/bounce.h"
 #include "physics/motion.h"
@@ -75,6 +76,26 @@ void Resolver::begin(int ball, const Vec3& r, const Vec3& v, const Vec3& w) {
     log_.begin(ball, after_impact(ball, r, v, w));
 }
 
+// A ball that rolls so slowly that it stops before it has moved, by rounding, meets no other ball: as part of
+// a cluster it would keep that speed, and meet the same ball again and again.
+// @return whether one of them was such a ball; it rests now
+bool Resolver::stop_at_once(int one, int two, double v_n) {
+    bool stopped = false;
+    for (const int ball : {one, two}) {
+        const Segment& s = balls_.segment(ball);
+        const double left = s.start + s.duration - balls_.now();
+        if (s.state != MotionState::kRolling || s.held || !(left <= resting::kStopNoise) ||
+            !(v_n <= resting::kStopNoise * balls_.motion(ball).roll))
+            continue;
+        Segment after = after_transition(s, balls_.motion(ball));
+        after.start = balls_.now();
+        log_.event(transition_type(s, after), ball);
+        log_.begin(ball, after);
+        stopped = true;
+    }
+    return stopped;
+}
+
 void Resolver::ball_ball(int a, int b) {
     if (flights_ && is_free(a, b)) {
         free_balls(a, b);
@@ -89,6 +110,7 @@ void Resolver::ball_ball(int a, int b) {
 
     const ContactKinematics approach = kinematics_of(plan_, balls_, one, two);
     if (resting_.try_hold(approach, plan_.balls.e_b)) return;
+    if (stop_at_once(one, two, approach.v_n)) return;
     if (plan_.clusters != ClusterModel::kSequential && cluster(a, b, approach.v_n)) return;
 
     // In the plane, ignoring the height at which one of them began to fall.

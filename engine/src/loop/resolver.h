@@ -26,6 +26,7 @@ class Resolver {
 
   private:
     void ball_ball(int a, int b);
+    bool stop_at_once(int one, int two, double v_n);
     bool cluster(int a, int b, double v_n);
     void begin_cluster(int a, int b);
     void end_cluster(int ball);
