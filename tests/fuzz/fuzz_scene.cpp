@@ -15,6 +15,8 @@ namespace {
 constexpr std::int64_t kEvents = 60;
 constexpr std::size_t kBalls = 12;
 constexpr int kSubsteps = 1000;
+// Slow rounds, after which a run ends: without friction a ball runs along a round wall for a million rounds.
+constexpr int kSlowRounds = 20000;
 
 void check_finite(const carom::Record& record) {
     for (const carom::BallTrack& track : record.tracks) {
@@ -35,7 +37,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const bool small = scene.ball.size() <= kBalls && scene.physics.substeps.value_or(1) <= kSubsteps;
         if (!scene.stop.events || *scene.stop.events > kEvents) scene.stop.events = kEvents;
         const carom::Plan plan = carom::make_plan(scene, carom::kernel::Isa::kScalar);
-        if (small) check_finite(carom::simulate(plan));
+        carom::SimulateOptions options;
+        options.progress = [slow = 0](std::size_t, double) mutable {
+            if (++slow > kSlowRounds) throw carom::SimulationError("long enough");
+        };
+        if (small) check_finite(carom::simulate(plan, options));
     } catch (const carom::SceneError&) {
     } catch (const carom::SimulationError&) {
         // A run that cannot continue may say so.
