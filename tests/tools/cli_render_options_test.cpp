@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <filesystem>
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,7 +33,9 @@ class CliRenderOptions : public ::testing::Test {
     void expect_refused(int status, const std::string& part, const std::vector<std::string>& options,
                         ProcessOptions process = {}) {
         const std::size_t before = folder_.names().size();
-        std::vector<std::string> arguments = {"render", record_, "-o", folder_.file("n%d.png")};
+        std::vector<std::string> arguments = {"render", record_};
+        if (std::find(options.begin(), options.end(), "-o") == options.end())
+            arguments.insert(arguments.end(), {"-o", folder_.file("n%d.png")});
         arguments.insert(arguments.end(), options.begin(), options.end());
         const ProcessResult result = carom(arguments, std::move(process));
         EXPECT_EQ(result.status, status) << result.err;
