@@ -4,8 +4,8 @@
 
 #include <sys/stat.h>
 #include <unistd.h>
-#include <filesystem>
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
