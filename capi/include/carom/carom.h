@@ -444,7 +444,7 @@ typedef struct carom_event_details {
     int32_t a;        /* index of the ball */
     int32_t partner;  /* a carom_partner: what b is */
     int32_t b;        /* index of the other ball or of the part, or -1 */
-    double point[3];  /* where ball a touches what it meets [m] */
+    double point[3];  /* contact point of ball a [m] */
     double normal[3]; /* unit vector along which ball a is pushed */
     double cut_deg;   /* between the velocity and the line of the impact */
     double closing;   /* speed along the normal [m/s] */

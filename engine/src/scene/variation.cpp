@@ -292,7 +292,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         if (steps == 0) continue;
         rule->stride = std::max<std::uint64_t>(parts->grid, 1);
         if (steps > kMostShots / rule->stride)
-            throw VariationError(rule->key + ": the grids have more than 2^53 points together; take fewer");
+            throw VariationError(rule->key + ": the grids have more than 2^53 points together; use fewer");
         parts->grid = rule->stride * steps;
     }
     parts_ = parts;
