@@ -53,7 +53,8 @@ struct Player {
           R(played.size_of(detail::ball_of(played, object)).R),
           both(R + played.size_of(detail::ball_of(played, how.ball)).R) {
         scene.cue = how;
-        if (object == how.ball) throw std::invalid_argument("the ball to pot is the one that is struck");
+        if (object == how.ball)
+            throw std::invalid_argument("the struck ball cannot be the one to pot; name another");
     }
 
     Record play(double aim_deg) {

@@ -65,7 +65,7 @@ class Fitter {
     Fitter(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,
            kernel::Isa isa)
         : scene_(scene), points_(points), options_(options), isa_(isa) {
-        if (points.empty()) throw std::invalid_argument("there are no tracked places");
+        if (points.empty()) throw std::invalid_argument("there are no tracked positions");
         if (options.vary.empty()) throw std::invalid_argument("there is nothing to vary; name a number");
         if (2 * points.size() < options.vary.size())
             throw std::invalid_argument("there are more numbers to vary than tracked coordinates");
@@ -126,8 +126,8 @@ class Fitter {
         }
         if (!result.converged && result.trouble.empty())
             result.trouble = shots_ >= options_.most_shots
-                                 ? fmt::format("no end after {} shots", shots_)
-                                 : "no step brings it closer: the order of events may be another one";
+                                 ? fmt::format("no convergence after {} shots", shots_)
+                                 : "no step reduces the error; the tracks may have another order of events";
         finish(now, slopes, result);
         if (result.converged) {
             const auto [moved, columns] = moved_of(now, slopes);
@@ -348,14 +348,14 @@ class Fitter {
         const std::vector<std::string>& keys = options_.vary;
         for (Eigen::Index i = 0; i < count; ++i) {
             if (units[i] == 0.0)
-                result.warnings.push_back(fmt::format("{} moves nothing that was tracked", keys[i]));
+                result.warnings.push_back(fmt::format("{} has no effect on the tracked positions", keys[i]));
             for (Eigen::Index j = 0; j < i; ++j) {
                 const double correlation =
                     inverse(i, j) / std::sqrt(std::max(1e-300, inverse(i, i) * inverse(j, j)));
                 const bool both_lost = lost[i] > 1e-6 && lost[j] > 1e-6 && units[i] > 0.0 && units[j] > 0.0;
                 if (std::abs(correlation) > kAlike || both_lost)
                     result.warnings.push_back(fmt::format(
-                        "the tracks hardly tell {} from {} (correlation {:.4f}); vary only one of "
+                        "the tracks hardly distinguish {} from {} (correlation {:.4f}); vary only one of "
                         "them, or track another shot",
                         keys[j], keys[i], both_lost ? 1.0 : correlation));
             }

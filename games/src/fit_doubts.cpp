@@ -58,7 +58,7 @@ std::string doubt_of_scale(double scale) {
     if (scale >= kSmallest && scale <= kLargest) return "";
     for (const Unit& unit : kUnits)
         if (std::abs(scale / unit.per_metre - 1.0) < 0.2)
-            return fmt::format("the places look like {}; write them in metres", unit.name);
+            return fmt::format("the positions look like {}; write them in metres", unit.name);
     return fmt::format(
         "the places are {:.3g} times those of the shot; write them in metres, with the origin of the scene",
         scale);
@@ -85,15 +85,15 @@ std::string doubt_of(const std::vector<Coordinate>& moved, const MatrixXd& slope
         return VectorXd(more.completeOrthogonalDecomposition().solve(residuals))[slopes.cols()];
     };
     if (!clock && explained(velocities) > kExplained)
-        return fmt::format("the clock of the tracks seems to be off, by about {:.2g} s; vary clock, too",
+        return fmt::format("the clock of the tracks seems to be off by about {:.2g} s; vary clock too",
                            factor(velocities));
     if (explained(places) > kExplained)
-        return fmt::format("the scale of the places seems to be off, by about {:.2g} %; measure it again",
+        return fmt::format("the scale of the positions seems to be off by about {:.2g} %; measure it again",
                            -100.0 * factor(places) / (1.0 + factor(places)));
     if (static_cast<double>(outliers) > kFew * static_cast<double>(n))
         return fmt::format(
-            "{} of the {} coordinates that these numbers move are outliers, which is not few; the "
-            "tracks are of another shot, or other numbers are off",
+            "{} of the {} coordinates that these numbers move are outliers; check that the tracks are of "
+            "this shot, or vary other numbers",
             outliers, n);
     return "";
 }

@@ -271,7 +271,7 @@ class Reader {
         node.kind = Node::Kind::kMeasure;
         node.row = row(token_);
         if (node.row == nullptr)
-            fail("expected a measure that carom describe measures lists; texts need quotes");
+            fail("expected a measure (see carom describe measures); put texts in quotes");
         const std::string_view expected = node.row->info.arguments;
         std::string how = node.row->info.name;
         how.append("(").append(expected).append(")");

@@ -22,7 +22,7 @@ int ball_of(const Record& record, const Option& option, const std::string& id) {
     const bool anew = option.decision == Decision::kRackFourteen && detail::is_in(id, option.respots);
     if (index < 0 && !anew)
         throw std::invalid_argument("the record has no ball " + in_quotes(id) +
-                                    "; give the record from which the option was judged");
+                                    "; give the record that was judged");
     return index;
 }
 

@@ -70,13 +70,15 @@ class Refiner {
                     next.reset();
             }
             if (!next) {
-                trouble = "no small step brings it nearer and does the rest: the order of events ends there";
+                trouble =
+                    "no small step improves it and keeps the rest of the goal: the order of events would "
+                    "change";
                 break;
             }
             now = std::move(next);
         }
         const double left = miss(*now);
-        if (left > kRefined && trouble.empty()) trouble = "it comes nearer only slowly";
+        if (left > kRefined && trouble.empty()) trouble = "it converges too slowly";
         return {now->values, now->scene, left, shots_, left > kRefined ? trouble : ""};
     }
 
@@ -157,7 +159,7 @@ Refined refine(const Scene& scene, std::span<const Choice> choices, std::span<co
 Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const SolveOptions& options) {
     const std::vector<Place> places = want.places();
     if (places.empty())
-        throw std::invalid_argument("no place is wanted; add one, as in cue near (0.6, 1.2, 0.05)");
+        throw std::invalid_argument("the goal has no place; add one, as in cue near (0.6, 1.2, 0.05)");
     Exact result{{}, options.choices, {}};
     for (Choice& choice : result.choices) {
         const double aim = found.scene.cue->aim_deg;

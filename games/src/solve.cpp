@@ -73,7 +73,7 @@ class Solver {
 
     SuccessMap map(const Solution& around) {
         if (options_.choices.size() < 2)
-            throw std::invalid_argument("a map needs two inputs to choose; give two ranges");
+            throw std::invalid_argument("a map needs two inputs; give two ranges");
         trials_.fresh = true;
         const std::size_t each = std::max<std::size_t>(
             8, static_cast<std::size_t>(kMap * static_cast<double>(options_.shots)) / (kSide * kSide));

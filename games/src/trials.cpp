@@ -24,7 +24,7 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
     : scene_(scene), want_(want), isa_(isa), options_(options) {
     if (!scene.cue) throw std::invalid_argument("the scene has no [cue]; add one, so that a ball is struck");
     struck_ = static_cast<std::size_t>(std::max(0, index_of(scene.ball, scene.cue->ball)));
-    if (options.choices.empty()) throw std::invalid_argument("there is nothing to choose; give a range");
+    if (options.choices.empty()) throw std::invalid_argument("there is no input to search; give a range");
     for (const Choice& choice : options.choices) {
         if (!(choice.low <= choice.high) || !std::isfinite(choice.high - choice.low))
             throw std::invalid_argument(choice.key + ": expected a range from a to b with a <= b");
@@ -61,8 +61,7 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
 int Trials::ball_of(const std::string& id) const {
     const int ball = index_of(scene_.ball, id);
     if (ball >= 0 && static_cast<std::size_t>(ball) == struck_)
-        throw std::invalid_argument("hit." + id +
-                                    ": the cue strikes this ball; name the ball that it is to hit");
+        throw std::invalid_argument("hit." + id + ": the cue strikes this ball; name the ball to hit");
     if (ball >= 0) return ball;
     throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
 }

@@ -56,8 +56,8 @@ std::vector<std::string> player_games() {
 
 void check_game(Game game) {
     if (std::none_of(std::begin(kBreaks), std::end(kBreaks), [&](const auto& b) { return b.game == game; }))
-        throw std::invalid_argument(fmt::format("there is no player of {}; it plays {}", name(game),
-                                                fmt::join(player_games(), ", ")));
+        throw std::invalid_argument(
+            fmt::format("carom does not play {}; it plays {}", name(game), fmt::join(player_games(), ", ")));
 }
 
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game

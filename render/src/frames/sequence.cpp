@@ -77,7 +77,7 @@ class FrameFiles {
         if (some)
             throw RenderError(options_.pattern + ": " +
                               (marked ? "the existing frames show another shot, camera, overlay or size"
-                                      : "nothing says which shot the existing frames show") +
+                                      : "the existing frames do not state their shot") +
                               "; render without --resume");
     }
 
