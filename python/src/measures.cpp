@@ -124,7 +124,7 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         options.stop = std::move(stop);
         if (exact && want.places().empty())
             throw std::invalid_argument(
-                "exact=True: no place is wanted; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
+                "exact=True: the goal has no place; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
         std::vector<games::Solution> best = games::solve(scene, want, isa, options);
         for (std::size_t i = 0; exact && i < best.size(); ++i) {
             games::Exact moved = games::exact(best[i], want, isa, options);

@@ -219,7 +219,7 @@ def _fitting(state: State) -> State:
 
 def _check_record(option: Option, record: Record) -> None:
     if option._record not in ("", record.hash()):
-        raise ValueError("the verdict is of another record; give the record that was judged")
+        raise ValueError("the verdict belongs to another record; give the record that was judged")
 
 
 @checked

@@ -105,9 +105,9 @@ def _parsed(name: str) -> Any:
     except UnicodeDecodeError:
         raise SceneError(f"is not JSON because it is not UTF-8; {_READS}", name) from None
     except UnicodeEncodeError:
-        raise SceneError("has a text with half of a pair of surrogates", name) from None
+        raise SceneError("has a text with half of a surrogate pair", name) from None
     except RecursionError:
-        raise SceneError("has objects too deep in each other", name) from None
+        raise SceneError("has too many nested objects", name) from None
     except ValueError as error:  # an integer with thousands of digits
         raise SceneError(f"has a number that is too long: {error}", name) from None
 

@@ -156,7 +156,7 @@ def wrong_worker(plan: Plan) -> str:
         return f"{versions}: install that one here, or make a new plan"
     if _probe(player_of(plan), plan.shots) != plan.probe:
         return (
-            f"this carom {_carom.VERSION} plays the first shots with other bits than the one that made the "
+            f"this carom {_carom.VERSION} gives other bits for the first shots than the carom that made the "
             "plan: install the same build everywhere, or make a new plan"
         )
     return ""

@@ -119,7 +119,7 @@ class _Tasks:
         try:
             future = self.executor.submit(self.work, *self.arguments(shard), **options)
         except (BrokenExecutor, RuntimeError) as error:
-            what = f"the executor takes no more work ({error})"
+            what = f"the executor accepts no more work ({error})"
             raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
         self.running[shard] = future
         future.add_done_callback(lambda done: self.ended.put((shard, done)))

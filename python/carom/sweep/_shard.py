@@ -108,7 +108,7 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
         rows = metadata.num_rows
     except Exception as error:  # pyarrow raises errors of any type for a damaged file
         what = f"not a complete Parquet file ({_first_line(error)})"
-        raise SweepError(f"{path}: {what}; remove it to have it made again") from None
+        raise SweepError(f"{path}: {what}; remove it and run the sweep again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
         for name, wanted in about_rows(plan, *plan.range(shard)).items():
@@ -117,11 +117,11 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
                 if said["carom.plan"] == plan.id:
                     words = f"shots {said.get('carom.first')} to {said.get('carom.last')}"
                 what = f"the file holds {words}, not shard {shard} of plan {plan.id}"
-                raise SweepError(f"{path}: {what}; take another folder, or remove the file")
+                raise SweepError(f"{path}: {what}; use another folder, or remove the file")
         if rows == int(said["carom.last"]) - int(said["carom.first"]):
             return said
     what = "its description is damaged, or carom did not write it"
-    raise SweepError(f"{path}: {what}; remove it to have it made again")
+    raise SweepError(f"{path}: {what}; remove it and run the sweep again")
 
 
 def _first_line(error: BaseException) -> str:
