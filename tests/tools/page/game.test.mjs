@@ -78,7 +78,7 @@ test("in a game only the cue ball is moved, in hand, where the rules allow it", 
   nextShot(state);
   state.game.state.in_hand = "anywhere";
   assert.equal(refusal(state, "cue", 0.4, 1.5), null);
-  assert.match(refusal(state, "cue", 0.6, 1.5), /may not lie there/);
+  assert.match(refusal(state, "cue", 0.6, 1.5), /may not be placed there/);
   state.game.state.in_hand = "no";
   assert.match(refusal(state, "cue", 0.4, 1.5), /only in hand/);
 });

@@ -32,7 +32,7 @@ std::optional<FrameSize> two_numbers(const std::string& text) {
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    command.option("--gl", &gl, "NAME", "Offscreen OpenGL; auto: osmesa if installed, else egl")
+    command.option("--gl", &gl, "NAME", "Offscreen OpenGL; auto is osmesa if installed, else egl")
         .one_of({"auto", "osmesa", "egl"});
 }
 

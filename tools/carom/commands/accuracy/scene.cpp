@@ -202,7 +202,8 @@ void add_accuracy_options(Options& command, AccuracySceneArgs& args) {
     command.option("--march", &args.march, "N,...", "Settings N of the march to compare").in(1, 100000000);
     command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
         .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
-    add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
+    add_repeat(command, args.repeat,
+               "Number of interleaved rounds; times are their minimum, median and maximum");
     add_plot(command, args.plot);
     add_reports(command, args.csv, args.json);
 }

@@ -228,7 +228,7 @@ void add_compare(Options& program) {
     command.argument("A", args.a, "Scene file (TOML) or record (.json)").required = true;
     command.argument("B", args.b, "Scene file or record to compare with").required = true;
     command.option("--tolerance", &args.tolerance, "L",
-                   "Positions at most this far apart, in m, count as equal");
+                   "Count positions at most this far apart, in m, as equal");
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.footer =
         "Exit status: 0 equal within the tolerance, 1 different, 2 bad usage or bad input. Example: carom "

@@ -68,7 +68,7 @@ constexpr struct {
     const char *keys, *meaning;
 } kMeanings[] = {
     {"r, v, w", "centre, velocity and angular velocity [x, y, z] before the impact; in the answer, after it"},
-    {"R, m", "radius and mass; m2 and R2 are those of ball 2 if they differ"},
+    {"R, m", "radius and mass; m2 and R2 are for ball 2 if it differs"},
     {"mu_s, mu_b, e_b, ...", "as in [balls] of a scene file; mu_s1 and mu_s2 are mu_s under each ball"},
     {"model", "a cushion model, as in [physics] of a scene file"},
     {"normal", "horizontal, from the cushion into the table, [x, y] of length 1"},
@@ -76,7 +76,7 @@ constexpr struct {
     {"height", "height of the nose above the cloth"},
     {"id", "any value; the answer repeats it"},
     {"steps, ns", "kernel steps, and kernel time in nanoseconds"},
-    {"error", "instead of an answer: what is wrong with the line"}};
+    {"error", "the mistake in a line, in place of an answer"}};
 
 std::vector<std::string> words_of(std::string text) {
     std::istringstream in(std::move(text));
@@ -361,7 +361,7 @@ Json compute(std::string_view text, const ImpactSettings& settings) {
 }  // namespace
 
 std::string impact_keys() {
-    std::string text = "Each line is a JSON object; answers come in the same order. Units are SI.";
+    std::string text = "Each line is a JSON object; the answers have the same order. Units are SI.";
     for (const LineKind& kind : {kBallBall, kBallBallInAir, kCushion, kCushionInAir, kCloth}) {
         std::string params = kind.params;
         if (*kind.optional != '\0') params += fmt::format(", optional {}", kind.optional);

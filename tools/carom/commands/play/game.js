@@ -76,7 +76,7 @@ function advance(state, after, game) {
     const {ball} = scene.cue ?? {}, placed = ball && inHand(state.carom, after, scene, ball);
     const [first] = after.balls;
     if (!placed && !first) return state.say("No ball is left on the table.");
-    if (placed) said = "The cue ball comes in hand: drag it to where you want it.";
+    if (placed) said = "Cue ball in hand: drag it where you want it.";
     after = placed || after.with({"cue.ball": first.id});
   }
   state.announced = {...NOTHING, ball: state.announced.ball};

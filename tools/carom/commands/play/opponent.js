@@ -26,7 +26,7 @@ function changesOf(state, strike, place) {
 /** Thinks, and says so. @returns the advice, or null if it is stopped or fails, which is said */
 async function think(state, busy, game, options) {
   state.busy = busy;
-  state.say(busy.level ? `carom (${busy.level}) is thinking …` : "carom looks for the best shots …");
+  state.say(busy.level ? `carom (${busy.level}) is thinking …` : "carom is looking for the best shots …");
   state.tell("busy");
   try {
     const advice = await state.thinker.advise(state.scene.toml, game, {seed: seedOf(), ...options});
@@ -96,7 +96,7 @@ export async function goOn(state) {
 const practice = (carom) => ({...carom.games.start("eight_ball"), opening: false,
   in_hand: "no"});
 
-/** Whether hints may be asked for. */
+/** Whether hints are allowed. */
 export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &&
   (game === null || PLAYED.includes(game.state.game) && (mode === "practise" || Boolean(match?.hints)));
 
@@ -113,7 +113,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
-  if (advice) state.say("The chances are those of a professional.");
+  if (advice) state.say("The success rates are for a professional.");
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

@@ -49,10 +49,11 @@ export function refusal(state, id, x, y) {
   const inHand = game.state.in_hand;
   if (inHand === "no" || id !== scene.cue?.ball)
     return "In a game only the cue ball may be moved, and only in hand.";
-  if (game.judged) return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not lie there.";
+  if (game.judged)
+    return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not be placed there.";
   const line = scene.table.corner[1] + scene.table.length / 4;
   return inHand === "head string" && y >= line
-    ? "For the break the cue ball is behind the head string." : null;
+    ? "For the break, place the cue ball behind the head string." : null;
 }
 
 /** Moves a ball, or says why it cannot be. @returns whether it was moved */

@@ -114,7 +114,7 @@ void add_play(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML) to begin with (default: a practice table)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write");
     command.option("--lock", &args.lock, "KEYS",
-                   "What cannot be changed on the page, such as cue.speed,ball (default: nothing)");
+                   "Lock these keys on the page, such as cue.speed,ball (default: none)");
 }
 
 }  // namespace carom::tools

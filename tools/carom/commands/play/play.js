@@ -24,7 +24,7 @@ import {Thinker} from "./thinker.js";
 import {verdictWords} from "./words.js";
 
 const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
-  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers look closer; Shift and the wheel aim finely.";
+  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers zoom; Shift and the wheel aim finely.";
 /** The page as it came, to send it on with another scene. */
 const WHOLE = location.protocol === "file:" ? document.documentElement.outerHTML : "";
 
@@ -124,7 +124,7 @@ async function open(state) {
   const resumed = !said && state.page.scene === "" && resumeMatch(state);
   if (!state.shot) openScene(state, state.page.scene || startOf(carom, "", "nine_foot"), {remember: false});
   state.tell("mode");
-  return said ?? (resumed ? "The match goes on." : null);
+  return said ?? (resumed ? "The match continues." : null);
 }
 
 async function main() {

@@ -40,12 +40,12 @@ export async function sceneInFragment(fragment) {
   const found = /^#h=([0-9a-f]{16})&s=([A-Za-z0-9_-]+)$/.exec(fragment);
   if (!/[#&]s=/.test(fragment)) return null;
   if (fragment.length > LONGEST_FRAGMENT) throw new Error("The address is too long for a scene.");
-  if (!found) throw new Error("The address is not complete, or was changed on its way.");
+  if (!found) throw new Error("The address is incomplete or was altered.");
   try {
     const bytes = await piped(fromLetters(found[2]), new DecompressionStream("deflate-raw"), LONGEST_SCENE);
     return {hash: found[1], toml: new TextDecoder("utf-8", {fatal: true}).decode(bytes)};
   } catch {
-    throw new Error("The address is not complete, or was changed on its way.");
+    throw new Error("The address is incomplete or was altered.");
   }
 }
 

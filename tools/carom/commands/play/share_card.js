@@ -37,7 +37,7 @@ export async function openAddress(state) {
     return error.message;
   }
   if (found === null) return null;
-  if (state.fixed) return "This page shows its own scene only, not that of the address.";
+  if (state.fixed) return "This page shows only its own scene, not the one in the address.";
   try {
     begin(state, found.toml, {remember: false});
   } catch (error) {
@@ -45,8 +45,8 @@ export async function openAddress(state) {
   }
   if (!state.shot) return "The scene in the address cannot be played.";
   const {hash} = state.shot;
-  return hash === found.hash ? `The same bits as where this address was made: ${hash}.`
-    : `Other bits than where this address was made (${found.hash}): another version of carom made it.`;
+  return hash === found.hash ? `The same bits as when this address was made: ${hash}.`
+    : `Other bits than when this address was made (${found.hash}): another version of carom made it.`;
 }
 
 /** A copy of the page that begins with this shot, to send to somebody. `whole`: the page before it ran. */
@@ -57,7 +57,7 @@ function download(state, whole) {
   const url = URL.createObjectURL(new Blob(["<!doctype html>\n", html], {type: "text/html"}));
   make("a", {href: url, download: "shot.html"}).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
-  state.say("shot.html is this page with this shot; send it to somebody.");
+  state.say("Saved shot.html, this page with this shot; send it to somebody.");
   return html;
 }
 

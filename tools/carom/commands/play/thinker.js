@@ -38,7 +38,8 @@ export class Thinker {
         if (data.error) reject(new Error(data.error));
         else resolve(data.advice);
       };
-      this.worker.onerror = (event) => reject(new Error(`This browser cannot think: ${event.message}`));
+      this.worker.onerror = (event) =>
+        reject(new Error(`This browser cannot run the player: ${event.message}`));
       this.worker.postMessage({id, wasm: this.wasm, toml, state, options});
     });
   }

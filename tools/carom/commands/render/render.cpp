@@ -58,7 +58,7 @@ std::string sheet_path(const RenderArgs& args) {
 /// That two options are no one file is known; here a pattern becomes names of files.
 void check_input(const RenderArgs& args, bool replaces, const std::string& output) {
     if (replaces)
-        throw UsageError(fmt::format("-o {} would replace what is read, {}; give it another name",
+        throw UsageError(fmt::format("-o {} would overwrite the input {}; choose another name",
                                      in_quotes(output), in_quotes(args.input)));
 }
 
@@ -307,28 +307,28 @@ void add_render(Options& program) {
         "render",
         "Render a scene or a record as numbered PNG frames, or as a film; frame k shows from + k/fps", run);
     command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
-    command.option(
-        "-o,--output", &args.pattern, "PATTERN",
-        "Frames, with one %d or %05d for the number; or a film (.mp4, .webm, .gif, .webp), made by ffmpeg");
+    command.option("-o,--output", &args.pattern, "PATTERN",
+                   "Frames, with one %d or %05d for the number, or a film (.mp4, .webm, .gif, .webp), which "
+                   "needs ffmpeg");
     add_picture(command, args.fps, args.size);
     command.option("--from", &args.from, "S", "Start time in s, from -2; the cue strikes at 0");
     command.option("--to", &args.to, "S", "End time in s (default: the end of the shot)");
-    command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
-    command.option("--at", &args.at, "S", "Only this time in s, as frame 0 (default: all)");
+    command.option("--frame", &args.frame, "K", "Render only frame K (default: all)");
+    command.option("--at", &args.at, "S", "Render only this time in s, as frame 0 (default: all)");
     command.option("--camera", &args.camera, "NAME", "Camera (default: the scene's, else top)")
         .one_of({"top", "rail", "player", "follow"});
     command.option("--eye", &args.eye, "X,Y,Z",
                    "Free camera: position of the eye in m (default: a named camera)");
     Option& target = command.option("--target", &args.target, "X,Y,Z",
-                                    "Free camera: point that it looks at, in m (default: a named camera)");
+                                    "Free camera: point it looks at, in m (default: a named camera)");
     target.needs = "--eye";
     command.option("--ball", &args.ball, "ID", "Ball for camera follow (default: the first that moves)");
     command.option("--overlay", &args.overlay, "LIST",
-                   "Overlays: trails (or trails=ball, in the balls' colours), events, spin, ghost, clock, "
-                   "margin, or all; and diamonds, their numbers (default: none)");
+                   "Draw trails (trails=ball: in the balls' colours), events, spin, ghost, clock, margin, or "
+                   "all of these; diamonds: number the diamonds (default: none)");
     command.option("--sheet", &args.sheet, "CxR",
-                   "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
-    command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
+                   "Write one contact sheet with C columns and R rows, as wide as --size (default: off)");
+    command.option("--jobs", &args.jobs, "N", "Threads that encode and write, 0 for one per core").in(0, 256);
     command.flag("--resume", args.resume, "Skip frames whose files are already finished (default: off)");
     command.flag("--raw", args.raw,
                  "Write RGB bytes to standard output, for ffmpeg, instead of PNG files (default: off)");

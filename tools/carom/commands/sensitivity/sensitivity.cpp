@@ -256,8 +256,9 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         if (ball.played) text += fmt::format("; played, {}", axes(*ball.played));
         text += '\n';
     }
-    text += fmt::format("  {} of {} have the same events as the shot; the first order speaks of these only\n",
-                        counted(s.same, "shot"), s.shots);
+    text += fmt::format(
+        "  {} of {} have the same events as the shot; the first-order results describe only these\n",
+        counted(s.same, "shot"), s.shots);
     return text;
 }
 
@@ -315,8 +316,7 @@ DiagramShot drawing_of(const Sensitivity& s, const Plan& plan, const Record& rec
 int run(const SensitivityArgs& args) {
     const std::string format = args.plot.empty() ? "" : diagram_format(args.plot);
     const Plan plan = plan_scene(args.scene);
-    if (!plan.scene.cue)
-        throw SceneError(args.scene, {}, "no ball is struck; add a [cue], whose errors are what is measured");
+    if (!plan.scene.cue) throw SceneError(args.scene, {}, "no ball is struck; add a [cue]");
     const Record record = simulate_plan(plan, interruptible());
     const Sensitivity result = measure(plan, record, args);
     if (!args.plot.empty())
@@ -330,15 +330,15 @@ int run(const SensitivityArgs& args) {
 
 void add_sensitivity(Options& program) {
     auto [command, args] = program.command<SensitivityArgs>(
-        "sensitivity", "See what small errors of aim, speed, tip and place do to a shot", run);
+        "sensitivity", "Show how small errors of aim, speed, tip and position change a shot", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command.option("--hand", &args.hand, "ERRORS",
-                   "Standard deviations: aim in degrees, speed in percent, tip in ball radii, elevation in "
-                   "degrees");
-    command.option("--shots", &args.shots, "N", "Shots that are played with these errors").in(1, 1e7);
+                   "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
+                   "ball radii, elevation in degrees");
+    command.option("--shots", &args.shots, "N", "Number of shots to play with these errors").in(1, 1e7);
     command.option("--seed", &args.seed, "S", "Seed of the errors");
     command.option("--plot", &args.plot, "FILE",
-                   "Draw the shot with the errors of where its balls end: .svg, .pdf or .png (default: not "
+                   "Draw the shot and the errors of the final positions: .svg, .pdf or .png (default: not "
                    "drawn)");
     command.flag("--json", args.json, "Print everything as JSON (default: off)");
 }

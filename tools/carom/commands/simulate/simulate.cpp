@@ -318,7 +318,7 @@ void add_simulate(Options& program) {
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
     command.flag("--list", args.list, "Print every event, also of a long shot (default: off)");
-    command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
+    command.option("--units", &args.units, "UNITS", "Units of the printed values; files are always in SI")
         .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
@@ -326,7 +326,7 @@ void add_simulate(Options& program) {
                  "Time every event: cost by kind, kernel cost by ball-ball event, extra columns in the "
                  "events file (default: off)");
     command.option("--measure", &args.measures, "EXPRESSION",
-                   "Print a measure that carom describe measures lists, or an expression; may be repeated "
+                   "Print a measure or expression (see carom describe measures); may be repeated "
                    "(default: none)");
     command.option("--game", &args.game, "GAME", "Rules for measures such as point (default: none)")
         .one_of(game_names());

@@ -100,7 +100,7 @@ bool TableInParts::take_up() {
     if (!whole || !said.is_object() || said.value("first", next_ + 1) != next_ ||
         said.value("last", next_) <= next_)
         throw std::runtime_error(
-            path + ": its rows differ from those that were written; remove it to have it made again");
+            path + ": its rows were changed after they were written; remove it and run the sweep again");
     if (const std::string version = said.value("version", ""); version != program_version())
         throw std::runtime_error(fmt::format(
             "{}: this is carom {}, and the part was written by carom {}; use that version, or remove {}",
