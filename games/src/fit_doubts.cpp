@@ -60,7 +60,8 @@ std::string doubt_of_scale(double scale) {
         if (std::abs(scale / unit.per_metre - 1.0) < 0.2)
             return fmt::format("the positions look like {}; write them in metres", unit.name);
     return fmt::format(
-        "the places are {:.3g} times those of the shot; write them in metres, with the origin of the scene",
+        "the positions are {:.3g} times the simulated ones; write them in metres, with the origin of the "
+        "scene",
         scale);
 }
 

@@ -290,7 +290,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
         {"cue.speed=uniform(1,nan)", "must be a finite number"},
         {"cue.speed=uniform(9007199254740993,9007199254740993)",
-         "value 1 of uniform = 9007199254740993 has more digits than a number holds; write "
+         "value 1 of uniform = 9007199254740993 has more digits than a number can store; write "
          "9007199254740992.0"},
         {"cue.speed=normal(1,9007199254740993)", "value 2 of normal = 9007199254740993 has more digits"},
         {"cue.speed=list(9007199254740993)", "shot 0: cue.speed = 9007199254740993 is out of range"},

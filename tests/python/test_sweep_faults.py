@@ -62,8 +62,8 @@ def test_a_file_of_another_plan_or_place_is_named_by_everyone(tmp_path):
     sweep.run(plan, tmp_path / "a")
     sweep.run(other, tmp_path / "b")
     for source, words in (
-        ("b/shard-1.parquet", f"the file holds plan {other.id}, not shard 1 of plan {plan.id}"),
-        ("a/shard-0.parquet", "the file holds shots 0 to 10"),
+        ("b/shard-1.parquet", f"the file contains plan {other.id}, not shard 1 of plan {plan.id}"),
+        ("a/shard-0.parquet", "the file contains shots 0 to 10"),
     ):
         shutil.copy(tmp_path / source, tmp_path / "a/shard-1.parquet")
         assert words in sweep.check(tmp_path / "a").faults["shard-1.parquet"]

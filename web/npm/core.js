@@ -141,7 +141,8 @@ class Held {
   #handle;
   #free;
   constructor(free) {
-    if (!unclaimed) throw new TypeError("carom makes its objects itself; call Scene.parse() or simulate()");
+    if (!unclaimed)
+      throw new TypeError("carom's objects cannot be constructed; call Scene.parse() or simulate()");
     unclaimed = false;
     this.#handle = wasm.carom_handle();
     this.#free = free;

@@ -227,7 +227,7 @@ void check_discs(const Section& top, const Scene& scene) {
     const BallBallModelInfo& model = *scene.physics.ball_ball;
     if (p.discs() && !scene.of_one_radius() && (model.reads_tolerance || model.free))
         top.fail(top.where("balls", "shape"),
-                 "discs of unlike size need a model without spins, not {}; set physics.ball_ball = "
+                 "discs of different size need a model without spins, not {}; set physics.ball_ball = "
                  "\"elastic\" or \"inelastic\"",
                  model.name);
     if (p.rolls()) return;

@@ -123,7 +123,7 @@ ListItem::ListItem(const toml::node& value) : node(&value) {
     }
     try {
         if (value.is_number()) exact = number_in(value);
-    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number holds
+    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number can store
     }
 }
 

@@ -86,7 +86,7 @@ void place_rack(const Section& top, const Section& s, const Rack& rack, Scene& s
     const bool lattice = rack.radius_sd > 0.0 && rack.game != RackGame::kScatter;
     if (lattice && balls_of(rack) > kMaxPressedBalls)
         s.fail(s.has("rows") ? "rows" : "count",
-               "at most {} balls of unlike size can be racked, not {}; leave some out", kMaxPressedBalls,
+               "at most {} balls of different size can be racked, not {}; leave some out", kMaxPressedBalls,
                balls_of(rack));
     const bool scatter = rack.game == RackGame::kScatter;
     if (s.has("count") && rack.game != RackGame::kLine && !scatter)

@@ -118,7 +118,7 @@ KeyPath find_path(toml::table& file, std::string_view key, const Scene* base = n
     if (!file.contains(path.section)) {
         // These two would put balls on the table, or strike one.
         if (path.section == "rack" || path.section == "cue")
-            fail("the scene has no [{}]; write the section, then vary what is in it", path.section);
+            fail("the scene has no [{}]; add the section, then vary its values", path.section);
         file.insert(path.section, toml::table());
     }
     toml::table* table = file[path.section].as_table();

@@ -48,7 +48,7 @@ Replay::Replay(const Plan& plan, const Record& record, Scene& scene, const std::
         throw std::invalid_argument("the record is not of this plan: it has another number of balls");
     if (!plan.balls.rolls()) throw TangentError("pucks (balls.rolls = false) have no derivatives here");
     if (plan.balls.discs() && !plan.scene.of_one_radius())
-        throw TangentError("discs of unlike size have no derivatives here");
+        throw TangentError("discs of different size have no derivatives here");
     for (std::size_t i = 0; i < balls_.size(); ++i) {
         const Numbers::Ball& ball = numbers_.balls[i];
         const Segment& first = record.tracks[i].segments.front();

@@ -110,7 +110,7 @@ class Plan(NamedTuple):
             with open(name, encoding="utf-8") as file:
                 tree = json.load(file)
         except json.JSONDecodeError as error:
-            what = f"{error.msg}; a plan is what carom.sweep.plan(...).save() writes"
+            what = f"{error.msg}; a plan is written by carom.sweep.plan(...).save()"
             raise SweepError(f"{name}:{error.lineno}:{error.colno}: {what}") from None
         except (OSError, ValueError) as error:
             raise SweepError(f"{name}: cannot read it: {getattr(error, 'strerror', None) or error}") from None

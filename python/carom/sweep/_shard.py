@@ -116,7 +116,7 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
                 words = f"plan {said['carom.plan']}"
                 if said["carom.plan"] == plan.id:
                     words = f"shots {said.get('carom.first')} to {said.get('carom.last')}"
-                what = f"the file holds {words}, not shard {shard} of plan {plan.id}"
+                what = f"the file contains {words}, not shard {shard} of plan {plan.id}"
                 raise SweepError(f"{path}: {what}; use another folder, or remove the file")
         if rows == int(said["carom.last"]) - int(said["carom.first"]):
             return said
@@ -237,7 +237,7 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: NDArray[
         raise SweepError(f"{path}: {_host()}, process {os.getpid()}: {wrong}")
     if not os.path.isdir(folder):
         where = f"there is no such folder on {_host()}"
-        raise SweepError(f"{folder}: {where}; every worker must see the folder of the sweep")
+        raise SweepError(f"{folder}: {where}; every worker needs access to the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
     about: dict[str, str] = {}

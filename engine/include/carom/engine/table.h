@@ -87,7 +87,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
     field<&Pocket::radius>("radius", more_than(0.0, kMaxLength, "m"),
                            "a ball whose centre crosses this circle falls", {.needed = true}),
-    field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
+    field<&Pocket::depth>("depth", kCoordinate, "depth of a pocketed ball below the cloth, for drawing",
                           {.files = Files::kRecord}),
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
@@ -179,7 +179,7 @@ inline constexpr Field<Table> kTableFields[] = {
         {.files = Files::kScene, .standard = "as `[balls]`", .names = kCloths}),
     field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
                          {.files = Files::kRecord}),
-    field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",
+    field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along y",
                           {.files = Files::kRecord}),
     field<&Table::corner>("corner", kCoordinate, "the corner of smallest x and y",
                           {.shape = "[x, y]", .files = Files::kRecord}),

@@ -141,7 +141,7 @@ std::string page_item(const Option& row, const std::string& before) {
                                    row.value, page_meaning(row));
     const std::string choices = code_list(row.choices);
     if (row.choices.size() > 5 && before.find(choices) != before.npos)
-        item += "; one of those above";
+        item += "; values as above";
     else if (!row.choices.empty())
         item += "; one of " + choices;
     if (row.range) item += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);

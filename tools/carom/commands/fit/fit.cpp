@@ -103,7 +103,7 @@ int run(const FitArgs& args) {
     else
         print(table_text(table) +
               fmt::format("\n{} of {}: typically {:.3g} mm off, {} beyond three times that; {}\n",
-                          counted(fit.points, "place"), points.size(), 1e3 * fit.noise,
+                          counted(fit.points, "position"), points.size(), 1e3 * fit.noise,
                           counted(fit.outliers, "coordinate"),
                           counted(static_cast<std::size_t>(fit.shots), "shot")));
     return fit.converged ? kOk : kFailed;

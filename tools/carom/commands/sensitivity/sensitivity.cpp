@@ -214,7 +214,7 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const std::string& id = record.tracks[static_cast<std::size_t>(ball.ball)].id;
         table.columns.emplace_back("", (ball.fall ? id + " at its pocket" : id) + ", mm", ">22");
     }
-    table.columns.emplace_back("", "holds between", ">32");
+    table.columns.emplace_back("", "same events between", ">32");
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
         const Nudge& nudge = s.nudges[k];
         std::vector<Cell> cells{nudge.words};
