@@ -40,7 +40,7 @@ const BreakGame& game_of(const std::string& name) {
     return kGames[found - kBreakGames.begin()];
 }
 
-/// Seeds of racks are from 1 to this: as many as integer(a,b) can draw.
+/// Largest seed of a rack: integer(a,b) can draw as many.
 constexpr int kSeeds = 1000000000;
 
 Rack rack_of(const BreakGame& game, const BreakOptions& options) {

@@ -17,13 +17,13 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 // [m] Residuals below this are rounding.
 constexpr double kExact = 1e-6;
-// [-] The share of outliers that are no longer few.
+// [-] From this share on, there are too many outliers.
 constexpr double kFew = 0.2;
-// [-] Share of the squared residuals that another clock or scale explains, if it is to be told. Of noise it
-// explains 1/n.
+// [-] Report a wrong clock or scale if it explains this share of the squared residuals. It explains 1/n of
+// noise.
 constexpr double kExplained = 0.5;
 constexpr std::size_t kEnough = 10;
-// [-] Scales that are told at the start.
+// [-] Scales outside this range are reported at the start.
 constexpr double kSmallest = 1.0 / 3.0, kLargest = 3.0;
 
 struct Unit {

@@ -23,14 +23,15 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-// [-] Share of the search's shots that tell how sure an exact shot is; [degrees] how far its aim may turn.
+// [-] Share of the search's shots used for the success rate of an exact shot; [degrees] largest turn of its
+// aim.
 constexpr double kExactShare = 0.1, kTurn = 20.0;
-// Steps, and how often one is halved.
+// Limits on steps, and on the halvings of one.
 constexpr int kMostSteps = 30, kMostHalvings = 10;
-// [-] Directions that move the balls by less than this share of the most effective one are left alone.
+// [-] Ignore directions that move the balls by less than this fraction of the most effective one.
 constexpr double kWeak = 1e-6;
 
-/// A shot, and how far its balls rest from their places.
+/// A shot, and the distances of its balls from their places at rest.
 struct Try {
     std::vector<double> values;
     Scene scene;
@@ -99,7 +100,7 @@ class Refiner {
         return values;
     }
 
-    /// Nothing if it is no valid scene, does not come to rest, or a ball with a place is gone.
+    /// Empty if the scene is invalid, does not come to rest, or a ball with a place is gone.
     std::optional<Try> at(const std::vector<double>& values) {
         Scene scene = scene_;
         for (std::size_t k = 0; k < values.size(); ++k) numbers_[k].put(scene, values[k]);
@@ -123,7 +124,7 @@ class Refiner {
         }
     }
 
-    /// The step of least size, in parts of the ranges.
+    /// The minimum-norm step, in fractions of the ranges.
     VectorXd newton(const Try& shot) const {
         std::vector<std::string> keys;
         for (const Choice& choice : choices_) keys.push_back(choice.key);

@@ -39,7 +39,7 @@ std::optional<Touch> meeting(const PlayedShot& played, std::size_t number) {
     return number < met.size() ? std::optional(met[number]) : std::nullopt;
 }
 
-/// How many cushions come before a contact; NaN if there is none.
+/// Number of cushions before a contact; NaN if there is none.
 double count_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
     return meeting ? double(cushions_before(played, meeting).size()) : kNone;
 }
@@ -62,7 +62,7 @@ Texts route(const PlayedShot& played) {
     return rails;
 }
 
-/// Whether a ball fell, other than the struck one, of which this holds.
+/// Whether a ball other than the struck one fell and passes the test.
 template <class Test>
 double any_fell(const PlayedShot& played, Test&& test) {
     const Shot& shot = played.shot();

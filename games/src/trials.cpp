@@ -66,7 +66,7 @@ int Trials::ball_of(const std::string& id) const {
     throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
 }
 
-/// Shot number `index` of every candidate has these errors.
+/// The errors of shot number `index`, common to all candidates.
 Trials::Draw Trials::draw(std::uint64_t index) const {
     SplitMix64 random(options_.seed * 0x9e3779b97f4a7c15u + 2 * index + (fresh ? 1 : 0));
     const Hand& hand = options_.hand;
@@ -81,7 +81,7 @@ Trials::Draw Trials::draw(std::uint64_t index) const {
     return d;
 }
 
-/// The shot as it is meant: a value for each of the keys that are chosen.
+/// The shot without errors: a value for each of the chosen keys.
 std::vector<double> Trials::meant(const std::vector<double>& values) const {
     const Cue& cue = *scene_.cue;
     std::vector<double> row(chosen_);
@@ -118,7 +118,7 @@ Scene Trials::meant_scene(const std::vector<double>& values) const {
 
 void Trials::play(std::vector<Candidate>& candidates, std::size_t shots,
                   const std::function<void(std::size_t, const Record&)>& look) {
-    // Rows of a batch are limited, so that memory is.
+    // Limits the rows of a batch, and so the memory.
     constexpr std::size_t kRows = 1 << 17;
     for (std::size_t begin = 0; begin < candidates.size();) {
         std::size_t rows = 0, end = begin;

@@ -194,7 +194,7 @@ typedef enum carom_motion_state {
     CAROM_POCKETED = 4,
     CAROM_FALLING = 5,
     CAROM_AIRBORNE = 6,
-    CAROM_OUT = 7,      /* it has left the table */
+    CAROM_OUT = 7,      /* off the table */
     CAROM_COLLIDING = 8 /* in a cluster: it moves straight to where it is when the contacts are over */
 } carom_motion_state;
 
