@@ -1,4 +1,4 @@
-// Measures of shots, what events tell, and searches for a shot.
+// Measures of shots, details of events, and searches for a shot.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -93,7 +93,7 @@ using ChoiceRow = std::tuple<std::string, double, double>;
 /// Shares: NaN if no scene is valid there.
 using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is no smaller.
+/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller.
 using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
                                std::vector<std::tuple<std::string, std::string, double>>,
                                std::vector<CostRow>, NativeScene, std::pair<double, std::string>>;
@@ -174,7 +174,7 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
                  exact);
 }
 
-/// The keys that were chosen, what was wanted, the speed of the ball for each m/s of the cue, the solutions.
+/// The searched keys, the goal, the speed of the ball for each m/s of the cue, the solutions.
 std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
     const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
     double speed_max, bool box, const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,

@@ -39,12 +39,12 @@ class Check(NamedTuple):
     plan: Plan
     rows: int  # that are correct
     outcomes: dict[str, int]
-    faults: dict[str, str]  # file name: what is wrong with it
+    faults: dict[str, str]  # file name: its fault
     missing: tuple[int, ...]  # shards that do not exist
 
     @property
     def whole(self) -> bool:
-        """Whether every shot is there once, as it was written."""
+        """Whether every shot exists once, unchanged."""
         return not self.faults and not self.missing
 
 

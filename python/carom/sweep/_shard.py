@@ -40,8 +40,8 @@ def need(name: str) -> None:
 
 
 class ContentHash:
-    """SHA-256 of a table's names, types and values, however the table is divided and whatever wrote the
-    file."""
+    """SHA-256 of a table's names, types and values, independent of how the table is divided and who wrote
+    the file."""
 
     def __init__(self, schema: pyarrow.Schema) -> None:
         import pyarrow
@@ -86,7 +86,7 @@ class ContentHash:
 
 
 def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
-    """The metadata that every file and dataset of a plan holds about itself."""
+    """The metadata of every file and dataset of a plan."""
     own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene,
            "carom.scene_sha256": sha256(plan.scene.encode())}
     return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
@@ -285,8 +285,8 @@ def _result(
 def run_shard(
     plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1
 ) -> dict[str, Any]:
-    """Makes one shard if it is missing. Its file appears complete or not at all, and is the same whoever
-    makes it.
+    """Makes one shard if it is missing. Its file appears complete or not at all, and is the same on every
+    machine.
 
     plan: a plan, or the path of its file
     threads: 0 uses one thread per core
