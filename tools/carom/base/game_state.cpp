@@ -27,7 +27,7 @@ namespace {
 // [bytes] A state takes about three hundred.
 constexpr std::uintmax_t kLargestState = 1 << 16;
 
-/// Reads one key, and says what it expected.
+/// Reads one key; its message names the expected value.
 struct Reader {
     const std::string& path;
     const Json& json;

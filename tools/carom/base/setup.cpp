@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// More frames than this (46 hours at 60 fps) are taken for a typing error: they would fill any disk.
+/// More frames than this (46 hours at 60 fps) are considered a typing error: they would fill any disk.
 constexpr double kMostFrames = 1e7;
 constexpr double kFastestFps = 1e6;
 

@@ -1,4 +1,4 @@
-// Charts, and the paper that makes SVG files of them.
+// Charts, and the paper for SVG files.
 #include "report/plot.h"
 
 #include <fmt/format.h>

@@ -20,7 +20,7 @@ namespace carom::tools {
 namespace {
 
 /// The converged runs must agree within this fraction of the target; otherwise, differences from them are not
-/// called errors.
+/// errors.
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it, and its result.

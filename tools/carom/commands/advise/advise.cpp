@@ -38,7 +38,7 @@ std::size_t rack_of(games::Game game) {
     return game == games::Game::kNineBall ? 9 : game == games::Game::kTenBall ? 10 : 15;
 }
 
-/// The state in the file; otherwise a break if the rack is full, and the middle of a turn if it is not.
+/// The state in the file; otherwise a break if the rack is full, else the middle of a turn.
 State state_of(const AdviseArgs& args, const Scene& scene) {
     if (!args.state.empty()) {
         State state = read_state(args.state);

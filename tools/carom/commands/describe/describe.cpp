@@ -47,7 +47,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how to call a command, with everything it requires.
+/// "carom sweep SCENE --vary KEY=DISTRIBUTION": the call of a command, with all its required options.
 std::string synopsis_of(const Options& command, const std::string& name) {
     std::string synopsis = name;
     for (const Option& row : rows_of(command, true)) {
@@ -127,7 +127,7 @@ std::string code_list(const std::vector<std::string>& words) {
     return fmt::format("`{}`", fmt::join(words, "`, `"));
 }
 
-/// The description of an option, without what the top of the page says about all flags and files.
+/// The description of an option, without the facts about all flags and files at the top of the page.
 std::string page_meaning(const Option& row) {
     std::string text = meaning(row);
     for (const char* known : {" (default: off)", " (default: not written)", " (default: not drawn)"})
@@ -135,7 +135,7 @@ std::string page_meaning(const Option& row) {
     return markdown(text);
 }
 
-/// The list item of an option. @param before  the page up to here: a long list of choices stands once on it
+/// The list item of an option. @param before  the page up to here: a long list of choices appears once on it
 std::string page_item(const Option& row, const std::string& before) {
     std::string item = fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
                                    row.value, page_meaning(row));

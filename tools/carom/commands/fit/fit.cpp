@@ -1,4 +1,4 @@
-// carom fit: numbers of a scene from tracked places of its balls.
+// carom fit: numbers of a scene from tracked positions of its balls.
 #include "carom/games/fit.h"
 
 #include <fmt/format.h>

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The JSON of an impact nests three deep; anything deeper than this is refused.
+/// The JSON of an impact nests three deep; anything deeper than this is rejected.
 constexpr int kDeepest = 8;
 /// A normal written with four digits is accepted as a unit vector; a larger difference from 1 is an error.
 constexpr double kUnitSlack = 1e-3;
@@ -83,7 +83,7 @@ std::vector<std::string> words_of(std::string text) {
     return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// Refuses unknown keys: a misspelt key would silently change the result.
+/// Rejects unknown keys: a misspelt key would silently change the result.
 void refuse_unknown(const Json& object, const std::string& known) {
     const std::vector<std::string> names = words_of(known);
     for (const auto& item : object.items())
@@ -143,7 +143,7 @@ const Json& params_of(const Json& line) {
     return params;
 }
 
-/// Whether the line asks for the impact of balls in the air.
+/// Whether the line is an impact of balls in the air.
 bool is_airborne(const Json& line) {
     const auto it = line.find("airborne");
     if (it == line.end()) return false;

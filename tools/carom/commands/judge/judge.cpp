@@ -32,7 +32,7 @@ using games::InHand;
 using games::State;
 using games::Verdict;
 
-/// The options of both commands about the game.
+/// The game options of both commands.
 struct GameArgs {
     std::string game, state, state_out, ball, pocket;
     std::vector<std::string> rules;
@@ -51,13 +51,13 @@ struct NextArgs {
     GameArgs game;
 };
 
-/// The outcome of a shot: the verdict, and the option that is taken.
+/// The outcome of a shot: the verdict, and the chosen option.
 struct Judged {
     Verdict verdict;
     games::Option option;
 };
 
-/// Calls a function of the games, and turns its refusals into messages about the shot.
+/// Calls a function of the games, and turns its errors into messages about the shot.
 template <class F>
 auto asked(const std::string& shot, F&& f) {
     try {

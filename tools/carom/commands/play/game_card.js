@@ -1,4 +1,4 @@
-// The game on the page: what the player may do and announces, the verdict, and the options after it.
+// The game on the page: the player's rights and calls, the verdict, and its options.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
@@ -36,7 +36,7 @@ function announcements(state) {
     tell();
   });
   let callable = [];
-  // An obvious call is made by itself, until the player calls something.
+  // An obvious call is automatic until the player makes a call.
   const obvious = () => {
     const {announced, scene, shot, clock} = state;
     if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;

@@ -86,7 +86,7 @@ Json start_of(const PlayArgs& args) {
         if (is_record(args.scene))
             throw UsageError(
                 fmt::format("{}: expected a scene file (TOML), not a record", harmless(args.scene)));
-        plan_scene(args.scene);  // refuses a bad scene here rather than in the browser
+        plan_scene(args.scene);  // rejects a bad scene here and not in the browser
         page["scene"] = read_scene_text(args.scene);
         page["lead"] = harmless(args.scene);
     }

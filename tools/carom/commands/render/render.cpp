@@ -55,7 +55,7 @@ std::string sheet_path(const RenderArgs& args) {
     return args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
 }
 
-/// That two options are no one file is known; here a pattern becomes names of files.
+/// check_files() has rejected options that name one file; this also covers the names from a pattern.
 void check_input(const RenderArgs& args, bool replaces, const std::string& output) {
     if (replaces)
         throw UsageError(fmt::format("-o {} would overwrite the input {}; choose another name",
@@ -149,7 +149,7 @@ void set_view(const RenderArgs& args, const RenderSettings& settings, render::Se
     options.overlay = overlay_of(args);
 }
 
-/// Lowers the scene's rate to the film's limit, but not a rate that was asked for.
+/// Lowers the scene's rate to the film's limit, but not a requested rate.
 double film_fps(const RenderArgs& args, const RenderSettings& settings) {
     const double fps = chosen_fps(args.fps, settings), fastest = args.film()->fastest;
     if (fastest == 0.0 || fps <= fastest) return fps;
@@ -234,7 +234,7 @@ int write_film(const RenderArgs& args, const Record& record, render::SequenceOpt
     return kOk;
 }
 
-/// Renders, and says how to continue after an interrupt.
+/// Renders, and prints how to continue after an interrupt.
 std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
     try {
         return render::render_sequence(record, options);
@@ -246,7 +246,7 @@ std::vector<render::FrameTiming> rendered(const Record& record, const render::Se
 }
 
 int run(const RenderArgs& args) {
-    render::backend_from_name(args.gl);  // refuses in a build without OpenGL
+    render::backend_from_name(args.gl);  // fails in a build without OpenGL
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";

@@ -1,4 +1,4 @@
-// carom sensitivity: what small errors of a shot do to it.
+// carom sensitivity: the effect of small errors on a shot.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -41,7 +41,7 @@ struct SensitivityArgs {
     bool json = false;
 };
 
-/// A small change of an input, and the standard deviation that a hand has of it.
+/// A small change of an input, and its standard deviation for a hand.
 struct Nudge {
     std::string key, words;
     double size, hand;  ///< in the unit of the input
@@ -78,19 +78,19 @@ Ellipse ellipse_of(const Eigen::Matrix2d& covariance) {
     return {half(1), half(0), angle < 0.0 ? angle + 180.0 : angle};
 }
 
-/// One ball: where it ends, or where it falls.
+/// One ball: its final position, or its fall.
 struct BallResult {
     int ball;
-    std::optional<std::size_t> fall;                  ///< the event at which it is over its pocket
+    std::optional<std::size_t> fall;                  ///< the event in which it crosses its pocket
     std::vector<Vec2> moves;                          ///< [m] for each nudge
     Ellipse expected;                                 ///< to first order
     std::vector<Vec2> ends;                           ///< [m] of the sweep, unless it is gone
-    std::optional<Ellipse> played;                    ///< of these; nothing if it stays too rarely
+    std::optional<Ellipse> played;                    ///< of these; empty if it stays too rarely
     std::optional<std::pair<double, double>> window;  ///< [degrees] of the aim, in which it still falls
-    std::size_t fell = 0;                             ///< of the sweep, into the same pocket
+    std::size_t fell = 0;  ///< shots of the sweep in which it falls into the same pocket
 };
 
-/// The first event of a ball with the pocket that takes it.
+/// The first event of a ball with its pocket.
 std::optional<std::size_t> fall_of(const Record& record, int ball) {
     std::optional<std::size_t> found;
     for (std::size_t e = 0; e < record.events.size(); ++e) {
@@ -133,7 +133,7 @@ struct Sensitivity {
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// Equal for two shots with the same events: each ball's cushions and pocket, and all events.
+/// Equal for two shots with the same events: cushions and pocket of each ball, and all events.
 bool same_kind(const Outcome& one, const Outcome& two) {
     if (one.events != two.events) return false;
     for (std::size_t i = 0; i < one.balls.size(); ++i)

@@ -39,12 +39,12 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
-    bool list = false;  ///< tell every event
+    bool list = false;  ///< print every event
     std::string units = kUnits[0];
     bool verify = false;     ///< check the physical laws after every event
     bool no_record = false;  ///< only the final state
     std::vector<std::string> measures;
-    std::string game;  ///< that measures judge by
+    std::string game;  ///< rules for measures
 };
 
 /// The measures of --measure.
@@ -62,7 +62,7 @@ std::vector<games::Measure> measures_of(const SimulateArgs& args, const Scene& s
     return list;
 }
 
-/// The value of a measure, or why the game cannot judge the shot.
+/// The value of a measure, or the reason why the game cannot judge the shot.
 template <class F>
 auto measured(const games::Measure& measure, F&& f) {
     try {
@@ -169,7 +169,7 @@ std::string summary(const Record& record, const std::string& scene, const Simula
     return fmt::to_string(out);
 }
 
-/// Where the time of a profiled run went.
+/// The distribution of a profiled run's time.
 std::string profile_report(const Record& record) {
     double total = record.setup_detect_ns;
     for (const EventCost& cost : record.costs) total += cost.detect_ns + cost.resolve_ns;
@@ -199,7 +199,7 @@ void check_args(const SimulateArgs& args) {
     }
 }
 
-/// Plays without a record, which takes less time and memory if there are many events.
+/// Plays without a record, which needs less time and memory if there are many events.
 int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions options) {
     const std::pair<const char*, bool> asked[] = {{"--output", !args.record.empty()},
                                                   {"--events", !args.events.empty()},

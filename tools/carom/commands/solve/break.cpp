@@ -1,4 +1,4 @@
-// carom break: the break that a player with this hand should play.
+// carom break: the best break for a hand.
 #include <fmt/format.h>
 
 #include <algorithm>

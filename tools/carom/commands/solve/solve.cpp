@@ -1,4 +1,4 @@
-// carom solve: the shot that most surely does what is wanted.
+// carom solve: the shot most likely to achieve a goal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ std::string told(const Solution& solution, const std::vector<Choice>& choices, i
     return text + falls_text(solution) + costs_text(solution);
 }
 
-/// An earlier exact shot with the same values, if there is one: two shots that differ in kind may lead to it.
+/// An earlier exact shot with the same values, if any: two shots of different kind may lead to it.
 std::optional<std::size_t> same_before(const std::vector<games::Exact>& exact, std::size_t i) {
     // [of a value] The shots are exact to less.
     constexpr double kSame = 1e-4;

@@ -12,7 +12,7 @@
 namespace carom::tools {
 namespace {
 
-/// [shots] A plot shows the first ones: more would not change it, and need memory.
+/// [shots] A plot shows the first ones: more would not change it, but need memory.
 constexpr std::size_t kMostPlotted = 1000000;
 
 /// The cells of a line of CSV; those in quotes may contain commas.

@@ -38,7 +38,7 @@ namespace {
 struct SweepArgs {
     std::string scene;
     std::vector<std::string> vary;      ///< "KEY=DISTRIBUTION"
-    std::optional<std::int64_t> count;  ///< nothing: every point of the grids once
+    std::optional<std::int64_t> count;  ///< empty: every point of the grids once
     std::uint64_t seed = 1;
     int jobs = 0;
     std::string shard;  ///< "2/4"; empty: all
@@ -53,7 +53,7 @@ struct SweepArgs {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostShards = 1000000;
-/// A block of shots grows until it takes this long, which is how often the progress moves.
+/// A block of shots grows until it takes this long; progress is shown once per block.
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
@@ -100,7 +100,8 @@ struct Totals {
 };
 
 /// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played
-/// and the one after it gets its memory. Two blocks are never played at once, because each uses all threads.
+/// and memory for the one after it is allocated. Two blocks are never played at once, because each uses all
+/// threads.
 void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa, int threads,
                 const ShotRange& range, SweepStatus& status, Totals& totals) {
     ProgressLine line("sweep");
@@ -171,7 +172,7 @@ games::Sweep read_sweep(const SweepArgs& args) {
     }
 }
 
-/// The name of the parts of this sweep: each range of shots has its own.
+/// The name of this sweep's parts: each range of shots has its own.
 std::uint64_t id_of(const games::Sweep& sweep, const SweepArgs& args, const ShotRange& range) {
     std::uint64_t columns = 0;
     for (const games::Measure& measure : sweep.measures())

@@ -48,7 +48,7 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     return {std::move(runs.front().record), std::move(chart)};
 }
 
-/// A record is not simulated again. If it was profiled, it contains the simulation cost of each frame.
+/// A record is not simulated again. If profiled, it contains the simulation cost of each frame.
 MeasuredShot read_record_shot(const ViewArgs& args) {
     std::vector<MarginRun> runs(1);
     Record& record = runs.front().record;
