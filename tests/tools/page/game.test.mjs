@@ -80,7 +80,7 @@ test("in a game only the cue ball is moved, in hand, where the rules allow it", 
   assert.equal(refusal(state, "cue", 0.4, 1.5), null);
   assert.match(refusal(state, "cue", 0.6, 1.5), /may not be placed there/);
   state.game.state.in_hand = "no";
-  assert.match(refusal(state, "cue", 0.4, 1.5), /only in hand/);
+  assert.match(refusal(state, "cue", 0.4, 1.5), /in hand may be moved/);
 });
 
 test("a game needs its table", (t) => {

@@ -117,8 +117,8 @@ std::string metres(double x) {
 std::string sentence_of(const SceneAccuracy& result) {
     if (!result.converged)
         return fmt::format(
-            "The two converged methods end {} apart (gain {:.1e}), so no difference here can be called an "
-            "error, and no setting guarantees {}.",
+            "The two converged methods end {} apart (gain {:.1e}), so differences here are not errors, and "
+            "no setting guarantees {}.",
             metres(result.agreement), result.gain, metres(result.target));
     if (!result.recommended)
         return fmt::format(
@@ -131,10 +131,10 @@ std::string sentence_of(const SceneAccuracy& result) {
         text = fmt::format("Tolerance {:g} is enough for {} (error {}", *result.recommended,
                            metres(result.target), metres(row->error.largest));
         text += result.loosest && *result.loosest > *result.recommended
-                    ? fmt::format("; {:g} happens to be enough too)", *result.loosest)
+                    ? fmt::format("; {:g} is also enough here)", *result.loosest)
                     : ")";
     } else {
-        text = fmt::format("The gain calls for tolerance {:g}, but its error is {}, more than {}",
+        text = fmt::format("The gain requires tolerance {:g}, but its error is {}, more than {}",
                            *result.recommended, metres(row->error.largest), metres(result.target));
     }
     if (const SceneAccuracyRow* march = compared_march(result)) {

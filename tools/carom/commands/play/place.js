@@ -48,7 +48,7 @@ export function refusal(state, id, x, y) {
   if (!game) return null;
   const inHand = game.state.in_hand;
   if (inHand === "no" || id !== scene.cue?.ball)
-    return "In a game only the cue ball may be moved, and only in hand.";
+    return "In a game, only a cue ball in hand may be moved.";
   if (game.judged)
     return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not be placed there.";
   const line = scene.table.corner[1] + scene.table.length / 4;

@@ -52,7 +52,7 @@ export async function openAddress(state) {
 /** A copy of the page that begins with this shot, to send to somebody. `whole`: the page before its script
  * ran. */
 function download(state, whole) {
-  const page = {...state.page, scene: state.scene.toml, lead: "a shot to look at"};
+  const page = {...state.page, scene: state.scene.toml, lead: "a shot to watch"};
   const json = JSON.stringify(page).replaceAll("<", "\\u003c");
   const html = whole.replace(/(<script [^>]*id="page">)[^<]*/, (_, head) => head + json);
   const url = URL.createObjectURL(new Blob(["<!doctype html>\n", html], {type: "text/html"}));
