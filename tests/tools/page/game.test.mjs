@@ -72,7 +72,7 @@ test("what a player may do, in words", () => {
 
 test("in a game only the cue ball is moved, in hand, where the rules allow it", () => {
   const {state} = playing();
-  assert.match(refusal(state, "1", 0.5, 0.1), /only the cue ball/);
+  assert.match(refusal(state, "1", 0.5, 0.1), /only a cue ball in hand/);
   assert.equal(refusal(state, "cue", 0.5, 0.4), null);
   assert.match(refusal(state, "cue", 0.5, 0.6), /head string/);
   nextShot(state);
