@@ -76,7 +76,7 @@ Json keys_to_set() {
 /// Data for the page's script: the scene, the locked keys, and the choices. @throws
 /// UsageError
 Json start_of(const PlayArgs& args) {
-    Json page = page_json("carom", \"an interactive table\", harmless(command_line()), program_version());
+    Json page = page_json("carom", "an interactive table", harmless(command_line()), program_version());
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
     page["tables"] = kTablePresets;
