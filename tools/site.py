@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The parts of tools/docs that are not shell:
 
-    site.py files FOLDER        copies into FOLDER whatever its pages link to, and what that links to
+    site.py files FOLDER        copies into FOLDER the files that its pages link to, and their links in turn
     site.py configure FILE      writes the configuration of MkDocs
     site.py interface FILE      writes a page of the C interface from its header
     site.py check FOLDER        follows every link of the built site, also to headings; status 1: a dead link

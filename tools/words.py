@@ -16,7 +16,7 @@ import sys
 WIDTH = 110
 CODE = {".h", ".cpp", ".c", ".py", ".pyi", ".js", ".jslib", ".mjs", ".ts", ".css", ".frag", ".vert", ".cmake",
         ".sh"}
-# Data, history, and the page that lists what not to write.
+# Data, history, and the page that lists these phrases.
 LEFT_OUT = ("lab/notes/", "tests/data/", "tests/fuzz/corpus/", "lab/data/", "CHANGELOG.md", "CONTRIBUTING.md")
 PHRASES = {
     r"\bso (much|many)\b(?! that)": "the number or the amount",

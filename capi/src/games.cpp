@@ -34,7 +34,7 @@ E value_of(const char* what, int32_t value) {
     return static_cast<E>(value);
 }
 
-// The options of the rules are above the game, because the size of the struct is promised.
+// The options of the rules share `game`, because the size of the struct is promised.
 constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1;
 
 games::State state_of(const carom_game_state& s) {

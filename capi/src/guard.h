@@ -11,7 +11,7 @@
 
 namespace carom::c {
 
-/// Becomes CAROM_BAD_ARGUMENT; what() says which argument is invalid and why.
+/// Becomes CAROM_BAD_ARGUMENT; what() names the invalid argument and the reason.
 class BadArgument : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -37,7 +37,7 @@ void need(std::initializer_list<const void*> pointers);
 /// @throws BadArgument if there is no such index
 void check_index(std::size_t index, std::size_t count, const char* what);
 
-/// Turns an argument that the library refuses into a bad argument of the caller.
+/// Turns the library's rejection of an argument into a bad argument of the caller.
 template <class Work>
 auto asked(Work&& work) {
     try {

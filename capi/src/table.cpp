@@ -1,4 +1,4 @@
-// The C interface: tables and balls of a scene, and the facts of a record that a game needs.
+// The C interface: tables and balls of a scene, and the data of a record that a game needs.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -62,7 +62,7 @@ double way_through_mouth(const Table& table, const Pocket& pocket, const Vec2& f
     return way > 0.0 && share > 0.0 && share < 1.0 ? way : kNever;
 }
 
-/// Where a line into a pocket must lead: into its circle or, off a facing, into its mouth.
+/// A line into a pocket must lead into its circle or, off a facing, into its mouth.
 enum class Goal : std::uint8_t { kCircle, kMouth };
 
 double way_into(const Table& table, const Pocket& pocket, Goal goal, const Vec2& from, const Vec2& towards) {
@@ -108,7 +108,7 @@ Vec2 turned(const Vec2& direction, double deg) {
     return {cos * direction.x() - sin * direction.y(), sin * direction.x() + cos * direction.y()};
 }
 
-/// The last direction that enters, between one that does and one that does not [degrees].
+/// The last direction that enters the pocket, between one that does and one that does not [degrees].
 template <class Enters>
 double edge(double in, double out, const Enters& enters_at) {
     for (int k = 0; k < kHalvings; ++k) {

@@ -28,7 +28,7 @@ using detail::off_line;
 constexpr int kBrackets = 14, kNarrow = 40;
 /// [-] Corrections of a strike that misses the ball.
 constexpr int kCorrections = 3;
-/// [-] Fraction of the paths' width: an aim that keeps the ball this near to their middle is accepted.
+/// [-] Accept an aim that keeps the ball this near to the middle of its paths, as a fraction of their width.
 constexpr double kNearMiddle = 1e-3;
 /// [-] Aims tried for banks, from one edge of the ball to the other.
 constexpr int kBankAims = 240;
@@ -53,7 +53,8 @@ struct Player {
           R(played.size_of(detail::ball_of(played, object)).R),
           both(R + played.size_of(detail::ball_of(played, how.ball)).R) {
         scene.cue = how;
-        if (object == how.ball) throw std::invalid_argument("the ball to pot is the one that is struck");
+        if (object == how.ball)
+            throw std::invalid_argument("the struck ball cannot be the one to pot; name another");
     }
 
     Record play(double aim_deg) {
@@ -107,7 +108,7 @@ Played played_at(Player& player, double aim_deg, const Vec2* towards) {
     return played;
 }
 
-/// An aim, and how the ball then runs.
+/// An aim, and the resulting path of the ball.
 struct Tried {
     double aim_deg = 0.0;
     double off = 0.0;
@@ -143,7 +144,7 @@ double half_view_deg(const Player& player) {
     return 90.0 - arc_cos(std::min(1.0, player.both / distance)) * kDegrees;
 }
 
-/// How far a cue ball that misses strays from its path to the ghost ball, by squirt and swerve [degrees];
+/// Deviation of a cue ball that misses from its path to the ghost ball, by squirt and swerve [degrees];
 /// positive to the left.
 double strays_deg(const Player& player, const Record& record, const Vec2& ghost) {
     const Vec2 way = ghost - player.cue_place;
@@ -159,7 +160,7 @@ double strays_deg(const Player& player, const Record& record, const Vec2& ghost)
     return direction_deg({dot(way, went), cross(way, went)});
 }
 
-/// Why geometry already rules the aim out, or "".
+/// Why geometry rules out the aim, or "".
 std::string refused(const Player& player, const PocketLine& line, double cut_deg) {
     const std::string& id = player.ball_id;
     if (line.width_deg == 0.0) return "no straight path of ball " + id + " into the pocket clears the jaws";
@@ -220,15 +221,14 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
         aim.why = played.why;
         return played.off;
     };
-    // Squirt and swerve may carry the cue ball past the ball altogether; the aim moves the other way by as
-    // much as it strays.
+    // Squirt and swerve may make the cue ball miss the ball; the aim moves back by the same angle.
     Tried start = {aim.geometric_deg, 0.0};
     std::optional<double> first = off_at(start.aim_deg);
     for (int k = 0; k < kCorrections && !first; ++k) {
         start.aim_deg -= strays_deg(player, player.play(start.aim_deg), ghost);
         first = off_at(start.aim_deg);
     }
-    // A ball that runs too far to the left is hit too far on its right: the aim moves left, in doubling
+    // A ball that runs too far to the left was hit too far on its right: the aim moves left, in doubling
     // steps.
     if (first) {
         start.off = *first;

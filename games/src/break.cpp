@@ -36,11 +36,11 @@ const BreakGame& game_of(const std::string& name) {
     const auto found = std::find(kBreakGames.begin(), kBreakGames.end(), name);
     if (found == kBreakGames.end())
         throw std::invalid_argument(
-            fmt::format("no break of {}; use {}", in_quotes(name), fmt::join(kBreakGames, ", ")));
+            fmt::format("no break for {}; use {}", in_quotes(name), fmt::join(kBreakGames, ", ")));
     return kGames[found - kBreakGames.begin()];
 }
 
-/// Seeds of racks are from 1 to this: as many as integer(a,b) can draw.
+/// Largest seed of a rack: integer(a,b) can draw as many.
 constexpr int kSeeds = 1000000000;
 
 Rack rack_of(const BreakGame& game, const BreakOptions& options) {
@@ -56,9 +56,8 @@ Rack rack_of(const BreakGame& game, const BreakOptions& options) {
     rack.gap = how.starts_with("gap=") ? as_number<double>(how.substr(4)).value_or(-1.0) : -1.0;
     rack.jitter = 0.5 * rack.gap;
     if (rack.gap >= 0.0 && rack.gap <= kLargestGap) return rack;
-    throw std::invalid_argument(
-        fmt::format("the rack {} is not known; use template, triangle or gap=METRES with 0 to {}",
-                    in_quotes(how), kLargestGap));
+    throw std::invalid_argument(fmt::format(
+        "unknown rack {}; use template, triangle or gap=METRES with 0 to {}", in_quotes(how), kLargestGap));
 }
 
 /// The table with the cue ball and a break cue.
@@ -96,7 +95,7 @@ std::vector<Scene> racks_of(const std::string& text, const std::string& name, in
 BreakSearch break_search(const BreakOptions& options) {
     const BreakGame& game = game_of(options.game);
     if (!(options.speed_max >= 1.0 && options.speed_max <= 20.0))
-        throw std::invalid_argument("the largest speed of a break must be 1 to 20 m/s");
+        throw std::invalid_argument("the maximum speed of a break must be 1 to 20 m/s");
     Rack rack = rack_of(game, options);
     const Scene bare = without_rack(options);
     BreakSearch search;

@@ -16,7 +16,7 @@ namespace {
 
 const std::string kRed = "red";
 
-/// A carom game: the cue ball has to meet two balls, and cushions before the second one.
+/// A carom game: the cue ball must meet two balls, with cushions before the second one.
 struct CaromGame {
     Game game;
     int cushions;
@@ -48,7 +48,7 @@ Vec2 own_spot(const Table& table, Game game, const std::string& ball, int shoote
     return game == Game::kFourBall ? center_spot(table) : head_spot(table);
 }
 
-/// A ball whose spot is taken goes to the spot of the ball in the way, or else as near to its own as it can.
+/// A ball whose spot is occupied goes to the spot of the ball in the way, or as near as possible to its own.
 std::vector<Respot> spotted(const Facts& facts, const std::vector<std::string>& balls, int shooter) {
     std::vector<Respot> respots;
     const Table& table = facts.record.table;

@@ -38,8 +38,8 @@ Option rerack(const State& state, Decision decision, int breaker) {
     return {decision, broken_by(state, breaker), {}};
 }
 
-/// 3.3 (e) and (f): the eight is respotted, or the player who chooses breaks again. By option, one of them,
-/// or it decides the game.
+/// 3.3 (e) and (f): the eight is respotted, or the chooser breaks again. An option can make it one of these,
+/// or decide the game.
 void eight_on_the_break(const Facts& facts, const State& next, Verdict& verdict) {
     const std::string_view option = rule(facts.state, "eight_on_break");
     if (option == "wins")

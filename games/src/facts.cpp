@@ -138,7 +138,7 @@ bool Facts::jumps() const {
     };
     for (std::size_t k = 0; k < segments.size() && segments[k].start < first; ++k) {
         if (segments[k].state != MotionState::kAirborne) continue;
-        // In the air, the way over the table is straight.
+        // In the air, the path over the table is straight.
         const double start = segments[k].start,
                      next = k + 1 < segments.size() ? segments[k + 1].start : record.duration,
                      end = std::min(next, first);
@@ -151,7 +151,7 @@ bool Facts::jumps() const {
             const bool hit =
                 std::find(shot.first_hits.begin(), shot.first_hits.end(), ball) != shot.first_hits.end();
             if (!hit || next < first) continue;
-            // It hits this ball from the air: where does it come down?
+            // It hits this ball from the air: find where it comes down.
             std::size_t down = k;
             while (down + 1 < segments.size() && segments[down].state == MotionState::kAirborne) ++down;
             if (dot(apart(ball, segments[down].start), way) > 0.0) return true;

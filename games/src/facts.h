@@ -39,8 +39,8 @@ class Facts {
     /// Whether the call names this ball and the pocket that holds it.
     bool fell_as_called() const;
     bool struck(std::string_view ball) const { return id(shot.struck) == ball; }
-    /// Whether one of the balls hit first is in the list: if two are hit at once, the shooter has the
-    /// benefit.
+    /// Whether one of the balls hit first is in the list: of two hit at once, the better one counts for the
+    /// shooter.
     bool first_is_one_of(const std::vector<std::string>& ids) const;
     /// Of all balls that were on the table.
     std::vector<std::string> ids() const { return ids_of(record.tracks); }
@@ -63,8 +63,8 @@ class Facts {
 
 bool is_in(std::string_view ball, const std::vector<std::string>& list);
 bool is_in(std::string_view ball, const std::vector<Respot>& respots);
-/// Whether a ball that fell was driven to a rail far from the pocket: not one that rubs a rail, a facing or a
-/// jaw at its mouth.
+/// Whether a ball that fell was driven to a rail far from the pocket, not only to a rail, facing or jaw at
+/// its mouth.
 bool is_bank(const Record& record, const Shot& shot, const Shot::Fallen& fallen);
 /// The number of a numbered ball, or 0.
 int number_of(std::string_view ball);
@@ -116,8 +116,8 @@ struct GameRules {
     Legal (*legal)(const State& state, const std::vector<std::string>& balls);
     Verdict (*judge)(const Facts& facts);
     InHand start;                         ///< where the cue ball starts
-    std::vector<std::string_view> balls;  ///< that the game needs
-    Book book = Book::kPool;              ///< whose rules its fouls break
+    std::vector<std::string_view> balls;  ///< required balls
+    Book book = Book::kPool;              ///< the rules that its fouls break
     Struck struck = Struck::kCueBall;
     int target = 0;               ///< points that win, if none are given
     bool below_zero = false;      ///< whether points may be

@@ -23,22 +23,22 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-// [noise] Residuals beyond this count linearly: 95 % as efficient as least squares if there are no outliers
-// (Huber, 1964). The noise is the median residual times kMedian, as of a normal distribution.
+// [noise] Larger residuals count linearly: 95 % as efficient as least squares if there are no outliers
+// (Huber, 1964). The noise is kMedian times the median residual, as for a normal distribution.
 constexpr double kHuber = 1.345, kMedian = 1.4826;
-// [m] No camera is better; it keeps the loss defined if the model fits exactly.
+// [m] Better than any camera; keeps the loss defined if the model fits exactly.
 constexpr double kLeastNoise = 1e-9;
-// [m] A number whose whole size moves the balls by less moves nothing but rounding.
+// [m] A number that moves the balls by less over its whole size affects only rounding.
 constexpr double kUnmoved = 1e-9;
-// Damping: at first, and its factors after a step that helps and one that does not.
+// Damping: its start, and its factors after a step that helps and one that does not.
 constexpr double kDamping = 1e-4, kLess = 0.1, kMoreDamped = 10.0, kMostDamping = 1e12;
-// [-] A step is the last if it lowers the loss by less than this share, or moves all by less than this many
-// standard deviations.
+// [-] The fit ends with a step that lowers the loss by less than this fraction, or moves every number by less
+// than this many standard deviations.
 constexpr double kDone = 1e-9, kStill = 1e-4;
-// [-] Correlation at which two numbers are told to look alike; share of the largest eigenvalue below which a
-// direction is not determined at all.
+// [-] Correlation from which two numbers are reported as inseparable; fraction of the largest eigenvalue
+// below which a direction is undetermined.
 constexpr double kAlike = 0.99, kNothing = 1e-12;
-// A number that is none of the scene, and by how much it may differ from 0 [s].
+// A number outside the scene, and its largest absolute value [s].
 constexpr const char* kClock = "clock";
 constexpr double kClockRange = 60.0;
 
@@ -49,7 +49,7 @@ double median(std::vector<double> list) {
     return *middle;
 }
 
-/// A shot, and how far it is from the tracks.
+/// A shot, and its differences from the tracks.
 struct Trial {
     std::vector<double> values;
     Scene scene;
@@ -57,7 +57,7 @@ struct Trial {
     Record record;
     VectorXd residuals;         ///< two per point; 0 if the point does not count
     std::vector<bool> counted;  ///< per point
-    double clock = 0.0;         ///< [s] of the stroke, on the clock of the tracks
+    double clock = 0.0;         ///< [s] of the stroke in the tracks
 };
 
 class Fitter {
@@ -65,7 +65,7 @@ class Fitter {
     Fitter(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,
            kernel::Isa isa)
         : scene_(scene), points_(points), options_(options), isa_(isa) {
-        if (points.empty()) throw std::invalid_argument("there are no tracked places");
+        if (points.empty()) throw std::invalid_argument("there are no tracked positions");
         if (options.vary.empty()) throw std::invalid_argument("there is nothing to vary; name a number");
         if (2 * points.size() < options.vary.size())
             throw std::invalid_argument("there are more numbers to vary than tracked coordinates");
@@ -126,8 +126,8 @@ class Fitter {
         }
         if (!result.converged && result.trouble.empty())
             result.trouble = shots_ >= options_.most_shots
-                                 ? fmt::format("no end after {} shots", shots_)
-                                 : "no step brings it closer: the order of events may be another one";
+                                 ? fmt::format("no convergence after {} shots", shots_)
+                                 : "no step reduces the error; the tracks may have another order of events";
         finish(now, slopes, result);
         if (result.converged) {
             const auto [moved, columns] = moved_of(now, slopes);
@@ -139,9 +139,9 @@ class Fitter {
     }
 
   private:
-    /// How many numbers vary, the clock among them.
+    /// Number of varied numbers, with the clock.
     std::size_t count() const { return options_.vary.size(); }
-    /// The place of a number of the scene among all that vary.
+    /// The index of a scene's number among all varied numbers.
     std::size_t place_of(std::size_t number) const { return number + (clock_ && number >= *clock_ ? 1 : 0); }
     double value_at_start(std::size_t k) const {
         if (k == clock_) return 0.0;
@@ -230,7 +230,7 @@ class Fitter {
     }
 
     /// The coordinates that the numbers move, with their slopes; all of them if they move none. The others,
-    /// such as those of balls that still lie, say nothing about the fit, and may be exact.
+    /// such as of balls still at rest, say nothing about the fit, and may be exact.
     std::pair<std::vector<Coordinate>, MatrixXd> moved_of(const Trial& trial, const MatrixXd& slopes) const {
         std::vector<Eigen::Index> rows, moving;
         const std::vector<Coordinate> all = coordinates_of(trial, &rows);
@@ -263,7 +263,7 @@ class Fitter {
         });
     }
 
-    /// Mean over what counts, so that a ball in a pocket is not a better fit than one that is seen.
+    /// Mean over the points that count, so that a ball in a pocket does not fit better than a visible one.
     static double loss_of(const Trial& trial, double noise) {
         double sum = 0.0;
         std::size_t count = 0;
@@ -348,14 +348,14 @@ class Fitter {
         const std::vector<std::string>& keys = options_.vary;
         for (Eigen::Index i = 0; i < count; ++i) {
             if (units[i] == 0.0)
-                result.warnings.push_back(fmt::format("{} moves nothing that was tracked", keys[i]));
+                result.warnings.push_back(fmt::format("{} has no effect on the tracked positions", keys[i]));
             for (Eigen::Index j = 0; j < i; ++j) {
                 const double correlation =
                     inverse(i, j) / std::sqrt(std::max(1e-300, inverse(i, i) * inverse(j, j)));
                 const bool both_lost = lost[i] > 1e-6 && lost[j] > 1e-6 && units[i] > 0.0 && units[j] > 0.0;
                 if (std::abs(correlation) > kAlike || both_lost)
                     result.warnings.push_back(fmt::format(
-                        "the tracks hardly tell {} from {} (correlation {:.4f}); vary only one of "
+                        "the tracks hardly distinguish {} from {} (correlation {:.4f}); vary only one of "
                         "them, or track another shot",
                         keys[j], keys[i], both_lost ? 1.0 : correlation));
             }
@@ -373,7 +373,7 @@ class Fitter {
     kernel::Isa isa_;
     std::vector<std::string> keys_;  // of the numbers of the scene
     std::vector<SceneNumber> numbers_;
-    std::optional<std::size_t> clock_;  // its place among all that vary
+    std::optional<std::size_t> clock_;  // its index among all varied numbers
     double last_ = 0.0;
     int shots_ = 0;
 };

@@ -17,13 +17,13 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 // [m] Residuals below this are rounding.
 constexpr double kExact = 1e-6;
-// [-] The share of outliers that are no longer few.
+// [-] From this share on, there are too many outliers.
 constexpr double kFew = 0.2;
-// [-] Share of the squared residuals that another clock or scale explains, if it is to be told. Of noise it
-// explains 1/n.
+// [-] Report a wrong clock or scale if it explains this share of the squared residuals. It explains 1/n of
+// noise.
 constexpr double kExplained = 0.5;
 constexpr std::size_t kEnough = 10;
-// [-] Scales that are told at the start.
+// [-] Scales outside this range are reported at the start.
 constexpr double kSmallest = 1.0 / 3.0, kLargest = 3.0;
 
 struct Unit {
@@ -58,9 +58,10 @@ std::string doubt_of_scale(double scale) {
     if (scale >= kSmallest && scale <= kLargest) return "";
     for (const Unit& unit : kUnits)
         if (std::abs(scale / unit.per_metre - 1.0) < 0.2)
-            return fmt::format("the places look like {}; write them in metres", unit.name);
+            return fmt::format("the positions look like {}; write them in metres", unit.name);
     return fmt::format(
-        "the places are {:.3g} times those of the shot; write them in metres, with the origin of the scene",
+        "the positions are {:.3g} times the simulated ones; write them in metres, with the origin of the "
+        "scene",
         scale);
 }
 
@@ -85,15 +86,15 @@ std::string doubt_of(const std::vector<Coordinate>& moved, const MatrixXd& slope
         return VectorXd(more.completeOrthogonalDecomposition().solve(residuals))[slopes.cols()];
     };
     if (!clock && explained(velocities) > kExplained)
-        return fmt::format("the clock of the tracks seems to be off, by about {:.2g} s; vary clock, too",
+        return fmt::format("the clock of the tracks seems to be off by about {:.2g} s; vary clock too",
                            factor(velocities));
     if (explained(places) > kExplained)
-        return fmt::format("the scale of the places seems to be off, by about {:.2g} %; measure it again",
+        return fmt::format("the scale of the positions seems to be off by about {:.2g} %; measure it again",
                            -100.0 * factor(places) / (1.0 + factor(places)));
     if (static_cast<double>(outliers) > kFew * static_cast<double>(n))
         return fmt::format(
-            "{} of the {} coordinates that these numbers move are outliers, which is not few; the "
-            "tracks are of another shot, or other numbers are off",
+            "{} of the {} coordinates that these numbers move are outliers; check that the tracks are of "
+            "this shot, or vary other numbers",
             outliers, n);
     return "";
 }

@@ -21,21 +21,20 @@ struct Coordinate {
     double seen;      ///< [m]
 };
 
-/// How many times larger the coordinates of the seen places are than those of the shot: 1000 if they are in
-/// mm.
+/// Ratio of the tracked coordinates to the simulated ones: 1000 if they are in mm.
 double scale_of(const std::vector<Coordinate>& coordinates);
-/// Why places of this scale are refused, or "".
+/// Why the fit rejects positions of this scale, or "".
 std::string doubt_of_scale(double scale);
 
-/// Why a fit that ended is refused, or "".
+/// Why a converged fit is rejected, or "".
 /// @param moved  the coordinates that the varied numbers move
-/// @param slopes  their derivatives to these numbers
+/// @param slopes  their derivatives with respect to these numbers
 /// @param noise  [m] typical residual
 /// @param clock  whether the clock was varied
 std::string doubt_of(const std::vector<Coordinate>& moved, const Eigen::MatrixXd& slopes, double noise,
                      bool clock);
 
-/// The factor by which the variance grows because neighbours in time err alike.
+/// The factor by which correlated errors of neighbours in time increase the variance.
 double correlation_factor(std::vector<Coordinate> moved);
 
 }  // namespace carom::games

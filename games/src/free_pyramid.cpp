@@ -15,7 +15,7 @@ Legal legal_free_pyramid(const State& state, const std::vector<std::string>& bal
         if (!state.opening || ball == "cue") legal.cue_balls.push_back(ball);
         if (!state.opening || ball != "cue") legal.first.push_back(ball);
     }
-    // A shot takes two balls.
+    // A shot needs two balls.
     if (balls.size() < 2) legal.first.clear();
     return legal;
 }
@@ -36,7 +36,7 @@ Verdict judge_free_pyramid(const Facts& facts) {
     next.opening = false;
     next.in_hand = InHand::kNo;
     if (fouls.empty()) {
-        // 5.2 to 5.5: every ball that falls counts, the struck one, too.
+        // 5.2 to 5.5: every ball that falls counts, including the struck one.
         const auto fallen = static_cast<int>(facts.shot.pocketed.size());
         next = fallen > 0 ? scored(next, state.turn, fallen) : other_players(next, InHand::kNo);
         Verdict verdict = one_way({}, {Decision::kPlayOn, next, {}});

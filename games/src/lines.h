@@ -25,17 +25,18 @@ const Pocket& pocket_of(const Scene& scene, std::string_view id);
 /// The paths of a ball of radius R from a place into a pocket of the table; other balls are ignored.
 PocketLine line_from(const Table& table, const Pocket& pocket, const Vec2& from, double R);
 
-/// The aim at a ball that lies `way` from the cue ball [degrees]. @param both  the sum of the two radii [m]
-/// @param hit  0 is full, 1 and -1 pass its left and right edge; nothing is allowed for squirt
+/// The aim at a ball at the vector `way` from the cue ball [degrees]. @param both  the sum of the two radii
+/// [m]
+/// @param hit  0 is full, 1 and -1 pass its left and right edge, without allowance for squirt
 double hit_aim_deg(const Vec2& way, double both, double hit);
 
 /// The first thing after `time` that ends a ball's straight run: a cushion, a ball, a pocket, or rest (null).
 const Event* next_stop(const Record& record, int ball, double time);
-/// How far a ball deviates from the direction `towards` between a time and a stop: the sine of the angle,
+/// Deviation of a ball from the direction `towards` between a time and a stop: the sine of the angle,
 /// positive to the left; empty if it does not move.
 std::optional<double> off_line(const Record& record, int ball, double from, const Event* stop,
                                const Vec2& towards);
-/// Why the cue ball does not hit this ball first and without a cushion, or "".
+/// Why the cue ball does not hit this ball first without a cushion, or "".
 std::string missed(const Record& record, const Shot& shot, int ball);
 
 }  // namespace carom::games::detail

@@ -18,7 +18,7 @@ using Node = Measure::Node;
 // [m] The distance of `near` if none is given.
 constexpr double kNear = 0.1;
 
-/// The texts that a measure can give, besides "": what they are, and all of them.
+/// The texts that a measure can return, besides "": their kind, and all of them.
 struct Known {
     const char* what;
     Texts texts;
@@ -174,7 +174,7 @@ class Reader {
         }
         return left;
     }
-    /// Refuses a text that the measure beside it never gives: the expression would never hold.
+    /// Rejects a text that the measure beside it never returns: the expression would never hold.
     void check_texts(const Node& text, const Node& measure) const {
         if (text.kind != Node::Kind::kValue || measure.kind != Node::Kind::kMeasure || is_number(measure))
             return;
@@ -271,7 +271,7 @@ class Reader {
         node.kind = Node::Kind::kMeasure;
         node.row = row(token_);
         if (node.row == nullptr)
-            fail("expected a measure that carom describe measures lists; texts need quotes");
+            fail("expected a measure (see carom describe measures); put texts in quotes");
         const std::string_view expected = node.row->info.arguments;
         std::string how = node.row->info.name;
         how.append("(").append(expected).append(")");

@@ -120,17 +120,17 @@ const MeasureRow kRows[] = {
              texts.push_back(p.record.partner_id(p.record.events[i]));
          return texts;
      }},
-    {{"cushion_x", "K", "m", "x where the struck ball touches its K-th cushion"},
+    {{"cushion_x", "K", "m", "x of the struck ball's K-th contact with a cushion"},
      [](P p, A of) -> V {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.x() : kNone;
      }},
-    {{"cushion_y", "K", "m", "y where it does"},
+    {{"cushion_y", "K", "m", "y of that contact"},
      [](P p, A of) -> V {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).point.y() : kNone;
      }},
-    {{"cushion_diamond", "K", "", "the place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
+    {{"cushion_diamond", "K", "", "its place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
      [](P p, A of) -> V {
          const auto i = cushion(p, of.numbers[0]);
          return i ? details_of(p.record, *i).diamond : kNone;
@@ -181,7 +181,7 @@ const MeasureRow kRows[] = {
          });
          return most;
      }},
-    {{"rest_time", "BALL", "s", "when the ball comes to rest or falls"},
+    {{"rest_time", "BALL", "s", "time when the ball comes to rest or falls"},
      [](P p, A of) -> V {
          double end = 0.0;
          pieces(p.record, of.ball, [&end](const Segment& s, double time) {
@@ -189,7 +189,7 @@ const MeasureRow kRows[] = {
          });
          return end;
      }},
-    {{"air_time", "BALL", "s", "how long the ball is in the air"},
+    {{"air_time", "BALL", "s", "time that the ball spends in the air"},
      [](P p, A of) -> V {
          double sum = 0.0;
          pieces(p.record, of.ball, [&sum](const Segment& s, double time) {

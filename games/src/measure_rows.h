@@ -1,4 +1,4 @@
-// The measures that expressions name.
+// The measures available in expressions.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct Arguments {
     std::optional<Game> game;
 };
 
-/// A record, and what several measures read from it.
+/// A record, and facts that several measures read from it.
 struct PlayedShot {
     explicit PlayedShot(const Record& played) : record(played) {}
     const Shot& shot() const {
@@ -53,8 +53,8 @@ std::span<const MeasureRow> route_rows();
 
 /// The events in which a ball is driven to a cushion or a jaw.
 std::vector<std::size_t> driven(const PlayedShot& played, int ball);
-/// The verdict on a shot as a break, or in the middle of a game; in eight-ball with an open table. Every
-/// ball that falls counts as called.
+/// The verdict on a shot as a break, or in the middle of a game; in eight-ball with an open table. Every ball
+/// that falls counts as called.
 Verdict judged(const PlayedShot& played, Game game, bool opening);
 /// The rails of a table: "left", "foot", ...; the id of a cushion without a name.
 Texts rails_of(const Table& table);

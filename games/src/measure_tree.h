@@ -24,7 +24,7 @@ namespace detail {
 
 bool is_number(const Measure::Node& node);
 
-/// @throws MeasureError that says where it is wrong
+/// @throws MeasureError that states the place of the mistake
 Measure::Node read_tree(const std::string& text, const Scene& scene, std::optional<Game> game);
 
 }  // namespace detail

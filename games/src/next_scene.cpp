@@ -22,7 +22,7 @@ int ball_of(const Record& record, const Option& option, const std::string& id) {
     const bool anew = option.decision == Decision::kRackFourteen && detail::is_in(id, option.respots);
     if (index < 0 && !anew)
         throw std::invalid_argument("the record has no ball " + in_quotes(id) +
-                                    "; give the record from which the option was judged");
+                                    "; give the record that was judged");
     return index;
 }
 
@@ -41,7 +41,7 @@ BallStart placed(const BallStart& before, double R, const Vec2& place) {
     return ball;
 }
 
-/// Whether the cue ball cannot stay where it is: it is gone, or another ball is put there.
+/// Whether the cue ball must move: it is gone, or another ball is spotted in its place.
 bool must_place(const Record& record, const Option& option, const std::string& cue) {
     if (detail::is_in(cue, option.respots)) return false;
     const bool any = detail::rules_of(option.state.game).struck == detail::GameRules::Struck::kAny;

@@ -23,14 +23,15 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-// [-] Share of the search's shots that tell how sure an exact shot is; [degrees] how far its aim may turn.
+// [-] Share of the search's shots used for the success rate of an exact shot; [degrees] largest turn of its
+// aim.
 constexpr double kExactShare = 0.1, kTurn = 20.0;
-// Steps, and how often one is halved.
+// Limits on steps, and on the halvings of one.
 constexpr int kMostSteps = 30, kMostHalvings = 10;
-// [-] Directions that move the balls by less than this share of the most effective one are left alone.
+// [-] Ignore directions that move the balls by less than this fraction of the most effective one.
 constexpr double kWeak = 1e-6;
 
-/// A shot, and how far its balls rest from their places.
+/// A shot, and the distances of its balls from their places at rest.
 struct Try {
     std::vector<double> values;
     Scene scene;
@@ -70,13 +71,15 @@ class Refiner {
                     next.reset();
             }
             if (!next) {
-                trouble = "no small step brings it nearer and does the rest: the order of events ends there";
+                trouble =
+                    "no small step improves it and keeps the rest of the goal: the order of events would "
+                    "change";
                 break;
             }
             now = std::move(next);
         }
         const double left = miss(*now);
-        if (left > kRefined && trouble.empty()) trouble = "it comes nearer only slowly";
+        if (left > kRefined && trouble.empty()) trouble = "it converges too slowly";
         return {now->values, now->scene, left, shots_, left > kRefined ? trouble : ""};
     }
 
@@ -97,7 +100,7 @@ class Refiner {
         return values;
     }
 
-    /// Nothing if it is no valid scene, does not come to rest, or a ball with a place is gone.
+    /// Empty if the scene is invalid, does not come to rest, or a ball with a place is gone.
     std::optional<Try> at(const std::vector<double>& values) {
         Scene scene = scene_;
         for (std::size_t k = 0; k < values.size(); ++k) numbers_[k].put(scene, values[k]);
@@ -121,7 +124,7 @@ class Refiner {
         }
     }
 
-    /// The step of least size, in parts of the ranges.
+    /// The minimum-norm step, in fractions of the ranges.
     VectorXd newton(const Try& shot) const {
         std::vector<std::string> keys;
         for (const Choice& choice : choices_) keys.push_back(choice.key);
@@ -157,7 +160,7 @@ Refined refine(const Scene& scene, std::span<const Choice> choices, std::span<co
 Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const SolveOptions& options) {
     const std::vector<Place> places = want.places();
     if (places.empty())
-        throw std::invalid_argument("no place is wanted; add one, as in cue near (0.6, 1.2, 0.05)");
+        throw std::invalid_argument("the goal has no place; add one, as in cue near (0.6, 1.2, 0.05)");
     Exact result{{}, options.choices, {}};
     for (Choice& choice : result.choices) {
         const double aim = found.scene.cue->aim_deg;

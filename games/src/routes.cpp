@@ -39,7 +39,7 @@ std::optional<Touch> meeting(const PlayedShot& played, std::size_t number) {
     return number < met.size() ? std::optional(met[number]) : std::nullopt;
 }
 
-/// How many cushions come before a contact; NaN if there is none.
+/// Number of cushions before a contact; NaN if there is none.
 double count_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
     return meeting ? double(cushions_before(played, meeting).size()) : kNone;
 }
@@ -62,7 +62,7 @@ Texts route(const PlayedShot& played) {
     return rails;
 }
 
-/// Whether a ball fell, other than the struck one, of which this holds.
+/// Whether a ball other than the struck one fell and passes the test.
 template <class Test>
 double any_fell(const PlayedShot& played, Test&& test) {
     const Shot& shot = played.shot();
@@ -90,7 +90,7 @@ const MeasureRow kRouteRows[] = {
      [](P p, A) -> V { return route(p); }},
     {{"kick", "", "truth", "whether the struck ball is driven to a cushion before it hits a ball"},
      [](P p, A) -> V { return double(count_before(p, meeting(p, 0)) > 0.0); }},
-    {{"bank", "", "truth", "whether a ball fell that was driven to a rail far from the pocket before"},
+    {{"bank", "", "truth", "whether a ball fell after it was driven to a rail far from the pocket"},
      [](P p, A) -> V {
          return any_fell(p, [&p](const Shot::Fallen& fallen) { return is_bank(p.record, p.shot(), fallen); });
      }},
@@ -104,9 +104,10 @@ const MeasureRow kRouteRows[] = {
      }},
     {{"carom", "", "truth", "whether the struck ball hits two balls"},
      [](P p, A) -> V { return double(meeting(p, 1).has_value()); }},
-    {{"point", "GAME", "truth", "whether the shot scores in the middle of a game; what falls is called"},
+    {{"point", "GAME", "truth",
+      "whether the shot scores in the middle of a game, with every ball that falls called"},
      [](P p, A of) -> V { return double(judged(p, *of.game, false).points > 0); }},
-    {{"points", "GAME", "", "points that it scores; below 0 if it costs some"},
+    {{"points", "GAME", "", "points of the shot, negative if it loses some"},
      [](P p, A of) -> V { return double(judged(p, *of.game, false).points); }},
 };
 

@@ -25,39 +25,42 @@ const std::vector<RuleOption>& table() {
         {Game::kEightBall,
          "call",
          {"all", "eight", "none"},
-         "Shots that are called: all, only the one at the eight, or none."},
+         "Shots to call: all, only the one at the eight, or none."},
         {Game::kEightBall,
          "eight_on_break",
          {"respot", "wins", "rerack"},
-         "An eight that falls on the break is respotted or racked again, as the next player chooses; wins, "
-         "or "
-         "after a foul loses; or is always racked again."},
+         "Effect of an eight that falls on the break: a respot or rerack, as the next player chooses; a win, "
+         "or a loss after a foul; or always a rerack."},
         {Game::kEightBall,
          "in_hand",
          {"anywhere", "behind_line"},
-         "Where the cue ball is in hand after a foul: anywhere, or behind the head string."},
+         "Area of the cue ball in hand after a foul: anywhere, or behind the head string."},
         {Game::kEightBall,
          "jump",
          {"fair", "foul"},
-         "A cue ball that passes over a ball before it hits one."},
+         "Whether the cue ball may pass over a ball before it hits one."},
         {Game::kNineBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
         {Game::kNineBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
-        {Game::kNineBall, "nine_on_break", {"wins", "respot"}, "A nine that falls on a fair break."},
+        {Game::kNineBall,
+         "nine_on_break",
+         {"wins", "respot"},
+         "Effect of a nine that falls on a fair break."},
         {Game::kSnooker,
          "miss",
          {"false", "true"},
-         "A foul that hits no ball on first, though a straight path to one was clear, is a miss: the other "
+         "A foul that hits no ball on first, although a straight path to one was clear, is a miss: the other "
          "player may have the balls replaced."},
         {Game::kTenBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
         {Game::kTenBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
         {Game::kTenBall,
          "early_ten",
          {"respot", "wins"},
-         "A called ten that falls while other balls are left."},
+         "Effect of a called ten that falls while other balls are left."},
         {Game::kFourBall,
          "opponents_ball",
          {"foul", "counts"},
-         "The cue ball hits the other player's: a foul as in Korea, or as good as a red as in Japan."}};
+         "Effect of hitting the other player's cue ball: a foul, as in Korea, or the same as hitting a red, "
+         "as in Japan."}};
     return kTable;
 }
 
@@ -95,11 +98,11 @@ void set_rule(State& state, std::string_view option) {
         throw std::invalid_argument(fmt::format("{}: expected {}={}", harmless(std::string(option)), row.key,
                                                 fmt::join(row.values, "|")));
     }
-    throw std::invalid_argument(options.empty()
-                                    ? fmt::format("{} has no options, so there is no {}", name(state.game),
-                                                  in_quotes(std::string(key)))
-                                    : fmt::format("{} has no option {}; it has {}", name(state.game),
-                                                  in_quotes(std::string(key)), known));
+    throw std::invalid_argument(
+        options.empty()
+            ? fmt::format("{} has no options; leave out {}", name(state.game), in_quotes(std::string(key)))
+            : fmt::format("{} has no option {}; it has {}", name(state.game), in_quotes(std::string(key)),
+                          known));
 }
 
 std::vector<std::string> chosen_rules(const State& state) {

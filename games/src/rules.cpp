@@ -61,7 +61,7 @@ void check(const State& state) {
                                         std::to_string(kMostPoints));
     }
     if (!detail::has_its_rules(state))
-        throw std::invalid_argument(std::string("the options of the rules are not those of ") +
+        throw std::invalid_argument(std::string("the state has rule options of another game, not of ") +
                                     name(state.game) + "; begin a new game and set them");
     if (state.over) throw std::invalid_argument("the game is over; begin a new one");
 }

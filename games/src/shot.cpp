@@ -31,7 +31,7 @@ std::vector<int> met_in(const Record& record, const Event& event, int ball) {
     return {best};
 }
 
-/// The members of a cluster that `ball` touches when it begins, besides the first one.
+/// The members of a cluster that `ball` touches at its start, except the first one.
 void add_simultaneous(const Record& record, const Event& event, int ball, std::vector<int>& met) {
     if (event.type != EventType::kBallCluster || met.empty()) return;
     const Vec3 here = record.state_at(ball, event.time).position;

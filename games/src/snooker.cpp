@@ -64,7 +64,7 @@ bool snookered_at(const Vec2& from, double R, std::span<const Lying> on, std::sp
     });
 }
 
-/// A stroke: what was on, what was nominated, what fell.
+/// A stroke: the ball on, the nomination, and the balls that fell.
 class Stroke {
   public:
     explicit Stroke(const Facts& facts);
@@ -73,7 +73,7 @@ class Stroke {
     int points() const;
     std::vector<Respot> respots() const;
     BallOn next_on(const std::vector<std::string>& on_table) const;
-    /// Whether no ball on was hit first, though a straight path to any part of one, or to a full ball, was
+    /// Whether no ball on was hit first, although a straight path to any part of one, or to a full ball, was
     /// clear (3.14).
     bool missed(bool full) const;
 
@@ -91,7 +91,7 @@ class Stroke {
     const Facts& facts_;
     std::vector<std::string> on_;  // balls on, with the free ball
     std::string free_;             // the free ball, or ""
-    // Balls that touched the cue ball. One that is on counts as hit when the cue ball is played away (3,
+    // Balls that touched the cue ball. A ball on counts as hit when the cue ball is played away from it (3,
     // touching ball).
     std::vector<std::string> touching_;
     int penalty_ = kLeastPenalty;
@@ -137,8 +137,8 @@ bool Stroke::touches_on() const {
                        [this](const auto& ball) { return is_in(ball, on_); });
 }
 
-/// Whether the free ball, of all balls that are not on the nearest that does, hides all that are on for the
-/// other player. With only pink and black left that is no foul.
+/// Whether the free ball, as the nearest of all balls that are not on, hides all balls on from the other
+/// player. With only pink and black left, this is no foul.
 bool Stroke::snookers_behind_free_ball() const {
     if (free_.empty() || points() > 0 || facts_.gone(free_)) return false;
     std::vector<std::string> left;
@@ -197,8 +197,8 @@ int Stroke::points() const {
     return points;
 }
 
-/// Colours are respotted, except the one that is on in its turn and falls fairly: first those whose own spots
-/// are free, then the highest.
+/// Respots the colours, except the one that is on in its turn and falls fairly: first those with free spots,
+/// then the highest.
 std::vector<Respot> Stroke::respots() const {
     const BallOn on = facts_.state.on;
     std::vector<std::string> back;
@@ -260,8 +260,8 @@ int points_left(BallOn on, const std::vector<std::string>& balls) {
     return points;
 }
 
-/// 3.14: adds what follows a miss. The other player may have the balls replaced. The third one in a row with
-/// a clear path to a full ball loses the frame.
+/// 3.14: adds the consequences of a miss. The other player may have the balls replaced. The third miss in a
+/// row with a clear path to a full ball loses the frame.
 void add_miss(const Facts& facts, const Stroke& stroke, const std::vector<std::string>& on_table,
               Verdict& verdict) {
     const State& state = facts.state;
@@ -288,8 +288,8 @@ void add_miss(const Facts& facts, const Stroke& stroke, const std::vector<std::s
     verdict.options.push_back(replay);
 }
 
-/// Whether the cue ball ends snookered: no ball on can be hit on both edges. If it is in hand: from no place
-/// of a lattice in the D.
+/// Whether the cue ball ends snookered: no ball on can be hit on both edges. In hand: from no place of a
+/// lattice in the D.
 bool is_snookered(const Facts& facts, const State& next, const std::vector<Respot>& respots,
                   const std::vector<std::string>& on_table) {
     const std::vector<std::string> on_ids = balls_on(next.on, on_table);

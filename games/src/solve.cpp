@@ -22,22 +22,22 @@ using detail::Candidate;
 using detail::Trials;
 
 // Shares of the budget: the first look at the whole space, the generations, and the choice among the last
-// one; the rest is for the figures.
+// generation; the rest is for the figures.
 constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.10, kReport = 0.10;
-// [shots] Of a candidate in the first look, and how many more the quarter that stays gets each time.
+// [shots] Per candidate in the first look, and how many more the remaining quarter gets in each round.
 constexpr std::size_t kFirst = 8, kMore = 3, kRounds = 3;
-// Generations, how near to their parents they begin in parts of a range, and by how much that shrinks.
+// Generations, the initial distance of descendants from their parents as a fraction of a range, and its
+// factor per generation.
 constexpr int kGenerations = 6;
 constexpr double kNearby = 0.08, kShrink = 0.62;
 constexpr std::size_t kParents = 16;
 constexpr std::size_t kYoung = 24, kGrown = 120;
-// [-] Parts of a range by which two shots must differ in some input to be of two kinds.
+// [-] Two shots are of different kind if some input differs by this fraction of its range.
 constexpr double kOtherKind = 0.12;
-// A map: cells to a side, its share of the budget, and how far it reaches in distances at which success
-// halves.
+// A map: cells per side, its share of the budget, and its half-width in distances at which success halves.
 constexpr std::size_t kSide = 24;
 constexpr double kMap = 0.15, kReach = 3.0;
-// Errors whose cost is told.
+// Errors whose cost is reported.
 constexpr double kAimOff = 0.2, kSpeedOff = 0.05, kTipOff = 0.05, kPlaceOff = 0.01;
 
 class Solver {
@@ -58,7 +58,7 @@ class Solver {
                      static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) / best.size());
         sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
-        // Shots that the search has not seen.
+        // Shots that the search has not used.
         const auto each = std::max<std::size_t>(
             100, static_cast<std::size_t>(kReport * static_cast<double>(options_.shots)) / kinds.size());
         trials_.fresh = true;
@@ -73,7 +73,7 @@ class Solver {
 
     SuccessMap map(const Solution& around) {
         if (options_.choices.size() < 2)
-            throw std::invalid_argument("a map needs two inputs to choose; give two ranges");
+            throw std::invalid_argument("a map needs two inputs; give two ranges");
         trials_.fresh = true;
         const std::size_t each = std::max<std::size_t>(
             8, static_cast<std::size_t>(kMap * static_cast<double>(options_.shots)) / (kSide * kSide));
@@ -108,8 +108,8 @@ class Solver {
     }
 
   private:
-    /// The part of its range by which a choice is off when half of the success is gone, on average of both
-    /// sides; 1 if that never happens.
+    /// The error of a choice, as a fraction of its range, at which success halves on average of both sides; 1
+    /// if it never does.
     double half_width(const Solution& around, std::size_t k, std::size_t shots) {
         constexpr std::size_t kHalvings = 12;
         const double low = options_.choices[k].low, high = options_.choices[k].high;
@@ -132,7 +132,7 @@ class Solver {
                          [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
     }
 
-    /// Shots from which the cost of an error is taken.
+    /// Shots per cost of an error.
     std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
     double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
 
@@ -167,7 +167,7 @@ class Solver {
         return different(all, 0.5 * kOtherKind, kParents);
     }
 
-    /// Descendants of these, with those of them that are as good.
+    /// The best of these and their descendants.
     std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
         const double budget = kBreed * static_cast<double>(options_.shots) / kGenerations;
         const auto count = std::max<std::size_t>(
@@ -197,7 +197,7 @@ class Solver {
         return different(young, 0.5 * nearby, kParents);
     }
 
-    /// The best, without those that are near to a better one.
+    /// The best, without candidates near to a better one.
     std::vector<Candidate> different(const std::vector<Candidate>& sorted, double apart,
                                      std::size_t most) const {
         std::vector<Candidate> kept;
@@ -215,8 +215,8 @@ class Solver {
         return kept;
     }
 
-    /// A shot of which one error would make a better one is replaced by that one, so that no figure for an
-    /// input that is off is better than the one for the input that is on, beyond their intervals.
+    /// Replaces a shot by one of its erroneous versions while that is better, so that no reported error
+    /// improves success beyond the intervals.
     Solution improved(Solution found, std::size_t shots) {
         constexpr int kMost = 20;
         for (int k = 0; k < kMost; ++k) {
@@ -237,7 +237,7 @@ class Solver {
         }
         return found;
     }
-    /// The choices with one input off, if they may be chosen.
+    /// The choices with one input off, if that is within its range.
     std::optional<std::vector<double>> moved(std::vector<double> values, const Solution::Cost& cost,
                                              double way) const {
         for (std::size_t k = 0; k < values.size(); ++k) {
@@ -309,13 +309,13 @@ class Solver {
 }  // namespace
 
 Share share_of(std::size_t part, std::size_t whole) {
-    // Of the normal distribution: 95 % lie within.
+    // 95 % of a normal distribution lie within.
     constexpr double kZ = 1.959963984540054;
     if (whole == 0) return {0.0, 0.0, 1.0};
     const double n = static_cast<double>(whole), p = static_cast<double>(part) / n, z2 = kZ * kZ / n;
     const double middle = (p + 0.5 * z2) / (1.0 + z2);
     const double half = kZ * std::sqrt(p * (1.0 - p) / n + 0.25 * z2 / n) / (1.0 + z2);
-    // At 0 and 1, rounding must not part the interval from the share.
+    // At 0 and 1, the interval must contain the share despite rounding.
     return {p, part == 0 ? 0.0 : middle - half, part == whole ? 1.0 : middle + half};
 }
 

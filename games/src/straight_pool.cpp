@@ -13,9 +13,9 @@ namespace carom::games::detail {
 namespace {
 
 constexpr int kBalls = 15, kFoulsInARow = 3;
-// Points that a foul, an illegal break and a third foul in a row cost (4.9 to 4.11).
+// Points lost by a foul, an illegal break and a third foul in a row (4.9 to 4.11).
 constexpr int kFoul = 1, kBreakingFoul = 2, kThird = 15;
-// [m] Between racked balls, so that rounding lets the fifteenth ball return to the foot spot.
+// [m] Gap between racked balls, so that rounding lets the fifteenth ball return to the foot spot.
 constexpr double kRackGap = 1e-9;
 
 /// Whether a ball is within or overlaps the outline of the rack (4.8).
@@ -32,8 +32,8 @@ bool in_rack(const std::vector<Vec2>& slots, double R, const Vec2& place, double
     return inside || least < R + own;
 }
 
-/// 4.8: the balls that are gone are racked, after fourteen without the apex ball. The cue ball and the
-/// fifteenth ball give way.
+/// 4.8: racks the balls that are gone, after fourteen without the apex ball. The cue ball and the fifteenth
+/// ball give way.
 Option rack_again(const Facts& facts, State next) {
     const Record& record = facts.record;
     const Table& table = record.table;

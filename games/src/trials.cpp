@@ -24,7 +24,7 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
     : scene_(scene), want_(want), isa_(isa), options_(options) {
     if (!scene.cue) throw std::invalid_argument("the scene has no [cue]; add one, so that a ball is struck");
     struck_ = static_cast<std::size_t>(std::max(0, index_of(scene.ball, scene.cue->ball)));
-    if (options.choices.empty()) throw std::invalid_argument("there is nothing to choose; give a range");
+    if (options.choices.empty()) throw std::invalid_argument("there is no input to search; give a range");
     for (const Choice& choice : options.choices) {
         if (!(choice.low <= choice.high) || !std::isfinite(choice.high - choice.low))
             throw std::invalid_argument(choice.key + ": expected a range from a to b with a <= b");
@@ -61,13 +61,12 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
 int Trials::ball_of(const std::string& id) const {
     const int ball = index_of(scene_.ball, id);
     if (ball >= 0 && static_cast<std::size_t>(ball) == struck_)
-        throw std::invalid_argument("hit." + id +
-                                    ": the cue strikes this ball; name the ball that it is to hit");
+        throw std::invalid_argument("hit." + id + ": the cue strikes this ball; name the ball to hit");
     if (ball >= 0) return ball;
     throw std::invalid_argument("hit." + id + ": the scene has no ball " + in_quotes(id));
 }
 
-/// Shot number `index` of every candidate has these errors.
+/// The errors of shot number `index`, common to all candidates.
 Trials::Draw Trials::draw(std::uint64_t index) const {
     SplitMix64 random(options_.seed * 0x9e3779b97f4a7c15u + 2 * index + (fresh ? 1 : 0));
     const Hand& hand = options_.hand;
@@ -82,7 +81,7 @@ Trials::Draw Trials::draw(std::uint64_t index) const {
     return d;
 }
 
-/// The shot as it is meant: a value for each of the keys that are chosen.
+/// The shot without errors: a value for each of the chosen keys.
 std::vector<double> Trials::meant(const std::vector<double>& values) const {
     const Cue& cue = *scene_.cue;
     std::vector<double> row(chosen_);
@@ -119,7 +118,7 @@ Scene Trials::meant_scene(const std::vector<double>& values) const {
 
 void Trials::play(std::vector<Candidate>& candidates, std::size_t shots,
                   const std::function<void(std::size_t, const Record&)>& look) {
-    // Rows of a batch are limited, so that memory is.
+    // Limits the rows of a batch, and so the memory.
     constexpr std::size_t kRows = 1 << 17;
     for (std::size_t begin = 0; begin < candidates.size();) {
         std::size_t rows = 0, end = begin;

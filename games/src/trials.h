@@ -28,15 +28,15 @@ class Trials {
     /// Plays the next shots of all candidates until each has `shots`.
     void play(std::vector<Candidate>& candidates, std::size_t shots,
               const std::function<void(std::size_t, const Record&)>& look = {});
-    /// The scene of a shot as it is meant.
+    /// The scene of a shot without errors.
     Scene meant_scene(const std::vector<double>& values) const;
     std::size_t played() const { return played_; }
 
-    bool fresh = false;   ///< draws errors that no shot before has had
-    double turned = 0.0;  ///< [degrees] by which all aims are off
+    bool fresh = false;   ///< draws errors that no earlier shot used
+    double turned = 0.0;  ///< [degrees] added to all aims
 
   private:
-    /// The errors of one stroke, and the layout that it meets.
+    /// The errors of a stroke, and its layout.
     struct Draw {
         double aim, speed, side, height, elevation;
         std::size_t layout;
@@ -54,7 +54,7 @@ class Trials {
     std::size_t struck_ = 0;
     int hit_ = -1;
     std::vector<std::string> keys_;
-    // The values of the keys after those that are chosen, in each layout.
+    // For each layout, the values of the keys after the chosen ones.
     std::vector<std::vector<double>> layouts_;
     std::size_t chosen_ = 0, played_ = 0;
 };

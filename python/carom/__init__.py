@@ -1,7 +1,7 @@
 """carom: event-based billiards.
 
-A `Scene` describes the table, the balls and the strike, `simulate` plays it, and the `Record` says exactly
-what happened. `simulate_many` plays many shots that differ in numbers. Units are SI throughout: metres,
+A `Scene` describes the table, the balls and the strike, `simulate` plays it, and the `Record` contains
+the exact result. `simulate_many` plays many shots that differ in numbers. Units are SI throughout: metres,
 seconds, radians per second; names that end in `_deg` are angles in degrees. In the table's frame x runs along
 the short side, y along the long side, and z up from the cloth.
 

@@ -1,4 +1,4 @@
-"""Checks of arguments: `checked` holds the callers of public functions to the annotations."""
+"""Checks of arguments: `checked` checks the arguments of public functions against their annotations."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def _is_numbers(value: Any) -> bool:
     try:
         array = np.asarray(value)
         return (array.astype(np.float64) if array.dtype.kind == "O" else array).dtype.kind in "biuf"
-    # Lists of different lengths, no numbers, or integers that are too large.
+    # Lists of different lengths, non-numbers, or integers that are too large.
     except (TypeError, ValueError, OverflowError):
         return False
 
@@ -122,7 +122,7 @@ def _kind(annotation: ast.expr) -> _Kind:
 
 
 def may_be(alias: str, annotation: str) -> None:
-    """Makes `alias` stand for another annotation."""
+    """Defines `alias` as another annotation."""
     _KINDS[alias] = _kind(ast.parse(annotation, mode="eval").body)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class SceneError(ValueError):
-    """A scene or a record file is wrong.
+    """A mistake in a scene or a record file.
 
     `str()` is "file:line:column: what is wrong and what to do", without the line and column if there are
     none, as in a scene that was built in code.

@@ -1,4 +1,4 @@
-"""Numbers of a scene from tracked places of its balls."""
+"""Numbers of a scene from tracked positions of its balls."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ class FitResult(NamedTuple):
 
     #: The fitted values, in the order of `vary`.
     x: NDArray[np.float64]
-    #: Their covariance; infinite for what the tracks do not determine.
+    #: Their covariance; infinite for values that the tracks do not determine.
     cov: NDArray[np.float64]
-    #: Simulated minus tracked places [m]: (points, 2). Zero for a ball in a pocket.
+    #: Simulated minus tracked positions [m]: (points, 2). Zero for a ball in a pocket.
     fun: NDArray[np.float64]
-    #: Whether it converged, and otherwise why not.
+    #: Whether it converged, and if not, why.
     success: bool
     message: str
     #: Typical residual of a coordinate [m], without outliers.
     noise: float
-    #: Coordinates farther away than three times that.
+    #: Coordinates more than three times that off.
     outliers: int
     #: Shots simulated.
     nfev: int
-    #: Values that the tracks cannot separate, a sentence each.
+    #: Warnings about values that the tracks cannot separate, a sentence each.
     warnings: tuple[str, ...]
     #: The scene with the fitted values.
     scene: Scene
@@ -55,15 +55,15 @@ def fit(
     vary: Sequence[str],
     most_shots: int = 100,
 ) -> FitResult:
-    """Fits numbers of a scene to tracked places, by Gauss-Newton with a loss that outliers do not move.
+    """Fits numbers of a scene to tracked positions, by Gauss-Newton with a loss that is robust to outliers.
 
     scene: the shot, with first guesses; it should meet the same things in the same order as the tracks
-    t, ball, xy: time since the stroke [s], id of the ball and place [m] of every point: (points,), (points,),
-        (points, 2), at any rate and with gaps; a place that is NaN was not seen
+    t, ball, xy: time since the stroke [s], ball id and position [m] of every point: (points,), (points,),
+        (points, 2), at any rate and with gaps; NaN for a ball that was not seen
     vary: keys of the numbers, as in a sweep: "balls.mu_s", "cue.speed"
 
-    Raises ValueError for an unknown ball or key, or a shot without derivatives. A warning says what the
-    tracks cannot tell apart.
+    Raises ValueError for an unknown ball or key, or a shot without derivatives. A warning names values
+    that the tracks cannot separate.
     """
     played = as_scene(scene)
     times, places = np.asarray(t, np.float64).reshape(-1), np.asarray(xy, np.float64)

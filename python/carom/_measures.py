@@ -25,7 +25,7 @@ class Measure(NamedTuple):
 
 
 def measures() -> list[Measure]:
-    """The measures of a shot, those of `carom describe measures`. Expressions combine them: `Record.measure`,
+    """The measures of a shot, as in `carom describe measures`. Expressions combine them: `Record.measure`,
     `carom.sweep.columns(measures=...)` and `carom.solve` take `'"9" in pocketed and not scratch'`."""
     return [Measure(*row) for row in _carom.measures()]
 
@@ -34,7 +34,7 @@ class Hand(NamedTuple):
     """Standard deviations of a player's errors.
 
     aim_deg: of the aim [degrees]
-    speed: of the cue's speed, as a part of it
+    speed: of the cue's speed, as a fraction of it
     tip: of the tip, sideways and up [ball radii]
     elevation_deg: of the elevation [degrees]
     """
@@ -46,7 +46,7 @@ class Hand(NamedTuple):
 
 
 class Fall(NamedTuple):
-    """How often a ball fell into a pocket, per shot: of the shots of the solution."""
+    """How often a ball fell into a pocket, as a share of the solution's shots."""
 
     ball: str
     pocket: str
@@ -66,17 +66,17 @@ class Cost(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """A shot that does what is wanted, and how surely.
+    """A shot that achieves the goal, and its success rate.
 
-    success: share of successes of a hand with errors, in shots that the search has not seen
-    interval: 95 of 100 such intervals hold the true share
-    shots: how many shots that is
-    values: by key, what the search chose
-    falls: which ball falls where, the most frequent first
-    costs: what errors of one input cost
-    scene: the shot as it is meant
+    success: share of successes of a hand with errors, in shots that the search has not used
+    interval: 95 of 100 such intervals contain the true share
+    shots: the number of these shots
+    values: the chosen values, by key
+    falls: which ball falls into which pocket, the most frequent first
+    costs: the costs of errors of one input
+    scene: the shot without errors
     miss: with exact=True, the largest distance of a ball from its place [m], otherwise NaN
-    trouble: with exact=True, why it is no smaller, or ""
+    trouble: with exact=True, why it is not smaller, or ""
     """
 
     success: float
@@ -150,19 +150,19 @@ def solve(
     threads: int = 0,
     exact: bool = False,
 ) -> list[Solution]:
-    """Finds the shots that most surely do what is wanted, under the errors of a hand: `carom solve`.
+    """Finds the shots most likely to achieve a goal, given the errors of a hand: `carom solve`.
 
     want: an expression over `measures()`: '"1" in pocketed and not scratch'
-    vary: what the search may choose, by key: the smallest and the largest value, or "uniform(a,b)". "hit.1"
+    vary: the inputs to search, by key: the smallest and the largest value, or "uniform(a,b)". "hit.1"
         aims at ball 1: 0 is full, 1 and -1 its edges. The default is aim, speed and height of the tip
     hand: the errors
     game: the rules for measures such as "foul"
-    layouts: racks that the shot must cope with, if the scene has a rack
-    shots: how many the search plays
-    best: how many shots of different kinds are returned, the surest first
+    layouts: number of random racks to play the shot on, if the scene has a rack
+    shots: number of shots that the search plays
+    best: number of shots of different kinds to return, the surest first
     threads: 0 uses one thread per core; the result does not depend on it
-    exact: move each shot until the balls rest at the centre of every "near", within 1e-6 m; where no exact
-        shot is near, `trouble` says so and the shot stays as it was found
+    exact: refine each shot until the balls rest at the centre of every "near", within 1e-6 m; if no exact
+        shot is nearby, `trouble` says why and the shot stays as found
 
     Raises ValueError for an expression, key or range that cannot be used.
     """
@@ -174,7 +174,7 @@ def solve(
     rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
                         shots, best, seed, threads, exact)
     found = _solutions([key for key, _, _ in choices], rows)
-    # An exact shot has an aim of its own instead of a hit.
+    # An exact shot has an aim instead of a hit.
     return [
         s if not exact or s.trouble else s._replace(
             values={"cue.aim_deg" if key.startswith("hit.") else key: x for key, x in s.values.items()})
@@ -196,12 +196,12 @@ def best_break(
     seed: int = 1,
     threads: int = 0,
 ) -> list[Solution]:
-    """Recommends a break: where from, how full, how hard, and how sure it is: `carom break`.
+    """Recommends a break: cue-ball position, cut, speed, and success rate: `carom break`.
 
     rack: how it was made, or the gap between its balls [m]
-    radius_sd: how much the radii of the racked balls vary [m]
-    speed_max: the hardest that the player hits: speed of the cue ball [m/s]
-    box: the cue ball at least a diamond from either long rail
+    radius_sd: standard deviation of the radii of the racked balls [m]
+    speed_max: maximum speed of the cue ball [m/s]
+    box: place the cue ball at least a diamond from either long rail
     hand, shots, best, seed, threads: as for `solve`
 
     Raises ValueError for a game without a break or a number out of range.

@@ -1,4 +1,4 @@
-"""Names that arguments take, for editors and type checkers. A test holds them to the engine's lists."""
+"""Names that arguments take, for editors and type checkers. A test compares them with the engine's lists."""
 
 from __future__ import annotations
 

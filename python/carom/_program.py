@@ -97,10 +97,10 @@ def margin(
 def sensitivity(
     scene: SceneLike, *, hand: str = "aim=0.2,speed=3%,tip=0.02", shots: int = 1000, seed: int = 1
 ) -> dict[str, Any]:
-    """The effect of small errors of aim, speed, tip and place on a shot: the report of `carom sensitivity` as
-    data (docs/guide/find.md).
+    """The effect of small errors of aim, speed, tip and position on a shot: the report of `carom sensitivity`
+    as data (docs/guide/find.md).
 
-    hand: standard deviations of the errors, as the command takes them
+    hand: standard deviations of the errors, as in the command
     shots: played with these errors
     seed: of the errors
 
@@ -120,7 +120,7 @@ def accuracy(
     tolerances: Sequence[float] | None = None,
     runs: int = 5,
 ) -> dict[str, Any]:
-    """Measures what accuracy costs a shot: the report of `carom accuracy` as data (docs/guide/accuracy.md).
+    """Measures the cost of accuracy: the report of `carom accuracy` as data (docs/guide/accuracy.md).
 
     target: the error allowed at the end [m], on which the recommendation is based
     march, tolerances: the settings to compare

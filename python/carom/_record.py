@@ -33,7 +33,7 @@ _NO_KINDS = np.empty(0, np.uint8)
 
 
 class Event(NamedTuple):
-    """One event with names: its time [s], its type, the ball, and what the ball met ("" for nothing)."""
+    """One event with names: its time [s], its type, the ball, and its partner ("" for none)."""
 
     time: float
     type: str
@@ -50,7 +50,7 @@ class EventColumn(NamedTuple):
 
 
 def event_columns() -> list[EventColumn]:
-    """The columns of `Record.event_details`, those of `carom describe events`."""
+    """The columns of `Record.event_details`, as in `carom describe events`."""
     return [EventColumn(*row) for row in _carom.event_columns()]
 
 
@@ -71,7 +71,7 @@ class Record:
     """A simulated shot: motion segments in closed form, and events. Immutable.
 
     Arrays described as views share the record's memory, are read-only, and keep it alive. Balls are in the
-    order of `ids`. A pickled record holds what `save` writes, and its scene.
+    order of `ids`. A pickled record contains the data that `save` writes, and its scene.
     """
 
     __slots__ = ("_native", "__weakref__")
@@ -152,7 +152,7 @@ class Record:
 
         The columns are those of `carom simulate --events`, and `carom.event_columns()` lists them: position,
         velocity and spin of both balls before and after [m, m/s, rad/s], the point of contact and the normal,
-        cut_deg, closing [m/s], impulse [N s], lost [J], diamond. NaN where an event has no such number.
+        cut_deg, closing [m/s], impulse [N s], lost [J], diamond. NaN if an event has no such number.
         """
         details = np.empty((len(self.events), len(_DETAILS.names or ())))
         _carom.event_details(self._native, details.reshape(-1))

@@ -89,7 +89,7 @@ class Scene:
     def loads(cls, text: str, name: str = "scene") -> Self:
         """The scene in a TOML text. Raises SceneError with the place of the mistake.
 
-        name: what messages give as the file
+        name: the file name in messages
         """
         return cls._of(_carom.parse_scene(text, name))
 
@@ -143,7 +143,7 @@ class Scene:
 
     @property
     def file(self) -> str:
-        """The file name that messages give."""
+        """The file name in messages."""
         return self._native.file
 
     @property
@@ -197,7 +197,7 @@ def scene_with_cue(
 ) -> Scene:
     """The scene that `make` returns for the section [cue] of this cue, or for an empty text without a cue.
 
-    standard: defaults for what the cue leaves out
+    standard: defaults for keys that the cue leaves out
     """
     tree = {} if cue is None else {"cue": standard | dict(_section(cue, "preset"))}
     try:

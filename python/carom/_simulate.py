@@ -52,7 +52,7 @@ def simulate(
 class SimulationError(RuntimeError):
     """A run that cannot continue, or one whose record breaks a law (`verify=True`). `str()` says why.
 
-    record: what happened until then, or None if nothing was kept
+    record: the shot until then, or None if nothing was kept
     """
 
     record: Record | None

@@ -33,7 +33,7 @@ def value(of: object, path: str, name: str, depth: int = 0) -> str:
     if isinstance(of, (datetime.date, datetime.time)):
         return of.isoformat()
     if depth > _DEEPEST:
-        raise SceneError(f"{path} is nested in more than {_DEEPEST} others; scenes are flat", name)
+        raise SceneError(f"{path} is nested in more than {_DEEPEST} others; use fewer levels", name)
     if isinstance(of, Mapping):
         items = (f"{_key(k, path, name)} = {value(v, f'{path}.{k}', name, depth + 1)}" for k, v in of.items())
         return "{" + ", ".join(items) + "}"

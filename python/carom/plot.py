@@ -72,7 +72,7 @@ def speeds(record: Record, *, ax: Axes | None = None) -> Axes:
 def energy(record: Record, *, ax: Axes | None = None) -> Axes:
     """Kinetic energy [J] of all balls over time [s].
 
-    That of travel, m v^2 / 2, and stacked on it that of rotation, m R^2 w^2 / 5.
+    Translation, m v^2 / 2, and stacked on it rotation, m R^2 w^2 / 5.
     """
     axes: Axes = _axes(ax, (9.0, 4.0))
     times = _times(record)

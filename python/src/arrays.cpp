@@ -1,4 +1,4 @@
-// Array arithmetic that numpy lacks, that it does with different bits on different machines, or that takes it
+// Array arithmetic that numpy lacks, that it does with different bits on different machines, or that needs
 // many calls, longer than a shot.
 #include <nanobind/stl/pair.h>
 
@@ -55,8 +55,7 @@ void strikes(std::size_t shots, const Flat<const double>& actions, const Flat<co
     }
 }
 
-/// Where balls may be drawn: at low + room * [0, 1)^2, outside every disc, and this far apart from each
-/// other.
+/// Positions of balls are drawn from low + room * [0, 1)^2, outside every disc, and this far apart.
 struct Room {
     Flat<const double> low, room;  ///< [m] 2 each
     Flat<const double> discs;      ///< m x 3: centre [m] and square of the radius
@@ -77,7 +76,7 @@ struct Room {
 };
 
 /// Draws positions of balls for every row until they fit, all of them each time: `out` is n x balls x 2. Each
-/// row has its own generator, SplitMix64, which advances: a table draws the same alone as beside others.
+/// row has its own generator, SplitMix64, which advances: the draws of a table do not depend on the others.
 /// @return whether every row found positions within this number of tries
 bool random_places(const Flat<std::uint64_t>& states, const Flat<const double>& low,
                    const Flat<const double>& room, const Flat<const double>& discs, double apart2, int tries,

@@ -91,7 +91,7 @@ nb::any array_of(std::vector<T>&& list) {
 }
 
 struct ColumnValues {
-    // Of texts, the index of each in `texts`, -1 for none.
+    // For texts, the index of each in `texts`, -1 for none.
     std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::int32_t>> values;
     std::vector<std::string> texts;  // each once
     std::vector<std::uint8_t> missing;
@@ -124,8 +124,8 @@ ColumnValues values_of(const games::Sweep& sweep, const games::SweepColumn& colu
     return of;
 }
 
-/// Its array, which holds the indices of texts if it has any; its texts; and for each shot whether its value
-/// is missing, unless none can be.
+/// Its array, with the indices of texts if it has any; its texts; and for each shot whether its value is
+/// missing, unless none can be.
 using SweepArrays = std::tuple<nb::any, std::optional<std::vector<std::string>>, nb::any>;
 
 SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& of) {

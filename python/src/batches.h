@@ -1,4 +1,4 @@
-// Arrays of batches, and how a batch is played without the GIL.
+// Arrays of batches, and the playing of a batch without the GIL.
 #pragma once
 
 #include <nanobind/stl/tuple.h>
@@ -49,10 +49,10 @@ inline BatchArrays batch_arrays(const ShotArrays& arrays) {
 }
 
 using Column = std::pair<std::string, Flat<const double>>;
-/// A shot without a result, and why it has none.
+/// A shot without a result, and the reason.
 using Failure = std::pair<std::size_t, std::string>;
 
-/// Runs without the GIL. Ctrl-C ends it, if `run` asks the function that it is given whether to stop.
+/// Runs without the GIL. Ctrl-C ends it if `run` calls its argument to check whether to stop.
 template <class Run>
 auto interruptible(Run&& run) {
     SignalWatch watch;
@@ -86,7 +86,7 @@ std::vector<Failure> played(const ShotArrays& arrays, std::size_t balls, int thr
     });
 }
 
-/// The same for shots that differ in the numbers of columns. @param play gets the scene, the columns, the
+/// As above for shots that differ in the numbers of columns. @param play gets the scene, the columns, the
 /// instruction set, options and arrays
 template <class Play>
 std::vector<Failure> played_columns(const NativeScene& native, const std::vector<Column>& columns,

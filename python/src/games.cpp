@@ -56,8 +56,8 @@ void add_noise(const Flat<double>& cues, const Five& sd, std::uint64_t seed, std
         add_noise_to(cues.data() + i * kOfACue, sd, seed, first + i);
 }
 
-/// The same for strikes with a seed and an index each. A strike with a number that is not finite stays as it
-/// is.
+/// As above for strikes with a seed and an index each. A strike with a number that is not finite is
+/// unchanged.
 void add_noise_each(const Flat<double>& cues, const Five& sd, const Flat<const std::uint64_t>& seeds,
                     const Flat<const std::int64_t>& indices) {
     if (cues.size() != kOfACue * seeds.size() || seeds.size() != indices.size())

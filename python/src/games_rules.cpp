@@ -35,7 +35,7 @@ using RespotRow = std::pair<std::string, Place>;
 using OptionRow = std::tuple<std::string, StateRow, std::vector<RespotRow>>;
 /// Fouls with their rules, points, penalty, options, chooser.
 using VerdictRow = std::tuple<std::vector<Two<std::string>>, int, int, std::vector<OptionRow>, int>;
-/// Cue balls, what may be hit first, what may be called, where the cue ball is in hand, push out.
+/// Cue balls, balls that may be hit first, balls that may be called, area of the cue ball in hand, push out.
 using LegalRow = std::tuple<std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
                             std::string, bool>;
 

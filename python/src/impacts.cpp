@@ -48,7 +48,7 @@ void put(const double* in, const double (&v)[3], const double (&w)[3], double* o
     std::copy_n(w, 3, out + 6);
 }
 
-/// The closed forms. @return what is wrong with the first bad impact, or ""
+/// The closed forms. @return the error of the first bad impact, or ""
 std::string by_formula(const BallBallModelInfo& model, std::size_t count, const double* in1,
                        const double* in2, const double* params, std::size_t stride, double* out1,
                        double* out2) {

@@ -1,4 +1,4 @@
-// Measures of shots, what events tell, and searches for a shot.
+// Measures of shots, details of events, and searches for a shot.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -93,7 +93,7 @@ using ChoiceRow = std::tuple<std::string, double, double>;
 /// Shares: NaN if no scene is valid there.
 using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is no smaller.
+/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller.
 using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
                                std::vector<std::tuple<std::string, std::string, double>>,
                                std::vector<CostRow>, NativeScene, std::pair<double, std::string>>;
@@ -124,7 +124,7 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         options.stop = std::move(stop);
         if (exact && want.places().empty())
             throw std::invalid_argument(
-                "exact=True: no place is wanted; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
+                "exact=True: the goal has no place; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
         std::vector<games::Solution> best = games::solve(scene, want, isa, options);
         for (std::size_t i = 0; exact && i < best.size(); ++i) {
             games::Exact moved = games::exact(best[i], want, isa, options);
@@ -174,7 +174,7 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
                  exact);
 }
 
-/// The keys that were chosen, what was wanted, the speed of the ball for each m/s of the cue, the solutions.
+/// The searched keys, the goal, the speed of the ball for each m/s of the cue, the solutions.
 std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
     const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
     double speed_max, bool box, const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,

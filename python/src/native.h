@@ -1,5 +1,5 @@
 // Shared by the parts of the extension module. The Python sources in python/carom are the public interface;
-// the module accepts flat arrays, which they have checked and shaped.
+// they check and shape the flat arrays that the module accepts.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -1,4 +1,4 @@
-// Records: views of their memory, and what can be asked of them.
+// Records: views of their memory, and their contents.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>

@@ -18,7 +18,7 @@
 namespace carom::python {
 namespace {
 
-/// Runs without the GIL. @throws nb::value_error for what has no derivative
+/// Runs without the GIL. @throws nb::value_error if there is no derivative
 template <class Work>
 auto without_gil(Work&& work) {
     try {

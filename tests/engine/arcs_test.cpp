@@ -302,7 +302,7 @@ TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
     add_ball(scene, "2", 0.5, 0.0);
     scene.ball.back().own = BallSize{0.04, scene.balls.m};
     scene.ball.back().position.z() = 0.04;
-    EXPECT_EQ(why_not(scene), "discs of unlike size have no derivatives here");
+    EXPECT_EQ(why_not(scene), "discs of different size have no derivatives here");
     scene.ball.pop_back();
     scene.balls.slides = true;
     EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");

@@ -531,7 +531,7 @@ TEST(Batch, BadColumnsSayWhatToDo) {
         error("ball.9.position.x"),
         "ball.9.position.x: there is no such ball; write ball.ID.position.x with one of these ids: cue, 1");
     EXPECT_EQ(error("ball.1.radius"),
-              "ball.1.radius: the ball has no size of its own; give it one, then vary it");
+              "ball.1.radius: the ball has no radius or mass of its own; add one, then vary it");
     EXPECT_EQ(error("table.pocket.p9.radius"), "table.pocket.p9.radius: the table has no such part");
     EXPECT_EQ(error("rack.seed"),
               "rack.seed: name a number in its section, such as cue.speed; sections are balls, ball, cue, "

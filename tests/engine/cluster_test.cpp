@@ -390,7 +390,7 @@ TEST(Cluster, APlanSaysWhichRestitutionCounts) {
     };
     const auto found = warnings(3, 0.01, ClusterModel::kCompliant);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0], "balls.e_b is 0.01, but where three or more balls touch it counts as 0.05");
+    EXPECT_EQ(found[0], "balls.e_b is 0.01, but impacts of three or more balls use 0.05");
     EXPECT_TRUE(warnings(2, 0.01, ClusterModel::kCompliant).empty());
     EXPECT_TRUE(warnings(3, 0.05, ClusterModel::kCompliant).empty());
     EXPECT_TRUE(warnings(3, 0.01, ClusterModel::kRigid).empty());

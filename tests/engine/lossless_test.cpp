@@ -154,8 +154,8 @@ TEST(Lossless, TheCheckerRequiresTheEnergy) {
     const auto violation = verify(record, plan);
     ASSERT_TRUE(violation);
     EXPECT_EQ(violation->law, "U4");
-    EXPECT_NE(violation->message.find("nothing takes any"), std::string::npos) << violation->message;
-    // With slightly less restitution the same record keeps the laws.
+    EXPECT_NE(violation->message.find("nothing dissipates it"), std::string::npos) << violation->message;
+    // With a little less restitution the same record keeps the laws.
     scene.balls.e_c = 0.99;
     EXPECT_FALSE(verify(record, plan_of(scene)));
 }

@@ -132,7 +132,7 @@ TEST(CueRoom, ACueClearsTheNoseThatItCrosses) {
     EXPECT_FALSE(clears(*room.clears_deg - 0.1)) << *room.clears_deg;
     EXPECT_EQ(from_the_rail("offset = [0, 0]\nelevation_deg = \"auto\"\n").cue->elevation_deg,
               *room.clears_deg);
-    EXPECT_NE(room_note(scene).find("would be in cushion"), std::string::npos) << room_note(scene);
+    EXPECT_NE(room_note(scene).find("would reach into cushion"), std::string::npos) << room_note(scene);
     EXPECT_EQ(room_note(from_the_rail("offset = [0, 0]\nelevation_deg = 60\n")), "");
     EXPECT_EQ(room_note(parse_scene(scene_with("speed = 2\n"), "aim.toml")), "") << "nearly level";
     EXPECT_EQ(room_note(parse_scene("[[ball]]\nposition = [0.028575, 1.0]\n[cue]\nspeed = 0\naim_deg = 0\n",

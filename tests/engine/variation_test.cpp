@@ -290,7 +290,7 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=uniform(-1e308,1e308)", "b - a is too large"},
         {"cue.speed=uniform(1,nan)", "must be a finite number"},
         {"cue.speed=uniform(9007199254740993,9007199254740993)",
-         "value 1 of uniform = 9007199254740993 has more digits than a number holds; write "
+         "value 1 of uniform = 9007199254740993 has more digits than a number can store; write "
          "9007199254740992.0"},
         {"cue.speed=normal(1,9007199254740993)", "value 2 of normal = 9007199254740993 has more digits"},
         {"cue.speed=list(9007199254740993)", "shot 0: cue.speed = 9007199254740993 is out of range"},
@@ -306,7 +306,8 @@ TEST_F(VariationTest, BadRulesSayWhatToDo) {
         {"cue.speed=gauss(1,2)", "unknown distribution \"gauss\""},
         {"cue.speed=unifrom(1,2)", "; did you mean uniform?"},
         {"cue.speed=normal(-1)", "must be at least 0"},
-        {"cue.aim_deg=normal(1)", "there is none; write the number there, or use normal(mean,sd)"},
+        {"cue.aim_deg=normal(1)",
+         "needs a number in the scene as its centre; add it, or use normal(mean,sd)"},
         {"cue.speed=integer(1.5,2)", "value 1 of integer must be an integer"},
         {"cue.speed=integer(3,2)", "needs -1000000000 <= a <= b"},
         {"cue.speed=list()", "list has 0 values"},

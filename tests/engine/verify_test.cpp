@@ -43,7 +43,7 @@ TEST(Verify, NamesTheBrokenLaw) {
         const char *law, *says;
         std::function<void(Record&)> spoil;
     } cases[] = {
-        {"U1", "ball b at 0 s holds a number that is not finite",
+        {"U1", "ball b at 0 s has a number that is not finite",
          [](Record& r) { r.tracks[1].segments[0].v.x() = std::numeric_limits<double>::quiet_NaN(); }},
         {"U2", "time falls from",
          [&](Record& r) {

@@ -121,10 +121,11 @@ TEST(Fit, ReportsUndeterminedNumbers) {
     const Fit found =
         fit(scene, points, {{"cue.speed", "cue.restitution", "balls.e_c_fit.0"}}, kernel::Isa::kScalar);
     ASSERT_EQ(found.warnings.size(), 2u);
-    EXPECT_EQ(found.warnings[0],
-              "the tracks hardly tell cue.speed from cue.restitution (correlation 1.0000); vary only one of "
-              "them, or track another shot");
-    EXPECT_EQ(found.warnings[1], "balls.e_c_fit.0 moves nothing that was tracked");
+    EXPECT_EQ(
+        found.warnings[0],
+        "the tracks hardly distinguish cue.speed from cue.restitution (correlation 1.0000); vary only one of "
+        "them, or track another shot");
+    EXPECT_EQ(found.warnings[1], "balls.e_c_fit.0 has no effect on the tracked positions");
     EXPECT_EQ(found.deviation(2), std::numeric_limits<double>::infinity());
     EXPECT_LT(found.rms, 1e-8);
     EXPECT_THROW(fit(scene, {}, {kVary}, kernel::Isa::kScalar), std::invalid_argument);

@@ -186,7 +186,7 @@ std::string refusal(const State& state, const Scene& scene) {
 
 TEST(Player, RefusesUnplayableTables) {
     const Scene scene = table({{"cue", {0.6, 0.9}}, {"3", {1.0, 0.5}}, {"8", {0.4, 2.2}}});
-    EXPECT_NE(refusal(turn(Game::kSnooker), scene).find("no player of snooker"), std::string::npos);
+    EXPECT_NE(refusal(turn(Game::kSnooker), scene).find("carom does not play snooker"), std::string::npos);
     State over = turn(Game::kEightBall);
     over.over = true;
     EXPECT_NE(refusal(over, scene).find("the game is over"), std::string::npos);

@@ -52,8 +52,7 @@ TEST(RuleOptions, EveryValueOfEveryOptionReadsBack) {
 TEST(RuleOptions, AForeignOptionIsRefusedWithTheGamesOwn) {
     EXPECT_EQ(refused(Game::kEightBall, "push_out=true"),
               "eight_ball has no option \"push_out\"; it has call, eight_on_break, in_hand, jump");
-    EXPECT_EQ(refused(Game::kThreeCushion, "call=all"),
-              "three_cushion has no options, so there is no \"call\"");
+    EXPECT_EQ(refused(Game::kThreeCushion, "call=all"), "three_cushion has no options; leave out \"call\"");
     EXPECT_EQ(refused(Game::kEightBall, "call=maybe"), "call=maybe: expected call=all|eight|none");
     EXPECT_EQ(refused(Game::kEightBall, "call"), "call: expected call=all|eight|none");
     EXPECT_EQ(refused(Game::kSnooker, ""), "snooker has no option \"\"; it has miss");

@@ -167,11 +167,11 @@ def test_a_verdict_belongs_to_one_record():
     option = verdict.options[0]
     for of_another in (other, one):
         for kept in (option, pickle.loads(pickle.dumps(option)), copy.deepcopy(verdict).options[0]):
-            with pytest.raises(ValueError, match="the verdict is of another record; give the record"):
+            with pytest.raises(ValueError, match="the verdict belongs to another record; give the record"):
                 games.may_place(of_another, kept, (0.7, 0.5))
-            with pytest.raises(ValueError, match="the verdict is of another record"):
+            with pytest.raises(ValueError, match="the verdict belongs to another record"):
                 games.next_scene(of_another, kept, place=(0.7, 0.5))
-        with pytest.raises(ValueError, match="the verdict is of another record"):
+        with pytest.raises(ValueError, match="the verdict belongs to another record"):
             games.next_scene(of_another, verdict, place=(0.7, 0.5))
     assert games.may_place(record, pickle.loads(pickle.dumps(option)), (0.7, 0.5))
     # An option is a tuple of three; a hand-made one belongs to any record that has its balls.
@@ -179,7 +179,7 @@ def test_a_verdict_belongs_to_one_record():
     mine = games.Option(decision, state, respots)
     assert mine == option and hash(mine[0]) == hash(option.decision) and mine.rerack is False
     assert games.may_place(other, mine, (0.7, 0.5))
-    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record from'):
+    with pytest.raises(ValueError, match='the record has no ball "cue"; give the record that'):
         games.may_place(one, mine, (0.7, 0.5))
     with pytest.raises(ValueError, match='the record has no ball "black"'):
         games.next_scene(record, mine._replace(respots=[games.Respot("black", (0.5, 0.5))]), place=(0.7, 0.5))

@@ -147,7 +147,7 @@ def test_solve_moves_a_ball_exactly_to_its_place(draw_scene):
     end = carom.simulate(found.scene)
     assert end.states(end.duration)[0, 0, :2] == pytest.approx([1.0, 1.56], abs=1e-5)
     refused(ValueError, lambda **more: carom.solve(draw_scene, shots=1000, exact=True, **more),
-            ({"want": "scratch"}, "no place is wanted"))
+            ({"want": "scratch"}, "the goal has no place"))
 
 
 def test_a_break():

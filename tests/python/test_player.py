@@ -37,7 +37,7 @@ def test_a_ball_in_hand_is_placed():
 @pytest.mark.parametrize(
     ("state", "scene", "why"),
     [
-        (games.new_game("snooker"), TABLE, "no player of snooker"),
+        (games.new_game("snooker"), TABLE, "carom does not play snooker"),
         (TURN._replace(over=True), TABLE, "the game is over"),
         (TURN, carom.Scene(table="nine_foot", balls="pool", ball=BALLS[1:]), "no cue ball"),
     ],
@@ -67,5 +67,5 @@ def test_an_opponent_plays_its_turns_until_the_game_ends():
 
 def test_an_opponent_of_snooker_is_refused():
     match = pytest.importorskip("carom.gym.match")
-    with pytest.raises(ValueError, match="no player of snooker"):
+    with pytest.raises(ValueError, match="carom does not play snooker"):
         match.env("Snooker", opponent="club")

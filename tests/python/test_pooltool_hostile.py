@@ -72,10 +72,10 @@ except carom.SceneError:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[" * 100000, "too deep in each other"),
-        ('{"a": ' * 100000 + "1" + "}" * 100000, "too deep in each other"),
+        ("[" * 100000, "too many nested objects"),
+        ('{"a": ' * 100000 + "1" + "}" * 100000, "too many nested objects"),
         ("[" + "9" * 5000 + "]", "a number that is too long"),
-        ('{"balls": "\\ud800"}', "half of a pair of surrogates"),
+        ('{"balls": "\\ud800"}', "half of a surrogate pair"),
         ("\ufeff{}", "is not JSON"),
         ("", "is not JSON"),
     ],

@@ -177,7 +177,7 @@ def test_a_killed_worker_loses_nothing(tmp_path, cluster, once):
             sweep.run(small, tmp_path / "a", dask)
         # A worker whose bits differ refuses, and says where it runs.
         with pytest.raises(
-            sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* with other bits"
+            sweep.SweepError, match=rf"{os.uname().nodename}, process \d+: this carom .* gives other bits"
         ):
             sweep.run(small._replace(probe="0" * 64), tmp_path / "b", dask)
         assert sweep.run(small, tmp_path / "c", dask, shards=[3]).played == 90
@@ -361,7 +361,7 @@ def test_the_command_makes_plans_runs_them_and_reports_files(tmp_path, capsys, m
         ([tmp_path / "q.json", *arguments, "--shots", 0], 2, "shots=0: expected 1 to 2**53"),
         ([tmp_path / "q.json"], 2, f"{tmp_path}/q.json: cannot read it: No such file or directory"),
         ([file, "--part", "3/2"], 2, "--part 3/2: expected I/N with 0 <= I < N, as in 3/100"),
-        ([file, "--threads", "-1"], 2, "--threads has to be at least 0, --elements at least 1"),
+        ([file, "--threads", "-1"], 2, "--threads must be at least 0, and --elements at least 1"),
         ([file, "--thread", "1"], 2, "unrecognized arguments: --thread 1; see python -m carom.sweep --help"),
         ([file, "--slurm"], 1, "sbatch: program not found; run this on a machine of a Slurm cluster"),
     ]:
@@ -378,7 +378,7 @@ def test_the_command_makes_plans_runs_them_and_reports_files(tmp_path, capsys, m
     code, out, err = sweep_in_process(capsys, monkeypatch, folder / "plan.json", "--threads", "2")
     assert code == 0 and out.startswith(f"{folder}: 60 rows (at_rest 60), 40 of them played in "), err
     assert sweep_in_process(capsys, monkeypatch, file, "--check") == (
-        0, f"{folder}: 60 of 60 rows are there and as they were written (at_rest 60)\n", "")
+        0, f"{folder}: 60 of 60 rows are complete and unchanged (at_rest 60)\n", "")
     path = folder / "shard-1.parquet"
     path.write_bytes(path.read_bytes()[:-1])
     code, out, err = sweep_in_process(capsys, monkeypatch, file, "--check")

@@ -28,7 +28,7 @@ def test_a_worker_with_another_carom_refuses(tmp_path):
     versions = f"this is carom {carom.__version__}, and the plan is of carom 0.0.9"
     with pytest.raises(sweep.SweepError, match=f"process {os.getpid()}: {versions}"):
         sweep.run(plan._replace(version="0.0.9"), tmp_path / "a")
-    with pytest.raises(sweep.SweepError, match="plays the first shots with other bits"):
+    with pytest.raises(sweep.SweepError, match="gives other bits for the first shots"):
         sweep.run(plan._replace(probe="0" * 64), tmp_path / "b")
     with pytest.raises(sweep.SweepError, match="other bits"):
         sweep.reduce(plan._replace(probe="0" * 64), len)
@@ -62,8 +62,8 @@ def test_every_reader_names_a_file_of_another_plan_or_place(tmp_path):
     sweep.run(plan, tmp_path / "a")
     sweep.run(other, tmp_path / "b")
     for source, words in (
-        ("b/shard-1.parquet", f"the file holds plan {other.id}, not shard 1 of plan {plan.id}"),
-        ("a/shard-0.parquet", "the file holds shots 0 to 10"),
+        ("b/shard-1.parquet", f"the file contains plan {other.id}, not shard 1 of plan {plan.id}"),
+        ("a/shard-0.parquet", "the file contains shots 0 to 10"),
     ):
         shutil.copy(tmp_path / source, tmp_path / "a/shard-1.parquet")
         assert words in sweep.check(tmp_path / "a").faults["shard-1.parquet"]
@@ -87,7 +87,7 @@ def test_every_reader_names_a_truncated_file(tmp_path):
         fault = sweep.check(tmp_path).faults["shard-1.parquet"]
         assert "shard-1.parquet: not a complete Parquet file" in fault
         for call in (lambda: sweep.open(tmp_path, verify=False), lambda: sweep.run(plan, tmp_path)):
-            again = "shard-1.parquet: not a complete Parquet file.*remove it to have it made again"
+            again = "shard-1.parquet: not a complete Parquet file.*remove it and run the sweep again"
             with pytest.raises(sweep.SweepError, match=again):
                 call()
     path.unlink()

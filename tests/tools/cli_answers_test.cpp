@@ -117,7 +117,7 @@ TEST_F(CliAnswers, AFitOfInconsistentTracksIsRefusedWithoutDeviations) {
          {std::pair{"1000", "mm"}, std::pair{"39.3701", "inches"}, std::pair{"100", "cm"}}) {
         const ProcessResult result = fit(std::string("$4 *= ") + factor + "; $5 *= " + factor, "balls.mu_s");
         EXPECT_EQ(result.status, 1) << result.out;
-        EXPECT_TRUE(contains(result.err, std::string("the places look like ") + unit)) << result.err;
+        EXPECT_TRUE(contains(result.err, std::string("the positions look like ") + unit)) << result.err;
     }
     // If the clock may vary, the fit recovers the stroke.
     const ProcessResult found = fit("$1 += 0.1", "balls.mu_s,clock");
@@ -293,11 +293,11 @@ TEST_F(CliAnswers, TheNoteNamesTheObstacleBehindTheCueBall) {
             "n.toml", "[[ball]]\nid = \"cue\"\nposition = [0.2, 1.0]\n[[ball]]\nid = \"2\"\nposition = [" +
                           std::string(place) + "]\n[cue]\nspeed = 3\naim_deg = 0\noffset = [0, 0]\n");
         const ProcessResult result = carom({"check", scene});
-        EXPECT_TRUE(contains(result.err, "the cue would be in ball 2 at")) << result.err;
+        EXPECT_TRUE(contains(result.err, "the cue would reach into ball 2 at")) << result.err;
     }
     const std::string rail = folder_.write(
         "r.toml", "[[ball]]\nid = \"cue\"\nposition = [0.06, 1.0]\n[cue]\nspeed = 3\naim_deg = 0\n");
-    EXPECT_TRUE(contains(carom({"check", rail}).err, "the cue would be in cushion c3 at"));
+    EXPECT_TRUE(contains(carom({"check", rail}).err, "the cue would reach into cushion c3 at"));
 }
 
 TEST_F(CliAnswers, AThreeCushionPointIsJudgedWithItsState) {

@@ -80,7 +80,7 @@ TEST(CliDescribe, ZshReadsItsCompletion) {
               "words=(x); state=command; source ./_carom; _carom_render; _carom_sweep",
               folder.path().string());
     EXPECT_EQ(seen.status, 0) << seen.err;
-    for (const char* line : {"*--vary[What varies and how", ":SCENE:_files",
+    for (const char* line : {"*--vary[Vary a key, once per key", ":SCENE:_files",
                              "(--camera)--camera[Camera (default", ":NAME:(top rail player follow)"})
         EXPECT_NE(seen.out.find(line), std::string::npos) << line << "\n" << seen.out;
 }
@@ -107,7 +107,7 @@ TEST(Formats, TheCommandLinePageMatchesTheOptions) {
         << "docs/reference/command_line.md is stale; run tools/renew_formats.py";
     for (const char* text :
          {"\n## carom sweep\n", "\n`carom sweep SCENE --vary KEY=DISTRIBUTION --output FILE.csv`\n",
-          "* `--jobs N`: Threads that encode and write; 0: one per core (default: 0); 0 to 256\n",
+          "* `--jobs N`: Threads that encode and write, 0 for one per core (default: 0); 0 to 256\n",
           "; one of `top`, `rail`, `player`, `follow`\n", "143 terminated"})
         EXPECT_NE(page.find(text), std::string::npos) << text;
 }

@@ -95,20 +95,20 @@ TEST_F(Mistakes, FramesNeverReplaceInputs) {
     fs::copy_file(scene_, in_percent);
     fs::create_symlink(scene_, folder_.file("l7.png"));
     const auto both = [&](const std::string& input, const std::string& pattern) {
-        refused("would replace what is read", {"render", input, "-o", pattern, "--size", "32x18"});
-        refused("would replace what is read",
+        refused("would overwrite the input", {"render", input, "-o", pattern, "--size", "32x18"});
+        refused("would overwrite the input",
                 {"render", input, "-o", pattern, "--size", "32x18", "--at", "0.1"});
     };
     both(as_frame, folder_.file("s%05d.png"));
     both(folder_.path().string() + "/./s00002.png", folder_.file("s%05d.png"));
     both(scene_, folder_.file("l%d.png"));
-    refused("would replace what is read",
+    refused("would overwrite the input",
             {"render", in_percent, "-o", folder_.file("p%%d.png"), "--size", "32x18", "--at", "0.1"});
     const std::string cwd = fs::current_path().string();
     fs::current_path(folder_.path());
     fs::copy_file(scene_, "sheet.png");
-    refused("would replace what is read", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
-    refused("would replace what is read", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
+    refused("would overwrite the input", {"render", "s00002.png", "-o", "s%05d.png", "--size", "32x18"});
+    refused("would overwrite the input", {"render", "sheet.png", "--sheet", "2x2", "--size", "64x36"});
     fs::current_path(cwd);
     for (const std::string& name : {scene_, as_frame, in_percent, folder_.file("sheet.png")})
         EXPECT_EQ(read_file(name), before) << name;
@@ -130,7 +130,7 @@ TEST_F(Mistakes, ResumeRecognisesFramesOfItsShot) {
         return carom(all);
     };
     folder_.write("f1.png", "of nobody");
-    EXPECT_TRUE(contains(render({"--resume"}).err, "nothing says which shot the existing frames show"));
+    EXPECT_TRUE(contains(render({"--resume"}).err, "the existing frames do not state their shot"));
     fs::remove(folder_.file("f1.png"));
     ASSERT_EQ(render({"--resume"}).status, 0);  // all frames
     ASSERT_EQ(render({}).status, 0);

@@ -197,12 +197,12 @@ TEST(CliSweep, ExistingPartsAreChecked) {
         std::string changed = text;
         changed[at] ^= 1;
         write(changed);
-        refused(part + ": its rows differ from those that were written; remove it to have it made again");
+        refused(part + ": its rows were changed after they were written; remove it and run the sweep again");
     }
     for (const std::string& short_one :
          {std::string(), text.substr(0, 20), text.substr(0, text.size() - 1)}) {
         write(short_one);
-        refused("differ from those that were written");
+        refused("were changed after they were written");
     }
 
     // From another build with other bits.
@@ -220,7 +220,7 @@ TEST(CliSweep, ExistingPartsAreChecked) {
     for (const std::string& file : files_in(parts))
         if (file != part) fs::remove(file);
     signed_again(rows.substr(0, rows.size() - 1) + "9\n" + said);
-    refused("its last row is not what this program computes; remove it to start again");
+    refused("its last row differs from the one that this program computes; remove it to start again");
 
     fs::remove(part);
     EXPECT_EQ(interrupted_parts(folder, command), parts);

@@ -113,7 +113,7 @@ function survivals(player) {
     const before = await player.value("[caromPlay.shot().hash, caromPlay.state.game.state]");
     await player.open();
     assert.deepEqual(await player.value("[caromPlay.shot().hash, caromPlay.state.game.state]"), before);
-    assert.match(await player.value("caromPlay.state.said"), /goes on/);
+    assert.match(await player.value("caromPlay.state.said"), /continues/);
     await player.drag([moved, [0.5, 0.6]]);
     assert.ok(Math.abs(await player.value("caromPlay.state.struck().x") - 0.5) < 0.02);
     await player.press("Start again");

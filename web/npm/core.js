@@ -18,10 +18,10 @@ export const STATES = ["stationary", "spinning", "sliding", "rolling", "pocketed
 export const STATUSES = ["at_rest", "time", "events", "endless", "invalid", "failed"];
 
 let wasm = null;
-/** Whether the module's last result has an object that nothing holds yet. */
+/** Whether the module's last result has an object without an owner. */
 let unclaimed = false;
 
-/** How a message names a value of a wrong type. */
+/** The name of a value of a wrong type in messages. */
 function told(value) {
   if (typeof value === "string") return `the text ${JSON.stringify(value.slice(0, 40))}`;
   if (Array.isArray(value)) return "a list";
@@ -30,7 +30,7 @@ function told(value) {
   return `an object ${value.constructor?.name ?? ""}`.trim();
 }
 
-/** A number that is not checked would be a pointer in the module.
+/** Unchecked, a number would become a pointer in the module.
  * @throws TypeError with the argument's name */
 function expect(holds, name, value, wanted) {
   if (!holds) throw new TypeError(`${name} is ${told(value)}; expected ${wanted}`);
@@ -57,7 +57,7 @@ function numbersOf(name, list, mayBeNaN) {
   return Float64Array.from(list);
 }
 
-/** The few functions of a system that the module asks for: a clock, and no files. */
+/** The few system functions that the module needs: a clock, and no files. */
 function system() {
   const BAD_FILE = 8, OK = 0;
   const now = () => BigInt(Math.round(performance.now() * 1e6));
@@ -79,7 +79,7 @@ function system() {
     proc_exit: (code) => { throw new Error(`carom.wasm ended with status ${code}`); },
     emscripten_notify_memory_growth: () => {},
   };
-  // Nothing reads or writes files, so every other function refuses.
+  // The module reads and writes no files, so every other function fails.
   return new Proxy({}, {get: (_, name) => known[name] || (() => BAD_FILE)});
 }
 
@@ -124,7 +124,7 @@ function lend(values, use) {
 const lastBytes = () => new Uint8Array(wasm.memory.buffer, wasm.carom_text(), wasm.carom_text_size());
 const lastText = () => decoder.decode(lastBytes());
 
-/** Calls a function of the module. @returns its text, as `read` reads it. @throws CaromError */
+/** Calls a function of the module. @returns its text, converted by `read`. @throws CaromError */
 function call(name, ...values) { return callFor(lastText, name, ...values); }
 function callFor(read, name, ...values) {
   if (wasm === null) throw new Error("carom: call init() first, and await it");
@@ -133,7 +133,7 @@ function callFor(read, name, ...values) {
   throw new CaromError(JSON.parse(lastText() || '{"kind": "memory", "message": "out of memory"}'));
 }
 
-/** Frees what a lost object held in the module's memory. */
+/** Frees the module's memory of a lost object. */
 const lost = new FinalizationRegistry(([free, handle]) => wasm[free](handle));
 
 /** An object in the module's memory. */
@@ -141,7 +141,8 @@ class Held {
   #handle;
   #free;
   constructor(free) {
-    if (!unclaimed) throw new TypeError("carom makes its objects itself; call Scene.parse() or simulate()");
+    if (!unclaimed)
+      throw new TypeError("carom's objects cannot be constructed; call Scene.parse() or simulate()");
     unclaimed = false;
     this.#handle = wasm.carom_handle();
     this.#free = free;
@@ -151,7 +152,7 @@ class Held {
     if (this.#handle === 0) throw new Error("carom: this object has been freed");
     return this.#handle;
   }
-  /** Frees its memory now rather than when the browser finds time for it. */
+  /** Frees its memory now instead of at garbage collection. */
   free() {
     if (this.#handle === 0) return;
     lost.unregister(this);
@@ -160,7 +161,7 @@ class Held {
   }
 }
 
-/** Fails for what a scene file cannot hold. */
+/** Throws for a value that a scene file cannot express. */
 function expectValue(key, value) {
   if (Array.isArray(value)) {
     value.forEach((part, i) => expectValue(`${key}[${i}]`, part));
@@ -219,7 +220,7 @@ export class Scene extends Held {
   look() { return JSON.parse(call("carom_scene_look", this.handle)); }
 }
 
-/** The record's motion from its numbers: those of the shot, of a ball, and of each of its segments. */
+/** The record's motion from its numbers: of the shot, then of each ball and its segments. */
 function motionOf(numbers, ids) {
   let at = 0;
   const next = (count) => Array.from(numbers.subarray(at, at += count));
@@ -331,7 +332,7 @@ export function simulateMany(scene, columns, {hash = false} = {}) {
   return {...result, ids: scene.balls.map((ball) => ball.id)};
 }
 
-/** A verdict on a shot, and the ways in which the game may continue. */
+/** A verdict on a shot, and the options for continuing the game. */
 export class Verdict extends Held {
   #shot;
   constructor(json, shot) {

@@ -6,13 +6,13 @@
 export function init(source?: string | URL | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module
   | Promise<Response>): Promise<void>;
 
-/** The version of carom: three numbers with points. */
+/** The version of carom: three numbers with dots. */
 export function version(): string;
 
 export class CaromError extends Error {
   /** "scene": a mistake in a scene. "simulation": the shot cannot continue. "limit": it took too long. */
   readonly kind: "scene" | "simulation" | "argument" | "limit" | "memory";
-  /** The place in the scene; line 0 stands for the whole scene. The message begins with file:line:column. */
+  /** The place in the scene; line 0 means the whole scene. The message begins with file:line:column. */
   readonly file: string;
   readonly line: number;
   readonly column: number;
@@ -54,7 +54,7 @@ export interface Cue {
   /** Offset of the tip [ball radii]: left and up positive. */
   side: number;
   height: number;
-  /** The obstacle that the cue itself would be in: "cushion c3", "ball 7"; "" if it has room. */
+  /** The obstacle that the cue would reach into: "cushion c3", "ball 7"; "" if it is free. */
   in: string;
   /** The least elevation that clears it; null if none does. */
   clears_deg: number | null;
@@ -101,14 +101,14 @@ export interface ShotEvent {
   ball: string;
   /** Id of the other ball, cushion, jaw or pocket; "" if there is none. */
   other: string;
-  /** The same for people: "left rail, head half". */
+  /** Its name for people: "left rail, head half". */
   otherName: string;
   /** Centre of the ball [m]. */
   place: [number, number, number];
   /** Of the ball [m/s], just before and just after. */
   speedBefore: number | null;
   speed: number | null;
-  /** Speed at which the two approach [m/s]. */
+  /** Approach speed of the two [m/s]. */
   closing: number | null;
   /** Cut angle [rad]. */
   cut: number | null;
@@ -122,16 +122,16 @@ export interface Outcome {
   stopped: "at_rest" | "time" | "events" | "endless";
   /** The ball that the struck ball meets first. */
   firstHit: string | null;
-  /** How many balls it meets. */
+  /** Number of balls it meets. */
   contacts: number;
-  /** How many cushions it meets before its second ball. */
+  /** Number of cushions it meets before its second ball. */
   approachCushions: number;
   balls: {
     id: string;
     /** At the end [m]. */
     x: number;
     y: number;
-    /** Id of the pocket that holds it. */
+    /** Id of its pocket. */
     pocket: string | null;
     offTable: boolean;
     /** 0 for the ball that fell first, 1, ..., or -1. */
@@ -159,20 +159,20 @@ export class Shot {
   readonly record: object;
   /** Its duration, gravity and tracks alone, in the form of the record: much faster. */
   readonly motion: {duration: number; gravity: number; tracks: object[]};
-  /** States of all balls at these times [s]. `numbers` has nine for each time and ball, ball after ball:
-   * centre [m], velocity [m/s], angular velocity [rad/s]. `states` has one for each: an index into STATES. */
+  /** States of all balls at these times [s]. `numbers` contains nine for each time and ball, ball after ball:
+   * centre [m], velocity [m/s], angular velocity [rad/s]. `states` contains an index into STATES for each. */
   states(times: number | ArrayLike<number>): {balls: number; numbers: Float64Array; states: Uint8Array};
-  /** The same for one ball. */
+  /** The state of one ball. */
   stateAt(ball: string | number, time: number): {
     state: BallState;
     position: [number, number, number];
     velocity: [number, number, number];
     spin: [number, number, number];
   };
-  /** The table as it rests, without pocketed balls and with the same cue. */
+  /** The scene at rest, without pocketed balls and with the same cue. */
   after(): Scene;
-  /** A measure or an expression, as `carom describe measures` lists them: shot.measure("route"). `game`: the
-   * rules that "point" and others judge by. @throws CaromError */
+  /** A measure or expression (see `carom describe measures`): shot.measure("route"). `game`: the rules for
+   * "point" and others. @throws CaromError */
   measure(expression: string, options?: {game?: Game}): number | boolean | null | string[];
   free(): void;
 }
@@ -197,7 +197,7 @@ export interface Batch {
   firstHit: Int32Array;
   contacts: Int32Array;
   approachCushions: Int32Array;
-  /** One for each shot and ball, the balls of the first shot first: the place at the end [m]. */
+  /** The final position for each shot and ball, the balls of the first shot first [m]. */
   x: Float64Array;
   y: Float64Array;
   /** Index of the pocket, -2 for a ball that has left the table, or -1. */
@@ -223,7 +223,7 @@ export interface RuleOption {
   what: string;
 }
 
-/** The state of a game between two shots, as `carom judge --state-out` writes it. Players are 0 and 1. */
+/** The state of a game between two shots, as in `carom judge --state-out`. Players are 0 and 1. */
 export interface GameState {
   game: Game;
   turn: number;
@@ -250,7 +250,7 @@ export interface Strike {
   offset: [number, number];
 }
 
-/** A shot to play, and how sure it is. Shares have their intervals of 95 %: [share, low, high]. */
+/** A shot to play, and its success rate. Shares have intervals of 95 %: [share, low, high]. */
 export interface Advice {
   words: string;
   kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
@@ -259,16 +259,16 @@ export interface Advice {
   pocket: string;
   cut_deg: number;
   cue: Strike;
-  /** The same with errors of the level, as it would be struck. */
+  /** The cue with random errors of the level. */
   strike: Strike;
-  /** As judge() takes it. */
+  /** The argument `announced` of judge(). */
   call: {ball: string; pocket: string; safety: boolean; pushOut: boolean};
   /** Of the cue ball in hand [m]. */
   place: [number, number] | null;
-  /** Of shots that the search has not seen: those that win the turn or the game, and fouls. */
+  /** Shares of shots that the search has not used: wins of the turn or the game, and fouls. */
   makes: [number, number, number];
   fouls: [number, number, number];
-  /** Mean value of what the shot leaves: 1 is a game won, 0 one lost. */
+  /** Mean value of the position that it leaves: 1 is a win, 0 a loss. */
   worth: number;
   leaves: string[];
 }
@@ -288,9 +288,9 @@ export class Verdict {
     state: GameState;
     respots: {ball: string; place: [number, number]}[];
   }[];
-  /** Whether the cue ball may lie there [m]. */
+  /** Whether the cue ball may be placed there [m]. */
   mayPlace(x: number, y: number, option?: number): boolean;
-  /** The option that is best for the player who may choose: eight-ball, nine-ball and ten-ball. */
+  /** The best option for the player who chooses: eight-ball, nine-ball and ten-ball. */
   choose(skill?: string): number;
   /** The next scene. `place`: of the cue ball in hand [m]; without it, near the head spot.
    * @throws CaromError */
@@ -314,8 +314,8 @@ export const games: {
     mayPushOut: boolean;
     text: string;
   };
-  /** The best shots that differ in kind, ball or pocket, the best first; at least one. `skill`: "beginner",
-   * "club", "league", "professional" or "machine"; `shots` that check each of them, 0 for none. It takes some
+  /** The best shots of different kind, ball or pocket, the best first; at least one. `skill`: "beginner",
+   * "club", "league", "professional" or "machine"; `shots`: fresh shots for each, 0 for none. It takes some
    * tenths of a second: call it in a Worker. Eight-ball, nine-ball and ten-ball. @throws CaromError */
   advise(state: GameState, scene: Scene,
     options?: {skill?: string; seed?: number; best?: number; shots?: number}): Advice[];

@@ -21,7 +21,7 @@ async function load(given) {
     return source;
   if (typeof Response !== "undefined" && source instanceof Response) return source.arrayBuffer();
   const url = new URL(source, import.meta.url);
-  // node's fetch knows no files.
+  // node's fetch does not read files.
   if (url.protocol === "file:" && typeof process !== "undefined") {
     const {readFile} = await import("node:fs/promises");
     return readFile(url);

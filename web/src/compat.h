@@ -10,7 +10,7 @@
 #include <cstring>
 
 #ifdef __EMSCRIPTEN_PTHREADS__
-// Where a landing pad and the library's search for a handler meet. clang 14 believes that all threads share
+// Where a landing pad and the library's search for a handler meet. clang 14 assumes that all threads share
 // it, but the library has one for each thread: without this no exception is caught.
 extern "C" {
 struct carom_landing_pad {

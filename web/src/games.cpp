@@ -1,4 +1,4 @@
-// Games: what is legal, the verdict on a shot, the next scene.
+// Games: legal choices, the verdict on a shot, the next scene.
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -132,7 +132,7 @@ CAROM_WEB int carom_game_may_place(const WebShot* shot, const WebVerdict* verdic
         give(nullptr, may ? "true" : "false");
     });
 }
-/// The next scene: the cue ball at (x, y), or, if they are NaN, where it lies or at the free place nearest to
+/// The next scene: the cue ball at (x, y), or if they are NaN, at its position or the free place nearest to
 /// the head spot; the cue of the last shot, aimed at the nearest ball that may be hit first.
 CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, std::size_t index, double x,
                               double y) {
@@ -151,8 +151,8 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
         give_scene(std::move(next));
     });
 }
-/// The table as it rests, without a game: pocketed balls are gone, and the cue is that of the last shot. If
-/// the struck ball is gone, there is no cue.
+/// The scene at rest, without a game: pocketed balls are gone, and the cue is from the last shot. If the
+/// struck ball is gone, there is no cue.
 CAROM_WEB int carom_shot_after(const WebShot* shot) {
     return guarded([&] {
         Scene next = scene_after(shot->scene, shot->record);

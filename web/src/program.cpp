@@ -12,7 +12,7 @@ char* carom_page_wasm();
 pid_t carom_getpid();
 int carom_flock(int fd);
 
-// The functions of emscripten only pretend.
+// The functions of emscripten are only stubs.
 pid_t getpid() {
     return carom_getpid();
 }

@@ -45,7 +45,7 @@ Json error_json() {
     } catch (const BadArgument& error) {
         return error_json("argument", error.what());
     } catch (const std::exception& error) {
-        // Refusals of the libraries: std::invalid_argument, VariationError, UsageError.
+        // Errors of the libraries: std::invalid_argument, VariationError, UsageError.
         return error_json("argument", error.what());
     }
 }

@@ -125,7 +125,7 @@ CAROM_WEB int carom_simulate(const WebScene* scene, double until, double seconds
         RunBuffers buffers;
         const Plan plan = make_plan(shot->scene, kIsa);
         simulate(plan, buffers, shot->outcome, shot->record, options);
-        // JSON of the outcome takes longer than a shot of two balls, so it is made only if it is asked for.
+        // JSON of the outcome takes longer than a shot of two balls, so it is made only on request.
         const Json brief = {shot->record.duration, shot->record.events.size(), plan.warnings};
         give(shot.release(), brief.dump());
     });
@@ -152,8 +152,8 @@ CAROM_WEB void carom_free_shot(WebShot* shot) {
 CAROM_WEB int carom_shot_record(const WebShot* shot) {
     return guarded([&] { give(nullptr, record_json(shot->record)); });
 }
-/// Data for drawing, as the bytes of numbers: duration, gravity, and for each ball its pocket, radius,
-/// mass, number of segments, and 18 numbers for each of them. Texts of numbers take longer than a break.
+/// Data for drawing, as the bytes of numbers: duration, gravity, and for each ball its pocket, radius, mass,
+/// number of segments, and 18 numbers for each segment. Numbers as text would take longer than a break.
 CAROM_WEB int carom_shot_motion(const WebShot* shot) {
     return guarded([&] {
         const Record& record = shot->record;

@@ -22,7 +22,7 @@
 
 namespace carom::web {
 
-/// A scene and its source. Numbers that changed since are kept apart, because writing them into the source
+/// A scene and its source. Later changes of numbers are kept separately, because writing them into the source
 /// takes longer than a shot.
 struct WebScene {
     Scene scene;
@@ -40,7 +40,7 @@ struct WebVerdict {
     games::Verdict verdict;
 };
 
-/// An argument that is wrong; the kind of the error is "argument".
+/// An invalid argument; the kind of the error is "argument".
 class BadArgument : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -60,7 +60,7 @@ std::string dumped(const Json& json);
 /// Describes the exception that is being handled. @returns 1
 int give_error() noexcept;
 
-/// Calls `work`, which may throw and gives its results by give().
+/// Calls `work`, which may throw and returns its results through give().
 template <class Work>
 int guarded(Work&& work) noexcept {
     try {

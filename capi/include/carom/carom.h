@@ -194,7 +194,7 @@ typedef enum carom_motion_state {
     CAROM_POCKETED = 4,
     CAROM_FALLING = 5,
     CAROM_AIRBORNE = 6,
-    CAROM_OUT = 7,      /* it has left the table */
+    CAROM_OUT = 7,      /* off the table */
     CAROM_COLLIDING = 8 /* in a cluster: it moves straight to where it is when the contacts are over */
 } carom_motion_state;
 
@@ -296,14 +296,13 @@ CAROM_API size_t carom_verdict_foul_count(const carom_verdict* verdict);
 CAROM_API const char* carom_verdict_foul(const carom_verdict* verdict, size_t index);
 CAROM_API const char* carom_verdict_rule(const carom_verdict* verdict, size_t index);
 
-CAROM_API int carom_verdict_points(const carom_verdict* verdict); /* scored by the shot */
-CAROM_API int carom_verdict_penalty(
-    const carom_verdict* verdict); /* snooker: what the other player receives */
+CAROM_API int carom_verdict_points(const carom_verdict* verdict);  /* scored by the shot */
+CAROM_API int carom_verdict_penalty(const carom_verdict* verdict); /* snooker: points for the other player */
 /* The player who chooses among the options; -1 if there is only one, or if lots decide. */
 CAROM_API int carom_verdict_chooser(const carom_verdict* verdict);
 
-/* One way for the game to continue; a verdict has at least one. The first one applies unless the chooser
- * takes another. */
+/* A possible continuation of the game; a verdict has at least one. The first one applies unless the chooser
+ * picks another. */
 typedef struct carom_option {
     const char*
         decision; /* "play on", "take in hand", "pass back", "rerack", ...; valid until the program ends */
@@ -342,14 +341,14 @@ typedef struct carom_advised {
     carom_call call;
     int32_t placed;  /* 1: the cue ball is in hand, and belongs at `place` */
     double place[2]; /* [m] */
-    /* Shares of shots that the search has not seen, each with its interval of 95 %: that win the turn or the
-     * game, and that are fouls. */
+    /* Shares of shots that the search has not used, each with its interval of 95 %: wins of the turn or the
+     * game, and fouls. */
     double makes[3], fouls[3];
-    double worth; /* mean value of what the shot leaves: 1 is a game won, 0 one lost */
+    double worth; /* mean value of the position that it leaves: 1 is a win, 0 a loss */
 } carom_advised;
 
-/* The best shots that differ in kind, ball or pocket, at most `best`, the best first. `skill`: "beginner",
- * "club", "league", "professional" or "machine". The balls of the scene must lie still; its cue ball may be
+/* The best shots of different kind, ball or pocket, at most `best`, the best first. `skill`: "beginner",
+ * "club", "league", "professional" or "machine". The balls of the scene must be at rest; its cue ball may be
  * missing while it is in hand. The same seed gives the same advice. On failure *advice is NULL. */
 CAROM_API carom_status carom_advise(const carom_game_state* state, const carom_scene* scene,
                                     const char* skill, uint64_t seed, size_t best, carom_advice** advice);
@@ -357,7 +356,7 @@ CAROM_API void carom_advice_free(carom_advice* advice); /* NULL is allowed */
 CAROM_API size_t carom_advice_count(const carom_advice* advice);
 CAROM_API carom_status carom_advice_shot(const carom_advice* advice, size_t index, carom_advised* shot);
 
-/* ---- What a game draws and asks ----
+/* ---- Data for drawing and playing a game ----
  *
  * Texts in these structs are valid as long as the scene or record exists and is not changed. */
 
@@ -442,9 +441,9 @@ typedef struct carom_event_details {
     double time;      /* [s] */
     int32_t type;     /* a carom_event_type */
     int32_t a;        /* index of the ball */
-    int32_t partner;  /* a carom_partner: what b is */
+    int32_t partner;  /* a carom_partner: the kind of b */
     int32_t b;        /* index of the other ball or of the part, or -1 */
-    double point[3];  /* where ball a touches what it meets [m] */
+    double point[3];  /* contact point of ball a [m] */
     double normal[3]; /* unit vector along which ball a is pushed */
     double cut_deg;   /* between the velocity and the line of the impact */
     double closing;   /* speed along the normal [m/s] */
@@ -455,8 +454,8 @@ typedef struct carom_event_details {
 CAROM_API carom_status carom_record_event_details(const carom_record* record, size_t index,
                                                   carom_event_details* details);
 
-/* Records as JSON, in files and as text (as carom_scene_text). A file holds no physics, so reading takes the
- * scene that was played; it must have the same balls. On failure *record is NULL. */
+/* Records as JSON, in files and as text (as carom_scene_text). A file contains no physics, so reading needs
+ * the played scene, with the same balls. On failure *record is NULL. */
 CAROM_API carom_status carom_record_write(const carom_record* record, const char* path);
 CAROM_API size_t carom_record_text(const carom_record* record, char* text, size_t size);
 CAROM_API carom_status carom_record_read(const char* path, const carom_scene* scene, carom_record** record);
@@ -468,7 +467,7 @@ CAROM_API carom_status carom_may_place(const carom_record* record, const carom_v
 
 /* The straight paths of a ball into a pocket. `towards` is the unit vector in their middle, `width_deg` the
  * angle between the outermost ones, 0 if there is none; `distance` [m] is from the ball to where it falls.
- * `ghost` is the centre of the cue ball when it sends the ball there, throw left out [m]. `in_the_way` is the
+ * `ghost` is the centre of the cue ball when it sends the ball there, without throw [m]. `in_the_way` is the
  * nearest ball on the middle path, or "". */
 typedef struct carom_pocket_line {
     double towards[2], ghost[2];
@@ -479,8 +478,7 @@ typedef struct carom_pocket_line {
 CAROM_API carom_status carom_pocket_lines(const carom_scene* scene, const char* ball, const char* cue_ball,
                                           carom_pocket_line* lines);
 
-/* A strike that was played and does what was asked, if `found` is 1; otherwise `why` says why there is none.
- */
+/* A strike that was played and succeeded, if `found` is 1; otherwise `why` states the reason. */
 typedef struct carom_aim {
     int32_t found;
     carom_cue cue;
@@ -493,7 +491,7 @@ typedef struct carom_aim {
 CAROM_API carom_status carom_aim_pot(const carom_scene* scene, const char* cue_ball, const carom_cue* how,
                                      const char* ball, const char* pocket, carom_aim* aim);
 /* Aims that pot it off one cushion: at most one per cushion. Writes up to `size` of them; *count receives
- * how many there are. */
+ * their number. */
 CAROM_API carom_status carom_bank_routes(const carom_scene* scene, const char* cue_ball, const carom_cue* how,
                                          const char* ball, const char* pocket, size_t size, carom_aim* aims,
                                          size_t* count);
@@ -514,9 +512,9 @@ typedef enum carom_shot_status {
 /* Plays `shots` shots of one scene that differ in the numbers of some keys, such as "cue.speed",
  * "cue.aim_deg", "cue.offset.side", "ball.1.position.x", "ball.1.velocity.y", "balls.mu_b"
  * (docs/guide/sweep.md; the numbers of [cue], [balls], [[ball]], [physics], [stop] and of the parts of the
- * table). `values` holds key_count x shots numbers: all of the first key, then all of the second. Every shot
- * has the results of carom_simulate, bit for bit, whatever the number of threads (0: one for each core). A
- * shot that is invalid or fails has its status, the others are played, and the call returns CAROM_OK.
+ * table). `values` contains key_count x shots numbers: all of the first key, then all of the second. Every
+ * shot has the results of carom_simulate, bit for bit, whatever the number of threads (0: one for each core).
+ * A shot that is invalid or fails has its status, the others are played, and the call returns CAROM_OK.
  * `hashes`: 1 if carom_batch_hash is wanted, otherwise 0. `until` as in carom_simulate. On failure (an
  * unknown key) *batch is NULL. `scene` need not be valid before its numbers are set. */
 CAROM_API carom_status carom_simulate_many(const carom_scene* scene, size_t shots, size_t key_count,
@@ -546,7 +544,7 @@ CAROM_API const uint64_t* carom_batch_hash(const carom_batch* batch);
 CAROM_API const double* carom_batch_x(const carom_batch* batch); /* at the end [m] */
 CAROM_API const double* carom_batch_y(const carom_batch* batch); /* at the end [m] */
 CAROM_API const int32_t* carom_batch_pocket(
-    const carom_batch* batch); /* index of the pocket that holds it, -2 if it has left the table, or -1 */
+    const carom_batch* batch); /* index of its pocket, -2 if it has left the table, or -1 */
 CAROM_API const int32_t* carom_batch_fell(
     const carom_batch* batch); /* 0 for the ball that fell first, 1, ..., or -1 */
 CAROM_API const int32_t* carom_batch_cushions(

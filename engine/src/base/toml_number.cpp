@@ -65,7 +65,7 @@ double number_in(const toml::node& node, const Interval& allowed) {
     refuse(objection(x, whole, allowed));
     // Do not convert back: 2^63 is not a valid integer.
     if (!node.value<double>())
-        refuse(fmt::format("= {} has more digits than a number holds; write {:.1f} for the nearest one",
+        refuse(fmt::format("= {} has more digits than a number can store; write {:.1f}, the nearest one",
                            whole, x));
     return x;
 }

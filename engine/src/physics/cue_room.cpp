@@ -118,7 +118,7 @@ std::string room_note(const Scene& scene) {
     const CueRoom room = room_for(scene, *scene.cue);
     if (room.in.empty() || (room.clears_deg && *room.clears_deg <= kLevel)) return "";
     return fmt::format(
-        "the cue would be in {} at an elevation of {} degrees; {}", room.in, scene.cue->elevation_deg,
+        "the cue would reach into {} at an elevation of {} degrees; {}", room.in, scene.cue->elevation_deg,
         room.clears_deg ? fmt::format("set cue.elevation_deg = {:.1f}, or \"auto\"", *room.clears_deg)
                         : "no elevation clears it");
 }

@@ -181,7 +181,7 @@ constexpr EffectInfo kTable[kEffects] = {
      .need = ball_friction_needed,
      .leave_out = [](Plan& plan) { plan.balls.mu_b = plan.balls.mu_b_more = 0.0; }},
     {.keyword = "cloth_in_impact",
-     .skipped_when = "`mu_s` or `mu_b` is 0, another model than `mathavan`, or no two balls can meet",
+     .skipped_when = "`mu_s` or `mu_b` is 0, a model other than `mathavan`, or no two balls can meet",
      .keys = "`mu_s`, `cloth_slip`, `ball_ball`",
      .need = cloth_in_impact},
     {.keyword = "cushions",
@@ -217,7 +217,7 @@ constexpr EffectInfo kTable[kEffects] = {
     {.keyword = "airborne",
      .skipped_when =
          "`vertical` is `drop`, or all balls start on the cloth, the cue is level, and no impact can lift a "
-         "ball (`e_h` 0, another model than `two_step`)",
+         "ball (`e_h` 0, a model other than `two_step`)",
      .keys = "`vertical`, `height`, `velocity`, `elevation_deg`, `ball_ball`, `e_h`",
      .need = airborne},
 };

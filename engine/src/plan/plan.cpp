@@ -126,10 +126,10 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
     Velocities after{struck.v, struck.w};
     hit_cloth(plan.balls, motion_of(plan, size.R), after);
     if (meets_tip_again(cue, size, after.v, after.w))
-        plan.warnings.push_back(fmt::format(
-            "at an elevation of {} degrees the ball would come back from the cloth and meet the tip "
-            "again; that second hit is not simulated",
-            cue.elevation_deg));
+        plan.warnings.push_back(
+            fmt::format("at an elevation of {} degrees the ball would rebound from the cloth into the tip; "
+                        "this second hit is not simulated",
+                        cue.elevation_deg));
 }
 
 // [-] The smallest restitution of a contact in a cluster, because the exponent of the unloading law is
@@ -139,9 +139,8 @@ constexpr double kLeastInCluster = 0.05;
 void warn_of_clusters(Plan& plan) {
     const double e_b = plan.e_b();
     if (plan.clusters == ClusterModel::kCompliant && plan.sizes.size() > 2 && e_b < kLeastInCluster)
-        plan.warnings.push_back(
-            fmt::format("balls.e_b is {:.4g}, but where three or more balls touch it counts as {}", e_b,
-                        kLeastInCluster));
+        plan.warnings.push_back(fmt::format("balls.e_b is {:.4g}, but impacts of three or more balls use {}",
+                                            e_b, kLeastInCluster));
 }
 
 // Limits beyond which a value is probably in the wrong unit. [m], [m/s]
@@ -168,7 +167,7 @@ void warn_of_units(Plan& plan) {
         say(fmt::format("ball {} lies {:.3g} m outside the table; positions are in m", in_quotes(away->id),
                         farthest));
     if (scene.cue && scene.cue->speed > kFastestStroke)
-        say(fmt::format("the cue moves at {:.4g} m/s, but a hard break at about 10; speeds are in m/s",
+        say(fmt::format("the cue moves at {:.4g} m/s, while a hard break is about 10; speeds are in m/s",
                         scene.cue->speed));
     for (const BallStart& ball : scene.ball) {
         const double speed = length3(ball.velocity);
@@ -178,7 +177,7 @@ void warn_of_units(Plan& plan) {
     }
     for (const BallSize& size : plan.sizes) {
         if (size.R >= kSmallestBall && size.R <= kLargestBall) continue;
-        say(fmt::format("a ball has a radius of {:.4g} m, but a pool ball has 0.0286; radii are in m",
+        say(fmt::format("a ball has a radius of {:.4g} m, while a pool ball has 0.0286; radii are in m",
                         size.R));
         break;
     }

@@ -86,8 +86,8 @@ class Checker {
             const bool cluster = lasted || happens(EventType::kBallCluster, e.time);
             const double lost = allowed + (cluster ? kStepsLose * last_energy : 0.0);
             if (lossless && !happens(EventType::kCueStrike, e.time) && energy < last_energy - lost)
-                report("U4", "energy falls from {:.17g} to {:.17g} J/kg, and nothing takes any", last_energy,
-                       energy);
+                report("U4", "energy falls from {:.17g} to {:.17g} J/kg, and nothing dissipates it",
+                       last_energy, energy);
             last_energy = energy;
             lasted = lasts;
         }
@@ -165,7 +165,7 @@ class Checker {
                                 s.w.allFinite() && s.a.allFinite() && s.dw.allFinite() &&
                                 std::isfinite(s.spin_decay) && !std::isnan(s.duration) && s.duration >= 0.0;
                 if (!ok)
-                    report("U1", "ball {} at {:.17g} s holds a number that is not finite", track.id, s.start);
+                    report("U1", "ball {} at {:.17g} s has a number that is not finite", track.id, s.start);
             }
         }
     }

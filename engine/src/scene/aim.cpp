@@ -34,11 +34,11 @@ class Aim {
     /// half.
     double hit() const {
         const toml::array& list =
-            list_of("aim_hit", "[\"1\", 0.75]: a ball, and how full it is hit, -1 to 1");
+            list_of("aim_hit", "[\"1\", 0.75]: a ball, and the fullness of the hit, -1 to 1");
         const BallStart& ball = other("aim_hit", text(list, "aim_hit"));
         const double full = s_.number_of(list[1], "cue.aim_hit[1]", {-1.0, false, 1.0, false, ""});
         if (full == 0.0)
-            s_.fail("aim_hit", "cue.aim_hit: a ball that is hit by nothing; write 1 for a full hit");
+            s_.fail("aim_hit", "cue.aim_hit: a hit of 0 misses the ball; write 1 for a full hit");
         const Vec2 way = planar(ball.position) - from_;
         const double reach = (1.0 - std::abs(full)) * (R_ + radius(ball)) / way.norm();
         if (!(reach < 1.0))

@@ -143,8 +143,8 @@ void check_cloth(const Section& top, const Scene& scene) {
     const SourceLocation where = by_name ? top.where("table", "cloth")
                                          : top.where("balls", top.has("balls", "mu_r") ? "mu_r" : "mu_s");
     top.fail(where,
-             "balls.mu_r = {} is above balls.mu_s = {}: a ball would roll with more friction than it slides; "
-             "lower mu_r or raise mu_s",
+             "balls.mu_r = {} is above balls.mu_s = {}: a rolling ball would have more friction than a "
+             "sliding one; lower mu_r or raise mu_s",
              p.mu_r, p.mu_s);
 }
 
@@ -183,9 +183,8 @@ void check_sizes(const Section& top, const Scene& scene) {
         };
         if (rough && size.R != first.R && !model.free && !model.reads_tolerance)
             refuse(
-                fmt::format("friction between balls of different radius acts on a tilted line of centres, "
-                            "for which the model {} has no formula; use physics.ball_ball = \"mathavan\" or "
-                            "set balls.mu_b = 0",
+                fmt::format("the model {} has no formula for friction between balls of different radius; use "
+                            "physics.ball_ball = \"mathavan\" or set balls.mu_b = 0",
                             model.name));
         if (!model.reads_tolerance) continue;
         for (const BallStart& other : scene.ball) {
@@ -228,26 +227,25 @@ void check_discs(const Section& top, const Scene& scene) {
     const BallBallModelInfo& model = *scene.physics.ball_ball;
     if (p.discs() && !scene.of_one_radius() && (model.reads_tolerance || model.free))
         top.fail(top.where("balls", "shape"),
-                 "discs of unlike size need a model without spins, not {}; set physics.ball_ball = "
+                 "discs of different size need a model without spins, not {}; set physics.ball_ball = "
                  "\"elastic\" or \"inelastic\"",
                  model.name);
     if (p.rolls()) return;
     const auto refuse = [&](const char* key, const char* what) {
         top.fail(top.has("balls", key) ? top.where("balls", key) : top.where("balls", "rolls"),
-                 "balls.rolls = false slides pucks, {}", what);
+                 "balls.rolls = false makes pucks, {}", what);
     };
     if (model.reads_friction && p.ball_friction().any())
-        refuse("mu_b", "for which friction between two is not built; set balls.mu_b = 0");
+        refuse("mu_b", "whose impacts have no friction model; set balls.mu_b = 0");
     const auto rough = [&](const CushionModelInfo* cushion) {
         return cushion->reads_friction && p.cushion_friction().any();
     };
     if ((!scene.table.cushions.empty() && rough(scene.physics.cushion)) ||
         (!scene.table.jaws.empty() && rough(scene.physics.jaw_model())))
-        refuse("f_c", "for which friction at a wall is not built; set balls.f_c = 0");
+        refuse("f_c", "whose impacts on cushions have no friction model; set balls.f_c = 0");
     if (p.e_h > 0.0) refuse("e_h", "which do not hop; set balls.e_h = 0");
     if (scene.cue)
-        top.fail("cue",
-                 "a cue turns what it strikes, and balls.rolls = false are pucks; give one a velocity");
+        top.fail("cue", "a cue cannot strike pucks (balls.rolls = false); give one a velocity instead");
 }
 
 /// Refuses arcs if a ball may fly.
@@ -285,10 +283,9 @@ void check_vertical(const Section& top, const Scene& scene) {
             "remove one of the two",
             scene.physics.ball_ball->name);
     if (scene.table.bed)
-        top.fail(
-            top.where("table", "bed"),
-            "table.bed says where balls leave the table, but with physics.vertical = \"drop\" none does; "
-            "remove one of the two");
+        top.fail(top.where("table", "bed"),
+                 "table.bed needs balls that fly, which physics.vertical = \"drop\" does not simulate; "
+                 "remove one of the two");
 }
 
 /// Refuses a bed without area, and balls in the air outside it.

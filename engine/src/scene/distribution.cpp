@@ -29,10 +29,8 @@ toml::array arguments(std::string_view name, std::string_view text) {
         if (const toml::array* array = table["v"].as_array(); array && table.size() == 1) return *array;
     } catch (const toml::parse_error&) {
     }
-    fail(
-        "cannot read the values of {}({}); write numbers, or strings in double quotes, with commas "
-        "between them",
-        name, text);
+    fail("cannot read the values of {}({}); write numbers, or strings in double quotes, separated by commas",
+         name, text);
 }
 
 namespace {
@@ -123,7 +121,7 @@ ListItem::ListItem(const toml::node& value) : node(&value) {
     }
     try {
         if (value.is_number()) exact = number_in(value);
-    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number can represent
+    } catch (const std::invalid_argument&) {  // infinite, or more digits than a number can store
     }
 }
 
@@ -155,9 +153,7 @@ Distribution parse_distribution(std::string_view text, const toml::node* own) {
     if (name == "normal") {
         need(1, 2, "normal(sd) or normal(mean,sd)");
         if (list.size() == 1 && (own == nullptr || !own->is_number()))
-            fail(
-                "normal(sd) is around the number in the scene, and there is none; write the number there, or "
-                "use normal(mean,sd)");
+            fail("normal(sd) needs a number in the scene as its centre; add it, or use normal(mean,sd)");
         const double mean = list.size() == 1 ? number_in(*own) : number(name, list, 0);
         const double deviation = number(name, list, list.size() - 1);
         if (!(deviation >= 0.0)) fail("the standard deviation of normal must be at least 0");

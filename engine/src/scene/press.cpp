@@ -166,8 +166,7 @@ void press(std::vector<Vec2>& places, std::span<const double> radii, double R, d
             step = std::max(step, (places[i] - before[i]).norm());
         }
     }
-    throw std::invalid_argument(
-        "the balls of this rack cannot be pressed together; set balls.radius_sd lower");
+    throw std::invalid_argument("the balls of this rack cannot be pressed together; lower balls.radius_sd");
 }
 
 }  // namespace carom

@@ -160,7 +160,7 @@ std::vector<RackedBall> scattered(const Rack& rack, const Table& table, const st
         do {
             if (tries-- == 0 || !(room.x() > 0.0) || !(room.y() > 0.0))
                 throw std::invalid_argument(
-                    fmt::format("there is no room for ball {} of {}; take fewer balls or a smaller gap",
+                    fmt::format("there is no room for ball {} of {}; use fewer balls or a smaller gap",
                                 number, rack.count));
             // Separate statements, because the order of the draws determines the layout.
             place.x() = low.x() + room.x() * random.uniform();

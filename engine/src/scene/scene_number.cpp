@@ -110,7 +110,7 @@ Found find_in_ball(const Scene& scene, const KeyPath& path) {
     const std::size_t i = *path.index;
     const auto alone = [i](Scene& s) { return std::span(s.ball).subspan(i, 1); };
     if (path.name == "radius" || path.name == "mass") {
-        if (!scene.ball[i].own) fail("the ball has no size of its own; give it one, then vary it");
+        if (!scene.ball[i].own) fail("the ball has no radius or mass of its own; add one, then vary it");
         return lifting(find(kSizeFields, "ball", path, Change::kTable,
                             [i](Scene& s) -> BallSize& { return *s.ball[i].own; }),
                        alone);
@@ -178,7 +178,7 @@ Found find_number(const Scene& scene, const KeyPath& path) {
     if (path.section == "balls") return find_in_balls(path);
     if (path.section == "ball") return find_in_ball(scene, path);
     if (path.section == "cue") {
-        if (!scene.cue) fail("the scene has no cue; give it one, then vary it");
+        if (!scene.cue) fail("the scene has no [cue]; add one, then vary it");
         return find(kCueFields, "cue", path, Change::kNumbers, [](Scene& s) -> Cue& { return *s.cue; });
     }
     if (path.section == "physics")

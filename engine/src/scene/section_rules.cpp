@@ -99,10 +99,10 @@ void check_camera(const Section& section, const RenderSettings& r) {
     if (r.eye && section.has("camera"))
         section.fail("camera", "render.camera and render.eye exclude each other; remove one of the two");
     if (r.eye && *r.eye == *r.target)
-        section.fail("target", "render.target is where the eye is; move one of the two");
+        section.fail("target", "render.target and render.eye are the same point; move one of them");
     if (r.cloth && !color_of(*r.cloth))
         section.fail("cloth",
-                     "render.cloth is no colour: {}; write six hexadecimal digits, as in \"#1d6a54\"",
+                     "render.cloth is not a colour: {}; write six hexadecimal digits, as in \"#1d6a54\"",
                      in_quotes(*r.cloth));
 }
 

@@ -61,7 +61,8 @@ void apply_method(const Section& s, Rack& rack) {
     for (const RackGame game :
          {RackGame::kThreeCushion, RackGame::kFourBall, RackGame::kLine, RackGame::kScatter})
         if (rack.game == game)
-            s.fail("method", "rack.method is for balls racked in rows; leave it out or choose another game");
+            s.fail("method",
+                   "rack.method applies only to balls racked in rows; leave it out or choose another game");
     if (rack.method == RackMethod::kTriangle) {
         if (!s.has("gap")) rack.gap = kTriangleGap;
         if (!s.has("jitter")) rack.jitter = kTriangleGap;
@@ -70,7 +71,8 @@ void apply_method(const Section& s, Rack& rack) {
     for (const char* key : {"gap", "jitter"})
         if (s.has(key))
             s.fail(key,
-                   "rack.{} opens contacts, and a template closes them; leave out rack.{} or rack.method",
+                   "rack.{} cannot be combined with a template, which closes all contacts; leave out rack.{} "
+                   "or rack.method",
                    key, key);
     rack.gap = 0.0;
 }
@@ -84,7 +86,7 @@ void place_rack(const Section& top, const Section& s, const Rack& rack, Scene& s
     const bool lattice = rack.radius_sd > 0.0 && rack.game != RackGame::kScatter;
     if (lattice && balls_of(rack) > kMaxPressedBalls)
         s.fail(s.has("rows") ? "rows" : "count",
-               "at most {} balls of unlike size can be racked, not {}; leave some out", kMaxPressedBalls,
+               "at most {} balls of different size can be racked, not {}; leave some out", kMaxPressedBalls,
                balls_of(rack));
     const bool scatter = rack.game == RackGame::kScatter;
     if (s.has("count") && rack.game != RackGame::kLine && !scatter)
@@ -96,18 +98,14 @@ void place_rack(const Section& top, const Section& s, const Rack& rack, Scene& s
                        rack.game == RackGame::kFourBall;
     for (const char* key : {"position", "spot_ball", "angle_deg"})
         if (spots && s.has(key))
-            s.fail(key,
-                   "rack.{} moves a rack, but the balls of this game have spots of their own; leave it out",
-                   key);
+            s.fail(key, "rack.{} cannot move the balls of this game from their spots; leave it out", key);
     for (const char* key : {"jitter", "position", "spot_ball", "angle_deg"})
-        if (scatter && s.has(key))
-            s.fail(key, "rack.{} is for balls that lie together, and a scatter spreads them; leave it out",
-                   key);
+        if (scatter && s.has(key)) s.fail(key, "rack.{} does not apply to a scatter; leave it out", key);
     if (scatter && scene.table.preset.empty())
-        s.fail("game",
-               "a scatter needs the rectangle between the cushions of a table; choose one by its preset");
+        s.fail("game", "a scatter needs a table by name; set table.preset");
     if (spots && !(scene.table.length > 0.0)) {
-        s.fail("game", "this layout needs the spots of a table, but the cloth is endless; choose a table");
+        s.fail("game",
+               "this layout needs the spots of a table, and an endless cloth has none; choose a table");
     }
     if (rack.spot_ball && *rack.spot_ball > balls_of(rack))
         s.fail("spot_ball", "rack.spot_ball = {} is not in this rack; choose 1 to {}", *rack.spot_ball,
@@ -164,10 +162,8 @@ std::optional<Section> read_rack_keys(const Section& top, Rack& rack) {
     auto s = top.read("rack", kRackFields, rack);
     if (const auto balls = balls_section(top)) balls->read(kRackedBallFields, rack);
     if (!s && rack.radius_sd > 0.0)
-        top.fail(
-            top.where("balls", "radius_sd"),
-            "balls.radius_sd is of racked balls, and there is no [rack]; leave it out, or give a ball its "
-            "own radius");
+        top.fail(top.where("balls", "radius_sd"),
+                 "balls.radius_sd applies only to racked balls; add a [rack], or give a ball its own radius");
     if (s) apply_method(*s, rack);
     return s;
 }

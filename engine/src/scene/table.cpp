@@ -105,14 +105,14 @@ void check_jaw(const Section& section, const Jaw& jaw) {
     if (!section.path_is("table.arc") && section.has("side"))
         section.fail("side", "balls touch a jaw from outside; write [[table.arc]] for a round wall");
     if (jaw.radius == 0.0)
-        section.fail("radius", "an arc has no length if its radius is 0; make it larger, or write a jaw");
+        section.fail("radius", "an arc of radius 0 has no length; make it larger, or write a jaw");
     if (!jaw.from_deg || !jaw.to_deg)
         section.fail(SourceLocation{}, "an arc needs both from_deg and to_deg; set the two");
     const double turn = *jaw.to_deg - *jaw.from_deg;
     if (turn > 0.0 && turn <= 360.0) return;
     section.fail("to_deg",
-                 "table.arc.to_deg = {} is not up to 360 degrees beyond from_deg = {}; an arc runs "
-                 "counter-clockwise from one to the other",
+                 "table.arc.to_deg = {} must exceed from_deg = {} by at most 360 degrees; an arc runs "
+                 "counter-clockwise",
                  *jaw.to_deg, *jaw.from_deg);
 }
 
@@ -171,8 +171,7 @@ void read_table(const Section& top, Scene& scene) {
         if (custom && s->has(key))
             s->fail(
                 key,
-                "a table has a preset or cushions, jaws and pockets of its own, not both; remove one of the "
-                "two");
+                "a table has either a preset or its own cushions, jaws and pockets; remove one of the two");
     Table named;
     if (!custom) named.preset = kStandardTable;
     if (s) {

@@ -45,10 +45,8 @@ std::optional<TooDeep> too_deep(std::string_view toml) {
         else if (c == '#')
             at = std::min(toml.find('\n', at), toml.size()) - 1;
         else if (c == '.' && ++parts > kMaxKeyParts)
-            return TooDeep{
-                location(toml.substr(0, at)),
-                fmt::format("this key has more than {} parts, more than any key of a scene; remove some dots",
-                            kMaxKeyParts)};
+            return TooDeep{location(toml.substr(0, at)),
+                           fmt::format("this key has more than {} parts; remove some dots", kMaxKeyParts)};
         if (std::string_view("=,[]{}\n").find(c) == std::string_view::npos) continue;
         parts = 1;
         if (c == '=') in_value = true;

@@ -119,7 +119,7 @@ KeyPath find_path(toml::table& file, std::string_view key, const Scene* base = n
     if (!file.contains(path.section)) {
         // These two sections would put balls on the table, or strike one.
         if (path.section == "rack" || path.section == "cue")
-            fail("the scene has no [{}]; write the section, then vary what is in it", path.section);
+            fail("the scene has no [{}]; add the section, then vary its values", path.section);
         file.insert(path.section, toml::table());
     }
     toml::table* table = file[path.section].as_table();
@@ -294,7 +294,7 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         if (steps == 0) continue;
         rule->stride = std::max<std::uint64_t>(parts->grid, 1);
         if (steps > kMostShots / rule->stride)
-            throw VariationError(rule->key + ": the grids have more than 2^53 points together; take fewer");
+            throw VariationError(rule->key + ": the grids have more than 2^53 points together; use fewer");
         parts->grid = rule->stride * steps;
     }
     parts_ = parts;

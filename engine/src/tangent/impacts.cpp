@@ -310,13 +310,13 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
-            throw TangentError("more balls, or fewer, touch if it happens a little otherwise");
+            throw TangentError("a small change makes more or fewer balls touch");
         List after;
         for (const BallTrack& track : record.tracks) {
             const Segment& end = track.segments.back();
             const double tau = duration - end.start;
             if ((end.start > 0.0) != (duration > 0.0))
-                throw TangentError("its balls meet something else during it");
+                throw TangentError("its balls meet something else during the impact");
             const List ball = list_of({{velocity_at(end, tau), spin_at(end, tau, track.own->R)}});
             after.insert(after.end(), ball.begin(), ball.end());
             const Vec2 from = planar(position_at(end, tau)) - planar(track.segments.front().r);

@@ -83,7 +83,7 @@ Input input_of(Scene& scene, const std::string& key) {
     const SceneNumber number(scene, key);
     const double value = number.value(scene);
     if (std::isnan(value))
-        throw TangentError(fmt::format("{} is no number with a fraction that the scene sets", key));
+        throw TangentError(fmt::format("{} is not a real number that the scene sets", key));
     const BallParams balls = scene.balls;
     number.put(scene, value);
     if (scene.balls != balls)
@@ -126,7 +126,7 @@ Numbers numbers_of(const Plan& plan, Scene& scene, const std::vector<Input>& inp
             near[k] = values_of(scene, table, vertical);
             at[k] = list_of(near[k]);
             if (at[k].size() != list.size())
-                throw TangentError(fmt::format("{} changes which parts of the table there are", input.key));
+                throw TangentError(fmt::format("{} changes the number of parts of the table", input.key));
             if (change >= Change::kTable) scene = plan.scene;
         }
         input.put(scene, input.value);

@@ -48,7 +48,7 @@ Replay::Replay(const Plan& plan, const Record& record, Scene& scene, const std::
         throw std::invalid_argument("the record is not of this plan: it has another number of balls");
     if (!plan.balls.rolls()) throw TangentError("pucks (balls.rolls = false) have no derivatives here");
     if (plan.balls.discs() && !plan.scene.of_one_radius())
-        throw TangentError("discs of unlike size have no derivatives here");
+        throw TangentError("discs of different size have no derivatives here");
     for (std::size_t i = 0; i < balls_.size(); ++i) {
         const Numbers::Ball& ball = numbers_.balls[i];
         const Segment& first = record.tracks[i].segments.front();
@@ -112,7 +112,7 @@ const Segment& Replay::next(int ball, double start) {
     const std::vector<Segment>& segments = record_.tracks[ball].segments;
     const std::size_t k = ++balls_[ball].segment;
     if (k >= segments.size() || std::abs(segments[k].start - start) > kAgrees * (1.0 + start))
-        throw TangentError(fmt::format("the motion of {} does not begin anew with it", who(ball)));
+        throw TangentError(fmt::format("the motion of {} does not restart at this event", who(ball)));
     if (segments[k].held) throw TangentError("a resting contact begins");
     return segments[k];
 }
@@ -130,7 +130,7 @@ void Replay::begin(int ball, const Dual& time, const State& state) {
         most = std::max({most, std::abs(last.from.v[i].x), R * std::abs(last.from.w[i].x)});
     }
     if (!is_gone(segment.state) && off > most * std::max(kAgrees, 10.0 * plan_.scene.physics.tolerance))
-        throw TangentError(fmt::format("{} continues otherwise than after such an event alone", who(ball)));
+        throw TangentError(fmt::format("{} does not continue as after this event alone", who(ball)));
     if (flies(last.state)) b.flew = now_;
     if (segment.state == MotionState::kFalling && last.state != MotionState::kFalling) b.fell = now_;
     Leg leg = leg_of(segment, time, state, surface_of(numbers_, ball));

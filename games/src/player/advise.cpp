@@ -27,17 +27,17 @@ using detail::Attempt;
 using detail::Lie;
 using detail::Search;
 
-/// A break that was searched on many racks: where the cue ball lies, in parts of the table's width and
-/// length, and how it is struck.
+/// A break found by a search on many racks: position of the cue ball as fractions of the table's width and
+/// length, and its stroke.
 struct BreakStroke {
     Game game;
-    double length;  ///< [m] of the table; the stroke serves tables whose length is nearest to it
+    double length;  ///< [m] of the table; the stroke applies to tables whose length is nearest to it
     double x, y;
     double hit;  ///< [-] of the apex ball: 0 is full, 1 and -1 pass its left and right edge
     double speed, height;
 };
-// By carom solve and carom break for a rack with the default gaps and errors of
-// --hand aim=0.125,speed=1%,tip=0.0175: 78, 77, 68, 92, 51 and 62 % of fresh shots are legal and pot a ball.
+// By carom solve and carom break for a rack with the default gaps and errors of --hand
+// aim=0.125,speed=1%,tip=0.0175: 78, 77, 68, 92, 51 and 62 % of fresh shots are legal and pot a ball.
 constexpr BreakStroke kBreaks[] = {
     {Game::kEightBall, 2.54, 0.2722, 0.2428, -0.0075, 8.414, 0.152},
     {Game::kNineBall, 1.9812, 0.7601, 0.1964, -0.2716, 7.060, 0.135},
@@ -56,8 +56,8 @@ std::vector<std::string> player_games() {
 
 void check_game(Game game) {
     if (std::none_of(std::begin(kBreaks), std::end(kBreaks), [&](const auto& b) { return b.game == game; }))
-        throw std::invalid_argument(fmt::format("there is no player of {}; it plays {}", name(game),
-                                                fmt::join(player_games(), ", ")));
+        throw std::invalid_argument(
+            fmt::format("carom does not play {}; it plays {}", name(game), fmt::join(player_games(), ", ")));
 }
 
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game
@@ -74,7 +74,7 @@ void check_balls(const State& state, const Scene& scene) {
     }
 }
 
-/// Puts the cue ball of the scene's cue there.
+/// Places the cue ball of the scene's cue.
 Scene placed(Scene scene, const Vec2& place) {
     if (index_of(scene.ball, scene.cue->ball) < 0) {
         BallStart ball;
@@ -86,7 +86,7 @@ Scene placed(Scene scene, const Vec2& place) {
     return scene;
 }
 
-/// The scene with a cue, and a cue ball: one in hand lies on a free place.
+/// The scene with a cue and a cue ball: one in hand lies on a free place.
 Scene completed(const State& state, Scene scene) {
     Cue cue = scene.cue.value_or(Cue{});
     cue.ball = cue_ball(state);
@@ -203,7 +203,7 @@ Skill skill_by_name(std::string_view name, double R) {
 
 Noise Skill::noise_at(double speed) const {
     Noise at = noise;
-    // Without it, no bit changes.
+    // Skipped at 0, so that no bit changes.
     if (of_speed > 0.0) at.speed = length(Vec2(noise.speed, of_speed * speed));
     return at;
 }
@@ -232,7 +232,7 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     if (options.fresh > 0) {
         for (Attempt* candidate : chosen) candidate->tally = {};
         search.rate(chosen, options.fresh, Search::kFresh, true);
-        // The first one stays: it was the best of many shots.
+        // The first one stays first: it was the best of many shots.
         std::stable_sort(chosen.begin() + 1, chosen.end(), [](const Attempt* a, const Attempt* b) {
             return a->tally.mean() > b->tally.mean();
         });

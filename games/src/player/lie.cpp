@@ -14,15 +14,16 @@
 namespace carom::games::detail {
 namespace {
 
-// Of a pot's chance: how much wider than its straight paths a pocket is for a ball that rubs a jaw [-], and
-// the error of the object ball that does not come from the aim [rad]. Both were fitted to simulated pots.
+// For the chance of a pot: the factor by which a pocket is wider than its straight paths because balls that
+// rub a jaw still fall [-], and the error of the object ball that does not come from the aim [rad]. Both were
+// fitted to simulated pots.
 constexpr double kForgives = 1.4, kOtherError = 0.006;
-/// [rad] Narrower paths are none.
+/// [rad] Narrower paths are ignored.
 constexpr double kNarrowest = 0.005;
-/// [-] Cosine of the thinnest cut that is tried: 83 degrees.
+/// [-] Cosine of the thinnest cut tried: 83 degrees.
 constexpr double kThinnest = 0.12;
-// A good place of the cue ball: its distance from the ghost ball [m], and the sine and cosine of the 35
-// degrees by which it may be off the line. Its chance is that of a pot at 0.4 m with a cosine of 0.85.
+// A good place of the cue ball: its distance from the ghost ball [m], and the sine and cosine of its largest
+// angle to the line, 35 degrees. Its chance is that of a pot at 0.4 m with a cosine of 0.85.
 constexpr double kGoodDistance = 0.3, kGoodSin = 0.574, kGoodCos = 0.819;
 constexpr double kIdealDistance = 0.4, kIdealStraight = 0.85;
 
@@ -41,10 +42,10 @@ using Weights = std::array<double, Potting::kFeatures>;
 constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
 // The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
 constexpr Weights kRotation = {0.57, -0.17, 0.0, 0.0, 0.09, -1.05, -0.04, 1.72, 1.83, -0.04, 0.09, 0.36};
-/// [-] Estimate of how often a player gets from one ball to a good place for the next.
+/// [-] Estimated chance to get from one ball to a good place for the next.
 constexpr double kGetsThere = 0.95;
 
-/// The ball that wins.
+/// The ball that wins the game.
 int money_ball(Game game) {
     return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
 }
@@ -243,7 +244,8 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
     const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
-    // The balls that a player must pot, the money ball among them, and how likely that is from good places.
+    // The balls that a player must pot, including the money ball, and the chance to pot them from good
+    // places.
     struct Task {
         double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
     };

@@ -1,4 +1,4 @@
-// Where the balls lie, which pots that leaves, and what a position is worth to a player.
+// The positions of the balls, the pots they leave, and the value of a position for a player.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct Lie {
     std::optional<Vec2> cue;
 };
 Lie lie_of(const Scene& scene);
-/// After a shot, with what an option of its verdict respots.
+/// The position after a shot, with the balls that an option of its verdict respots.
 Lie lie_of(const Record& record, const Option& option);
 
 /// The balls that the player to shoot may hit first and pot.
@@ -56,30 +56,30 @@ class Potting {
         double now = 0.0;    ///< of the best pot from where the cue ball lies
         double ideal = 0.0;  ///< of the best pot from a good place of the cue ball
     };
-    /// By number. @param now  the balls whose Chance::now is wanted
+    /// By number. @param now  the balls whose Chance::now is needed
     std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now) const;
-    /// The parts of a value, for the player whose turn it is.
+    /// The features of a position, for the player whose turn it is.
     static constexpr std::size_t kFeatures = 12;
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
-    /// [-] The chance to win for the player whose turn it is: a logistic function of the features.
+    /// [-] The chance of the player whose turn it is to win: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;
-    /// The number of the ball with the surest pot for the player to shoot; 0: there is none.
+    /// The number of the ball with the surest pot for the player to shoot; 0: none.
     int surest(const State& state, const Lie& lie) const;
-    /// Whether the cue ball may lie there between the noses.
+    /// Whether the cue ball fits there between the noses.
     bool inside(const Vec2& place) const;
-    /// [m] From centre to centre of the cue ball and an object ball that touch.
+    /// [m] Distance of the centres of the cue ball and an object ball in contact.
     double both() const { return both_; }
 
   private:
     /// The paths of a ball between the jaws of a pocket.
     struct Path {
         Vec2 towards, end;
-        double width = 0.0;  ///< [rad]; 0: there is none
+        double width = 0.0;  ///< [rad]; 0: none
     };
     Path path(int pocket, const Vec2& from) const;
     double chance(double distance, double straight, double width) const;
     bool clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const;
-    /// Whether the cue ball has a clear way to the ghost ball from one of three good places.
+    /// Whether the cue ball has a clear path to the ghost ball from one of three good places.
     bool reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const;
 
     struct Mouth {

@@ -21,7 +21,8 @@
 namespace carom::games::detail {
 namespace {
 
-/// The attempts, and how often each is made. Speeds of the cue [m/s], heights and sides in ball radii.
+/// The attempts, and the number of times each is made. Speeds of the cue [m/s], heights and sides in ball
+/// radii.
 struct Grid {
     std::array<double, 5> speeds;
     int speed_count;
@@ -29,7 +30,7 @@ struct Grid {
     std::array<double, 3> sides;
     int side_count;
     std::size_t pots;                    ///< the surest
-    int hits, around;                    ///< aims at each ball, and all round, that are played once
+    int hits, around;                    ///< aims at each ball, and in all directions, played once
     std::array<std::size_t, 3> samples;  ///< of each round
     std::array<std::size_t, 2> keep;     ///< candidates after the first rounds
 };
@@ -39,19 +40,20 @@ constexpr Grid kQuick = {{1.0, 1.8, 3.2}, 3, {0.0, -0.35, 0.35}, {0.0}, 1, 8, 15
 /// For each place of a cue ball in hand.
 constexpr Grid kInHand = {{1.0, 1.6, 2.4, 3.6}, 4, {0.0, -0.35, 0.35}, {0.0}, 1, 1, 0, 0, {}, {}};
 constexpr std::array kSweepSpeeds{0.7, 1.2, 2.0, 3.5};
-/// [-] Of the ball's width: the thinnest hits that are tried.
+/// [-] The thinnest hits tried, as a fraction of the ball's width.
 constexpr double kThinnestHit = 0.97;
-/// [-] Safeties, and push outs, that are rated.
+/// [-] Numbers of safeties and push outs that are rated.
 constexpr std::size_t kSafeties = 24, kPushOuts = 8;
-/// [-] Least estimated chance of a pot that is tried.
+/// [-] Least estimated chance of a pot to try it.
 constexpr double kLeastChance = 0.04;
-/// [-] Times that an aim is played and corrected.
+/// [-] How often an aim is played and corrected.
 constexpr int kCorrections = 2;
-/// [-] Places of a cue ball in hand that are tried; distances from the ghost ball [m], and angles [degrees].
+/// [-] Number of places tried for a cue ball in hand; distances from the ghost ball [m], and angles
+/// [degrees].
 constexpr std::size_t kPlaces = 40;
 constexpr std::array kDistances{0.15, 0.3, 0.55};
 constexpr std::array kAngles{0.0, -14.0, 14.0, -30.0, 30.0, -50.0, 50.0};
-/// [-] What a foul costs a player who does not look at what a shot leaves.
+/// [-] Cost of a foul for a player who ignores the position that a shot leaves.
 constexpr double kFoulCost = 0.3;
 
 const Call kPush = [] {
@@ -74,13 +76,13 @@ ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fal
     return is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
 }
 
-/// How far a direction turns to the left to become another one [degrees].
+/// The turn to the left from one direction to another [degrees].
 double turn_deg(const Vec2& from, const Vec2& to) {
     return direction_deg({dot(from, to), cross(from, to)});
 }
 
 double sd_of_aim(const Noise& noise) {
-    // A tip that is off to the side by a tenth of a radius turns the ball's path by some tenths of a degree.
+    // A side offset of the tip by a tenth of a radius turns the ball's path by some tenths of a degree.
     constexpr double kTurnOfSide = 2.0;  // degrees a radius
     return length(Vec2(noise.aim_deg, noise.side * kTurnOfSide)) / kDegrees;
 }
@@ -90,8 +92,8 @@ double sd_of_aim(const Noise& noise) {
 struct Search::Line {
     Attempt candidate;
     Vec2 ghost, towards;
-    double aim_per_turn;  ///< how far the aim moves to turn the object ball by as much [-]
-    bool hits;            ///< the ball first, when it was last played
+    double aim_per_turn;  ///< turn of the aim for each degree by which the object ball turns [-]
+    bool hits;            ///< whether it hit the ball first when last played
 };
 
 Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa isa,
@@ -128,7 +130,7 @@ void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const
         for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k].second.push_back(values[k]);
     }
     std::vector<BatchColumn> columns;
-    // A cue ball that is not in hand stays, so that the places need no check.
+    // A cue ball that is not in hand stays, so its place needs no check.
     for (std::size_t k = 0; k < (in_hand_ ? 7 : 5); ++k)
         columns.push_back({numbers[k].first, numbers[k].second});
     BatchOptions batch;
@@ -150,7 +152,7 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
         result.worth = result.made ? 1.0 : result.foul ? -kFoulCost : 0.0;
         return result;
     }
-    // The player who may choose takes what is best for himself.
+    // The player who chooses takes the option that is best for himself.
     bool first = true;
     for (const Option& option : verdict.options) {
         double worth = 0.5;  // of a new rack
@@ -192,7 +194,7 @@ void Search::correct(std::vector<Line>& lines) const {
             const Shot shot = shot_of(record);
             const int ball = index_of(record, std::to_string(line.candidate.ball));
             if (!missed(record, shot, ball).empty()) {
-                // Squirt carries the cue ball past the ball: the aim moves back by as much.
+                // Squirt makes the cue ball miss the ball: the aim moves back by the same amount.
                 const Vec2 way = line.ghost - line.candidate.place,
                            went = planar(record.state_at(shot.struck, 0.0).velocity);
                 line.candidate.cue.aim_deg -= turn_deg(way, went);
@@ -300,8 +302,8 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
         }
         if (state_.may_push_out) pushed[i] = result(record, kPush);
     });
-    // Every shot that makes a ball is a candidate, and so are the best of the others by what they leave.
-    // Fouls are among these, so that there is always one.
+    // Every shot that pots a ball is a candidate, and so are the best of the others, rated by the position
+    // that they leave. Fouls are among these, so that there is always a candidate.
     std::vector<std::size_t> made, others, pushes;
     for (std::size_t i = 0; i < tried.size(); ++i) (results[i].made ? made : others).push_back(i);
     const auto top = [](std::vector<std::size_t>& list, const std::vector<Result>& by, std::size_t most) {
@@ -330,7 +332,7 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
 
 bool Search::may_lie(const Vec2& place) const {
     if (!in_area(scene_.table, state_.in_hand, place) || !potting_.inside(place)) return false;
-    // A touching ball is no place to shoot from.
+    // No shot is played from a place that touches a ball.
     return std::all_of(lie_.balls.begin(), lie_.balls.end(), [&](const Lie::Ball& ball) {
         return length(ball.place - place) > potting_.both() + kSpotGap;
     });
@@ -363,7 +365,7 @@ std::vector<Vec2> Search::places() const {
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Place& a, const Place& b) { return a.chance > b.chance; });
-    // Of the surest, every third: neighbours are alike.
+    // Keep every third of the surest: neighbours are similar.
     const std::size_t step = found.size() > 3 * kPlaces ? 3 : 1;
     std::vector<Vec2> places;
     for (std::size_t i = 0; i < found.size() && places.size() < kPlaces; i += step)
@@ -401,7 +403,7 @@ std::vector<Attempt*> Search::kept(std::vector<Attempt*> alive, std::size_t keep
                      [](const Attempt* a, const Attempt* b) { return a->tally.mean() > b->tally.mean(); });
     std::vector<Attempt*> kept;
     for (Attempt* candidate : alive) {
-        // Advice must differ: two of every kind, ball and pocket stay as well.
+        // Advice must vary: keep two of every kind, ball and pocket as well.
         const auto like = std::count_if(kept.begin(), kept.end(), [&](const Attempt* other) {
             return other->kind == candidate->kind && other->ball == candidate->ball &&
                    other->pocket == candidate->pocket;

@@ -1,5 +1,5 @@
-// The search for a shot: candidates by geometry and by playing aims without thought, then successive halving
-// with common random numbers.
+// The search for a shot: candidates by geometry and by blindly played aims, then successive halving with
+// common random numbers.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct Attempt {
     Vec2 place = Vec2::Zero();  ///< of the cue ball
     Call call;
     ShotKind kind = ShotKind::kPot;
-    int ball = 0, pocket = -1;  ///< what it pots: number of the ball, index of the pocket; 0, -1: nothing
+    int ball = 0, pocket = -1;  ///< number of the potted ball, index of its pocket; 0, -1: none
     double cut_deg = 0.0;
     Tally tally;
 };
@@ -44,7 +44,7 @@ class Search {
     /// @param closer  as in result()
     void rate(std::span<Attempt* const> candidates, std::size_t shots, std::size_t first,
               bool closer = false) const;
-    /// The number of draws after which errors are fresh: best() uses fewer.
+    /// Number of draws that best() may use; later ones are fresh.
     static constexpr std::size_t kFresh = 1000;
 
   private:
@@ -59,8 +59,8 @@ class Search {
 
     using Judge = std::function<void(std::size_t, const Record&)>;
     void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
-    /// @param closer  whether to find Result::leaves, too, and the chance to win in place of what the skill
-    /// looks at
+    /// @param closer  whether to also find Result::leaves, and the chance to win instead of the measure of
+    /// the skill
     Result result(const Record& record, const Call& call, bool closer = false) const;
     void lift(Attempt& candidate) const;
     std::vector<Attempt> pots(std::span<const Vec2> places) const;

@@ -1,4 +1,4 @@
-"""Aiming aids: by geometry where that is exact, otherwise by playing the shot."""
+"""Aiming aids: by geometry if that is exact, otherwise by playing the shot."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class PocketLine(NamedTuple):
 
     pocket: str  # id
     towards: tuple[float, float]  # unit vector in the middle of these paths
-    width_deg: float  # the angle between the outermost of them; 0 if there is none
+    width_deg: float  # the angle between the outermost paths; 0 if there is none
     distance: float  # [m] from the ball to the point where it begins to fall
     in_the_way: str  # the nearest ball on the middle path, or ""
 

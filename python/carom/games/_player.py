@@ -1,4 +1,4 @@
-"""A player of pool: advice, and somebody to play against."""
+"""A player of pool: advice, and an opponent."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ class Cue(NamedTuple):
 
 
 class Advice(NamedTuple):
-    """A shot to play, and how sure it is."""
+    """A shot to play, and its success rate."""
 
     words: str
     kind: str  # "pot", "combination", "bank", "kick", "safety", "push out" or "break"
-    ball: str  # what it pots, and where; "" for other kinds
+    ball: str  # the ball it pots, and the pocket; "" for other kinds
     pocket: str
     cut_deg: float  # of a pot: how far the object ball turns to the left
     cue: Cue
     call: Call
     place: tuple[float, float] | None  # of the cue ball, if it is in hand [m]
-    # From shots that the search has not seen: how often the turn or the game is won, and how often the shot
+    # From shots that the search has not used: how often the shot wins the turn or the game, and how often it
     # is a foul; each with its interval of 95 %.
     makes: tuple[float, float, float]
     fouls: tuple[float, float, float]
-    worth: float  # mean value of what the shot leaves: 1 is a game won, 0 one lost
+    worth: float  # mean value of the position that it leaves: 1 is a win, 0 a loss
     leaves: list[str]  # the balls that it most often leaves as the surest pot
 
 
@@ -47,12 +47,12 @@ def advise(
     state: State, scene: SceneLike, skill: str = "professional", *, seed: int = 1, best: int = 3,
     shots: int = 400, threads: int = 1,
 ) -> list[Advice]:
-    """The best shots that differ in kind, ball or pocket, the best first; at least one.
+    """The best shots of different kind, ball or pocket, the best first; at least one.
 
-    scene: the balls, which lie still; for a break, the rack. The cue ball may be missing while it is in hand
-    skill: how well the player strikes, and how much it looks at: one of `SKILLS`
-    best: the most pieces of advice
-    shots: that check each of them; 0: none, and `makes` and `fouls` are those of the search
+    scene: the balls, at rest; for a break, the rack. The cue ball may be missing while it is in hand
+    skill: size of the player's errors and depth of its search: one of `SKILLS`
+    best: largest number of shots advised
+    shots: fresh shots for each; 0: none, and `makes` and `fouls` come from the search
     threads: 0 uses every core; the result does not depend on it
 
     Raises ValueError for a game without a player (`carom.games.rules` of eight-ball, nine-ball and ten-ball
@@ -68,7 +68,7 @@ def advise(
 class PlayerShot(NamedTuple):
     """A player's shot, with its errors."""
 
-    words: str  # what it means to do
+    words: str  # its intention
     scene: Scene  # the shot
     call: Call
     cue: dict[str, Any]  # the strike, as for `carom.Scene`
@@ -77,7 +77,7 @@ class PlayerShot(NamedTuple):
 
 @checked
 class Player:
-    """Somebody to play against: it means to play the best advice, and strikes with the errors of its level.
+    """An opponent: it tries to play the best advice, and strikes with the errors of its level.
 
     skill: one of `SKILLS`
     """

@@ -1,4 +1,4 @@
-"""Rules: what is legal, and how a shot is judged."""
+"""Rules: legal shots, and verdicts on shots."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class State(NamedTuple):
     @property
     def cue_ball(self) -> str:
         """The ball that the player strikes: "cue", or in carom games "white" or "yellow". In free pyramid any
-        other will do, too."""
+        ball may be struck."""
         return _carom.cue_ball(_fitting(self))
 
 
@@ -92,7 +92,7 @@ class _OptionFields(NamedTuple):
 
 
 class Option(_OptionFields):
-    """One way for the game to continue."""
+    """A possible continuation of the game."""
 
     # The hash of the judged record; "" for an option made by hand.
     _record: str = ""
@@ -104,7 +104,7 @@ class Option(_OptionFields):
 
 
 class Verdict(NamedTuple):
-    """How a shot is judged."""
+    """The verdict on a shot."""
 
     fouls: list[Foul]  # empty for a fair shot
     points: int  # scored by the shot
@@ -154,7 +154,7 @@ def new_game(
     target: points that win; 0: no end, in free pyramid 8
     rules: options that are not defaults: {"call": "eight"}, {"push_out": False}
 
-    Raises ValueError for another game, and for an option or value that it does not have.
+    Raises ValueError for an unknown game, option or value.
     """
     _check_whole("first", first)
     _check_whole("target", target)
@@ -164,7 +164,7 @@ def new_game(
 
 @checked
 def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
-    """Returns what the rules allow for the next shot.
+    """Returns the legal choices for the next shot.
 
     balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
         "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name
@@ -179,9 +179,9 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     """Judges a shot.
 
     state: before the shot
-    call: what the player called
+    call: the player's call
 
-    What no record shows is not judged: feet on the floor, touched balls, double hits, push shots, and time.
+    Facts that no record contains are not judged: feet on the floor, touched balls, double hits, pushes, time.
 
     Raises ValueError if the game is over, or the record does not end at rest, has no cue strike, or lacks the
     game's balls.
@@ -219,7 +219,7 @@ def _fitting(state: State) -> State:
 
 def _check_record(option: Option, record: Record) -> None:
     if option._record not in ("", record.hash()):
-        raise ValueError("the verdict is of another record; give the record that was judged")
+        raise ValueError("the verdict belongs to another record; give the record that was judged")
 
 
 @checked
@@ -243,7 +243,7 @@ def next_scene(
     """The scene of the next shot: pocketed balls are removed, respotted ones are back, the cue ball is
     placed, and the cue strikes.
 
-    option: one of the verdict's that does not rack again; a verdict stands for its first option
+    option: of the verdict, and one that does not rack again; a verdict means its first option
     cue: the strike, as for Scene; without "ball" it strikes the cue ball; None for none
     place: of the cue ball [m]; needed if the cue ball is gone, allowed if it is in hand. Without a cue, a
         ball in hand may lie on the free place nearest to the head spot

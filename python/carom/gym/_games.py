@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 #: [m] The smallest gap between balls, and between a ball and a cushion, in a random layout.
 _ROOM = 1e-3
-#: The number of random layouts to try before the table must be too small.
+#: The number of random layouts to try before the table is reported as too small.
 _TRIES = 1000
 
 
@@ -28,7 +28,7 @@ class States(NamedTuple):
     """n tables between two shots. Copy, slice or repeat them: `states.take([0] * 1000)`."""
 
     xy: NDArray[np.float64]  # (n, balls, 2) [m]; NaN for a ball that is not on the table
-    extra: NDArray[np.float64]  # (n, k) what else the game remembers; `Game.EXTRA` names the columns
+    extra: NDArray[np.float64]  # (n, k) other data of the game; `Game.EXTRA` names the columns
 
     def take(self, rows: Any) -> States:
         """A copy of the tables with these indices."""
@@ -50,7 +50,7 @@ class Judged(NamedTuple):
 
 @checked
 class Game:
-    """A game for one player. Subclasses decide which balls are on the table and what a shot is worth."""
+    """A game for one player. Subclasses choose the balls on the table and the reward of a shot."""
 
     #: Names of the columns of `States.extra`.
     EXTRA: tuple[str, ...] = ()
@@ -229,7 +229,7 @@ class _Ruled(Game):
         return out.astype(bool)
 
     def judge(self, states: States, cue: NDArray[np.float64], shots: Shots) -> Judged:
-        # The rules need more than `shots` holds, so the shots are played again.
+        # The rules need more data than `shots` contains, so the shots are played again.
         return self._played(states, cue, None, 1, False)[1]
 
     def play(

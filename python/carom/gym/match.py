@@ -92,7 +92,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
         if called and _GAMES[game][0] not in _CALLED:
             raise ValueError("called: only eight-ball and ten-ball have calls; leave it out")
         if opponent is not None and game == "Snooker":
-            raise ValueError("opponent: there is no player of snooker; leave it out")
+            raise ValueError("opponent: carom does not play snooker; leave it out")
         self._player = None if opponent is None else games.Player(opponent)
         self._rules, self._table, self._break_from = _GAMES[game]
         self._options = Options(**{"speed": (0.3, 8.0)} | options)

@@ -1,5 +1,5 @@
-"""The contents of a file from elsewhere. For any content, the only exception is SceneError, and memory is
-bounded by a multiple of its size."""
+"""The contents of an untrusted file. For any content, the only exception is SceneError, and memory is bounded
+by a multiple of its size."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from carom._errors import SceneError
 
 _READS = "pooltool writes JSON if the name of the file ends in .json, and MessagePack for .msgpack"
 _NUMBER = re.compile("[0-9]{1,18}")
-#: The types of numpy's numbers in MessagePack that Python has, too.
+#: The types of numpy's numbers in MessagePack that Python also has.
 _TYPE = re.compile("[<>=|]?(b1|[iu][1248]|f[248])")
 #: pooltool saves vectors and matrices.
 _MOST_DIMENSIONS = 2
@@ -96,7 +96,7 @@ def _parsed(name: str) -> Any:
     try:
         text = _contents(name).decode()
         value = json.loads(text)
-        # JSON can name half of a pair of surrogates, which is no text.
+        # JSON can name half of a surrogate pair, which is no text.
         json.dumps(value, ensure_ascii=False).encode()
         return value
     except json.JSONDecodeError as error:
@@ -105,9 +105,9 @@ def _parsed(name: str) -> Any:
     except UnicodeDecodeError:
         raise SceneError(f"is not JSON because it is not UTF-8; {_READS}", name) from None
     except UnicodeEncodeError:
-        raise SceneError("has a text with half of a pair of surrogates", name) from None
+        raise SceneError("has a text with half of a surrogate pair", name) from None
     except RecursionError:
-        raise SceneError("has objects too deep in each other", name) from None
+        raise SceneError("has too many nested objects", name) from None
     except ValueError as error:  # an integer with thousands of digits
         raise SceneError(f"has a number that is too long: {error}", name) from None
 
@@ -125,7 +125,7 @@ def _array(item: dict[Any, Any]) -> Any:
     shape = item[b"shape"]
     sizes = isinstance(shape, list) and len(shape) <= _MOST_DIMENSIONS and all(
         isinstance(size, int) and 0 < size <= array.size for size in shape)
-    # Without this, a few bytes can ask for [20000, 20000, 0] lists.
+    # Without this, a few bytes can request [20000, 20000, 0] lists.
     if not sizes or math.prod(shape) != array.size:
         raise ValueError(f"an array of {array.size} numbers with the shape {shape!r:.40}")
     return array.reshape(shape).tolist()
@@ -139,8 +139,8 @@ def _unpacked(name: str) -> Any:
         raise SceneError(what, name) from None
     data = _contents(name)
     try:
-        # The package takes memory for as many members as a list says to have, again for each list in it.
-        # To skip takes none, and fails if the members are not there.
+        # The package allocates memory for the declared number of members of every nested list.
+        # Skipping allocates none, and fails if members are missing.
         complete = msgpack.Unpacker(max_buffer_size=max(1, len(data)), strict_map_key=False)
         complete.feed(data)
         complete.skip()

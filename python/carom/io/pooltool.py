@@ -1,7 +1,7 @@
 """pooltool's files, both ways: the System of pooltool 0.6.0 as JSON, and read as MessagePack.
 
 `load` returns the scene that a System plays, with pooltool's models. `save` writes a record so that pooltool
-plays it. Neither needs pooltool. lab/notes/2026-11-pooltool.md measures what agrees and what does not.
+plays it. Neither needs pooltool. lab/notes/2026-11-pooltool.md measures the agreement.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FRICTION = (0.009951, 0.108, 1.088)
 def load(path: str | os.PathLike[str]) -> Scene:
     """The scene of a System at its start; of a simulated System, the scene that was simulated.
 
-    The models are pooltool's defaults as far as carom has them: `inelastic` impacts of balls with the
+    The models are pooltool's defaults that carom has: `inelastic` impacts of balls with the
     friction of Alciatore's TP A.14, `stronge` cushions and jaws, `sequential` clusters, `pocket = "at_once"`,
     `vertical = "drop"`, and a cue without losses. Two of pooltool's formulas differ: it limits the friction
     between balls by a normal impulse of e v m instead of (1 + e) v m/2, and it takes the normal of a jaw from
@@ -46,7 +46,7 @@ def load(path: str | os.PathLike[str]) -> Scene:
     return Scene.from_dict(tree, name)
 
 
-#: Measures of pooltool's table specifications, and where carom has them.
+#: Measures of pooltool's table specifications, and their places in carom.
 _SPECS = {"width": "mouth", "angle": "angle_deg", "radius": "radius"}
 
 
@@ -54,7 +54,7 @@ _SPECS = {"width": "mouth", "angle": "angle_deg", "radius": "radius"}
 def table(specs: dict[str, Any]) -> dict[str, Any]:
     """The section [table] of a scene for a table specification of pooltool: the attributes of its
     PocketTableSpecs, SnookerTableSpecs or BilliardTableSpecs as a dict, such as `attrs.asdict(specs)`. The
-    facings of side pockets end where their angle leads, and not up to 0.1 mm beside that, as in pooltool.
+    facings of side pockets end according to their angle; in pooltool they end up to 0.1 mm beside that.
 
     Raises SceneError if a measure is missing or is not a number.
     """
@@ -196,7 +196,7 @@ def save(record: Record, path: str | os.PathLike[str]) -> None:
     after each event and the coefficients. It has no formula for balls that fly, fall, or rest on each other;
     for these, the file holds 200 intermediate states per second as transitions. pooltool's viewer needs a
     table of its own layout: pool and snooker tables with 18 cushions and 6 pockets, carom tables with 4
-    cushions. The cue is that of the record's scene, with the speed that gives the ball the same velocity in
+    cushions. The cue is from the record's scene, with the speed that gives the ball the same velocity in
     pooltool. A record loaded from a file has no cue.
 
     Raises ValueError if the name does not end in .json, the balls differ in size or mass, or the table has

@@ -1,13 +1,12 @@
 """Sweeps: many shots of one scene with drawn values, as a table, on one machine or on many.
 
-The draws are those of `carom sweep`: a shot depends on the seed, its number and the key, whatever else
-varies.
+The draws are as in `carom sweep`: a value depends only on the seed, the number of the shot and the key.
 
 `columns` and `table` play shots at once. For a sweep that is too large for that, make a `plan`: its shards
 are Parquet files in a folder, each complete or absent, and the folder is the only state. `run` makes the
 missing shards, on threads, on an executor of concurrent.futures or on a Dask cluster; it may be killed at any
 time and run again. `status` lists the shards, `check` reads all of them, and `open` returns them as a
-dataset. `reduce` keeps no rows except what a function makes of them.
+dataset. `reduce` keeps only the results of a function of the rows.
 
     python -m carom.sweep --help
 """

@@ -37,31 +37,31 @@ def _arguments() -> argparse.ArgumentParser:
     add("plan", metavar="PLAN", help="file of the plan (JSON)")
     add("-o", "--output", metavar="FOLDER",
         help="folder of the shards; default: PLAN without .json, or the folder of a plan called plan.json")
-    add("--threads", type=int, default=0, metavar="N", help="threads on this machine; 0: one for each core")
+    add("--threads", type=int, default=0, metavar="N", help="threads on this machine, 0 for one per core")
     add("--dask", metavar="ADDRESS",
         help="play on a Dask cluster: tcp://HOST:PORT of its scheduler, or its scheduler file")
-    add("--slurm", action="store_true", help="submit an array of Slurm for what is missing, by sbatch")
+    add("--slurm", action="store_true", help="submit the missing shards as a Slurm array, with sbatch")
     add("--sbatch", default="", metavar="OPTIONS",
-        help="what sbatch gets besides: --sbatch='--time=60 --cpus-per-task=16'")
+        help="more options for sbatch: --sbatch='--time=60 --cpus-per-task=16'")
     add("--elements", type=int, default=1000, metavar="N",
-        help="elements of an array at most; Slurm's MaxArraySize is its limit (default: 1000)")
+        help="most elements of an array, at most Slurm's MaxArraySize (default: 1000)")
     add("--part", metavar="I/N",
-        help="only the shards whose number leaves I when divided by N: what an element of an array does")
-    add("--status", action="store_true", help="say what is there")
+        help="play only the shards whose number modulo N is I, as an array element does")
+    add("--status", action="store_true", help="print how many shards and rows are finished")
     add("--missing", action="store_true",
-        help="print the numbers of the missing shards, as sbatch --array takes them")
-    add("--check", action="store_true", help="read all that is there and compare it with its hashes")
+        help="print the numbers of the missing shards in the form of sbatch --array")
+    add("--check", action="store_true", help="read the finished shards and compare them with their hashes")
     new = parser.add_argument_group("a new plan")
     new.add_argument("--scene", metavar="SCENE", help="scene file (TOML)")
     new.add_argument("--vary", action="append", default=[], metavar="KEY=DISTRIBUTION",
-                     help="as for carom sweep; once for every key")
+                     help="as in carom sweep; may be repeated")
     new.add_argument("--shots", type=int, metavar="N", help="at most 2^53")
-    new.add_argument("--seed", type=int, default=1, metavar="S", help="of all draws (default: 1)")
+    new.add_argument("--seed", type=int, default=1, metavar="S", help="seed of all draws (default: 1)")
     new.add_argument("--shard", type=int, default=250_000, metavar="N",
-                     help="shots of a file (default: 250000)")
+                     help="shots per file (default: 250000)")
     new.add_argument(
         "--hashes", choices=("none", "digest", "column"), default="digest",
-        help="of the records: none, one for each shard (of every 64th shot), or a column besides")
+        help="hashes of the records: none, one per shard (of every 64th shot), or also a column")
     return parser
 
 
@@ -172,14 +172,14 @@ def _say_status(folder: str) -> int:
     for name in found.unfinished:
         print(f"unfinished: {name}")
     for name in found.strangers:
-        print(f"none of the sweep's: {name}")
+        print(f"not of this sweep: {name}")
     return 1 if found.missing or found.strangers else 0
 
 
 def _say_check(folder: str) -> int:
     found = _folder.check(folder)
     kinds = ", ".join(f"{name} {count}" for name, count in found.outcomes.items())
-    print(f"{folder}: {found.rows} of {found.plan.shots} rows are there and as they were written ({kinds})")
+    print(f"{folder}: {found.rows} of {found.plan.shots} rows are complete and unchanged ({kinds})")
     if found.missing:
         print(f"missing: {numbers(found.missing)}")
     for fault in found.faults.values():
@@ -197,7 +197,7 @@ def _do(args: argparse.Namespace) -> int:
     own = os.path.basename(args.plan) == _folder.PLAN
     folder = args.output or (os.path.dirname(args.plan) or "." if own else os.path.splitext(args.plan)[0])
     if args.threads < 0 or args.elements < 1:
-        _usage("--threads has to be at least 0, --elements at least 1")
+        _usage("--threads must be at least 0, and --elements at least 1")
     if not args.output and folder == args.plan:
         _usage(f"{args.plan}: name the folder of the shards with --output")
     if args.status or args.missing or args.check:

@@ -31,7 +31,7 @@ class Column(NamedTuple):
 
     values: NDArray[Any]
     texts: list[str] | None = None
-    missing: NDArray[np.uint8] | None = None  # for each shot 1 or 0; None for a column that is always there
+    missing: NDArray[np.uint8] | None = None  # for each shot 1 or 0; None for a column without gaps
 
 
 class Played(NamedTuple):
@@ -113,7 +113,7 @@ def columns(
 
     Missing values of a shot without a result are NaN, or None for strings and integers. Raises ValueError for
     a rule that cannot be read or that makes no valid scene, and SceneError for a value that no scene file can
-    hold.
+    express.
     """
     played = _played(as_scene(scene), vary, shots, seed, first, last, threads,
                      measures, game)[1]

@@ -39,12 +39,12 @@ class Check(NamedTuple):
     plan: Plan
     rows: int  # that are correct
     outcomes: dict[str, int]
-    faults: dict[str, str]  # file name: what is wrong with it
+    faults: dict[str, str]  # file name: its fault
     missing: tuple[int, ...]  # shards that do not exist
 
     @property
     def whole(self) -> bool:
-        """Whether every shot is there once, as it was written."""
+        """Whether every shot exists once, unchanged."""
         return not self.faults and not self.missing
 
 
@@ -109,10 +109,10 @@ def _check_shard(plan: Plan, shard: int, path: str) -> dict[str, int]:
             right = content.hexdigest() == about["carom.content"]
     except Exception as error:  # as in footer()
         what = f"its rows cannot be read ({_first_line(error)})"
-        raise SweepError(f"{path}: {what}; remove it to have it made again") from None
+        raise SweepError(f"{path}: {what}; remove it and run the sweep again") from None
     if not right or not described:
-        what = "its rows differ from those that were written"
-        raise SweepError(f"{path}: {what}; remove it to have it made again")
+        what = "its rows were changed after they were written"
+        raise SweepError(f"{path}: {what}; remove it and run the sweep again")
     outcomes: dict[str, int] = json.loads(about["carom.outcomes"])
     return outcomes
 
@@ -168,7 +168,7 @@ def open(
     plan = found.plan
     if found.missing and not (partial and found.done):
         what = f"{len(found.missing)} of {plan.shards} shards are missing"
-        raise SweepError(f"{name}: {what}; run the sweep again, or open what is there with partial=True")
+        raise SweepError(f"{name}: {what}; run the sweep again, or open the rest with partial=True")
     if found.strangers:
         stranger = os.path.join(name, found.strangers[0])
         raise SweepError(f"{stranger}: this file does not belong to the plan; remove it")

@@ -22,14 +22,13 @@ _PROBE = 8
 _MOST_SHARDS = 10_000_000
 #: Which records are hashed: none, some for each shard's digest, or all for a column.
 _HASHES = ("none", "digest", "column")
-#: A shard's digest is over the shots whose number is a multiple of this. Not all, since hashing makes a short
-#: shot take half as long again.
+#: A shard's digest is over the shots whose number is a multiple of this. Not all, since hashing takes half
+#: as long as a short shot.
 HASH_EVERY = 64
 
 
 class SweepError(RuntimeError):
-    """A plan, a folder or a worker does not match, or a file is not what it should be. `str()` names them and
-    says what to do."""
+    """A mismatch of plan, folder or worker, or a wrong file. `str()` names them and says what to do."""
 
 
 @checked
@@ -80,7 +79,7 @@ class Plan(NamedTuple):
     def _content(self) -> dict[str, Any]:
         content: dict[str, Any] = {"format": FORMAT, **self._asdict(), "vary": list(self.vary)}
         content["measures"] = list(self.measures)
-        # A plan without measures is the one that earlier versions made.
+        # A plan without measures is equal to the plan of earlier versions.
         return content if self.measures else dict(list(content.items())[:-2])
 
     def text(self) -> str:
@@ -88,8 +87,8 @@ class Plan(NamedTuple):
         return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the plan, or keeps a file with the same plan. Raises SweepError if there is anything
-        else."""
+        """Writes the plan, or keeps a file with the same plan. Raises SweepError if the file has
+        other content."""
         name = os.fspath(path)
         if os.path.exists(name):
             if Plan.load(name) != self:
@@ -110,7 +109,7 @@ class Plan(NamedTuple):
             with open(name, encoding="utf-8") as file:
                 tree = json.load(file)
         except json.JSONDecodeError as error:
-            what = f"{error.msg}; a plan is what carom.sweep.plan(...).save() writes"
+            what = f"{error.msg}; a plan is written by carom.sweep.plan(...).save()"
             raise SweepError(f"{name}:{error.lineno}:{error.colno}: {what}") from None
         except (OSError, ValueError) as error:
             raise SweepError(f"{name}: cannot read it: {getattr(error, 'strerror', None) or error}") from None
@@ -156,7 +155,7 @@ def wrong_worker(plan: Plan) -> str:
         return f"{versions}: install that one here, or make a new plan"
     if _probe(player_of(plan), plan.shots) != plan.probe:
         return (
-            f"this carom {_carom.VERSION} plays the first shots with other bits than the one that made the "
+            f"this carom {_carom.VERSION} gives other bits for the first shots than the carom that made the "
             "plan: install the same build everywhere, or make a new plan"
         )
     return ""
@@ -181,8 +180,7 @@ def plan(
         of values
     shots: at most 2**53
     seed: of all draws
-    shard: shots per file, which is also the most that a killed worker loses; 10 to 60 s of work are a good
-        size
+    shard: shots per file, and the largest loss of a killed worker; 10 to 60 s of work are a good size
     hashes: "digest" keeps one hash per shard, over the records of every 64th shot, with which the shard can
         be replayed and compared; "column" also keeps `int(record.hash(), 16)` of every shot in a column
         "record_hash", which takes time if shots are short; or "none"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: The least number of shards in an executor's queue; limited so that the client's memory does not grow with
 #: the sweep.
 _WINDOW = 1024
-#: The same if results wait for earlier ones.
+#: As above, if results wait for earlier ones.
 _WINDOW_OF_RESULTS = 64
 _RUN_AGAIN = "; finished shards are kept; run it again"
 
@@ -119,7 +119,7 @@ class _Tasks:
         try:
             future = self.executor.submit(self.work, *self.arguments(shard), **options)
         except (BrokenExecutor, RuntimeError) as error:
-            what = f"the executor takes no more work ({error})"
+            what = f"the executor accepts no more work ({error})"
             raise SweepError(f"shard {shard}: {what}{_RUN_AGAIN}") from None
         self.running[shard] = future
         future.add_done_callback(lambda done: self.ended.put((shard, done)))
@@ -210,14 +210,14 @@ def run(
     """Makes the missing shards of a sweep in the folder, and the folder with its plan if there is none.
 
     executor: "threads" of this process, an executor of concurrent.futures, a Dask client, or anything else
-        with `submit` or `map`; its workers must see the folder
+        with `submit` or `map`; its workers need access to the folder
     threads: the number of "threads"; 0 uses one per core
     shards: make only these
     retries: how often to retry shards that Dask gives up because their workers died
     progress: called after every shard
 
     A run may be killed at any time, as may any of its workers: the files in the folder are complete, and the
-    next run makes the rest. Raises SweepError if the folder holds something else or a worker has another
+    next run makes the rest. Raises SweepError if the folder has other contents or a worker has another
     carom, and OSError if a file cannot be written.
     """
     need("pyarrow.parquet")
@@ -290,8 +290,8 @@ def reduce(
     fn: for processes it must be picklable, such as a function of a module
     merge: the default adds numbers, arrays, and the matching parts of mappings, tuples and lists
 
-    Results are merged in the order of the shards, whoever finishes first, so that the bits do not depend on
-    the workers. Everything else is as for `run`, except that a killed reduction starts again.
+    Results are merged in the order of the shards, so that the bits do not depend on the workers.
+    Everything else is as for `run`, except that a killed reduction starts again.
     """
     need("pyarrow")
     workers = _workers(executor, threads)

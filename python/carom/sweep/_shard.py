@@ -40,8 +40,8 @@ def need(name: str) -> None:
 
 
 class ContentHash:
-    """SHA-256 of a table's names, types and values, however the table is divided and whatever wrote the
-    file."""
+    """SHA-256 of a table's names, types and values, independent of how the table is divided and who wrote
+    the file."""
 
     def __init__(self, schema: pyarrow.Schema) -> None:
         import pyarrow
@@ -86,7 +86,7 @@ class ContentHash:
 
 
 def about_rows(plan: Plan, first: int, last: int) -> dict[str, str]:
-    """The metadata that every file and dataset of a plan holds about itself."""
+    """The metadata of every file and dataset of a plan."""
     own = {"carom.plan": plan.id, "carom.version": plan.version, "carom.scene": plan.scene,
            "carom.scene_sha256": sha256(plan.scene.encode())}
     return own | provenance(plan.scene, plan.vary, plan.seed, first, last)
@@ -108,7 +108,7 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
         rows = metadata.num_rows
     except Exception as error:  # pyarrow raises errors of any type for a damaged file
         what = f"not a complete Parquet file ({_first_line(error)})"
-        raise SweepError(f"{path}: {what}; remove it to have it made again") from None
+        raise SweepError(f"{path}: {what}; remove it and run the sweep again") from None
     digest = said.pop("carom.sha256", None)
     if "carom.plan" in said and digest == sha256(canonical(said)):
         for name, wanted in about_rows(plan, *plan.range(shard)).items():
@@ -116,12 +116,12 @@ def footer(plan: Plan, shard: int, path: str) -> dict[str, str]:
                 words = f"plan {said['carom.plan']}"
                 if said["carom.plan"] == plan.id:
                     words = f"shots {said.get('carom.first')} to {said.get('carom.last')}"
-                what = f"the file holds {words}, not shard {shard} of plan {plan.id}"
-                raise SweepError(f"{path}: {what}; take another folder, or remove the file")
+                what = f"the file contains {words}, not shard {shard} of plan {plan.id}"
+                raise SweepError(f"{path}: {what}; use another folder, or remove the file")
         if rows == int(said["carom.last"]) - int(said["carom.first"]):
             return said
     what = "its description is damaged, or carom did not write it"
-    raise SweepError(f"{path}: {what}; remove it to have it made again")
+    raise SweepError(f"{path}: {what}; remove it and run the sweep again")
 
 
 def _first_line(error: BaseException) -> str:
@@ -237,7 +237,7 @@ def make_shard(plan: Plan, shard: int, folder: str, threads: int, stop: NDArray[
         raise SweepError(f"{path}: {_host()}, process {os.getpid()}: {wrong}")
     if not os.path.isdir(folder):
         where = f"there is no such folder on {_host()}"
-        raise SweepError(f"{folder}: {where}; every worker must see the folder of the sweep")
+        raise SweepError(f"{folder}: {where}; every worker needs access to the folder of the sweep")
     growing = os.path.join(folder, UNFINISHED)
     temporary = os.path.join(growing, f"{name}.{_host()}.{os.getpid()}.{os.urandom(4).hex()}.tmp")
     about: dict[str, str] = {}
@@ -285,8 +285,8 @@ def _result(
 def run_shard(
     plan: Plan | str | os.PathLike[str], shard: int, folder: str | os.PathLike[str], *, threads: int = 1
 ) -> dict[str, Any]:
-    """Makes one shard if it is missing. Its file appears complete or not at all, and is the same whoever
-    makes it.
+    """Makes one shard if it is missing. Its file appears complete or not at all, and is the same on every
+    machine.
 
     plan: a plan, or the path of its file
     threads: 0 uses one thread per core

@@ -1,4 +1,4 @@
-// Where one sample per pixel is not enough.
+// Finds the parts of a picture that need more than one sample per pixel.
 #pragma once
 
 #include <cstdint>

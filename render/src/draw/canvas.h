@@ -1,4 +1,4 @@
-// The canvas of the painters: a picture of the table, and what hides and lights the things in front of it.
+// The canvas of the painters: a picture of the table, with its depths and lights.
 #pragma once
 
 #include <algorithm>
@@ -67,7 +67,7 @@ class Canvas {
         }
     }
 
-    /// The table as it hides things, and where it takes shadows.
+    /// The table behind the painted things: its depths, and the cloth that takes shadows.
     class Background {
       public:
         Background(const TablePicture& table, const View& view)

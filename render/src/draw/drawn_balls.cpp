@@ -192,7 +192,7 @@ std::vector<DrawnBall> visible_balls(const DrawList& list, const ClothMap& cloth
 }
 
 std::vector<PixelBox> differing_boxes(const DrawnPicture& before, const DrawnPicture& after, FrameSize size) {
-    // Smoothing reaches one pixel beyond what moved, and needs a picture that was read as a whole.
+    // Smoothing reaches one pixel beyond the changes, and needs a picture that was read as a whole.
     if (!before.table || before.table != after.table || after.edges) return {whole(size)};
     std::vector<PixelBox> boxes;
     const auto add_missing = [&boxes](const DrawnPicture& from, const DrawnPicture& in) {

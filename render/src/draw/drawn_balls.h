@@ -22,7 +22,7 @@ enum class BallPlace : std::uint8_t {
     kCushion,  ///< near a cushion, which also gets a shadow
 };
 
-/// The lamp as the cloth below a ball sees it: the slopes of the directions to its centre, and half their
+/// The lamp as seen from the cloth below a ball: the slopes of the directions to its centre, and half their
 /// ranges.
 struct LampSlopes {
     float x, y, half_x, half_y;
@@ -46,8 +46,8 @@ struct DrawnBall {
     PixelBox box;        ///< pixels that the ball and its shadow may cover
     PixelBox body;       ///< pixels that the ball may cover
     PixelBox shadow;     ///< pixels that its shadow on the cloth may cover
-    PixelBox beside;     ///< pixels of what stands around it and is darkened
-    bool plain = false;  ///< its box shows only cloth: nothing hides it
+    PixelBox beside;     ///< pixels of its surroundings that it darkens
+    bool plain = false;  ///< its box shows only cloth, and nothing hides it
 
     bool operator==(const DrawnBall&) const = default;
 };

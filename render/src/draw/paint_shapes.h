@@ -14,7 +14,7 @@ namespace carom::render {
 /// @param origin of the coordinates of the table mesh (TableMesh::origin)
 void paint_line(const Canvas& canvas, const DrawLine& line, const PixelBox& box, const Vec2& origin);
 
-/// The same for a cue, and for its shadow on the cloth.
+/// As above for a cue and its shadow on the cloth.
 void paint_cue(const Canvas& canvas, const DrawCue& cue, const PixelBox& box, const Vec2& origin);
 void paint_cue_shadow(const Canvas& canvas, const DrawCue& cue, const PixelBox& box, const Vec2& origin);
 

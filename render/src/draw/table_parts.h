@@ -35,9 +35,9 @@ struct TableParts {
     std::array<std::size_t, kPartCount> ends{};  ///< one past the last vertex of each part
 };
 
-/// Cuts the cloth, the wood and the shading along the squares around the holes, so that only the little
-/// inside these squares has to be tested. @param faces the mark of each triangle of table.solid; empty: 255
-/// for the playing surface and 0 for the rest
+/// Cuts the cloth, the wood and the shading along the squares around the holes, so that only the parts inside
+/// these squares are tested. @param faces the mark of each triangle of table.solid; empty: 255 for the
+/// playing surface and 0 for the rest
 TableParts sort_parts(const TableMesh& table, const std::vector<std::uint8_t>& faces);
 
 }  // namespace carom::render

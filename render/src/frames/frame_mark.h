@@ -1,5 +1,5 @@
-// Which picture a frame belongs to: a line of text in the PNG file itself, which anyone can read and every
-// copy keeps.
+// The mark of a frame: a line of text in the PNG file that identifies its picture. Anyone can read it, and
+// every copy keeps it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace carom::render {
 
-/// Identifies everything that decides the pixels of a run's frames except their times: the record, the table,
-/// the view, the overlay and the size. 16 digits.
+/// Identifies everything that determines the pixels of a run's frames except their times: the record, the
+/// table, the view, the overlay and the size. 16 digits.
 std::string picture_of(const Record& record, const SequenceOptions& options);
 
 /// The mark of the frame at this time [s].

@@ -55,7 +55,7 @@ long frame_of(const std::string& pattern, const std::string& name) {
 /// before the first one is written, so that a film that was interrupted and resumed shows one picture.
 class FrameFiles {
   public:
-    /// @param count of frames; a single one leaves the others alone, and others may be drawn meanwhile
+    /// @param count of frames; a single one leaves other frames alone, and other runs may draw meanwhile
     FrameFiles(const SequenceOptions& options, std::string picture, long count)
         : options_(options),
           count_(count),
@@ -77,7 +77,7 @@ class FrameFiles {
         if (some)
             throw RenderError(options_.pattern + ": " +
                               (marked ? "the existing frames show another shot, camera, overlay or size"
-                                      : "nothing says which shot the existing frames show") +
+                                      : "the existing frames do not state their shot") +
                               "; render without --resume");
     }
 

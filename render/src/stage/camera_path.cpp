@@ -80,7 +80,7 @@ Camera player_camera(const Record& record, FrameSize size) {
     const int ball = first_ball(record);
     const Vec3 place = record.tracks.empty() ? Vec3::Zero() : Vec3(record.state_at(ball, 0.0).position);
     const Vec2 aim = aim_of(record, ball), at = place.head<2>();
-    // The balls that move, as far as they are in front of this one, and a little of the table behind it.
+    // The moving balls in front of this one, and a little of the table behind it.
     std::vector<Vec2> places{at - 0.12 * aim, at + 0.5 * aim};
     for (const Vec2& p : visited_places(record, true))
         if ((p - at).dot(aim) > 0.0) places.push_back(p);

@@ -8,7 +8,7 @@ namespace carom::render {
 namespace {
 
 constexpr double kLength = 1.47;  // [m]
-// [s] The ends of aiming, of the draw back and of the follow-through; then the cue is taken away.
+// [s] The ends of aiming, of the draw back and of the follow-through; then the cue is removed.
 constexpr double kAims = -1.1, kBack = -0.3, kFollows = 0.22, kFades = 0.62, kGone = 0.7;
 constexpr double kAway = 14.0;                      // [m/s^2]
 constexpr double kDrawnBack = 0.16, kNear = 0.015;  // [m] of the tip from the ball
@@ -50,12 +50,12 @@ std::optional<DrawCue> cue_at(const Record& record, const TableMesh& table, doub
     // A tip at the offset c [radii] gives the spin 5/2 c x v / R.
     const auto offset = [&](double spin) { return std::clamp(0.4 * R * spin / speed, -0.6, 0.6); };
     const double side = -offset(struck.spin.z()), height = offset(struck.spin.dot(left));
-    // A raised cue tilts the axis of the side spin, and throws the ball up.
+    // A raised cue tilts the axis of the side spin, and lifts the ball.
     const double masse = std::abs(side) > 0.05 ? std::abs(struck.spin.dot(forward) / struck.spin.z()) : 0.0;
     const double raised = std::max(std::atan(masse), std::atan2(2.0 * struck.velocity.z(), speed));
     const double elevation = std::clamp(
         std::max(raised, least_elevation(table, struck.position, forward.head<2>())), kLowest, kHighest);
-    // A raised cue is taken away at once, so that it does not meet the ball again.
+    // A raised cue is removed at once, so that it does not meet the ball again.
     constexpr double kRaised = 0.35, kSooner = 4.0;
     const double after = t > 0.0 && elevation > kRaised ? kSooner * t : t;
     if (after >= kGone) return std::nullopt;

@@ -72,15 +72,15 @@ test("words state what a player may do", () => {
 
 test("in a game only the cue ball is moved, in hand, where the rules allow it", () => {
   const {state} = playing();
-  assert.match(refusal(state, "1", 0.5, 0.1), /only the cue ball/);
+  assert.match(refusal(state, "1", 0.5, 0.1), /only a cue ball in hand/);
   assert.equal(refusal(state, "cue", 0.5, 0.4), null);
   assert.match(refusal(state, "cue", 0.5, 0.6), /head string/);
   nextShot(state);
   state.game.state.in_hand = "anywhere";
   assert.equal(refusal(state, "cue", 0.4, 1.5), null);
-  assert.match(refusal(state, "cue", 0.6, 1.5), /may not lie there/);
+  assert.match(refusal(state, "cue", 0.6, 1.5), /may not be placed there/);
   state.game.state.in_hand = "no";
-  assert.match(refusal(state, "cue", 0.4, 1.5), /only in hand/);
+  assert.match(refusal(state, "cue", 0.4, 1.5), /in hand may be moved/);
 });
 
 test("a game needs its table", (t) => {

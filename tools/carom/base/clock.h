@@ -1,5 +1,5 @@
-// Time for benchmarks: this thread's processor time, so that other work on the machine counts as little as
-// possible.
+// Time for benchmarks: this thread's processor time, so that other work on the machine affects it as little
+// as possible.
 #pragma once
 
 #include <time.h>

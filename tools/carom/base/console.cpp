@@ -63,7 +63,7 @@ std::size_t columns() {
     return all - std::min(all, kFree);
 }
 
-/// The command line and the version that prepare_process() was given.
+/// The command line and the version from prepare_process().
 std::string& kept_command_line() {
     static std::string line;
     return line;
@@ -136,8 +136,7 @@ void print(std::string_view text) {
 }
 
 void print_bytes(std::string_view bytes) {
-    // If output goes to a file or a pipe, keep the line: the output may be the very work whose progress it
-    // shows.
+    // If output goes to a file or a pipe, keep the line: it may show the progress of this output.
     static const bool on_terminal = ::isatty(1) == 1;
     if (on_terminal) wipe_line();
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size()) output_failed();

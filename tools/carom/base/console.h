@@ -1,4 +1,4 @@
-// Every command talks to its caller, a person or a program, by these: output, progress, interruption.
+// Output, progress and interruption of every command.
 #pragma once
 
 #include <chrono>
@@ -42,11 +42,11 @@ std::string shell_word(const std::string& argument);
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Writes results to standard output, as harmless() makes them: names of files may hold anything. Removes a
-/// progress line from the terminal first.
+/// Writes results to standard output, as harmless() makes them: names of files may contain anything. Removes
+/// a progress line from the terminal first.
 /// @throws OutputClosed, std::runtime_error if writing fails
 void print(std::string_view text);
-/// The same with what is no text.
+/// As above for bytes that are not text.
 void print_bytes(std::string_view bytes);
 void flush_output();
 
@@ -68,8 +68,8 @@ class ProgressLine {
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether it is time to update the line; the next true answer comes 0.1 s later. Cheap, so that callers
-    /// can ask before they build the text.
+    /// Whether to update the line; then not again for 0.1 s. Cheap, so that callers can check before they
+    /// build the text.
     bool due();
     void show_text(std::string_view text);
 

@@ -1,4 +1,4 @@
-// Which frame pays for which event.
+// Assigns the cost of events to frames.
 #include "base/frame_costs.h"
 
 #include <algorithm>

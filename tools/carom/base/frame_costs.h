@@ -1,4 +1,4 @@
-// Which frame pays for which event.
+// Assigns the cost of events to frames.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,8 @@ struct FrameCost {
     double simulate_ms() const { return detect_ms + resolve_ms + kernel_ms + cluster_ms; }
 };
 
-/// Sums the costs of a profiled record by frame. The first search of all pairs, made before any event,
-/// belongs to frame 0. The sums over all frames equal the sums over all events.
+/// Sums the costs of a profiled record by frame. The first search of all pairs, before any event, belongs to
+/// frame 0. The sums over all frames equal the sums over all events.
 std::vector<FrameCost> costs_by_frame(const Record& record, double from, double fps, long frames);
 
 /// Percentile by nearest rank: the smallest value such that at least p percent of all values do not exceed
@@ -47,7 +47,7 @@ class FrameWalls {
         mark_ = now_ms_();
         started_ = true;
     }
-    /// One for every frame except the first, whose start is not known.
+    /// One for every frame except the first, whose start is unknown.
     const std::vector<double>& walls() const { return walls_; }
 
   private:

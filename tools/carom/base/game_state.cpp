@@ -27,7 +27,7 @@ namespace {
 // [bytes] A state takes about three hundred.
 constexpr std::uintmax_t kLargestState = 1 << 16;
 
-/// Reads one key, and says what it expected.
+/// Reads one key; its message names the expected value.
 struct Reader {
     const std::string& path;
     const Json& json;
@@ -121,7 +121,7 @@ State read_state(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) throw UsageError(shown + ": there is no such file");
     if (std::filesystem::file_size(path, error) > kLargestState)
-        throw UsageError(fmt::format("{}: expected a state of a game of less than 64 kB", shown));
+        throw UsageError(fmt::format("{}: expected a game state of less than 64 kB", shown));
     std::ifstream stream(path);
     std::stringstream text;
     text << stream.rdbuf();
@@ -131,7 +131,7 @@ State read_state(const std::string& path) {
 State parse_state(const std::string& text, const std::string& shown) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object())
-        throw UsageError(shown + ": expected a state of a game, as carom judge --state-out writes it");
+        throw UsageError(shown + ": expected a game state as written by carom judge --state-out");
     for (const auto& [key, value] : json.items()) {
         if (std::find(std::begin(kKeys), std::end(kKeys), key) == std::end(kKeys))
             throw UsageError(fmt::format("{}: unknown key {}; expected one of {}", shown, in_quotes(key),

@@ -16,10 +16,10 @@ std::vector<std::string> game_names();
 
 nlohmann::ordered_json state_json(const games::State& state);
 
-/// Reads a state from a file. @throws UsageError naming the file and the key that is wrong
+/// Reads a state from a file. @throws UsageError naming the file and the wrong key
 games::State read_state(const std::string& path);
 
-/// The same from text; messages call it `shown`.
+/// As above, from text; messages name it `shown`.
 games::State parse_state(const std::string& text, const std::string& shown);
 
 }  // namespace carom::tools

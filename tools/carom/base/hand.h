@@ -1,4 +1,4 @@
-// The errors of a player's hand, as options give them.
+// The errors of a player's hand, from options.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@
 
 namespace carom::tools {
 
-/// How the frames of a margin are drawn.
+/// Settings for drawing the frames of a margin.
 struct FrameSettings {
     /// Default: the scene's.
     std::optional<FrameSize> size;
@@ -55,8 +55,8 @@ void add_simulation(MarginRun& run, const FrameCost& frame);
 /// Simulates once with timing on. @param drawn how to draw the frames; null: not drawn
 MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, const std::string& title);
 
-/// Compares the sum of the parts with the wall time, over
-/// all frames except the first, whose start is not known.
+/// Compares the sum of the parts with the wall time, over all frames except the first, whose start is
+/// unknown.
 struct Accounting {
     double wall_ms = 0.0, parts_ms = 0.0;
     double share() const { return wall_ms > 0.0 ? parts_ms / wall_ms : 1.0; }

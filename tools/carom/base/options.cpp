@@ -90,7 +90,7 @@ void add_option(CLI::App& app, const Option& row, const std::string& names, T& v
     restrict(*option, app, row);
 }
 
-/// Hands a command's table to CLI11. `named` becomes the command named on the command line.
+/// Passes a command's table to CLI11. `named` becomes the command named on the command line.
 void fill(CLI::App& app, const Options& command, const Options*& named) {
     if (!command.footer.empty()) app.footer(command.footer);
     // if no command is named, run_command_line reports it better than CLI11
@@ -158,7 +158,7 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
     return words;
 }
 
-/// Refuses empty file names, and a file that is named twice: the last write would replace the rest.
+/// Rejects empty file names, and a file that is named twice: the last write would replace the others.
 void check_files(const Options& command, const CLI::App& app) {
     struct Used {
         std::string option, path;
@@ -183,8 +183,7 @@ void check_files(const Options& command, const CLI::App& app) {
         std::error_code none;
         return file_of(a) == file_of(b) || std::filesystem::equivalent(a, b, none);
     };
-    // A terminal, a pipe or /dev/null may be named twice. So may a stream
-    // that the shell has opened, wherever it leads.
+    // A terminal, a pipe or /dev/null may be named twice, and so may a stream that the shell has opened.
     const auto is_stream = [](const std::string& path) {
         const bool opened = path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/");
         std::error_code none;

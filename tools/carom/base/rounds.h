@@ -1,5 +1,5 @@
-// Interleaved rounds: what is compared is measured alternately, in a new order each round, so that a drift of
-// the machine's speed favours none of it.
+// Interleaved rounds: alternatives are measured alternately, in a new order each round, so that a drift of
+// the machine's speed favours none.
 #pragma once
 
 #include <cstddef>

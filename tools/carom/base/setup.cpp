@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// More frames than this (46 hours at 60 fps) are taken for a typing error: they would fill any disk.
+/// More frames than this (46 hours at 60 fps) are considered a typing error: they would fill any disk.
 constexpr double kMostFrames = 1e7;
 constexpr double kFastestFps = 1e6;
 
@@ -32,7 +32,7 @@ std::optional<FrameSize> two_numbers(const std::string& text) {
 }  // namespace
 
 void add_gl(Options& command, std::string& gl) {
-    command.option("--gl", &gl, "NAME", "Offscreen OpenGL; auto: osmesa if installed, else egl")
+    command.option("--gl", &gl, "NAME", "Offscreen OpenGL; auto is osmesa if installed, else egl")
         .one_of({"auto", "osmesa", "egl"});
 }
 

@@ -31,7 +31,7 @@ int guarded(int (*run)(int argc, char** argv), int argc, char** argv);
 /// Checks the name of a page before any work is done; an empty name is valid. @throws UsageError
 void check_page_path(const std::string& option, const std::string& path);
 
-/// The instruction set that CAROM_ISA names, else the fastest one here for every kernel.
+/// The instruction set in CAROM_ISA, else the fastest one here for every kernel.
 /// @throws UsageError for an unknown or unavailable name
 kernel::Isa chosen_isa();
 
@@ -51,7 +51,7 @@ Record read_shot(const std::string& path, SimulateOptions options);
 /// The first comment at the beginning of a scene file, up to its first full stop or colon.
 std::string scene_title(std::string_view scene);
 
-/// Whether a file name is that of a record.
+/// Whether a file name is the name of a record.
 inline bool is_record(const std::string& path) {
     return path.ends_with(".json");
 }
@@ -79,7 +79,7 @@ FrameSize parse_size(const std::string& text);
 /// Reads the columns and rows of a contact sheet, "4x3". @throws UsageError
 FrameSize parse_sheet(const std::string& text);
 
-/// The frames per second that the user asked for, else the scene's. @throws UsageError
+/// The requested frames per second, else the scene's. @throws UsageError
 double chosen_fps(std::optional<double> asked, const RenderSettings& settings);
 
 /// The number of frames k with from + k / fps <= to. @throws UsageError if there are too many

@@ -1,4 +1,4 @@
-// Units of what people read. Files are always in SI.
+// Units in printed text. Files are always in SI.
 #pragma once
 
 #include <fmt/format.h>

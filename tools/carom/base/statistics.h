@@ -1,4 +1,4 @@
-// Shares of shots and how sure they are.
+// Shares of shots and their intervals.
 #pragma once
 
 #include <fmt/format.h>

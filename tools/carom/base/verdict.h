@@ -17,13 +17,13 @@ std::string foul_text(games::Game game, games::Foul foul);
 /// "player 2 shoots, cue ball in hand anywhere"
 std::string next_text(const games::State& state);
 
-/// The verdict as `carom judge --json` prints it.
+/// The verdict of `carom judge --json`.
 nlohmann::ordered_json verdict_json(const games::Verdict& verdict, games::Game game);
 
 /// A strike: {speed, aim_deg, elevation_deg, offset}.
 nlohmann::ordered_json cue_json(const carom::Cue& cue);
 
-/// The advice as `carom advise --json` prints it.
+/// The advice of `carom advise --json`.
 nlohmann::ordered_json advice_json(const std::vector<games::Advice>& advice, const carom::Table& table);
 
 /// The value of a measure: a number or null, a truth, or texts. @throws std::invalid_argument as Measure::of

@@ -5,8 +5,8 @@ import {words} from "./event_words.js";
 import {flies, isGone, radiusOf, size, stateAt} from "./motion.js";
 
 export class BallList {
-  /** `second`: the record of another shot, from which distances are shown, or null. `pick(ball)`: called by a
-   * click on a ball. */
+  /** `second`: the record of another shot, to which distances are shown, or null. `pick(ball)`: called by
+   * a click on a ball. */
   constructor(record, second, styles, pick) {
     Object.assign(this, {record, second, high: record.tracks.some(flies)});
     const columns = ["ball", "state", "m/s", "turns/s", ...(this.high ? ["mm high"] : []),

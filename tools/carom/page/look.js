@@ -1,4 +1,4 @@
-// How a table and its balls look from above: the lamp, materials and patterns of the rendered frames
+// The look of a table and its balls from above: the lamp, materials and patterns of the rendered frames
 // (render/src/draw/shaders), computed pixel by pixel. The table is painted once per size, a ball whenever it
 // moves or turns.
 
@@ -42,7 +42,8 @@ function lampLight(lamp, x, y, z) {
   return Math.max(tz * inverse, 0) * h * h * inverse * inverse;
 }
 
-/** Where the table [m] is on a canvas [px]: lengthwise along the longer side, as in the camera `top`. */
+/** The position of the table [m] on a canvas [px]: lengthwise along the longer side, as in the camera
+ * `top`. */
 export class Projection {
   constructor(bounds, width, height, margin) {
     const [w, l] = [0, 1].map((k) => Math.max(bounds.high[k] - bounds.low[k], 1e-3));
@@ -55,7 +56,7 @@ export class Projection {
     this.matrix = this.lying ? [0, s, s, 0, width / 2 - s * y, height / 2 - s * x]
       : [s, 0, 0, -s, width / 2 - s * x, height / 2 + s * y];
   }
-  /** Makes it `times` as large; the pixel `from` is then at `to`. */
+  /** Enlarges it by `times`; the pixel `from` is then at `to`. */
   look(times, from, to) {
     const m = this.matrix;
     this.scale *= times;
@@ -188,7 +189,7 @@ function paintHole(context, projection, hole) {
 
 const GLYPH = 96;  // [px] size of the square that a number is drawn into
 const glyphs = new Map();
-/** How much of the ivory disc's square the digits cover, as bytes. */
+/** The share of the ivory disc's square that the digits cover, as bytes. */
 function glyphOf(number) {
   if (!glyphs.has(number)) {
     const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true});

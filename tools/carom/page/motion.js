@@ -1,6 +1,7 @@
-// Where every ball of a record is at any time. The formulas are those of docs/reference/record_format.md,
-// with their terms in the engine's order, so that positions, velocities and spins have the same bits.
-// Orientations do not: they need sin and cos, and a browser's differ from the engine's.
+// The position of every ball of a record at any time. The formulas are those of
+// docs/reference/record_format.md, with their terms in the engine's order, so that positions, velocities and
+// spins have the same bits. Orientations do not: they need sin and cos, and a browser's differ from the
+// engine's.
 
 /** The index of the last item in `list` whose `start` (or other key) is at most t; 0 if there is none. */
 export function lastBefore(list, t, key = "start") {
@@ -41,7 +42,7 @@ function spinAt(s, tau, R) {
   return [s.w[0] + tau * s.dw[0], s.w[1] + tau * s.dw[1], wz];
 }
 
-// [m] As in the engine: how far the floor is below the cloth.
+// [m] As in the engine: distance of the floor below the cloth.
 const FLOOR_DEPTH = 0.76;
 
 /** Time until a ball that has left the table lies on the floor, as in the engine. */

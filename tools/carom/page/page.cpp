@@ -96,7 +96,7 @@ std::string page_html(const std::string& title, const std::string& script, const
     policy += "; script-src";
     if (extras.wasm) policy += " 'wasm-unsafe-eval'";
     for (const PageFile* const file : scripts) policy += policy_hash(*file);
-    // Its worker is a script that the page makes of its own ones.
+    // Its worker is a script that the page assembles from its own scripts.
     if (extras.wasm) policy += "; worker-src blob:";
     std::string html =
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -30,7 +30,7 @@ struct PageExtras {
     bool wasm = false;                ///< the page may compile WebAssembly, also in a worker
 };
 
-/// The whole file. @param script  the name of the page's script, which brings all that it imports
+/// The whole file. @param script  the name of the page's script, which includes its imports
 std::string page_html(const std::string& title, const std::string& script, const std::vector<PageData>& data,
                       const PageExtras& extras = {});
 

@@ -57,8 +57,8 @@ export class Playback {
   jump(direction) { this.go(this.eventTime(direction)); }
 }
 
-/** The buttons and the slider of a clock. `digits`: of times in s. `names`: of the buttons to the event
- * before and to the next. */
+/** The buttons and the slider of a clock. `digits`: of times in s. `names`: of the buttons to the previous
+ * and the next event. */
 export class PlaybackBar {
   constructor(clock, digits, names) {
     Object.assign(this, {clock, digits});
@@ -79,7 +79,7 @@ export class PlaybackBar {
     this.scrub.value = String(now);
     this.scrub.style.setProperty("--done", `${end > 0 ? 100 * now / end : 0}%`);
   }
-  /** Says what the button to play does; `text` is written on it. */
+  /** Describes the action of the play button; `text` is its label. */
   label(name, text = "") {
     this.play.replaceChildren(icon(this.clock.playing ? ICONS.pause : ICONS.play), text);
     this.play.setAttribute("aria-label", `${name} (space)`);
@@ -92,7 +92,7 @@ export class EventList {
   constructor(clock, digits) {
     Object.assign(this, {clock, digits, marked: -1, element: make("ol", {class: "events"})});
   }
-  /** `describe(event)`: {words, title}: the parts of its text, and what the pointer shows. */
+  /** `describe(event)`: {words, title}: the parts of its text, and its tooltip. */
   fill(events, describe) {
     this.marked = -1;
     this.element.scrollTop = 0;

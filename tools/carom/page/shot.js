@@ -62,7 +62,7 @@ class ShotPage {
       make("p", {class: "keys"}, KEYS), this.spoken);
   }
 
-  /** Draws the instant; `event`: which event to mark, if several have this time. */
+  /** Draws the instant; `event`: the event to mark, if several have this time. */
   draw(event = eventBefore(this.record.events, this.clock.now)) {
     const {record, trails, clock: {now, playing}} = this;
     this.view.draw(now, {trails, marked: this.hovered >= 0 ? this.hovered : this.marked,
@@ -76,7 +76,7 @@ class ShotPage {
     if (!playing || performance.now() - this.told > 100) this.tell(states, event);
   }
 
-  /** Updates what need not change in every frame: lists, numbers, the address. */
+  /** Updates parts that need not change in every frame: lists, numbers, the address. */
   tell(states, event) {
     const {now, playing} = this.clock;
     this.told = performance.now();
@@ -141,7 +141,7 @@ class ShotPage {
       event.preventDefault();
       action();
     });
-    // A list that was used gives the keys back to the page.
+    // After its use, a list returns the keys to the page.
     document.addEventListener("change", (event) => {
       if (event.target.tagName === "SELECT") event.target.blur();
     });

@@ -1,4 +1,4 @@
-// The charts of a shot: speeds, energies, heights, and the time that each frame took.
+// The charts of a shot: speeds, energies, heights, and the cost of each frame.
 
 import {Chart} from "./chart.js";
 import {brightness, cssColour, prefers} from "./dom.js";

@@ -11,7 +11,7 @@ namespace carom::tools {
 /// The header of the page.
 struct ShotPageTexts {
     std::string title;
-    /// How it was made, and by which version.
+    /// The command that made it, and its version.
     std::string command, version;
 };
 

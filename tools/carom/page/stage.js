@@ -1,12 +1,12 @@
-// A table with the balls of a record, on two canvases: below the table, which is painted once per size, and
-// above it everything that moves.
+// A table with the balls of a record, on two canvases: the lower one with the table, painted once per size,
+// the upper one with everything that moves.
 
 import {cssColour, make} from "./dom.js";
 import {BallPicture, Projection, clamp, paintTable, pathOf, shadowPicture} from "./look.js";
 import {isGone, orientations, pathPiece, product, radiusOf, stateAt} from "./motion.js";
 
 const TRAIL_COLOURS = {sliding: "#ff9e2e", rolling: "#f0f0e6", airborne: "#ff6bd0"};
-const SINK_TIME = 0.15;  // [s] how long a pocketed ball is seen sinking, as in rendered frames
+const SINK_TIME = 0.15;  // [s] duration for which a pocketed ball sinks, as in rendered frames
 const QUARTER = [Math.SQRT1_2, 0, 0, -Math.SQRT1_2];
 const MOST_ZOOM = 6, SETTLED = 120;  // [ms] after a change, until the table is painted anew
 const CONTACT_SHADOW = 0.55, LAMP_SHADOW = 0.55;
@@ -50,8 +50,8 @@ export class TableView {
     return true;
   }
 
-  /** Shows the table `times` as large as now, the pixel `from` at `to`, but never less than all of it; 0: all
-   * of it. While it changes, the painted table is stretched. */
+  /** Shows the table enlarged by `times`, the pixel `from` at `to`, but never less than all of it; 0: all
+   * of it. While this changes, the painted table is stretched. */
   look(times, from, to) {
     const {under, shape} = this, {width, height} = under;
     const paint = () => paintTable(under, this.projection, shape);
@@ -77,7 +77,7 @@ export class TableView {
     this.painting = setTimeout(paint, SETTLED);
   }
 
-  /** Where a state is drawn: {x, y, r} in canvas pixels, and its place in m; null if it is not visible. */
+  /** The place of a state in the drawing: {x, y, r} in canvas pixels, and in m; null if it is not visible. */
   placed(ball, s, t) {
     if (s.state === "out" && s.r[2] < 0) return null;
     const R = radiusOf(this.record, ball);
@@ -106,8 +106,8 @@ export class TableView {
     return list.sort((a, b) => a.p[2] - b.p[2] || a.since - b.since);
   }
 
-  /** Draws the balls at t. `until`: how far their paths are drawn. `only`: the ball whose path is drawn,
-   * or -1 for all. `ends`: whether to outline where the balls end. */
+  /** Draws the balls at t. `until`: the end of their drawn paths. `only`: the ball whose path is drawn, or
+   * -1 for all. `ends`: whether to outline the final positions. */
   draw(t, {trails = "off", ghost = null, marked = -1, until = t, only = -1, ends = false} = {}) {
     const context = this.over.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -175,7 +175,7 @@ export class TableView {
     context.restore();
   }
 
-  /** Outlines of a record's balls at t, of those that are wanted. */
+  /** Outlines of the requested balls of a record at t. */
   ghosts(context, record, t, wanted = () => true) {
     for (const {i, state, x, y, r} of this.balls(record, t)) {
       if (isGone(state.state) || !wanted(i)) continue;
@@ -213,7 +213,7 @@ export class TableView {
         paths.get(colour).moveTo(...piece[0]);
         paths.get(colour).quadraticCurveTo(...piece[1], ...piece[2]);
       });
-      // One stroke for each colour: many short ones take longer.
+      // One stroke for each colour: many short ones are slower.
       for (const [colour, path] of paths) {
         context.strokeStyle = colour;
         context.stroke(path);

@@ -20,7 +20,7 @@ using render::TableMesh;
 
 // [m] Corners are rounded to this: far below a pixel, far above the rounding of the mesh's floats.
 constexpr double kGrid = 1e-5;
-// [m] How far simplifying may move an outline.
+// [m] Largest distance by which simplifying may move an outline.
 constexpr double kSimplify = 1.5e-4;
 // [m^2] Triangles that look smaller from above are walls, or face away.
 constexpr double kLeastArea = 1e-9;

@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// 1e9 rows are more than 100 GB: taken for a typing error.
+/// 1e9 rows are more than 100 GB, probably a typing error.
 constexpr double kMostRows = 1e9;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Writes events and samples of a record as CSV. Numbers read back to the same bits. Names need no quotes,
-// because the scene reader refuses ball ids with a comma, a quote or a control character.
+// because the scene reader rejects ball ids with a comma, a quote or a control character.
 #pragma once
 
 #include <string>

@@ -193,7 +193,7 @@ class Drawing {
     }
     /// Dark enough to be visible on the cloth.
     Color path_color(int ball) const { return style_.color ? mixed(ball_color(ball), kBlack, 0.25) : kBlack; }
-    /// The struck ball's path is white between black edges, so that no other ball's looks like it.
+    /// The struck ball's path is white between black edges, unlike any other ball's path.
     void stroke_path(int ball) {
         if (ball != struck_) return stroke(path_color(ball), 1.1);
         color(kBlack);
@@ -269,7 +269,7 @@ class Drawing {
         has_rings_ = true;
     }
 
-    /// The struck ball where it first meets another one.
+    /// The struck ball at its first contact with another ball.
     void draw_ghost() {
         if (struck_ < 0) return;
         const double time = first_contact(struck_);
@@ -333,7 +333,7 @@ class Drawing {
         cairo_restore(cr_);
         circle(center, R);
         stroke(kBlack, 0.7);
-        // Without colour, a ball without a number has its first letter, and the struck one has nothing.
+        // Without colour, a ball without a number shows its first letter, and the struck one is blank.
         std::string sign = of.number > 0 ? fmt::format("{}", of.number) : "";
         if (sign.empty() && !style_.color && ball != struck_)
             sign = static_cast<char>(std::toupper(static_cast<unsigned char>(record_.tracks[ball].id[0])));
@@ -403,7 +403,8 @@ class Drawing {
             cairo_set_font_size(cr_, kTextSize);
             cairo_text_extents(cr_, words.c_str(), &extents);
             const double half = 0.5 * extents.x_advance + 1.5;
-            // Beside the path on the side that the ball comes from, as near as nothing is hidden.
+            // Beside the path, on the side from which the ball comes, as near as possible without hiding
+            // anything.
             const Vec2 back = -v.normalized(), aside(-back.y(), back.x());
             Vec2 at;
             bool free = false;
@@ -425,7 +426,7 @@ class Drawing {
         }
     }
 
-    /// Where the tip meets the ball, and the shot in words.
+    /// The contact of the tip with the ball, and the shot in words.
     void draw_inset() {
         const double r = 26.0, x = r + 4.0, y = r + 10.0;
         std::string words;

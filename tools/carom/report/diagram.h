@@ -1,4 +1,5 @@
-// Shots as a drawing for a printed page: the table to scale, the balls where they begin, the paths they take.
+// Shots as a drawing for a printed page: the table to scale, the initial positions of the balls, and their
+// paths.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace carom::tools {
 
-/// Where errors of the hand take a ball.
+/// The spread of a ball's final positions by errors of the hand.
 struct DiagramSpread {
     int ball;
     Vec2 center;
@@ -22,7 +23,7 @@ struct DiagramSpread {
 struct DiagramShot {
     std::string title;
     Record record;
-    std::optional<Cue> cue;  ///< nothing if only the record is known
+    std::optional<Cue> cue;  ///< empty if only the record is known
     std::vector<DiagramSpread> spreads = {};
 };
 
@@ -37,7 +38,7 @@ struct DiagramStyle {
 /// The formats, by file extension.
 inline constexpr const char* kDiagramFormats[] = {".svg", ".pdf", ".png"};
 
-/// Which of them a file has. @throws UsageError for another ending, and in a build without cairo
+/// The format of a file. @throws UsageError for another ending, and in a build without cairo
 std::string diagram_format(const std::string& path);
 
 /// @param format  one of kDiagramFormats  @return the file's bytes  @throws std::runtime_error

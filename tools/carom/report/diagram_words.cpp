@@ -16,7 +16,7 @@
 namespace carom::tools {
 namespace {
 
-/// On a table without pockets: what the struck ball did, in the words of carom games.
+/// On a table without pockets: the path of the struck ball, in the words of carom games.
 std::string carom_words(const Record& record) {
     constexpr int kThree = 3;
     if (record.tracks.size() != 3 || record.stopped != StopReason::kAtRest || record.events.empty() ||
@@ -53,7 +53,7 @@ std::string stroke_words(const Cue& cue, Units units) {
     return words;
 }
 
-/// Where a few balls begin, from the corner of the table, and their radius.
+/// Initial positions of a few balls, from the corner of the table, and their radius.
 std::string places_words(const Record& record, Units units) {
     constexpr std::size_t kMost = 4;
     if (record.tracks.size() > kMost) return "";

@@ -11,10 +11,10 @@ namespace carom::tools {
 
 std::string stroke_words(const Cue& cue, Units units);
 
-/// Where a few balls begin, from the corner of the table, and their radius; "" for many balls.
+/// Initial positions of a few balls, from the corner of the table, and their radius; "" for many balls.
 std::string places_words(const Record& record, Units units);
 
-/// The balls that fall, or whether a carom shot makes a point, and how long the shot lasts.
+/// The balls that fall, or whether a carom shot scores a point, and the duration of the shot.
 std::string outcome_words(const Record& record);
 
 }  // namespace carom::tools

@@ -18,7 +18,7 @@ std::string worst_frame(const Margin& margin) {
 // @param all  all stages, and the worst frame, which a page marks by itself
 Plot plot_of(const Margin& margin, const MarginRun& last, const std::string& scene, bool all) {
     Plot plot;
-    plot.title = fmt::format("What each frame costs: {} at {} fps", scene, margin.fps);
+    plot.title = fmt::format("Cost of each frame: {} at {} fps", scene, margin.fps);
     plot.notes = {fmt::format("{}{} of {} frames missed; ticks mark contacts",
                               margin.rendered ? fmt::format("{}x{}; ", margin.size.width, margin.size.height)
                                               : std::string("simulation only; "),

@@ -11,7 +11,7 @@ namespace carom::tools {
 
 Plot margin_plot(const Margin& margin, const MarginRun& last, const std::string& scene);
 
-/// The chart as a page draws it, with the worst frame marked.
+/// The chart for a page, with the worst frame marked.
 nlohmann::ordered_json margin_chart(const Margin& margin, const MarginRun& last, const std::string& scene);
 
 }  // namespace carom::tools

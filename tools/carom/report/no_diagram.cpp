@@ -12,8 +12,8 @@ namespace carom::tools {
 
 std::string diagram_format(const std::string&) {
     throw UsageError(
-        "this build of carom has no diagrams: npm's and pip's leave cairo out, and others were built without "
-        "libcairo2-dev; build carom from its sources, with libcairo2-dev");
+        "this build of carom has no diagrams: the npm and pip packages omit cairo, and others were built "
+        "without libcairo2-dev; build carom from its sources with libcairo2-dev");
 }
 
 std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, const std::string&) {
@@ -21,7 +21,7 @@ std::string draw_diagram(const std::vector<DiagramShot>&, const DiagramStyle&, c
 }
 
 std::string cairo_chart(const Plot&, const std::string&) {
-    throw std::runtime_error("this build draws only .svg; name such a file");
+    throw std::runtime_error("this build draws only .svg; choose a name with this ending");
 }
 
 std::string draw_plot(const SweepPlot&, const std::string&, const std::vector<DiagramShot>&,

@@ -1,4 +1,4 @@
-// Charts, and the paper that makes SVG files of them.
+// Charts, and the paper for SVG files.
 #include "report/plot.h"
 
 #include <fmt/format.h>
@@ -277,7 +277,7 @@ void write_plot(const Plot& plot, const std::string& path) {
 }
 
 void add_plot(Options& command, std::string& plot) {
-    command.option("--plot", &plot, "FILE", "Draw it: .svg, .pdf or .png (default: not drawn)");
+    command.option("--plot", &plot, "FILE", "Draw a chart: .svg, .pdf or .png (default: not drawn)");
 }
 
 void check_plot_path(const std::string& path) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostSteps = 60;
 // [-] Fewest and most bins of an axis.
 constexpr double kFewest = 4.0, kMost = 40.0;
-// [-] Part of a step by which the steps of a grid may differ.
+// [-] Largest difference of the steps of a grid, as a fraction of a step.
 constexpr double kUneven = 1e-6;
 
 }  // namespace

@@ -23,7 +23,7 @@ struct SweepPlot {
     std::vector<PlotShot> shots;
 };
 
-/// How values are divided into bins of equal width, from `low`.
+/// A division of values into bins of equal width, from `low`.
 struct Bins {
     double low = 0.0, width = 1.0;
     std::size_t count = 1;

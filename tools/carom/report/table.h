@@ -70,7 +70,7 @@ std::string table_text(const Table& table);
 /// CSV needs it, and control characters in them become spaces.
 std::string table_csv(const Table& table);
 std::string csv_line(const std::vector<Cell>& cells);
-/// Appends one value as csv_line() writes it, and a comma.
+/// Appends one value in the form of csv_line(), and a comma.
 void append_csv(std::string& line, double x);
 void append_csv(std::string& line, std::int64_t count);
 void append_csv(std::string& line, std::string_view words);

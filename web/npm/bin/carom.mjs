@@ -8,7 +8,7 @@ import {brotliDecompressSync} from "node:zlib";
 const SIGNALS = {SIGINT: 2, SIGTERM: 15};
 
 if (isatty(2)) process.env.COLUMNS = process.stderr.columns;
-// Unless main() ends with another.
+// Unless main() returns another status.
 process.exitCode = 1;
 const onWindows = process.platform === "win32";
 const program = await createRequire(import.meta.url)("./program.js")({
@@ -19,7 +19,7 @@ const program = await createRequire(import.meta.url)("./program.js")({
 for (const [name, number] of Object.entries(SIGNALS)) {
   process.on(name, () => {
     program._raise(number);
-    // Nothing else ends a thread that waits for its input. It looks for signals before, so it may miss one.
+    // Nothing else ends a thread that waits for input. It checks signals before waiting, so it may miss one.
     setInterval(() => {
       if (Atomics.load(program.HEAP32, program._carom_reads_input() >> 2) !== 1) return;
       process.removeAllListeners(name);

@@ -1,4 +1,4 @@
-// The checksum of zlib, which is all that carom needs of it in WebAssembly.
+// The checksum of zlib, the only part that carom needs in WebAssembly.
 #pragma once
 
 #include <cstddef>

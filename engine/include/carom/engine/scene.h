@@ -178,13 +178,13 @@ inline constexpr Field<BallParams> kBallFields[] = {
         "restitution of ball and cloth a + b exp(-c V) at the speed V in m/s towards the cloth",
         "[a, b, c] for a + b exp(-c V)", "e_t"),
     field<&BallParams::e_h>("e_h", kRestitution,
-                            "share of the downward speed after a cushion that throws the ball up again (a "
+                            "fraction of the downward speed after a cushion that becomes upward speed (a "
                             "hop); about 0.2 on a real table",
                             {.later = true}),
     either<&BallParams::disc, kBallShapes>(
-        "shape", "two discs touch at the sum of their radii, and two balls of unlike size a little nearer"),
+        "shape", "two discs touch at the sum of their radii, two balls of different size slightly nearer"),
     either<&BallParams::slides, kTrueOrFalse>(
-        "rolls", "`false`: pucks, which slide until they stop; `mu_s` slows them, and nothing turns them"),
+        "rolls", "`false`: pucks, which slide until `mu_s` stops them, and never turn"),
 };
 
 struct BallStart {
@@ -252,7 +252,7 @@ struct Rack {
 };
 inline constexpr Field<Rack> kRackFields[] = {
     field<&Rack::game>("game", "arrangement of the balls"),
-    field<&Rack::method>("method", "as `gap` and `jitter` say, pressed together, or in a wooden triangle"),
+    field<&Rack::method>("method", "spaced by `gap` and `jitter`, pressed together, or in a wooden triangle"),
     field<&Rack::gap>("gap", at_least(0.0, kMaxLength, "m"), "between neighbours, 0 = touching"),
     field<&Rack::jitter>("jitter", at_least(0.0, kMaxJitter, "m"),
                          "every ball moves by up to this much in x and in y"),
@@ -275,7 +275,7 @@ std::vector<Vec2> rack_slots(const Rack& rack, const Vec2& apex, double R);
 inline constexpr Field<Rack> kRackedBallFields[] = {
     field<&Rack::radius_sd>("radius_sd", at_least(0.0, kMaxRadiusSd, "m"),
                             "standard deviation of the radii of racked balls, at most a 200th of the radius; "
-                            "their mass goes with the cube"),
+                            "masses scale with its cube"),
 };
 
 /// The cue's stroke. The defaults are those of an empty [cue] and of the C interface.
@@ -305,9 +305,9 @@ inline constexpr Field<Cue> kCueFields[] = {
     field<&Cue::ball>("ball", "id of the ball that is struck"),
     field<&Cue::speed>("speed", at_least(0.0, kMaxSpeed, "m/s"), "of the cue"),
     field<&Cue::aim_deg>("aim_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"), "0 is +x, 90 is +y"),
-    field<&Cue::elevation_deg>("elevation_deg", {0.0, false, 90.0, true, "degrees"},
-                               "of the butt; more than 0 throws the ball up; `\"auto\"`: as little as keeps "
-                               "the cue out of rails and balls"),
+    field<&Cue::elevation_deg>(
+        "elevation_deg", {0.0, false, 90.0, true, "degrees"},
+        "of the butt; above 0 it lifts the ball; `\"auto\"`: the least that clears rails and balls"),
     field<&Cue::side, &Cue::height>(
         "offset", at_least(-1.0, 1.0, "ball radii"),
         "left and up positive, together at most 0.5: farther out the tip slips off",
@@ -382,13 +382,12 @@ inline constexpr Field<Physics> kPhysicsFields[] = {
     field<&Physics::ball_ball>("ball_ball", "impact of two balls"),
     field<&Physics::cushion>(
         "cushion",
-        "impact with a straight cushion; `mathavan_2010` rejects a friction with which a ball could jam",
-        {.standard = "that of the balls' preset"}),
+        "impact with a straight cushion; `mathavan_2010` rejects a friction at which a ball could jam",
+        {.standard = "from the balls' preset"}),
     field<&Physics::jaw>("jaw", "impact with a round jaw", {.standard = "as `cushion`"}),
-    field<&Physics::cloth_slip>(
-        "cloth_slip",
-        "sign of the cloth slip during an impact: `as_published` has the sign of the published "
-        "code, for parity with its numbers"),
+    field<&Physics::cloth_slip>("cloth_slip",
+                                "sign of the cloth slip during an impact: `as_published` is the sign of the "
+                                "published code, to reproduce its numbers"),
     field<&Physics::clusters>(
         "clusters",
         "several contacts at once: Hertz contacts in one event, pair by pair with the deepest "
@@ -475,8 +474,8 @@ inline constexpr Field<RenderSettings> kRenderFields[] = {
     field<&RenderSettings::target>("target", kCoordinate, "point that a free camera looks at, with `eye`",
                                    {.shape = "[x, y, z]", .instead_of = "camera"}),
     field<&RenderSettings::cloth>("cloth", "colour of the cloth, `\"#rrggbb\"`",
-                                  {.standard = "that of the game"}),
-    either<&RenderSettings::hides_cue, kTrueOrFalse>("cue", "the cue is drawn"),
+                                  {.standard = "from the game"}),
+    either<&RenderSettings::hides_cue, kTrueOrFalse>("cue", "draw the cue"),
 };
 
 /// The three channels, 0..1, of a colour such as "#1d6a54"; nothing if it is no colour.

@@ -63,7 +63,7 @@ inline constexpr Field<Jaw> kJawFields[] = {
     field<&Jaw::height>("height", kNoseHeight, "of the nose above the cloth",
                         {.standard = "1.28 x ball radius"}),
     field<&Jaw::name>("name", "for people", {.files = Files::kRecord}),
-    field<&Jaw::side>("side", "of an arc's circle, on which the balls are: `inside` for a round table",
+    field<&Jaw::side>("side", "of an arc on which the balls are: `inside` for a round table",
                       {.later = true, .standard = "inside", .names = kArcSides}),
     field<&Jaw::from_deg>("from_deg", at_least(-kMaxAngle, kMaxAngle, "degrees"),
                           "of an arc: direction from the centre to its first end; 0 is +x",
@@ -87,7 +87,7 @@ inline constexpr Field<Pocket> kPocketFields[] = {
     field<&Pocket::center>("center", kCoordinate, "of the circle", {.shape = "[x, y]", .needed = true}),
     field<&Pocket::radius>("radius", more_than(0.0, kMaxLength, "m"),
                            "a ball whose centre crosses this circle falls", {.needed = true}),
-    field<&Pocket::depth>("depth", kCoordinate, "at which a pocketed ball lies below the cloth, for drawing",
+    field<&Pocket::depth>("depth", kCoordinate, "depth of a pocketed ball below the cloth, for drawing",
                           {.files = Files::kRecord}),
     field<&Pocket::name>("name", "for people", {.files = Files::kRecord}),
 };
@@ -174,11 +174,12 @@ inline constexpr const char* kTablePresets[] = {
 inline constexpr Field<Table> kTableFields[] = {
     field<&Table::preset>("preset", "a table with published sizes", {.names = kTablePresets}),
     field<&Table::cloth>(
-        "cloth", "rolling friction by name: `mu_r` = 0.01, 0.0075 or 0.0045; `mu_r` in `[balls]` wins",
+        "cloth",
+        "rolling friction by name: `mu_r` = 0.01, 0.0075 or 0.0045; `mu_r` in `[balls]` overrides it",
         {.files = Files::kScene, .standard = "as `[balls]`", .names = kCloths}),
     field<&Table::width>("width", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along x",
                          {.files = Files::kRecord}),
-    field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "the same along y",
+    field<&Table::length>("length", at_least(0.0, kMaxCoordinate, "m"), "between the nose lines along y",
                           {.files = Files::kRecord}),
     field<&Table::corner>("corner", kCoordinate, "the corner of smallest x and y",
                           {.shape = "[x, y]", .files = Files::kRecord}),

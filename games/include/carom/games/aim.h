@@ -28,7 +28,7 @@ double cut_angle_deg(const Vec2& cue, const Vec2& ghost, const Vec2& towards);
 struct PocketLine {
     int pocket = -1;              ///< index of Table::pockets
     Vec2 towards = Vec2::Zero();  ///< unit vector in the middle of these paths
-    double width_deg = 0.0;       ///< angle between the outermost of them; 0: there is none
+    double width_deg = 0.0;       ///< angle between the outermost paths; 0: none
     double distance = 0.0;        ///< [m] from the ball to where it begins to fall
     std::string in_the_way;       ///< the nearest ball on the middle path, or ""
     bool open() const { return width_deg > 0.0 && in_the_way.empty(); }
@@ -42,12 +42,12 @@ std::vector<PocketLine> pocket_lines(const Scene& scene, std::string_view ball,
 
 /// The result of a search for an aim.
 struct Aim {
-    std::optional<Cue> cue;      ///< the strike, which was played and does what was asked; empty: see `why`
+    std::optional<Cue> cue;      ///< a strike that was played and succeeded; empty: see `why`
     double geometric_deg = 0.0;  ///< aim_pot: the aim at the ghost ball, without throw, squirt and swerve
     double cut_deg = 0.0;        ///< aim_pot: cut angle of that aim
     std::string cushion;         ///< bank_routes: the cushion that the ball hits
     int shots = 0;               ///< played to find it
-    std::string why;             ///< why there is none, or ""
+    std::string why;             ///< why there is no strike, or ""
 };
 
 /// The aim that pots a ball into a pocket: it starts at the ghost ball, and is corrected by playing the shot
@@ -59,7 +59,7 @@ Aim aim_pot(const Scene& scene, const Cue& how, std::string_view ball, std::stri
 
 /// Aims that pot a ball off one cushion, found by playing aims from one edge of the ball to the other. At
 /// most one per straight cushion, in the order of the aims from right to left; empty if there is none.
-/// Contacts on the way back are taken into account.
+/// Contacts on the return path are taken into account.
 /// @throws as aim_pot
 std::vector<Aim> bank_routes(const Scene& scene, const Cue& how, std::string_view ball,
                              std::string_view pocket);

@@ -1,4 +1,4 @@
-// The search for a break: where the cue ball lies, how full and how hard it hits, and how sure that is.
+// The search for a break: cue-ball position, cut and speed, and the success rate.
 #pragma once
 
 #include <array>
@@ -20,13 +20,13 @@ inline constexpr double kLargestGap = 0.001;
 struct BreakOptions {
     std::string game = kBreakGames[0];
     std::string table = kStandardTable;
-    /// "template", "triangle" or "gap=METRES": neighbours are so far apart, and jitter by half of it.
+    /// "template", "triangle" or "gap=METRES": the distance between neighbours, with a jitter of half of it.
     std::string rack = "template";
     double radius_sd = 0.0;   ///< of the racked balls [m]
-    double speed_max = 10.0;  ///< the hardest that the player hits: speed of the cue ball [m/s], 1 to 20
-    bool box = false;         ///< the cue ball at least a diamond from either long rail
+    double speed_max = 10.0;  ///< maximum speed of the cue ball [m/s], 1 to 20
+    bool box = false;         ///< place the cue ball at least a diamond from either long rail
     std::uint64_t seed = 1;   ///< of the racks
-    int layouts = 64;         ///< racks that the break must cope with
+    int layouts = 64;         ///< number of racks to play each break on
 };
 
 /// The arguments of solve().

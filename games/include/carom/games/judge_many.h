@@ -28,14 +28,14 @@ struct JudgedArrays {
 /// The state of a game in the middle of a turn of player 0, who has this group in eight-ball.
 State state_of_turn(Game game, Group group);
 
-/// The call of a player who knows what will fall: the first of the balls that count.
+/// The call of a player who foresees the shot: the first ball that falls and counts.
 Call lucky_call(const State& state, const Record& record);
 
-/// Plays shots as simulate_many() does; each thread judges what it has played, by judge(), for player 0 in
-/// the middle of a turn. In eight-ball, the first ball that counts and falls is taken as called.
+/// Plays shots as simulate_many() does; each thread judges its shots with judge(), for player 0 in the middle
+/// of a turn. In eight-ball, the first ball that counts and falls is taken as called.
 /// @param options `judge` is ignored
 /// @return the messages of simulate_many()
-/// @throws what simulate_many() and judge() throw
+/// @throws as simulate_many() and judge()
 std::vector<Batch::Message> judge_many(Game game, const Scene& scene, std::size_t shots,
                                        std::span<const BatchColumn> columns, kernel::Isa isa,
                                        const BatchOptions& options, const BatchArrays& out,

@@ -29,18 +29,18 @@ struct MeasureInfo {
 };
 std::span<const MeasureInfo> measures();
 
-/// A number (NaN if there is none), or texts: a single text is a list of one.
+/// A number (NaN if undefined), or texts: a single text is a list of one.
 using MeasureValue = std::variant<double, std::vector<std::string>>;
-/// As tables write it: "" if there is no number, semicolons between texts.
+/// As in tables: "" for NaN, semicolons between texts.
 std::string text_of(const MeasureValue& value);
 
-/// Where a ball is to rest.
+/// A place where a ball should rest.
 struct Place {
     int ball;
     Vec2 at;  ///< [m]
 };
 
-/// An expression that cannot be read. what() says where, and what was expected.
+/// A mistake in an expression. what() states the place and what was expected.
 class MeasureError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -50,7 +50,7 @@ class MeasureError : public std::runtime_error {
 /// == != < <= > >= in near, + and -, * and /. An empty text, an empty list, 0 and NaN are false.
 class Measure {
   public:
-    /// @param scene that of the shots, with the balls and pockets that the expression names
+    /// @param scene of the shots, with the balls and pockets that the expression names
     /// @param game the rules for `foul`, `break_foul` and `legal_break` without an argument
     /// @throws MeasureError
     Measure(const std::string& text, const Scene& scene, std::optional<Game> game = std::nullopt);
@@ -60,14 +60,14 @@ class Measure {
 
     const std::string& text() const { return text_; }
     bool is_number() const;  ///< whether its values are numbers
-    bool is_truth() const;   ///< whether these are 0 or 1
+    bool is_truth() const;   ///< whether they are 0 or 1
 
     /// @throws std::invalid_argument for a shot that the game cannot judge (games::judge)
     MeasureValue of(const Record& record) const;
     bool holds(const Record& record) const;
-    /// The centre of every `near` that has to hold: of the whole expression, or joined by `and`.
+    /// The centre of every `near` that must hold: the whole expression, or joined by `and`.
     std::vector<Place> places() const;
-    /// The same for a row of a table: no value if the shot ended before its balls were at rest and the game
+    /// As of(), for a row of a table: no value if the shot ended before its balls were at rest and the game
     /// cannot judge it.
     MeasureValue in_table(const Record& record) const;
 

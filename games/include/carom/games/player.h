@@ -1,5 +1,5 @@
-// A player of pool: the best shot of a position, how sure it is, and what to choose where the rules offer a
-// choice. Eight-ball, nine-ball and ten-ball.
+// A player of pool: the best shot of a position, its success rate, and the choice among the options of the
+// rules. Eight-ball, nine-ball and ten-ball.
 //
 // The search samples noisy shots of candidates and values the positions that they leave, one shot deep, after
 // Smith, "PickPocket: A computer billiards shark", Artificial Intelligence 171 (2007).
@@ -22,25 +22,25 @@ namespace carom::games {
 
 /// The options of a player before a shot.
 enum class Look : std::uint8_t {
-    kPot,    ///< the surest pot, and not what it leaves
-    kQuick,  ///< also what it leaves, in about 1700 simulated shots
+    kPot,    ///< the surest pot, regardless of the position that it leaves
+    kQuick,  ///< also the position that it leaves, in about 1700 simulated shots
     kWhole,  ///< the same for more spins and speeds, in about 4000
 };
 constexpr auto names_of(Look) {
     return std::array{"pot", "quick", "whole"};
 }
 
-/// How well a player strikes, and how much it looks at.
+/// The level of a player: the size of its errors and the depth of its search.
 struct Skill {
     Noise noise;
     Look look = Look::kWhole;
-    double of_speed = 0.0;  ///< [-] another error of the speed, in parts of it
+    double of_speed = 0.0;  ///< [-] another error of the speed, as a fraction of it
     /// Of a strike with this speed [m/s].
     Noise noise_at(double speed) const;
     bool operator==(const Skill&) const = default;
 };
 inline constexpr std::array kSkills{"beginner", "club", "league", "professional", "machine"};
-/// The level of that name: 4, 2, 1, 1 and 1/2 times the noise "fastfiz". @param R radius of the cue ball [m]
+/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz". @param R radius of the cue ball [m]
 /// @throws std::invalid_argument for another name, or a radius that is not greater than 0
 Skill skill_by_name(std::string_view name, double R);
 
@@ -54,36 +54,36 @@ struct Advice {
     Call call;
     std::optional<Vec2> place;  ///< of the cue ball, if it is in hand [m]
     ShotKind kind = ShotKind::kPot;
-    std::string ball, pocket;  ///< what it pots: ids; "" for other kinds
+    std::string ball, pocket;  ///< ids of the ball that it pots and its pocket; "" for other kinds
     double cut_deg = 0.0;      ///< of a pot: how far the object ball turns to the left [degrees]
-    /// From AdviceOptions::fresh shots that the search has not seen: how often the turn or the game is won,
-    /// and how often the shot is a foul. All shots of a break are fresh.
+    /// From AdviceOptions::fresh shots that the search has not used: how often the shot wins the turn or the
+    /// game, and how often it is a foul. All shots of a break are fresh.
     Share makes{}, fouls{};
-    double worth = 0.0;               ///< mean value of what the shot leaves: 1 is a game won, 0 one lost [-]
+    double worth = 0.0;               ///< mean value of the position that it leaves: 1 is a win, 0 a loss [-]
     std::vector<std::string> leaves;  ///< the balls that it most often leaves as the surest pot, at most 3
 };
 
 struct AdviceOptions {
     std::uint64_t seed = 1;  ///< of the errors
     int threads = 1;         ///< the result does not depend on it
-    std::size_t best = 3;    ///< the most pieces of advice
-    /// shots that check each of them; 0: none, and Advice::makes is that of the search
+    std::size_t best = 3;    ///< largest number of shots advised
+    /// fresh shots for each; 0: none, and Advice::makes comes from the search
     std::size_t fresh = 400;
     std::function<bool()> stop{};  ///< true ends the search with BatchStopped
 };
 
-/// The best shots that differ in kind, ball or pocket, the best first; at least one.
-/// @param scene  the balls, which lie still; of its cue, only the kind counts. The cue ball may be missing
-/// while it is in hand. For a break, the rack.
+/// The best shots of different kind, ball or pocket, the best first; at least one.
+/// @param scene  the balls, at rest; of its cue, only the kind counts. The cue ball may be missing while it
+/// is in hand. For a break, the rack.
 /// @throws std::invalid_argument for a game without a player, a game that is over, and a state that does not
 /// fit the scene
 std::vector<Advice> advise(const State& state, const Scene& scene, const Skill& skill, kernel::Isa isa,
                            const AdviceOptions& options = {});
 
-/// The scene of an advised shot: with its cue, and the cue ball where it is placed.
+/// The scene of an advised shot, with its cue and the placed cue ball.
 Scene scene_with(const Scene& scene, const Advice& advice);
 
-/// The index of the option that is best for the player who may choose. @param record of the judged shot
+/// The index of the best option for the player who chooses. @param record of the judged shot
 /// @throws std::invalid_argument for a game without a player
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill);
 

@@ -1,9 +1,8 @@
-// Rules of games: what is legal, and the outcome of a shot. Pure functions of a state, the balls and a
-// record.
+// Rules of games: legal shots, and the outcome of a shot. Pure functions of a state, the balls and a record.
 //
 // book_of() names the published rules of each game.
 //
-// Rules about things that a record does not show are not judged: feet, touched balls, double hits, pushes,
+// Rules about facts that a record does not contain are not judged: feet, touched balls, double hits, pushes,
 // time.
 #pragma once
 
@@ -73,12 +72,12 @@ struct State {
     std::array<int, 2> fouls = {0, 0};
     BallOn on = BallOn::kRed;  ///< snooker
     bool free_ball = false;    ///< snooker: any ball may be nominated as the ball on
-    std::uint32_t rules = 0;   ///< the options that set_rule() chose; 0: all by their defaults
+    std::uint32_t rules = 0;   ///< the options that set_rule() chose; 0: all defaults
     bool operator==(const State&) const = default;
 };
 
-/// A new game. @param first the player who begins @param target as in State::target; 0: as the game has it,
-/// 8 in free pyramid
+/// A new game. @param first the player who begins @param target as in State::target; 0: the game's own, such
+/// as 8 in free pyramid
 State new_game(Game game, int first = 0, int target = 0);
 
 /// The published rules of a game, with their edition.
@@ -92,8 +91,8 @@ struct RuleOption {
     const char* what;
 };
 std::span<const RuleOption> rule_options();
-/// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for a key or
-/// value that the game does not have; it lists those it has
+/// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for an unknown
+/// key or value; it lists the known ones
 void set_rule(State& state, std::string_view option);
 /// The chosen options that are not defaults, as set_rule() reads them.
 std::vector<std::string> chosen_rules(const State& state);
@@ -111,8 +110,8 @@ struct Call {
 /// The rules of the next shot.
 struct Legal {
     std::vector<std::string> cue_balls;  ///< ids that may be struck: one, in free pyramid any
-    std::vector<std::string> first;      ///< what the cue ball may hit first
-    std::vector<std::string> callable;   ///< what may be called; empty if the game has no calls
+    std::vector<std::string> first;      ///< balls that the cue ball may hit first
+    std::vector<std::string> callable;   ///< balls that may be called; empty if the game has no calls
     InHand in_hand = InHand::kNo;
     bool may_push_out = false;
     bool operator==(const Legal&) const = default;
@@ -140,7 +139,7 @@ enum class Foul : std::uint8_t {
     kTwoBallsAtOnce,
     kJumpShot,           ///< the cue ball passed over a ball before it hit one
     kBehindTheFreeBall,  ///< the nominated free ball snookers the other player
-    kMiss,               ///< snooker: no ball on was hit first, though a straight path to one was clear
+    kMiss,               ///< snooker: no ball on was hit first, although a straight path to one was clear
     kOpponentsBall,      ///< four-ball: the cue ball hit the other player's
 };
 constexpr auto names_of(Foul) {
@@ -178,12 +177,12 @@ enum class Decision : std::uint8_t {
     kPlayOn,          ///< the balls stay
     kTakeInHand,      ///< the cue ball is in hand
     kPassBack,        ///< the other player shoots
-    kRerack,          ///< the player who decides breaks again
+    kRerack,          ///< the chooser breaks again
     kRerackForOther,  ///< the other player breaks again
     kSpotEight,       ///< the eight is respotted, and play continues
     kSpotTouching,    ///< carom games: the cue ball and the balls touching it are spotted
     kReplace,         ///< snooker: the balls return to where they were, and the same player shoots
-    kRackFourteen,    ///< straight pool: the pocketed balls are racked; respots has their places
+    kRackFourteen,    ///< straight pool: the pocketed balls are racked at the places in respots
 };
 constexpr auto names_of(Decision) {
     return std::array{"play on",          "take in hand",   "pass back",           "rerack",
@@ -202,7 +201,7 @@ struct Option {
 struct Verdict {
     std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
     int points = 0;           ///< scored by the shot
-    int penalty = 0;          ///< snooker: what the other player receives
+    int penalty = 0;          ///< snooker: points for the other player
     /// At least one. If there are several, the first one applies unless `chooser` chooses another.
     std::vector<Option> options;
     int chooser = -1;  ///< the player who chooses; -1 if there is one option
@@ -217,32 +216,31 @@ struct Verdict {
 Verdict judge(const State& state, const Record& record, const Call& call = {});
 
 /// The ball that the player to shoot strikes: "cue", or in carom games "white" or "yellow". In free pyramid
-/// any other will do, too.
+/// any ball may be struck.
 const char* cue_ball(const State& state);
-/// The same, or in free pyramid another ball if it is gone. @param balls as in legal()
+/// As cue_ball(), or in free pyramid another ball if it is gone. @param balls as in legal()
 std::string struck_next(const State& state, std::span<const std::string> balls);
 
 /// Whether the cue ball may be placed there before the next shot: it is in hand there, lies on the table
 /// between the noses, and overlaps no ball. @param record of the previous shot
-/// @throws std::invalid_argument for an option with balls that the record does not have
+/// @throws std::invalid_argument for an option with balls that are not in the record
 bool may_place(const Record& record, const Option& option, const Vec2& place);
 
-/// The place nearest to `wanted` at which may_place() lets the cue ball lie, in steps of a quarter of its
-/// radius.
+/// The place nearest to `wanted` that may_place() allows, in steps of a quarter of the ball's radius.
 /// @throws std::invalid_argument as may_place(), and if there is none
 Vec2 free_place(const Record& record, const Option& option, const Vec2& wanted);
 
 /// The table before the next shot, without a cue: pocketed balls are gone, respotted balls are back, and the
 /// cue ball is placed.
-/// @param scene that of the record
-/// @param option one of the verdict's, except one that racks again
+/// @param scene of the record
+/// @param option of the verdict, except one that racks again
 /// @param place of the cue ball: required if it is gone, allowed if it is in hand
 /// @throws std::invalid_argument for a place that is missing or not allowed (may_place), for a new rack, for
-/// a game that is over, and for an option or a scene with other balls than the record's
+/// a game that is over, and for an option or a scene with other balls than the record
 Scene table_after(const Scene& scene, const Record& record, const Option& option,
                   const std::optional<Vec2>& place = std::nullopt);
 
-/// The next shot: the same with the strike, validated. @throws SceneError if the scene is not valid
+/// The next shot: table_after() with the strike, validated. @throws SceneError if the scene is not valid
 Scene next_scene(const Scene& scene, const Record& record, const Option& option, const Cue& cue,
                  const std::optional<Vec2>& place = std::nullopt);
 

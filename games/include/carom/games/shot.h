@@ -1,5 +1,4 @@
-// The facts that rules need about a shot: which ball hit which first, the cushions, the balls that fell. The
-// record has all of them.
+// The facts of a shot that rules need: first contacts, cushions, and fallen balls. All come from the record.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace carom::games {
 
-/// One contact of one ball, in the order of the record. The start of a lasting contact counts as one contact.
+/// A contact of a ball. The start of a lasting contact counts as one contact.
 struct Touch {
     double time = 0.0;  ///< [s]
     int ball = -1;
@@ -26,7 +25,7 @@ struct Shot {
     int struck = -1;  ///< the ball that the cue strikes
     /// the ball that it hits first; several if it hits them at once; empty for none
     std::vector<int> first_hits;
-    double first_time = 0.0;  ///< [s] when it does
+    double first_time = 0.0;  ///< [s] of that hit
     /// Every contact of a ball with a cushion or a jaw, and every contact of the struck ball with another
     /// ball
     std::vector<Touch> touches;
@@ -54,8 +53,7 @@ inline int index_of(const Record& record, std::string_view id) {
     return carom::index_of(record.tracks, id);
 }
 
-/// How far a ball gets in the direction `along` (a unit vector) until `time`: the largest along * position
-/// [m].
+/// The largest along * position of a ball until `time` [m]. @param along  a unit vector
 double farthest(const Record& record, int ball, const Vec2& along, double time);
 
 }  // namespace carom::games

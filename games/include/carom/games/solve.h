@@ -1,11 +1,11 @@
-// Finds the shot that most surely does what is wanted, under the errors of a hand.
+// Finds the shot most likely to achieve a goal, given the errors of a hand.
 //
 // Every candidate is played with the same errors and the same layouts of the balls (common random numbers),
-// so that candidates differ by what they are and not by luck. Most are dropped after a few shots and the rest
-// get more (successive halving: Jamieson and Talwalkar, "Non-stochastic best arm identification and
-// hyperparameter optimization", AISTATS 2016). The best then have descendants nearby, in several generations,
-// and more shots decide among the last one. The reported figures come from shots that the search has not
-// seen.
+// so that candidates differ in merit and not in luck. Most are dropped after a few shots, and the rest get
+// more (successive halving: Jamieson and Talwalkar, "Non-stochastic best arm identification and
+// hyperparameter optimization", AISTATS 2016). The best then have descendants nearby for several generations,
+// and more shots decide among the last generation. The reported figures come from shots that the search has
+// not used.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct Hand {
 /// An input that the search chooses.
 struct Choice {
     /// As SceneNumber accepts it; or hit.BALL, which aims at that ball: 0 is full, 1 and -1 pass its left and
-    /// right edge, with nothing allowed for squirt.
+    /// right edge, without allowance for squirt.
     std::string key;
     double low = 0.0, high = 0.0;
 };
@@ -48,16 +48,16 @@ struct SolveOptions {
     std::vector<Choice> choices;
     Hand hand;
     std::uint64_t seed = 1;
-    std::size_t shots = 200000;  ///< all that the search plays
+    std::size_t shots = 200000;  ///< of the whole search
     int threads = 0;             ///< 0: one for each core
-    std::size_t best = 3;        ///< how many shots that differ in kind
-    /// Scenes that differ from `scene` in the places of their balls only, such as racks; or empty.
+    std::size_t best = 3;        ///< number of shots of different kinds
+    /// Scenes that differ from `scene` only in the places of their balls, such as racks; or empty.
     std::vector<Scene> layouts;
     std::function<void(std::size_t done)> progress;
     std::function<bool()> stop;
 };
 
-/// A share of shots, and its interval: 95 of 100 such intervals hold the true share (Wilson, 1927).
+/// A share of shots, and its interval: 95 of 100 such intervals contain the true share (Wilson, 1927).
 struct Share {
     double value, low, high;
 };
@@ -65,27 +65,27 @@ Share share_of(std::size_t part, std::size_t whole);
 
 struct Solution {
     std::vector<double> values;  ///< in the order of the choices
-    Scene scene;                 ///< the shot as it is meant
+    Scene scene;                 ///< the shot without errors
     std::size_t shots = 0, successes = 0;
-    /// In how many of these shots each ball fell into each pocket, the most frequent first.
+    /// The number of these shots in which each ball fell into each pocket, the most frequent first.
     struct Fall {
         int ball, pocket;
         std::size_t count;
     };
     std::vector<Fall> falls;
-    /// Successes of the first of these shots if one input is off by `by` this way or that.
+    /// Successes of the first of these shots if one input is off by `by` in either direction.
     struct Cost {
         std::string input;
         double by;
         const char* unit;
-        std::size_t shots;  ///< each way
-        /// Nothing if no scene is valid there, as with a ball inside a cushion.
+        std::size_t shots;  ///< in each direction
+        /// Empty if no scene is valid there, as with a ball inside a cushion.
         std::optional<std::size_t> less, more;
     };
     std::vector<Cost> costs;
 };
 
-/// Success around a solution, over the two choices that must be met most exactly.
+/// Success around a solution, over the two choices that require the most precision.
 struct SuccessMap {
     std::array<std::size_t, 2> choices{};
     struct Cell {
@@ -95,14 +95,14 @@ struct SuccessMap {
     std::vector<Cell> cells;  ///< an even grid
 };
 
-/// A choice must be met the more exactly, the smaller the part of its range by which success halves.
-/// @throws std::invalid_argument as solve, and if there are not two choices
+/// A choice requires more precision, the smaller the fraction of its range by which success halves.
+/// @throws std::invalid_argument as solve, and if there are fewer than two choices
 SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
                        const Solution& around);
 
-/// The best shots that differ in kind, the surest first.
-/// @throws std::invalid_argument for a key that names no number, a range that is none, or a want that the
-/// shots cannot be asked for
+/// The best shots of different kinds, the surest first.
+/// @throws std::invalid_argument for a key that names no number, an invalid range, or a goal that does not
+/// apply to the shots
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
                             const SolveOptions& options);
 

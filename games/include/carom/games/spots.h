@@ -16,7 +16,7 @@ namespace carom::games {
 struct Lying {
     Vec2 place = Vec2::Zero();  ///< [m]
     double R = 0.0;             ///< [m]
-    double gap = 0.0;           ///< [m] how far others must stay away; 0: they may touch it
+    double gap = 0.0;           ///< [m] least distance of others; 0: they may touch it
 };
 
 // The spots of a table's balls (carom/engine/table.h).
@@ -50,7 +50,7 @@ std::optional<Vec2> nearest_free(const Vec2& from, const Vec2& direction, double
                                  std::span<const Lying> others);
 
 /// [m] Distance of a spotted ball from the cue ball (WPA 1.4), and of a snooker colour from every ball: half
-/// a millimetre, which the eye sees.
+/// a millimetre, which is visible.
 inline constexpr double kSpotGap = 5e-4;
 
 /// The place of a pool ball spotted on the long string: `spot`, or as near to it as possible towards the foot
@@ -59,8 +59,8 @@ inline constexpr double kSpotGap = 5e-4;
 Vec2 spot_on_long_string(const Table& table, const Vec2& spot, double R, std::span<const Lying> others);
 
 /// The place of a spotted snooker colour: its own spot; else the free spot of the highest colour; else as
-/// near to its own spot as possible, towards the top (foot) cushion, or the other way if there is no room.
-/// `others` may have any gap; a ball that would be touched occupies the spot.
+/// near to its own spot as possible, towards the top (foot) cushion, or towards the other one if there is no
+/// room. `others` may have any gap; a ball that would be touched occupies the spot.
 Vec2 spot_snooker(const Table& table, std::string_view colour, double R, std::span<const Lying> others);
 
 }  // namespace carom::games

@@ -39,11 +39,11 @@ struct SweepColumn {
     ValueKind kind;
     std::string unit;       ///< "" if it has none
     bool of_result;         ///< empty for shots without a result
-    Of of;                  ///< what the column holds
+    Of of;                  ///< the contents of the column
     std::size_t which = 0;  ///< the number of the key, the ball or the measure
 };
 
-/// A value of a row: nothing if the shot has none, otherwise of the column's kind.
+/// A value of a row, of the column's kind; empty if the shot has none.
 using SweepValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// Shots that were played.

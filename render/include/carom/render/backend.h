@@ -1,4 +1,4 @@
-// Which library creates the OpenGL context. Both libraries are loaded at run time.
+// The library that creates the OpenGL context. Both are loaded at run time.
 #pragma once
 
 #include <cstdint>

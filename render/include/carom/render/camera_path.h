@@ -19,8 +19,8 @@ struct FreeCamera {
     std::string ball;                 ///< id of the ball for "follow"; default: the ball that moves first
 };
 
-/// top: from above; the table fills the image. rail: from behind the head rail; the balls that move fill the
-/// image. player: from behind the ball that moves first, looking along its path at those that move. follow:
+/// top: from above; the table fills the image. rail: from behind the head rail; the moving balls fill the
+/// image. player: from behind the ball that moves first, looking along its path at the moving balls. follow:
 /// behind a ball, moving smoothly with it.
 class CameraPath {
   public:

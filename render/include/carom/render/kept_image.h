@@ -10,7 +10,7 @@ namespace carom::render {
 
 struct DrawnPicture;
 
-/// An image that only a renderer writes to and that records what it shows: reading the next frame into it
+/// An image that only a renderer writes to and that records its contents: reading the next frame into it
 /// copies only the pixels that may differ. It is not bound to one renderer.
 class KeptImage {
   public:
@@ -23,13 +23,13 @@ class KeptImage {
     std::shared_ptr<const DrawnPicture> shows_;
 };
 
-/// For encoders of successive images: where an image may differ from the one before.
+/// For encoders of successive images: the parts in which an image may differ from the previous one.
 class ChangedBoxes {
   public:
     /// Boxes outside which the image equals that of the last call; the whole image if nothing is known.
     std::vector<PixelBox> next(const KeptImage& image);
 
-    /// The same for an image that may show anything; the next call cannot compare with it.
+    /// As above for an image with any contents; the next call cannot compare with it.
     std::vector<PixelBox> next(const Image& image);
 
   private:

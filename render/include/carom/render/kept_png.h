@@ -21,7 +21,7 @@ class KeptPng {
     /// its memory is reused. @throws RenderError for an image without pixels
     void encode(const KeptImage& image, std::vector<std::uint8_t>& bytes);
 
-    /// The same for an image about which nothing is known.
+    /// As above for an image about which nothing is known.
     void encode(const Image& image, std::vector<std::uint8_t>& bytes);
 
     /// The share of the last picture that was encoded anew, 0..1.

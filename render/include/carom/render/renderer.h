@@ -31,7 +31,7 @@ class Renderer {
     /// Copies the pixels of the last draw().
     void read(Image& image);
 
-    /// The same, but copies only the pixels that may differ from those in the image.
+    /// As above, but copies only the pixels that may differ from those in the image.
     void read(KeptImage& image);
 
   private:

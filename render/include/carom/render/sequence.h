@@ -19,7 +19,7 @@ namespace carom::render {
 /// Receives one frame without compression. Frames come in order, from one thread (not the caller's).
 using RawSink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
 
-/// How a frame without compression is laid out.
+/// The layout of a frame without compression.
 enum class RawFormat : std::uint8_t {
     kRgb,  ///< packed rows, top row first
     kY4m,  ///< a frame of a Y4M stream, which begins with y4m_header(): 4:2:0, colours as in ITU-R BT.709
@@ -55,8 +55,8 @@ struct SequenceOptions {
     /// calling thread, so that the timings do not disturb each other. 0: one
     /// per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    /// Skip frames whose file is a complete PNG of the same picture and instant, as a comment in each file
-    /// says. Frames of other pictures are drawn again; it is an error if there are only others.
+    /// Skip frames whose file is a complete PNG of the same picture and instant, according to a comment in
+    /// each file. Frames of other pictures are drawn again; it is an error if there are only others.
     bool resume = false;
     RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
@@ -92,10 +92,10 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
 /// @throws RenderError for a pattern with another conversion, or with two
 std::string frame_path(const std::string& pattern, long k);
 
-/// Whether the pattern has a place for the number of a frame.
+/// Whether the pattern contains the number of a frame.
 bool is_numbered(const std::string& pattern);
 
-/// Whether a frame of this pattern would replace this file, also by way of a link.
+/// Whether a frame of this pattern would replace this file, also through a link.
 /// @throws RenderError as frame_path()
 bool writes_over(const std::string& pattern, const std::string& path);
 

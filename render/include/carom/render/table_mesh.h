@@ -52,7 +52,7 @@ struct TableMesh {
     Vec2 inner_low{0.0, 0.0}, inner_high{0.0, 0.0};  ///< box inside the wooden frame
     std::vector<std::array<Vec2, 2>> noses;          ///< straight pieces of the cushions' edges
     double wood_top = 0.0;
-    Bounds bounds;  ///< what a camera should show
+    Bounds bounds;  ///< the part that a camera should show
     look::Color cloth = look::kCloth;
     Lamp lamp;
 };

@@ -22,7 +22,7 @@ float noise(vec2 p) {
                mix(lattice(i + ivec2(0, 1)), lattice(i + ivec2(1, 1)), f.x), f.y);
 }
 
-// Noise that frames of a moving camera do without.
+// Noise omitted from frames of a moving camera.
 #ifdef LESS_DETAIL
 float detail(vec2 p) { return 0.5; }
 #else

@@ -20,7 +20,7 @@ namespace carom::tools {
 namespace {
 
 /// The converged runs must agree within this fraction of the target; otherwise, differences from them are not
-/// called errors.
+/// errors.
 constexpr double kAgreement = 0.1;
 
 /// One setting: how to run it, and its result.
@@ -117,8 +117,8 @@ std::string metres(double x) {
 std::string sentence_of(const SceneAccuracy& result) {
     if (!result.converged)
         return fmt::format(
-            "The two converged methods end {} apart (gain {:.1e}), so no difference here can be called an "
-            "error, and no setting guarantees {}.",
+            "The two converged methods end {} apart (gain {:.1e}), so differences here are not errors, and "
+            "no setting guarantees {}.",
             metres(result.agreement), result.gain, metres(result.target));
     if (!result.recommended)
         return fmt::format(
@@ -131,10 +131,10 @@ std::string sentence_of(const SceneAccuracy& result) {
         text = fmt::format("Tolerance {:g} is enough for {} (error {}", *result.recommended,
                            metres(result.target), metres(row->error.largest));
         text += result.loosest && *result.loosest > *result.recommended
-                    ? fmt::format("; {:g} happens to be enough too)", *result.loosest)
+                    ? fmt::format("; {:g} is also enough here)", *result.loosest)
                     : ")";
     } else {
-        text = fmt::format("The gain calls for tolerance {:g}, but its error is {}, more than {}",
+        text = fmt::format("The gain requires tolerance {:g}, but its error is {}, more than {}",
                            *result.recommended, metres(row->error.largest), metres(result.target));
     }
     if (const SceneAccuracyRow* march = compared_march(result)) {
@@ -202,7 +202,8 @@ void add_accuracy_options(Options& command, AccuracySceneArgs& args) {
     command.option("--march", &args.march, "N,...", "Settings N of the march to compare").in(1, 100000000);
     command.option("--tolerance", &args.tolerances, "E,...", "Tolerances to compare")
         .in(kernel::kTightestTolerance, kernel::kLoosestTolerance);
-    add_repeat(command, args.repeat, "Interleaved rounds; times are minimum, median and maximum over them");
+    add_repeat(command, args.repeat,
+               "Number of interleaved rounds; times are their minimum, median and maximum");
     add_plot(command, args.plot);
     add_reports(command, args.csv, args.json);
 }

@@ -63,7 +63,7 @@ Table scene_accuracy_table(const SceneAccuracy& result) {
 Plot scene_accuracy_plot(const SceneAccuracy& result, const std::string& scene) {
     constexpr double kLeastError = 1e-16;  // [m] a logarithmic axis has no 0
     Plot plot;
-    plot.title = "What accuracy costs: " + scene;
+    plot.title = "Cost of accuracy: " + scene;
     plot.notes = {result.converged ? fmt::format("gain {:.1e}; converged runs agree within {:.1e} m",
                                                  result.gain, result.agreement)
                                    : "the converged runs do not agree: distances, not errors"};

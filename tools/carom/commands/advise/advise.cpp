@@ -38,7 +38,7 @@ std::size_t rack_of(games::Game game) {
     return game == games::Game::kNineBall ? 9 : game == games::Game::kTenBall ? 10 : 15;
 }
 
-/// The state in the file; otherwise a break if the rack is full, and the middle of a turn if it is not.
+/// The state in the file; otherwise a break if the rack is full, else the middle of a turn.
 State state_of(const AdviseArgs& args, const Scene& scene) {
     if (!args.state.empty()) {
         State state = read_state(args.state);
@@ -118,21 +118,23 @@ int run_advise(const AdviseArgs& args) {
 
 void add_advise(Options& program) {
     auto [command, args] = program.command<AdviseArgs>(
-        "advise", "Say which shot to play: the best that differ in kind, and how sure each is", run_advise);
-    command.argument("SCENE", args.scene, "Scene file (TOML): the balls as they lie").required = true;
-    command.option("--game", &args.game, "GAME", "The game; a state names it, too (default: eight_ball)")
+        "advise", "Recommend shots of different kinds, with their success rates", run_advise);
+    command.argument("SCENE", args.scene, "Scene file (TOML) with the balls at rest").required = true;
+    command.option("--game", &args.game, "GAME", "The game, unless --state names it (default: eight_ball)")
         .one_of({"eight_ball", "nine_ball", "ten_ball"});
     command.option(
         "--state", &args.state, "FILE.json",
         "The state of the game, from carom judge or next (default: a break if the rack is full, else "
         "the middle of a turn on an open table)");
-    command.option("--skill", &args.skill, "LEVEL", "How well the player strikes, and how much it looks at")
+    command
+        .option("--skill", &args.skill, "LEVEL",
+                "Level of the player: size of the errors and depth of the search")
         .one_of({games::kSkills.begin(), games::kSkills.end()});
     command.option("--hand", &args.hand, "ERRORS",
-                   "The player's own errors, as carom solve takes them (default: those of the level)");
-    command.option("--best", &args.best, "N", "How many shots are shown").in(1, 20);
+                   "Errors of the player, as in carom solve (default: the level's)");
+    command.option("--best", &args.best, "N", "Number of shots to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the player's errors");
-    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the result does not depend on it")
+    command.option("--jobs", &args.jobs, "J", "Threads, 0 for one per core; the result is always the same")
         .in(0, 256);
     command.option("-o,--output", &args.output, "FILE.toml",
                    "Write the best shot as a scene (default: not written)");

@@ -1,4 +1,4 @@
-// carom check: validates a scene and prints what the plan decided.
+// carom check: validates a scene and prints its plan.
 #include <fmt/format.h>
 
 #include <iterator>

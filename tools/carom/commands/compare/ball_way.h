@@ -10,8 +10,8 @@
 
 namespace carom::tools {
 
-/// Where a ball is at any time, until it leaves play. A pocketed ball lies at the bottom of its pocket at
-/// once.
+/// The position of a ball at any time, until it leaves play. A pocketed ball is at the bottom of its pocket
+/// at once.
 class BallWay {
   public:
     BallWay(const Record& record, int ball) : record_(record), ball_(ball), last_(record.duration) {

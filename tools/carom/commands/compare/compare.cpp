@@ -1,4 +1,4 @@
-// carom compare: two shots, what differs, and by how much.
+// carom compare: the differences of two shots.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 struct CompareArgs {
     std::string a, b;
     /// [m] Larger than the error of the default impact tolerance (3.3e-5 in the snooker break, measured
-    /// against 1e-12; less in carom's other scenes), and smaller than anyone sees or measures on a table.
+    /// against 1e-12; less in carom's other scenes), and too small to see or measure on a table.
     double tolerance = 1e-4;
     bool json = false;
 };
@@ -99,7 +99,7 @@ std::string what_happened(const NamedEvent& event) {
     return fmt::format("{} {}", event.type, fmt::join(event.who, " "));
 }
 
-/// How far the events match, and the first ones that differ: in time only, and in anything else.
+/// The number of matching events, and the first ones that differ: in time only, and in anything else.
 std::string events_text(const EventDifference& events) {
     std::string out =
         fmt::format("\nevents\n  A has {}, B has {}; matching: ", events.a.size(), events.b.size());
@@ -228,7 +228,7 @@ void add_compare(Options& program) {
     command.argument("A", args.a, "Scene file (TOML) or record (.json)").required = true;
     command.argument("B", args.b, "Scene file or record to compare with").required = true;
     command.option("--tolerance", &args.tolerance, "L",
-                   "Positions at most this far apart, in m, count as equal");
+                   "Count positions at most this far apart, in m, as equal");
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.footer =
         "Exit status: 0 equal within the tolerance, 1 different, 2 bad usage or bad input. Example: carom "

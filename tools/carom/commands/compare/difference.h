@@ -1,4 +1,4 @@
-// The differences between two shots: their events, and where their balls are.
+// The differences between two shots: events, and positions of balls.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace carom::tools {
 
-/// How a shot leaves a ball.
+/// The final state of a ball in a shot.
 struct BallEnd {
     MotionState state = MotionState::kStationary;
-    std::string pocket;  ///< the one that holds it, or ""
+    std::string pocket;  ///< its pocket, or ""
     /// [m] If the ball is gone (in a pocket, off the table), its last position before that.
     Vec3 position = Vec3::Zero();
     bool operator==(const BallEnd&) const = default;
@@ -68,15 +68,15 @@ struct EventDifference {
 
 struct ShotDifference {
     bool same_bits = false;                   ///< the hashes are the same
-    std::vector<std::string> only_a, only_b;  ///< balls that the other shot does not have
+    std::vector<std::string> only_a, only_b;  ///< balls missing in the other shot
     EventDifference events;                   ///< of the balls that both have
     /// [s] Positions are compared until here: the end of the longer shot, or of one that was stopped while
     /// balls moved.
     double until = 0.0;
-    std::vector<BallDifference> balls;  ///< those that both have, in the order of a
+    std::vector<BallDifference> balls;  ///< balls of both, in the order of a
 
     bool same_balls() const { return only_a.empty() && only_b.empty(); }
-    /// Whether both have the same balls, and each of them is within().
+    /// Whether both have the same balls, and each ball is within().
     bool within(double length) const;
 };
 

@@ -47,7 +47,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-/// "carom sweep SCENE --vary KEY=DISTRIBUTION": how to call a command, with everything it requires.
+/// "carom sweep SCENE --vary KEY=DISTRIBUTION": the call of a command, with all its required options.
 std::string synopsis_of(const Options& command, const std::string& name) {
     std::string synopsis = name;
     for (const Option& row : rows_of(command, true)) {
@@ -61,7 +61,7 @@ std::string synopsis_of(const Options& command, const std::string& name) {
 
 constexpr const char* kIsaText =
     "scalar, v3 or v4 forces the instruction set; all give the same bits. By default, every kernel uses the "
-    "one that was measured to be fastest on this processor, or the widest one; `carom check` shows it.";
+    "one measured fastest on this processor, or else the widest; `carom check` prints it.";
 constexpr struct {
     int status;
     const char* meaning;
@@ -127,7 +127,7 @@ std::string code_list(const std::vector<std::string>& words) {
     return fmt::format("`{}`", fmt::join(words, "`, `"));
 }
 
-/// The description of an option, without what the top of the page says about all flags and files.
+/// The description of an option, without the facts about all flags and files at the top of the page.
 std::string page_meaning(const Option& row) {
     std::string text = meaning(row);
     for (const char* known : {" (default: off)", " (default: not written)", " (default: not drawn)"})
@@ -135,13 +135,13 @@ std::string page_meaning(const Option& row) {
     return markdown(text);
 }
 
-/// The list item of an option. @param before  the page up to here: a long list of choices stands once on it
+/// The list item of an option. @param before  the page up to here: a long list of choices appears once on it
 std::string page_item(const Option& row, const std::string& before) {
     std::string item = fmt::format("* `{}{}{}`: {}", joined(row.names, ", "), row.value.empty() ? "" : " ",
                                    row.value, page_meaning(row));
     const std::string choices = code_list(row.choices);
     if (row.choices.size() > 5 && before.find(choices) != before.npos)
-        item += "; one of those above";
+        item += "; values as above";
     else if (!row.choices.empty())
         item += "; one of " + choices;
     if (row.range) item += fmt::format("; {:g} to {:g}", row.range->first, row.range->second);
@@ -202,9 +202,8 @@ std::string command_line_page(const Options& program) {
         statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", status, text);
     return wrapped(
         "# The command line\n\n"
-        "Every command and option, as `carom COMMAND --help` prints them; `carom describe command-line` "
-        "prints this page. SCENE is a scene file (TOML). Flags are off and files are not written unless "
-        "they are named.\n\n"
+        "Every command and option, as in `carom COMMAND --help`; `carom describe command-line` prints this "
+        "page. SCENE is a scene file (TOML). Flags are off and no file is written unless named.\n\n"
         "* Exit status: " +
         statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands);
 }
@@ -333,12 +332,12 @@ std::string games_text() {
 
 std::string events_text() {
     std::string out =
-        "Columns of carom simulate --events, after time, type, a, b and what --profile adds. A column "
-        "is\nempty if its kind of event has no such number.\n\n";
+        "Columns of carom simulate --events, after time, type, a, b and the columns of --profile. A "
+        "column\nis empty if the event has no such number.\n\n";
     for (const EventColumn& column : event_columns())
         out += fmt::format("  {:<14}{:<7}{}\n", column.name, column.unit, column.what);
-    return out + fmt::format("  {:<21}{}\n  {:<21}{}\n", "met", "what ball a meets, by its name", "cluster",
-                             "all balls of a cluster, separated by ;");
+    return out + fmt::format("  {:<21}{}\n  {:<21}{}\n", "met", "name of the ball or part that ball a meets",
+                             "cluster", "all balls of a cluster, separated by ;");
 }
 
 // ---- the command -----------------------------------------------------------------------------------------
@@ -374,7 +373,7 @@ void add_describe(Options& program) {
     auto args = std::make_shared<DescribeArgs>();
     Options& command =
         program.command("describe", "Print a description of this program or of its file formats");
-    Option& format = command.argument("FORMAT", args->format, "What to print");
+    Option& format = command.argument("FORMAT", args->format, "Description to print");
     format.required = true;
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);
     command.run = [args, &program] { return run(*args, program); };

@@ -34,7 +34,7 @@ bool is_whole(const Key& key) {
     return key.kind == Key::Kind::kInteger || key.kind == Key::Kind::kIntegers;
 }
 
-/// Removes what only Markdown needs.
+/// Removes the marks of Markdown.
 std::string plain(std::string text) {
     text.erase(std::remove(text.begin(), text.end(), '`'), text.end());
     return text;

@@ -14,8 +14,8 @@ const std::vector<PageFile>& describe_files();
 
 /// A JSON Schema of scene files: docs/reference/scene.schema.json.
 std::string scene_schema();
-/// A JSON Schema of record files: docs/reference/record.schema.json, with fresh parts for what the tables of
-/// their keys say.
+/// A JSON Schema of record files: docs/reference/record.schema.json, with fresh parts from the tables of
+/// their keys.
 std::string record_schema();
 /// The page of scene files: docs/reference/scene_format.md, with fresh tables between the marks <!-- begin
 /// NAME --> and <!-- end NAME -->.

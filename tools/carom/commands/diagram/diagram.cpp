@@ -73,15 +73,15 @@ void add_diagram(Options& program) {
         "diagram", "Draw shots for a handout: the table to scale, balls, paths, the tip of the cue", run);
     command.option("SHOT", &args.shots, "", "Scene files (TOML) or records (.json), one drawing each")
         .required = true;
-    command.option("-o,--output", &args.output, "FILE", "The drawing: .svg, .pdf or .png");
+    command.option("-o,--output", &args.output, "FILE", "Drawing to write: .svg, .pdf or .png");
     command.option("--title", &args.titles, "TEXT",
-                   "Title of a shot, once for each (default: from the scene's first comment)");
+                   "Title of a shot; repeat it for each shot (default: from the scene's first comment)");
     command.flag("--bw,--black-and-white", args.black_and_white,
-                 "For printers without colour (default: off)");
+                 "Draw in black and white, for printers without colour (default: off)");
     command.flag("--diamonds", args.diamonds, "Number the diamonds (default: off)");
     command.flag("--grid", args.grid, "Draw lines at each quarter of a diamond (default: off)");
     command.flag("--no-speeds", args.speeds, "Leave out the speeds beside contacts (default: off)");
-    command.option("--units", &args.units, "UNITS", "Units of speeds, places and the radius")
+    command.option("--units", &args.units, "UNITS", "Units of speeds, positions and the radius")
         .one_of({kUnits[0], kUnits[1]});
 }
 

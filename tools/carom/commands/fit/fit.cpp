@@ -1,4 +1,4 @@
-// carom fit: numbers of a scene from tracked places of its balls.
+// carom fit: numbers of a scene from tracked positions of its balls.
 #include "carom/games/fit.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ int run(const FitArgs& args) {
         throw UsageError(fmt::format("--vary {}", error.what()));
     }
     for (const std::string& warning : fit.warnings) message(warning);
-    if (!fit.converged) message("the fit is refused: " + fit.trouble);
+    if (!fit.converged) message("the fit failed: " + fit.trouble);
     write_report(args.output,
                  fmt::format("# Fitted by carom to {}\n{}", harmless(args.tracks), scene_text(fit.scene)));
     write_report(args.csv, residuals_csv(fit, points));
@@ -103,7 +103,7 @@ int run(const FitArgs& args) {
     else
         print(table_text(table) +
               fmt::format("\n{} of {}: typically {:.3g} mm off, {} beyond three times that; {}\n",
-                          counted(fit.points, "place"), points.size(), 1e3 * fit.noise,
+                          counted(fit.points, "position"), points.size(), 1e3 * fit.noise,
                           counted(fit.outliers, "coordinate"),
                           counted(static_cast<std::size_t>(fit.shots), "shot")));
     return fit.converged ? kOk : kFailed;
@@ -113,20 +113,20 @@ int run(const FitArgs& args) {
 
 void add_fit(Options& program) {
     auto [command, args] = program.command<FitArgs>(
-        "fit", "Fit frictions, restitutions or the stroke to tracked places of the balls", run);
+        "fit", "Fit frictions, restitutions or the stroke to tracked positions of the balls", run);
     command.argument("SCENE", args.scene, "Scene file (TOML): the shot, with first guesses").required = true;
-    command.argument("TRACKS", args.tracks, "Places of the balls (CSV): t,ball,x,y in s and m").required =
+    command.argument("TRACKS", args.tracks, "Positions of the balls (CSV): t,ball,x,y in s and m").required =
         true;
     command
         .option("--vary", &args.vary, "KEY,...",
-                "Keys to fit, as in balls.mu_s,balls.mu_r,cue.speed; clock is the time of the "
-                "stroke on the clock of the tracks")
+                "Keys to fit, as in balls.mu_s,balls.mu_r,cue.speed; clock is the time of the stroke in the "
+                "tracks")
         .required = true;
-    command.option("--most-shots", &args.shots, "N", "Shots after which it gives up").in(1, 1e6);
+    command.option("--most-shots", &args.shots, "N", "Give up after this many shots").in(1, 1e6);
     command.option("-o,--output", &args.output, "FILE.toml",
                    "Write the scene with the fitted values (default: not written)");
     command.option("--csv", &args.csv, "FILE.csv",
-                   "Write simulated minus tracked places, for a plot (default: not written)");
+                   "Write simulated minus tracked positions, for a plot (default: not written)");
     command.flag("--json", args.json, "Print JSON, with the covariance (default: off)");
 }
 

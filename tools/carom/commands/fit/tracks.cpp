@@ -47,8 +47,9 @@ std::string text_of(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const auto size = std::filesystem::file_size(path, error);
     if (!in || error)
-        throw UsageError(harmless(path) + ": it cannot be read; check the path and its permissions");
-    if (size > kMaxRecordSize) throw UsageError(harmless(path) + ": it is too large; split it by shots");
+        throw UsageError(harmless(path) + ": cannot be read; check the path and its permissions");
+    if (size > kMaxRecordSize)
+        throw UsageError(harmless(path) + ": the file is too large; split it by shots");
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -81,15 +82,16 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
                     return word.text == kNames[k] || (k == 0 && word.text == "time");
                 });
                 if (found == words.end())
-                    fail(1, fmt::format("there is no column {}; the first line names the columns t,ball,x,y",
-                                        kNames[k]));
+                    fail(1,
+                         fmt::format("there is no column {}; name the columns t,ball,x,y in the first line",
+                                     kNames[k]));
                 (*places)[k] = static_cast<std::size_t>(found - words.begin());
             }
             continue;
         }
         const auto word = [&](std::size_t k) {
             if ((*places)[k] >= words.size())
-                fail(line.size() + 1, fmt::format("the line ends before its {}; add it", kNames[k]));
+                fail(line.size() + 1, fmt::format("the line has no {}; add it", kNames[k]));
             return words[(*places)[k]];
         };
         const auto number = [&](std::size_t k) {
@@ -98,10 +100,10 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
             const auto value = as_number<double>(at.text);
             if (!value || (k < 2 && !(*value >= 0.0)))
                 fail(at.column,
-                     fmt::format("{} is no {}; write a number in {}", in_quotes(std::string(at.text)),
+                     fmt::format("{} is not a {}; write a number in {}", in_quotes(std::string(at.text)),
                                  k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m"));
             if (std::isinf(*value))
-                fail(at.column, "a place must be finite; leave it empty if it was not seen");
+                fail(at.column, "a position must be finite; leave it empty if the ball was not seen");
             return *value;
         };
         const double t = number(0), x = number(2), y = number(3);
@@ -114,7 +116,8 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         points.push_back({t, ball, Vec2(x, y)});
     }
     line_number = std::max<std::size_t>(line_number, 1);
-    if (points.empty()) fail(1, "there are no places; add lines such as 0.05,cue,0.61,1.95 below t,ball,x,y");
+    if (points.empty())
+        fail(1, "there are no positions; add lines such as 0.05,cue,0.61,1.95 below t,ball,x,y");
     return points;
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The JSON of an impact nests three deep; anything deeper than this is refused.
+/// The JSON of an impact nests three deep; anything deeper than this is rejected.
 constexpr int kDeepest = 8;
 /// A normal written with four digits is accepted as a unit vector; a larger difference from 1 is an error.
 constexpr double kUnitSlack = 1e-3;
@@ -68,7 +68,7 @@ constexpr struct {
     const char *keys, *meaning;
 } kMeanings[] = {
     {"r, v, w", "centre, velocity and angular velocity [x, y, z] before the impact; in the answer, after it"},
-    {"R, m", "radius and mass; m2 and R2 are those of ball 2 if they differ"},
+    {"R, m", "radius and mass; m2 and R2 are for ball 2 if it differs"},
     {"mu_s, mu_b, e_b, ...", "as in [balls] of a scene file; mu_s1 and mu_s2 are mu_s under each ball"},
     {"model", "a cushion model, as in [physics] of a scene file"},
     {"normal", "horizontal, from the cushion into the table, [x, y] of length 1"},
@@ -76,14 +76,14 @@ constexpr struct {
     {"height", "height of the nose above the cloth"},
     {"id", "any value; the answer repeats it"},
     {"steps, ns", "kernel steps, and kernel time in nanoseconds"},
-    {"error", "instead of an answer: what is wrong with the line"}};
+    {"error", "the mistake in a line, in place of an answer"}};
 
 std::vector<std::string> words_of(std::string text) {
     std::istringstream in(std::move(text));
     return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// Refuses unknown keys: a misspelt key would silently change the result.
+/// Rejects unknown keys: a misspelt key would silently change the result.
 void refuse_unknown(const Json& object, const std::string& known) {
     const std::vector<std::string> names = words_of(known);
     for (const auto& item : object.items())
@@ -143,7 +143,7 @@ const Json& params_of(const Json& line) {
     return params;
 }
 
-/// Whether the line asks for the impact of balls in the air.
+/// Whether the line is an impact of balls in the air.
 bool is_airborne(const Json& line) {
     const auto it = line.find("airborne");
     if (it == line.end()) return false;
@@ -361,7 +361,7 @@ Json compute(std::string_view text, const ImpactSettings& settings) {
 }  // namespace
 
 std::string impact_keys() {
-    std::string text = "Each line is a JSON object; answers come in the same order. Units are SI.";
+    std::string text = "Each line is a JSON object; the answers have the same order. Units are SI.";
     for (const LineKind& kind : {kBallBall, kBallBallInAir, kCushion, kCushionInAir, kCloth}) {
         std::string params = kind.params;
         if (*kind.optional != '\0') params += fmt::format(", optional {}", kind.optional);

@@ -36,7 +36,7 @@ ImpactAnswer answer_impact(std::string_view line, const ImpactSettings& settings
 /// The kinds of lines and their keys for people, one line each after a first line.
 std::string impact_keys();
 
-/// The answer that says why a line was not computed.
+/// The answer to a line that could not be computed.
 ImpactAnswer impact_error(const std::string& what);
 
 }  // namespace carom::tools

@@ -32,7 +32,7 @@ using games::InHand;
 using games::State;
 using games::Verdict;
 
-/// The options of both commands about the game.
+/// The game options of both commands.
 struct GameArgs {
     std::string game, state, state_out, ball, pocket;
     std::vector<std::string> rules;
@@ -51,13 +51,13 @@ struct NextArgs {
     GameArgs game;
 };
 
-/// The outcome of a shot: the verdict, and the option that is taken.
+/// The outcome of a shot: the verdict, and the chosen option.
 struct Judged {
     Verdict verdict;
     games::Option option;
 };
 
-/// Calls a function of the games, and turns its refusals into messages about the shot.
+/// Calls a function of the games, and turns its errors into messages about the shot.
 template <class F>
 auto asked(const std::string& shot, F&& f) {
     try {
@@ -127,7 +127,7 @@ std::string verdict_text(const Judged& judged) {
 
 int run_judge(const JudgeArgs& args) {
     if (args.game.game.empty() && args.game.state.empty())
-        throw UsageError("give --game, or the state of a game with --state");
+        throw UsageError("no game is named; give --game or --state");
     const Record record = read_shot(args.shot, {});
     const Judged verdict = judged(args.shot, record, args.game);
     write_report(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
@@ -143,8 +143,8 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const g
         if (!numbers) throw UsageError(fmt::format("--place {}: expected X,Y in m", args.place));
         const Vec2 place((*numbers)[0], (*numbers)[1]);
         if (!asked(args.scene, [&] { return games::may_place(record, option, place); }))
-            throw UsageError(
-                fmt::format("--place {}: the cue ball may not lie there; choose another place", args.place));
+            throw UsageError(fmt::format(
+                "--place {}: the cue ball may not be placed there; choose another place", args.place));
         return place;
     }
     if (option.state.in_hand == InHand::kNo) return std::nullopt;
@@ -154,8 +154,7 @@ std::optional<Vec2> place_of(const NextArgs& args, const Record& record, const g
 int run_next(const NextArgs& args) {
     if (is_record(args.scene))
         throw UsageError(
-            fmt::format("{}: expected a scene file (TOML); a record does not say how balls and "
-                        "cushions are computed",
+            fmt::format("{}: expected a scene file (TOML); a record does not contain the models of physics",
                         harmless(args.scene)));
     const Plan plan = plan_scene(args.scene);
     const Record record = simulate_plan(plan, {});
@@ -203,21 +202,20 @@ int run_next(const NextArgs& args) {
 }
 
 void add_game(Options& command, GameArgs& args) {
-    command.option("--game", &args.game, "GAME", "The game; a state names it, too (default: none)")
+    command.option("--game", &args.game, "GAME", "The game, unless --state names it (default: none)")
         .one_of(game_names());
     command.option("--state", &args.state, "FILE.json",
-                   "The state before the shot (default: that before the break)");
+                   "The state before the shot (default: before the break)");
     command.option("--state-out", &args.state_out, "FILE.json",
                    "Write the state after the shot (default: not written)");
     command.option("--ball", &args.ball, "ID", "The called ball (default: none)");
     command.option("--pocket", &args.pocket, "ID", "The called pocket (default: none)");
-    command.option(
-        "--rules", &args.rules, "KEY=VALUE",
-        "An option of the game, which carom describe games lists; may be repeated (default: none)");
+    command.option("--rules", &args.rules, "KEY=VALUE",
+                   "Set an option of the game (see carom describe games); may be repeated (default: none)");
     command.flag("--safety", args.safety,
                  "Eight-ball, ten-ball, straight pool: a safety was called (default: off)");
     command.flag("--push-out", args.push_out, "Nine-ball, ten-ball: a push out was called (default: off)");
-    command.option("--option", &args.option, "N", "Number of the choice to take, if there are several")
+    command.option("--option", &args.option, "N", "Take this option, by its number, if there are several")
         .in(1, 9);
 }
 
@@ -225,7 +223,7 @@ void add_game(Options& command, GameArgs& args) {
 
 void add_judge(Options& program) {
     auto [command, args] = program.command<JudgeArgs>(
-        "judge", "Judge a shot by the rules of a game: fouls, points, whose turn, what comes back",
+        "judge", "Judge a shot by the rules of a game: fouls, points, whose turn it is, respotted balls",
         run_judge);
     command.argument("SHOT", args.shot, "Scene file (TOML) or record (.json)").required = true;
     add_game(command, args.game);
@@ -234,8 +232,7 @@ void add_judge(Options& program) {
 
 void add_next(Options& program) {
     auto [command, args] = program.command<NextArgs>(
-        "next", "Write the scene of the next shot: the table as it rests, by the rules of a game if named",
-        run_next);
+        "next", "Write the scene of the next shot, applying the rules of a game if one is named", run_next);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command.option("-o,--output", &args.output, "FILE.toml", "Scene file to write");
     add_game(command, args.game);

@@ -26,8 +26,8 @@ struct MarginArgs {
     const FrameSettings* drawing() const { return no_render ? nullptr : &drawn; }
 };
 
-/// The options that the program and the laboratory share. read_margin_args() reads those that the parser
-/// leaves as text.
+/// The options that the program and the laboratory share. read_margin_args() reads the options that the
+/// parser leaves as text.
 void add_margin_options(Options& command, MarginArgs& args);
 void read_margin_args(MarginArgs& args);
 

@@ -5,16 +5,17 @@ import {radiusOf, stateAt} from "../../page/motion.js";
 const MEETS = ["ball_ball", "ball_cluster", "ball_cushion", "ball_jaw", "ball_pocket", "ball_out"];
 const SHORT = 0.22;  // [m] the line of a ball after the contact
 const OBVIOUS = 0.1;  // [rad]
-export const PULL = 0.3;  // [m] how far the cue is pulled back for the hardest stroke
+export const PULL = 0.3;  // [m] pull of the cue for the hardest stroke
 export const HARDEST = 12;  // [m/s] a break
 export const HINT_COLOURS = ["#ffd84d", "#7fd4ff", "#ffb0e0"];
 
-/** How far the cue is pulled back for a speed, and the speed for a way: soft strokes have more room. */
+/** The pull of the cue for a speed, and the speed for a pull: soft strokes have more room. */
 export const pulledBack = (speed) => PULL * Math.sqrt(Math.min(speed / HARDEST, 1));
 export const speedOf = (way) => HARDEST * Math.min(Math.max(way / PULL, 0), 1) ** 2;
 
-/** The first contact of the struck ball: {ball, at, time, R, lines, met}: its place then, the short lines of
- * both balls, and {id, cut, left} of the ball that it meets, or null; `cut` in radians, and its side. */
+/** The first contact of the struck ball: {ball, at, time, R, lines, met}: its position then, the short
+ * lines of both balls, and {id, cut, left} of the ball that it meets, or null; `cut` in radians, and its
+ * side. */
 export function firstContact({motion: record, events}, id) {
   const indexOf = (name) => record.tracks.findIndex((track) => track.id === name), ball = indexOf(id);
   const has = (e) => e.ball === id || e.other === id && e.type === "ball_ball" || e.balls?.includes(id);
@@ -39,7 +40,7 @@ export function firstContact({motion: record, events}, id) {
   return found;
 }
 
-/** The ball and the pocket that an obvious shot need not call: the ball that is met, and the pocket that it
+/** The ball and the pocket of an obvious shot, which need no call: the ball that is met, and the pocket it
  * runs towards; null if there is none. */
 export function obviousCall(contact, pockets) {
   if (!contact?.met || contact.lines.length === 0) return null;
@@ -89,7 +90,7 @@ export function drawContact(view, contact, colour, word = "") {
   context.restore();
 }
 
-/** The straight ways of a hint. */
+/** The straight paths of a hint. */
 export function drawHints(state) {
   const {view, hints} = state, {line} = strokes(view);
   [...hints].reverse().forEach((hint) => {
@@ -126,7 +127,7 @@ export function drawCue({scene: {cue}, view}, from) {
   context.restore();
 }
 
-/** Whether a place [m] is on the cue, `slop` [m] beside it. */
+/** Whether a place [m] is on the cue, or within `slop` [m] of it. */
 export function onCue(cue, ball, [x, y], slop) {
   const angle = cue.aim_deg * Math.PI / 180, dx = ball.x - x, dy = ball.y - y;
   const back = dx * Math.cos(angle) + dy * Math.sin(angle);

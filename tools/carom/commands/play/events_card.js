@@ -1,4 +1,4 @@
-// The events of the shot. Where it is played, the list fills while the balls move.
+// The events of the shot. In the mode "play", the list fills while the balls move.
 
 import {make} from "../../page/dom.js";
 import {EventList, eventBefore} from "../../page/playback.js";

@@ -13,7 +13,7 @@ export function dialog(title, parts, ...buttons) {
   return element;
 }
 
-/** The value that an input's text stands for. @throws Error with a sentence */
+/** The value of an input's text. @throws Error with a sentence */
 export function valueOf(key, {type, enum: names}, text) {
   if (names) return text;
   if (type === "array") {
@@ -72,7 +72,7 @@ function settingsDialog(state, keys) {
   };
 }
 
-/** Begins with a scene, and says what to look for. */
+/** Begins with a scene, and shows its "Look for". */
 export function openScene(state, toml, how) {
   state.match = null;
   begin(state, toml, how);

@@ -1,4 +1,4 @@
-// Games: who may do what, the verdict on a shot, and what comes after it.
+// Games: the player's rights, the verdict on a shot, and its consequences.
 
 import {inHand} from "./place.js";
 import {begin, change, enter} from "./shots.js";
@@ -9,8 +9,8 @@ const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** Begins a game by these options of its rules, or goes on without one if the name is "". `match`: as in the
- * state. */
+/** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
+ * in the state. */
 export function newGame(state, name, rules = {}, match = null) {
   const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
   const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
@@ -19,7 +19,7 @@ export function newGame(state, name, rules = {}, match = null) {
   begin(state, startOf(carom, name, table, randomSeed()), {game});
 }
 
-/** The player's rights: {callable, mayPushOut}, and all of it in words. */
+/** The player's rights: {callable, mayPushOut}, and all of them in words. */
 export function legal({carom, game, scene}) {
   if (!game) return {text: "", callable: [], mayPushOut: false};
   const now = game.state;
@@ -37,7 +37,7 @@ export function legal({carom, game, scene}) {
   return {...may, text: `${sentence(may.text)}.${group}${first}${score}`};
 }
 
-/** Judges the shot by what the player announced. */
+/** Judges the shot with the player's calls. */
 export function judge(state) {
   const {carom, game, shot, announced} = state;
   state.verdict = null;
@@ -49,7 +49,7 @@ export function judge(state) {
   state.tell("judged");
 }
 
-/** Goes on where the balls rest; in a game, by one of the verdict's options. */
+/** Continues from the balls at rest; in a game, by one of the verdict's options. */
 export function nextShot(state, option = 0) {
   const {carom, game, shot, scene, announced} = state;
   if (!game) return advance(state, shot.after(), null);
@@ -76,7 +76,7 @@ function advance(state, after, game) {
     const {ball} = scene.cue ?? {}, placed = ball && inHand(state.carom, after, scene, ball);
     const [first] = after.balls;
     if (!placed && !first) return state.say("No ball is left on the table.");
-    if (placed) said = "The cue ball comes in hand: drag it to where you want it.";
+    if (placed) said = "Cue ball in hand: drag it where you want it.";
     after = placed || after.with({"cue.ball": first.id});
   }
   state.announced = {...NOTHING, ball: state.announced.ball};

@@ -1,4 +1,4 @@
-// The game on the page: what the player may do and announces, the verdict, and the options after it.
+// The game on the page: the player's rights and calls, the verdict, and its options.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
@@ -36,7 +36,7 @@ function announcements(state) {
     tell();
   });
   let callable = [];
-  // An obvious call is made by itself, until the player calls something.
+  // An obvious call is automatic until the player makes a call.
   const obvious = () => {
     const {announced, scene, shot, clock} = state;
     if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;
@@ -106,7 +106,7 @@ export function gameDialog(state) {
     });
     if (plays && players.every(({value}) => value === "")) players[1].value = "club";
     note.textContent = plays || name === "" ? ""
-      : "carom judges this game, but does not play it: it is for two people at this page.";
+      : "carom judges this game but does not play it: two people play it on this page.";
   };
   const game = select("Game", GAMES, "eight_ball", choose);
   const start = () => {
@@ -118,7 +118,7 @@ export function gameDialog(state) {
   };
   const labelled = (text, input) => make("label", {class: "field"}, make("span", {}, text), input);
   const element = dialog("New game", [labelled("Game", game), row, note, labelled("First", players[0]),
-    labelled("Second", players[1]), make("label", {}, hints, " hints may be asked for")],
+    labelled("Second", players[1]), make("label", {}, hints, " allow hints")],
   button("Start", start, {class: "shoot"}));
   return () => {
     choose(game.value);

@@ -1,4 +1,4 @@
-// A match that survives a reload: what is on the table, and what the rules remember, in the browser's store.
+// A match that survives a reload: the table and the state of the rules, in the browser's storage.
 
 import {LIMITS, begin} from "./shots.js";
 
@@ -20,7 +20,7 @@ const store = {
   },
 };
 
-/** Stores this page's match whenever it changes; one that is over is forgotten. */
+/** Stores this page's match whenever it changes; a finished one is removed. */
 export function keepMatch(state) {
   let own = false;
   const write = () => {
@@ -39,8 +39,8 @@ export function keepMatch(state) {
   for (const what of ["lists", "ended"]) state.on(what, write);
 }
 
-/** Goes on with the stored match. The shot before is played again, because the rules ask about it.
- * @returns whether there was one */
+/** Continues the stored match. The previous shot is played again, because the rules need it. @returns
+ * whether there was one */
 export function resumeMatch(state) {
   const kept = store.get(), {carom} = state;
   if (!kept || state.fixed) return false;

@@ -1,5 +1,5 @@
-// carom as a player, and its hints: it thinks in a worker, says what it will do, and strikes with the errors
-// of its level.
+// carom as a player, and its hints: it thinks in a worker, announces its shot, and strikes with the errors of
+// its level.
 
 import {firstContact} from "./aids.js";
 import {nextShot} from "./game.js";
@@ -10,7 +10,7 @@ import {adviceWords} from "./words.js";
 export const LEVELS = ["beginner", "club", "league", "professional", "machine"];
 /** The games that carom plays itself. */
 export const PLAYED = ["eight_ball", "nine_ball", "ten_ball"];
-const SEEN = 1400;  // [ms] how long a shot is announced before it is struck, and a verdict before the next
+const SEEN = 1400;  // [ms] from the announcement of a shot to its strike, and from a verdict to the next
 const seedOf = () => 1 + Math.floor(Math.random() * 1e9);
 
 export const wait = (state, ms) => new Promise((done) => setTimeout(done, state.quick ? 0 : ms));
@@ -23,10 +23,10 @@ function changesOf(state, strike, place) {
     "cue.offset.side": side, "cue.offset.height": height};
 }
 
-/** Thinks, and says so. @returns the advice, or null if it is stopped or fails, which is said */
+/** Thinks, and says so. @returns the advice, or null if it is stopped or fails, with a message */
 async function think(state, busy, game, options) {
   state.busy = busy;
-  state.say(busy.level ? `carom (${busy.level}) is thinking …` : "carom looks for the best shots …");
+  state.say(busy.level ? `carom (${busy.level}) is thinking …` : "carom is looking for the best shots …");
   state.tell("busy");
   try {
     const advice = await state.thinker.advise(state.scene.toml, game, {seed: seedOf(), ...options});
@@ -59,7 +59,7 @@ export async function takeTurn(state) {
   if (goes) state.clock.run(true);
 }
 
-/** Another table: what was thought about the last one is of no use. */
+/** For another table: drops the search for the last one. */
 export function newTable(state) {
   if (state.busy) done(state, state.busy);
   state.thinker.stop();
@@ -79,7 +79,7 @@ export function stopThinking(state) {
   state.tell("busy");
 }
 
-/** After a shot: carom chooses, and a match goes on by itself where there is nothing to choose. */
+/** After a shot: carom chooses, and a match continues by itself if there is no choice. */
 export async function goOn(state) {
   const {verdict, shot} = state, {players} = state.match ?? {players: []};
   const level = players[verdict?.chooser];
@@ -96,7 +96,7 @@ export async function goOn(state) {
 const practice = (carom) => ({...carom.games.start("eight_ball"), opening: false,
   in_hand: "no"});
 
-/** Whether hints may be asked for. */
+/** Whether hints are allowed. */
 export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &&
   (game === null || PLAYED.includes(game.state.game) && (mode === "practise" || Boolean(match?.hints)));
 
@@ -113,7 +113,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
-  if (advice) state.say("The chances are those of a professional.");
+  if (advice) state.say("The success rates are for a professional.");
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

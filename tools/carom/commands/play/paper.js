@@ -4,8 +4,8 @@ import {brightness, cssColour, make} from "../../page/dom.js";
 import {isGone, pathPiece, radiusOf, stateAt} from "../../page/motion.js";
 import {withUnit} from "./words.js";
 
-/** An SVG of the table, the balls at the start, their paths and where they rest. The table lies: its y goes
- * to the right, its x down. */
+/** An SVG of the table, the balls at the start, their paths and final positions. The table lies: its y
+ * points to the right, its x down. */
 function drawnOnPaper(record, shape, styles, cue) {
   const {low, high} = shape.bounds, at = (x, y) => [y - low[1], x - low[0]];
   const text = (x, y) => at(x, y).map((v) => v.toFixed(4)).join(" ");
@@ -56,7 +56,7 @@ function drawnOnPaper(record, shape, styles, cue) {
   return make("svg", {viewBox: `0 0 ${wide.toFixed(4)} ${tall.toFixed(4)}`}, ...parts);
 }
 
-/** Puts the shot onto paper whenever the page is printed. */
+/** Draws the shot on paper when the page is printed. */
 export function printShots(state) {
   const paper = make("section", {class: "paper", "aria-hidden": "true"});
   document.body.append(paper);

@@ -1,4 +1,4 @@
-// Where balls may be put.
+// Places for balls.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {withBall, withoutBall} from "./scene_text.js";
@@ -13,8 +13,8 @@ function freePlace({balls}, [x, y], R) {
 }
 const headSpot = ({corner: [x, y], width, length}) => [x + width / 2, y + length / 4];
 
-/** The scene with a ball that has left it, near the head spot, and its cue; null if it has no room. `before`:
- * a scene with that ball. */
+/** The scene with a ball that has left it, near the head spot, and its cue; null if there is no room.
+ * `before`: a scene with that ball. */
 export function inHand(carom, after, before, id) {
   const {radius} = before.balls.find((ball) => ball.id === id), {speed, aim_deg: aim} = before.cue;
   const place = freePlace(after, headSpot(after.table), radius);
@@ -22,7 +22,7 @@ export function inHand(carom, after, before, id) {
     `speed = ${speed}\naim_deg = ${aim}\n`);
 }
 
-/** Puts a ball with the first free name onto the table. */
+/** Adds a ball with the first free name to the table. */
 export function addBall(state) {
   const {scene, set} = state, radius = scene.balls[0]?.radius ?? 0.0286;
   const names = ["cue", ...Array.from({length: 99}, (_, k) => String(k + 1))];
@@ -34,7 +34,7 @@ export function addBall(state) {
   state.tell("placed");
 }
 
-/** Takes a ball off the table. */
+/** Removes a ball from the table. */
 export function removeBall(state, id) {
   if (id === state.scene.cue?.ball) return state.say("The cue strikes this ball; remove another one.", true);
   begin(state, withoutBall(state.scene.everything, id), {set: state.set});
@@ -48,14 +48,15 @@ export function refusal(state, id, x, y) {
   if (!game) return null;
   const inHand = game.state.in_hand;
   if (inHand === "no" || id !== scene.cue?.ball)
-    return "In a game only the cue ball may be moved, and only in hand.";
-  if (game.judged) return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not lie there.";
+    return "In a game, only a cue ball in hand may be moved.";
+  if (game.judged)
+    return game.judged.mayPlace(x, y, game.option) ? null : "The cue ball may not be placed there.";
   const line = scene.table.corner[1] + scene.table.length / 4;
   return inHand === "head string" && y >= line
-    ? "For the break the cue ball is behind the head string." : null;
+    ? "For the break, place the cue ball behind the head string." : null;
 }
 
-/** Moves a ball, or says why it cannot be. @returns whether it was moved */
+/** Moves a ball, or shows why it cannot. @returns whether it was moved */
 export function put(state, id, x, y, how) {
   const why = refusal(state, id, x, y);
   if (why === null) return change(state, {[`ball.${id}.position.x`]: x, [`ball.${id}.position.y`]: y}, how);

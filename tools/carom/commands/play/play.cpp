@@ -76,7 +76,7 @@ Json keys_to_set() {
 /// Data for the page's script: the scene, the locked keys, and the choices. @throws
 /// UsageError
 Json start_of(const PlayArgs& args) {
-    Json page = page_json("carom", "a table to play on", harmless(command_line()), program_version());
+    Json page = page_json("carom", "an interactive table", harmless(command_line()), program_version());
     page["lock"] = locked_keys(args.lock);
     page["scenes"] = shipped_scenes();
     page["tables"] = kTablePresets;
@@ -86,7 +86,7 @@ Json start_of(const PlayArgs& args) {
         if (is_record(args.scene))
             throw UsageError(
                 fmt::format("{}: expected a scene file (TOML), not a record", harmless(args.scene)));
-        plan_scene(args.scene);  // refuses a bad scene here rather than in the browser
+        plan_scene(args.scene);  // rejects a bad scene here and not in the browser
         page["scene"] = read_scene_text(args.scene);
         page["lead"] = harmless(args.scene);
     }
@@ -114,7 +114,7 @@ void add_play(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML) to begin with (default: a practice table)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write");
     command.option("--lock", &args.lock, "KEYS",
-                   "What cannot be changed on the page, such as cue.speed,ball (default: nothing)");
+                   "Lock these keys on the page, such as cue.speed,ball (default: none)");
 }
 
 }  // namespace carom::tools

@@ -1,5 +1,6 @@
-// The page of `carom play`: a table to play on. Every change is a whole shot, simulated here; what the player
-// sees of it while aiming is the mode's. At time 0 the player aims; later the shot is being watched.
+// The page of `carom play`: an interactive table. Every change is a whole shot, simulated here; the mode
+// decides which part of it the player sees while aiming. At time 0 the player aims; later the shot is played
+// back.
 
 import * as carom from "../../../../web/npm/core.js";
 import {button, make, pageData, prefers} from "../../page/dom.js";
@@ -24,8 +25,8 @@ import {Thinker} from "./thinker.js";
 import {verdictWords} from "./words.js";
 
 const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
-  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers look closer; Shift and the wheel aim finely.";
-/** The page as it came, to send it on with another scene. */
+  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers zoom; Shift and the wheel aim finely.";
+/** The original page, to send it with another scene. */
 const WHOLE = location.protocol === "file:" ? document.documentElement.outerHTML : "";
 
 /** Loads carom. @returns the bytes of carom.wasm, or null if this browser cannot run it */
@@ -43,7 +44,7 @@ async function load() {
   }
 }
 
-/** Judges a shot that has ended, and says what happened. */
+/** Judges a shot that has ended, and reports it. */
 function conclude(state) {
   judge(state);
   const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
@@ -65,7 +66,7 @@ function toggle(text, name, change) {
   return box;
 }
 
-/** The two ways to use the page. */
+/** The two modes of the page. */
 function modes(state) {
   const names = [["practise", "Practise"], ["play", "Play"]];
   const boxes = names.map(([mode, text]) => button(text, () => {
@@ -94,7 +95,7 @@ function topBar(state, sound) {
     button("Full screen", full, {class: "full"}), more);
 }
 
-/** Makes the parts of the page. @returns what its tests ask for */
+/** Makes the parts of the page. @returns objects for its tests */
 function build(state) {
   const sound = followSounds(state), table = tableCard(state), shared = shareCard(state, WHOLE);
   const made = ["Made by ", make("code", {}, state.page.command), `, carom ${carom.version()}`];
@@ -117,14 +118,14 @@ function build(state) {
   return {sound, shared};
 }
 
-/** Begins with what the address, the page or the match before says. */
+/** Begins with the scene of the address, of the page or of the stored match. */
 async function open(state) {
   const said = await openAddress(state);
   if (state.shot) return said;
   const resumed = !said && state.page.scene === "" && resumeMatch(state);
   if (!state.shot) openScene(state, state.page.scene || startOf(carom, "", "nine_foot"), {remember: false});
   state.tell("mode");
-  return said ?? (resumed ? "The match goes on." : null);
+  return said ?? (resumed ? "The match continues." : null);
 }
 
 async function main() {

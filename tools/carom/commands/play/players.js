@@ -1,4 +1,4 @@
-// Who plays a match.
+// The players of a match.
 
 /** The name of a player for people. */
 export function nameOf({match}, player) {

@@ -1,4 +1,4 @@
-// Pointers on the table: they move balls, aim, pull the cue and look closer. Keys do the same.
+// Pointers on the table: they move balls, aim, pull the cue and zoom. So do keys.
 
 import {onCue, pulledBack, speedOf} from "./aids.js";
 import {put, refusal} from "./place.js";
@@ -6,7 +6,7 @@ import {letGo, setSpeed} from "./pull.js";
 import {change, takeBack} from "./shots.js";
 import {aimAt, nudge, wrapped} from "./stroke.js";
 
-const FINE = 0.1;  // of the way that the pointer turns
+const FINE = 0.1;  // of the turn of the pointer
 const HELD_FIRST = 250;  // [ms] A second finger that comes later makes the first one finer.
 
 /** The target of a press at this event: {id}, a ball; {cue: true}; or {id: null}, the aim. */
@@ -21,14 +21,14 @@ export function heldAt(state, event) {
   return {id: null};
 }
 
-/** How far a place is behind the ball along the cue [m]. */
+/** Distance of a place behind the ball along the cue [m]. */
 function behind({scene: {cue}}, ball, [x, y]) {
   const angle = cue.aim_deg * Math.PI / 180;
   return (ball.x - x) * Math.cos(angle) + (ball.y - y) * Math.sin(angle);
 }
 
-/** Moves the held ball to the pointer, pulls the cue there, or aims there; finely, by a part of the way. Undo
- * takes back a whole drag. */
+/** Moves the held ball to the pointer, pulls the cue there, or aims there; finely, by a fraction of the
+ * movement. Undo reverts a whole drag. */
 function follow(state) {
   const {held, pointed, scene} = state;
   state.asked = false;
@@ -61,7 +61,7 @@ function press(state, event) {
   } else {
     state.pointed = [x, y];
     if (held.fine && struck) held.aim = aimAt(struck, x, y);
-    // A finger that is the first of two must not aim at once.
+    // The first of two fingers must not aim at once.
     else if (event.pointerType !== "touch") follow(state);
   }
 }
@@ -134,7 +134,7 @@ export function followPointer(state) {
 }
 const cursorOf = ({id, cue}) => id !== null || cue ? "grab" : "crosshair";
 
-/** The keys of the page, wherever they are not needed for something else. */
+/** The keys of the page, unless they are needed elsewhere. */
 export function followKeys(state, tip) {
   const {clock} = state, turn = (by) => () => nudge(state, "aim_deg", by);
   const push = (by) => () => nudge(state, "speed", by), moveTip = (x, y) => () => tip.step(x, y);

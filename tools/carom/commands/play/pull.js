@@ -6,15 +6,15 @@ import {HARDEST, PULL, pulledBack, speedOf} from "./aids.js";
 import {change} from "./shots.js";
 import {speedWord, withUnit} from "./words.js";
 
-const TAP = 10;  // [px] a pointer that moves less sets the power, and does not pull
+const TAP = 10;  // [px] a pointer that moves less sets the power without a pull
 const STEPS = {ArrowUp: 0.1, ArrowRight: 0.1, ArrowDown: -0.1, ArrowLeft: -0.1, PageUp: 1, PageDown: -1};
 const LEAST = 0.05;  // [m/s] the cue is back at the ball, and does not strike
 
-/** Sets the speed while the cue is pulled; `how`: as change() takes it. @returns whether it was changed */
+/** Sets the speed while the cue is pulled; `how`: as in change(). @returns whether it was changed */
 export const setSpeed = (state, speed, how) => !state.locked("cue.speed") &&
   change(state, {"cue.speed": Math.round(Math.min(Math.max(speed, 0), HARDEST) * 100) / 100}, how);
 
-/** Strikes if the cue was pulled; else it goes back to the speed before. */
+/** Strikes if the cue was pulled; otherwise restores the previous speed. */
 export function letGo(state, before) {
   if (state.scene.cue.speed >= LEAST) state.clock.run(true);
   else setSpeed(state, before, {remember: false});

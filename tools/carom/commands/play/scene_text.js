@@ -21,14 +21,14 @@ export function sectionOf(toml, section) {
 export const without = (toml, key) =>
   linesOf(toml).filter(({name}) => name !== key).map(({line}) => line).join("\n");
 
-/** Where the n-th line begins and ends in a text, from 1. */
+/** Start and end of the n-th line in a text, from 1. */
 export function rangeOf(text, n) {
   const lines = text.split("\n");
   const start = lines.slice(0, n - 1).reduce((sum, line) => sum + line.length + 1, 0);
   return [start, start + lines[n - 1].length];
 }
 
-/** The file with another ball; one that carom wrote has every ball on its own. */
+/** The file with another ball; in a file by carom, every ball has its own entry. */
 export const withBall = (toml, id, [x, y]) =>
   `${toml.replace(/\n*$/, "\n")}[[ball]]\nid = ${JSON.stringify(id)}\nposition = [${x}, ${y}]\n`;
 

@@ -33,7 +33,7 @@ export function scoreBar(state) {
   const show = () => {
     if (!state.shot) return;
     const {game, set, scene, clock, shot} = state, now = game?.state, time = clock.now > 0 ? clock.now : -1;
-    // A ball that falls in this shot moves to the tray when it has fallen.
+    // A ball that falls in this shot moves to the tray after it has fallen.
     const fell = new Map(shot.events.filter(({type}) => LEAVES.includes(type)).map((e) => [e.ball, e.time]));
     const lies = (id) => scene.balls.some((b) => b.id === id) && !(time >= (fell.get(id) ?? Infinity));
     const off = set.filter(({id, style}) => style && !lies(id) && !["cue", scene.cue?.ball].includes(id));

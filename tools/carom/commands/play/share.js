@@ -1,7 +1,7 @@
-// A scene as part of an address: its file, packed and written in letters that need no escape. The hash of the
-// shot goes with it, so that whoever opens the address can see that the bits are the same.
+// A scene as part of an address: its file, packed and encoded without escapes. The hash of the shot is
+// included, so that the recipient sees whether the bits are the same.
 
-// [bytes] Longer addresses, and longer files in them, are refused.
+// [bytes] Longer addresses, and longer files in them, are rejected.
 export const LONGEST_FRAGMENT = 60000;
 const LONGEST_SCENE = 400000;
 
@@ -35,17 +35,17 @@ export async function fragmentOf(toml, hash) {
   return `#h=${hash}&s=${toLetters(packed)}`;
 }
 
-/** {toml, hash} of an address, or null if it holds no scene. @throws Error with a sentence */
+/** {toml, hash} of an address, or null if it contains no scene. @throws Error with a sentence */
 export async function sceneInFragment(fragment) {
   const found = /^#h=([0-9a-f]{16})&s=([A-Za-z0-9_-]+)$/.exec(fragment);
   if (!/[#&]s=/.test(fragment)) return null;
   if (fragment.length > LONGEST_FRAGMENT) throw new Error("The address is too long for a scene.");
-  if (!found) throw new Error("The address is not complete, or was changed on its way.");
+  if (!found) throw new Error("The address is incomplete or was altered.");
   try {
     const bytes = await piped(fromLetters(found[2]), new DecompressionStream("deflate-raw"), LONGEST_SCENE);
     return {hash: found[1], toml: new TextDecoder("utf-8", {fatal: true}).decode(bytes)};
   } catch {
-    throw new Error("The address is not complete, or was changed on its way.");
+    throw new Error("The address is incomplete or was altered.");
   }
 }
 

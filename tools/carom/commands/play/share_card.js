@@ -1,4 +1,4 @@
-// The scene as a file and as an address, the hash of the shot, and what else the page offers.
+// The scene as a file and as an address, the hash of the shot, and other tools of the page.
 
 import {button, make} from "../../page/dom.js";
 import {dialog, extras} from "./extras.js";
@@ -28,7 +28,7 @@ export async function share(state, address) {
   document.body.dataset.shared = fragment;
 }
 
-/** Shows the scene in the page's address, if there is one. @returns what to say about it, or null */
+/** Shows the scene in the page's address, if there is one. @returns a message about it, or null */
 export async function openAddress(state) {
   let found = null;
   try {
@@ -37,7 +37,7 @@ export async function openAddress(state) {
     return error.message;
   }
   if (found === null) return null;
-  if (state.fixed) return "This page shows its own scene only, not that of the address.";
+  if (state.fixed) return "This page shows only its own scene, not the one in the address.";
   try {
     begin(state, found.toml, {remember: false});
   } catch (error) {
@@ -45,19 +45,20 @@ export async function openAddress(state) {
   }
   if (!state.shot) return "The scene in the address cannot be played.";
   const {hash} = state.shot;
-  return hash === found.hash ? `The same bits as where this address was made: ${hash}.`
-    : `Other bits than where this address was made (${found.hash}): another version of carom made it.`;
+  return hash === found.hash ? `The same bits as when this address was made: ${hash}.`
+    : `Other bits than when this address was made (${found.hash}): another version of carom made it.`;
 }
 
-/** A copy of the page that begins with this shot, to send to somebody. `whole`: the page before it ran. */
+/** A copy of the page that begins with this shot, to send to somebody. `whole`: the page before its script
+ * ran. */
 function download(state, whole) {
-  const page = {...state.page, scene: state.scene.toml, lead: "a shot to look at"};
+  const page = {...state.page, scene: state.scene.toml, lead: "a shot to watch"};
   const json = JSON.stringify(page).replaceAll("<", "\\u003c");
   const html = whole.replace(/(<script [^>]*id="page">)[^<]*/, (_, head) => head + json);
   const url = URL.createObjectURL(new Blob(["<!doctype html>\n", html], {type: "text/html"}));
   make("a", {href: url, download: "shot.html"}).click();
   setTimeout(() => URL.revokeObjectURL(url), 1000);
-  state.say("shot.html is this page with this shot; send it to somebody.");
+  state.say("Saved shot.html, this page with this shot; send it to somebody.");
   return html;
 }
 
@@ -101,7 +102,7 @@ function fileDialog(state) {
   };
 }
 
-/** `whole`: the page as a text if it was opened from a file, which no address leads to; else "". */
+/** `whole`: the text of the page if it was opened from a file, which has no address to share; else "". */
 export function shareCard(state, whole) {
   const address =
     make("input", {readonly: "", "aria-label": "Address of this shot", class: "address", hidden: ""});

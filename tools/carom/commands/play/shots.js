@@ -2,12 +2,12 @@
 
 import {without} from "./scene_text.js";
 
-// Of one shot, so that no scene stops the page.
+// Limits of one shot, so that no scene blocks the page.
 export const LIMITS = {seconds: 2, events: 20000};
 const UNDO_LIMIT = 200;
 
-/** Simulates a scene and shows it, or says why that cannot be. `fresh`: it has other balls or another table.
- * @returns whether it can */
+/** Simulates a scene and shows it, or shows why it cannot. `fresh`: it has other balls or another table.
+ * @returns whether it succeeded */
 function use(state, candidate, fresh) {
   let played;
   try {
@@ -17,7 +17,7 @@ function use(state, candidate, fresh) {
     state.refuse(error);
     return false;
   }
-  // A game still asks about the shot that it judged.
+  // A game still needs the shot that it judged.
   if (state.shot && state.game?.shot !== state.shot) state.shot.free();
   Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: []});
   state.clock.now = 0;
@@ -42,8 +42,8 @@ function joined(set, scene) {
   return [...set, ...more];
 }
 
-/** Puts other balls or another table onto the page, in a game or without one. `set`: balls that belong to it,
- * too. @returns whether it can */
+/** Puts other balls or another table on the page, in a game or without one. `set`: further balls that
+ * belong to it. @returns whether it succeeded */
 export function enter(state, candidate, {game = null, remember = true, set = []} = {}) {
   const before = {game: state.game, set: state.set, raised: state.raised}, kept = state.past.length;
   if (remember && state.scene) keep(state);
@@ -56,13 +56,13 @@ export function enter(state, candidate, {game = null, remember = true, set = []}
   return false;
 }
 
-/** Begins with a scene file. @throws CaromError if it is no scene */
+/** Begins with a scene file. @throws CaromError for an invalid scene */
 export function begin(state, toml, how = {}) {
   return enter(state, state.carom.Scene.parse(toml), how);
 }
 
-/** The scene with its changes, and the cue raised over a ball that it would be in; where the shot counts,
- * over the cushions, too. */
+/** The scene with its changes. The cue is raised over a ball that it would reach into and, if the shot
+ * counts, over the cushions. */
 function changed(state, changes) {
   const wanted = changes["cue.elevation_deg"] ?? state.raised, {cue} = state.scene;
   const other = cue && cue.elevation_deg !== wanted ? {"cue.elevation_deg": wanted} : {};

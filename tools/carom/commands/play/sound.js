@@ -1,4 +1,4 @@
-// Sounds of a shot, made from its events: the harder the impact, the louder. Off until they are asked for.
+// Sounds of a shot, made from its events: the harder the impact, the louder. Off by default.
 
 const HITS = {  // [Hz] tone, [s] its decay, loudness, share of noise, [m/s] of the loudest
   cue_strike: [900, 0.03, 0.5, 0.5, 8], ball_ball: [2400, 0.025, 0.9, 0.25, 4],
@@ -41,7 +41,7 @@ export class Sound {
   }
 }
 
-/** Plays what happens while the shot runs. */
+/** Plays the sounds while the shot runs. */
 export function followSounds(state) {
   let before = 0;
   const sound = new Sound();

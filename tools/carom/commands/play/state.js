@@ -4,32 +4,31 @@ import {Playback} from "../../page/playback.js";
 import {isContact} from "./words.js";
 
 export class State {
-  /** `page`: what play.cpp wrote. `carom`: the module core.js. `calm`: the user prefers less motion. */
+  /** `page`: the data from play.cpp. `carom`: the module core.js. `calm`: the user prefers less motion. */
   constructor(page, carom, calm = false) {
-    // A page that holds something fast shows its own scene only, and not what would come of it.
+    // A page with locked keys shows only its own scene, and does not predict the shot.
     const fixed = page.lock.length > 0;
     Object.assign(this, {page, carom, calm, fixed, followers: {}, waiting: 0,
       // The table: a scene, its shot, how it is drawn; earlier ones as {toml, game, set}. `set`: all balls
       // that have been on it, as {id, style}. `raised`: the elevation that the player wants [degrees].
       scene: null, shot: null, view: null, rotations: null, past: [], set: [], raised: 0,
-      // The player's choices. In the mode "play" a shot counts; in "practise" all its paths are seen before.
+      // The player's choices. In the mode "play" a shot counts; in "practise" all its paths are shown before.
       mode: fixed ? "play" : "practise",
       units: "metric", paths: "all", numbered: false, contactsOnly: true, placed: "", said: "",
-      // A game is {state, option, judged, shot, from}: the state before this shot, and what led to it. A
-      // match is {players, hints, rules}: a level for each player, "" for a person; whether hints are
-      // allowed.
+      // A game is {state, option, judged, shot, from}: the state before this shot, and its origin. A match is
+      // {players, hints, rules}: a level for each player, "" for a person; whether hints are allowed.
       game: null, match: null, verdict: null,
       announced: {ball: "", pocket: "", safety: false, pushOut: false},
-      // Who thinks now: {level, hint}, or null; whether a person shoots for carom. Advice on the table.
+      // The thinking player: {level, hint}, or null; whether a person shoots for carom. Advice on the table.
       busy: null, yielded: false, hints: [],
-      // The pointer on the table: what it holds, where it points, and whether a picture has been asked for.
+      // The pointer on the table: its target, its position, and whether a picture is requested.
       held: null, pointed: null, asked: false});
     this.clock = new Playback({end: () => this.shot.duration, events: () => this.events(),
       show: () => this.tell("time"), label: () => this.tell("label"), starts: () => this.tell("starts"),
       ended: () => this.tell("ended"), still: calm ? () => this.shot.duration : null});
   }
 
-  /** Follows what happens: "table" (another one, or other balls), "time", "label" (of the button to play),
+  /** Adds a listener for "table" (another one, or other balls), "time", "label" (of the button to play),
    * "starts", "ended", "stroke" (any value that is shown while aiming), "lists" (which need not follow a
    * pointer at once), "placed" (another ball is to be placed), "judged", "says", "mode", "busy", "hints". */
   on(what, follow) { (this.followers[what] ||= []).push(follow); }
@@ -39,7 +38,7 @@ export class State {
     this.said = text;
     this.tell("says", text, bad);
   }
-  /** Says why something cannot be done. */
+  /** Shows why something cannot be done. */
   refuse(error) { this.say(error.reason || error.message, true); }
   /** Lets the lists follow soon. */
   later() {
@@ -51,7 +50,7 @@ export class State {
   get aiming() { return this.clock.now === 0 && !this.clock.playing; }
   /** Whether a person may aim now. */
   get free() { return this.aiming && (this.busy === null || this.busy.hint) && !this.level; }
-  /** Whether what is struck counts: in a game that is played, nothing is taken back. */
+  /** Whether strokes count: in a played game, nothing can be undone. */
   get counts() { return this.mode === "play" && this.game !== null; }
   /** The level of the player whose turn it is, or "" for a person. */
   get level() {

@@ -1,4 +1,4 @@
-// The stroke: power, tip and what they mean in words; and all of it in numbers.
+// The stroke: power and tip with their description in words, and all its numbers.
 
 import {make} from "../../page/dom.js";
 import {HARDEST, firstContact} from "./aids.js";
@@ -21,7 +21,7 @@ export function nudge(state, key, by) {
   change(state, {[`cue.${key}`]: key === "speed" ? Math.min(Math.max(0, value), HARDEST) : wrapped(value)});
 }
 
-/** A number of the cue, to type and to slide. `unit()`: [SI units in one of these, name]. */
+/** A number of the cue with a text field and a slider. `unit()`: [SI units in one of these, name]. */
 function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, digits) {
   const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
   const write = (input) => {
@@ -53,7 +53,7 @@ export function strokeCard(state) {
   return card;
 }
 
-/** The player's tools: {tip, parts}: the cue ball to strike, and the cue to pull back. */
+/** The player's tools: {tip, parts}: the cue ball for the tip, and the cue to pull. */
 export function strokeParts(state) {
   const tip = new TipPicture((side, height) => {
     if (state.free && !state.locked("cue.offset"))

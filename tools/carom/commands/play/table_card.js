@@ -1,4 +1,4 @@
-// The table on the page, what is drawn on it, and the controls below it.
+// The table on the page, the drawings on it, and the controls below it.
 
 import {ICONS, button, icon, make, select} from "../../page/dom.js";
 import {orientations} from "../../page/motion.js";
@@ -11,7 +11,7 @@ import {followPointer} from "./pointer.js";
 import {takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
 
-/** The balls at this time; while aiming, what the mode shows of the shot, and the cue. */
+/** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
 function draw(state) {
   const {view, shot, scene, paths, mode, clock: {now}} = state, record = shot.motion;
   view.record = record;
@@ -50,7 +50,7 @@ function helpOf(state) {
     .filter((x) => x).join(" · ") + ".";
 }
 
-/** The controls while the shot is watched. */
+/** The controls during playback. */
 function watchBar(state) {
   const {clock} = state, bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
   const back = button("Back to aiming", () => clock.go(0)), next = button("Next shot", () => nextShot(state));
@@ -135,7 +135,7 @@ export function tableCard(state) {
     else if (document.body.classList.contains("aiming")) now();
   });
   new ResizeObserver(() => requestAnimationFrame(lay)).observe(box);
-  // The lists may take room from the table, and give it back before the browser looks.
+  // The lists may take room from the table, and return it before the browser paints.
   state.on("lists", lay);
   const strip = make("section", {class: "strip card", "aria-label": "Stroke"}, aims.element, watch);
   return {parts: [box, make("div", {class: "telling"}, says, help), strip], tip: aims.tip};

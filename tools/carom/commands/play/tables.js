@@ -1,4 +1,4 @@
-// Scenes to begin with: the tables, the balls on them, and the games that can be played.
+// Initial scenes: the tables, the balls on them, and the available games.
 
 export const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "tournament"],
   ["match_heated", "heated, match"]];
@@ -7,7 +7,7 @@ export const GAMES = [["", "no rules"], ["eight_ball", "eight-ball"], ["nine_bal
   ["free_pyramid", "free pyramid"], ["three_cushion", "three-cushion"], ["one_cushion", "one-cushion"],
   ["straight_rail", "straight rail"], ["four_ball", "four-ball"], ["sum_to_three", "sum to three"]];
 export const CAROM = ["three_cushion", "one_cushion", "straight_rail", "four_ball", "sum_to_three"];
-/** The table that a game needs; the present one if it will do. */
+/** The table that a game needs; the present one if it is suitable. */
 export function tableOf(game, preset) {
   const kind = CAROM.includes(game) ? "carom" : game === "free_pyramid" ? "pyramid"
     : game === "snooker" ? "snooker" : "pool";
@@ -18,7 +18,7 @@ export function tableOf(game, preset) {
 const ball = (id, x, y) => `[[ball]]\nid = "${id}"\nposition = [${x}, ${y}]\n`;
 const cue = (id, speed, aim) => `[cue]\nball = "${id}"\nspeed = ${speed}\naim_deg = ${aim}\n`;
 
-/** The preset of the balls that are played on a table. */
+/** The preset of the balls for a table. */
 function ballsOf(table) {
   const kind = ["carom", "snooker", "english_pool", "pyramid"].find((name) => table.startsWith(name));
   return kind || "pool";

@@ -1,7 +1,7 @@
-// Advice from carom in a worker, so that the page stays awake while it thinks. The same script runs on both
-// sides: a page that is opened from a file has no address that a worker could load.
+// Advice from carom in a worker, so that the page stays responsive. The same script runs on both sides: a
+// page that is opened from a file has no address from which a worker could load.
 
-/** In the worker: answers {id, wasm, toml, state, options} with {id, advice} or {id, error}. */
+/** In the worker: responds to {id, wasm, toml, state, options} with {id, advice} or {id, error}. */
 async function answer({data}) {
   const {id, wasm, toml, state, options} = data, core = globalThis.modules["core.js"];
   try {
@@ -38,7 +38,8 @@ export class Thinker {
         if (data.error) reject(new Error(data.error));
         else resolve(data.advice);
       };
-      this.worker.onerror = (event) => reject(new Error(`This browser cannot think: ${event.message}`));
+      this.worker.onerror = (event) =>
+        reject(new Error(`This browser cannot run the player: ${event.message}`));
       this.worker.postMessage({id, wasm: this.wasm, toml, state, options});
     });
   }
@@ -48,7 +49,7 @@ export class Thinker {
     URL.revokeObjectURL(url);
     return worker;
   }
-  /** Ends what is being thought. */
+  /** Stops the current search. */
   stop() {
     if (!this.waiting) return;
     this.worker.terminate();

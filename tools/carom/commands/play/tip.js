@@ -1,4 +1,4 @@
-// The cue ball as the player sees it: where the tip strikes, set by pointer or keys.
+// The cue ball from the player's view: the place of the tip, set by pointer or keys.
 
 import {make} from "../../page/dom.js";
 import {tipWords} from "./words.js";

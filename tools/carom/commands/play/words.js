@@ -14,11 +14,11 @@ export function withUnit(units, kind, x) {
 }
 
 const SPEEDS = [[1, "soft"], [1.6, "slow"], [2.4, "medium"], [3.6, "hard"], [7, "very hard"]];
-/** A speed as players say it, as the engine's advice does. */
+/** A speed in players' words, as in the engine's advice. */
 export const speedWord = (speed) => SPEEDS.find(([most]) => speed < most)?.[1] ?? "break";
 
 const SPINS = [[0.05, ""], [0.15, "a little "], [0.35, "half "], [1, "full "]];
-/** Where the tip strikes, as players say it: "half draw, a little left English". */
+/** The place of the tip in players' words: "half draw, a little left English". */
 export function tipWords(side, height) {
   const part = (x, more, less) => {
     const share = SPINS.find(([most]) => Math.abs(x) < most)[1];
@@ -28,7 +28,7 @@ export function tipWords(side, height) {
   return parts.filter((x) => x).join(", ") || "centre";
 }
 
-/** How the ball aimed at is met: the part of it that is covered, and the cut. */
+/** The hit on the object ball: its fullness and the cut. */
 export function aimWords(met) {
   if (!met) return "no ball";
   const quarters = Math.round(4 * (1 - Math.sin(Math.min(met.cut, Math.PI / 2))));
@@ -73,7 +73,7 @@ function ballWords(e, units) {
   }
 }
 
-/** Events that a player wants to know, without changes of motion. */
+/** Events of interest to a player, without changes of motion. */
 export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
   "ball_pocket", "ball_out"].includes(e.type);
 

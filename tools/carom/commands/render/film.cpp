@@ -23,9 +23,9 @@
 namespace carom::tools {
 namespace {
 
-// Y4M frames have the colours of ITU-R BT.709, which the stream cannot declare. WebP and GIF are given RGB:
-// WebP weights colours differently, GIF has a palette. The palette comes from the first ten frames, because
-// ffmpeg keeps in memory every frame it makes one from; ordered dithering stays the same from frame to frame.
+// Y4M frames have the colours of ITU-R BT.709, which the stream cannot declare. WebP and GIF receive RGB:
+// WebP weights colours differently, GIF has a palette. The palette is computed from the first ten frames,
+// because ffmpeg keeps all of these in memory; ordered dithering stays the same from frame to frame.
 #define CAROM_BT709 "-vf setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709 -pix_fmt yuv420p"
 constexpr FilmKind kKinds[] = {
     {".mp4", "mp4", render::RawFormat::kY4m,
@@ -124,7 +124,7 @@ void Film::start(const FilmKind& kind, FrameSize size, double fps) {
     posix_spawn_file_actions_adddup2(&files, ends[0], 0);
     posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&files, ::fileno(messages_), 2);
-    // A process group of its own: Ctrl-C in the terminal then reaches only carom, which decides what to do.
+    // In its own process group: Ctrl-C in the terminal then reaches only carom, which decides what to do.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -173,7 +173,7 @@ void Film::fail(int status) {
 
 void Film::write(const std::uint8_t* bytes, std::size_t count) {
     constexpr int kPatience = 100;  // ms between checks for an interrupt
-    // Frames still on their way when ffmpeg failed also come here.
+    // Frames still in flight when ffmpeg failed also reach this line.
     if (pipe_ < 0) throw std::runtime_error(path_ + ": ffmpeg has already ended");
     while (count > 0) {
         throw_if_interrupted();

@@ -55,10 +55,10 @@ std::string sheet_path(const RenderArgs& args) {
     return args.pattern.find('%') == std::string::npos ? args.pattern : "sheet.png";
 }
 
-/// That two options are no one file is known; here a pattern becomes names of files.
+/// check_files() has rejected options that name one file; this also covers the names from a pattern.
 void check_input(const RenderArgs& args, bool replaces, const std::string& output) {
     if (replaces)
-        throw UsageError(fmt::format("-o {} would replace what is read, {}; give it another name",
+        throw UsageError(fmt::format("-o {} would overwrite the input {}; choose another name",
                                      in_quotes(output), in_quotes(args.input)));
 }
 
@@ -149,7 +149,7 @@ void set_view(const RenderArgs& args, const RenderSettings& settings, render::Se
     options.overlay = overlay_of(args);
 }
 
-/// Lowers the scene's rate to the film's limit, but not a rate that was asked for.
+/// Lowers the scene's rate to the film's limit, but not a requested rate.
 double film_fps(const RenderArgs& args, const RenderSettings& settings) {
     const double fps = chosen_fps(args.fps, settings), fastest = args.film()->fastest;
     if (fastest == 0.0 || fps <= fastest) return fps;
@@ -234,7 +234,7 @@ int write_film(const RenderArgs& args, const Record& record, render::SequenceOpt
     return kOk;
 }
 
-/// Renders, and says how to continue after an interrupt.
+/// Renders, and prints how to continue after an interrupt.
 std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
     try {
         return render::render_sequence(record, options);
@@ -246,7 +246,7 @@ std::vector<render::FrameTiming> rendered(const Record& record, const render::Se
 }
 
 int run(const RenderArgs& args) {
-    render::backend_from_name(args.gl);  // refuses in a build without OpenGL
+    render::backend_from_name(args.gl);  // fails in a build without OpenGL
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";
@@ -307,28 +307,28 @@ void add_render(Options& program) {
         "render",
         "Render a scene or a record as numbered PNG frames, or as a film; frame k shows from + k/fps", run);
     command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
-    command.option(
-        "-o,--output", &args.pattern, "PATTERN",
-        "Frames, with one %d or %05d for the number; or a film (.mp4, .webm, .gif, .webp), made by ffmpeg");
+    command.option("-o,--output", &args.pattern, "PATTERN",
+                   "Frames, with one %d or %05d for the number, or a film (.mp4, .webm, .gif, .webp), which "
+                   "needs ffmpeg");
     add_picture(command, args.fps, args.size);
     command.option("--from", &args.from, "S", "Start time in s, from -2; the cue strikes at 0");
     command.option("--to", &args.to, "S", "End time in s (default: the end of the shot)");
-    command.option("--frame", &args.frame, "K", "Only frame K (default: all)");
-    command.option("--at", &args.at, "S", "Only this time in s, as frame 0 (default: all)");
+    command.option("--frame", &args.frame, "K", "Render only frame K (default: all)");
+    command.option("--at", &args.at, "S", "Render only this time in s, as frame 0 (default: all)");
     command.option("--camera", &args.camera, "NAME", "Camera (default: the scene's, else top)")
         .one_of({"top", "rail", "player", "follow"});
     command.option("--eye", &args.eye, "X,Y,Z",
                    "Free camera: position of the eye in m (default: a named camera)");
     Option& target = command.option("--target", &args.target, "X,Y,Z",
-                                    "Free camera: point that it looks at, in m (default: a named camera)");
+                                    "Free camera: point it looks at, in m (default: a named camera)");
     target.needs = "--eye";
     command.option("--ball", &args.ball, "ID", "Ball for camera follow (default: the first that moves)");
     command.option("--overlay", &args.overlay, "LIST",
-                   "Overlays: trails (or trails=ball, in the balls' colours), events, spin, ghost, clock, "
-                   "margin, or all; and diamonds, their numbers (default: none)");
+                   "Draw trails (trails=ball: in the balls' colours), events, spin, ghost, clock, margin, or "
+                   "all of these; diamonds: number the diamonds (default: none)");
     command.option("--sheet", &args.sheet, "CxR",
-                   "One contact sheet of columns x rows pictures, as wide as --size (default: off)");
-    command.option("--jobs", &args.jobs, "N", "Threads that encode and write; 0: one per core").in(0, 256);
+                   "Write one contact sheet with C columns and R rows, as wide as --size (default: off)");
+    command.option("--jobs", &args.jobs, "N", "Threads that encode and write, 0 for one per core").in(0, 256);
     command.flag("--resume", args.resume, "Skip frames whose files are already finished (default: off)");
     command.flag("--raw", args.raw,
                  "Write RGB bytes to standard output, for ffmpeg, instead of PNG files (default: off)");

@@ -1,4 +1,4 @@
-// carom sensitivity: what small errors of a shot do to it.
+// carom sensitivity: the effect of small errors on a shot.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -41,7 +41,7 @@ struct SensitivityArgs {
     bool json = false;
 };
 
-/// A small change of an input, and the standard deviation that a hand has of it.
+/// A small change of an input, and its standard deviation for a hand.
 struct Nudge {
     std::string key, words;
     double size, hand;  ///< in the unit of the input
@@ -78,19 +78,19 @@ Ellipse ellipse_of(const Eigen::Matrix2d& covariance) {
     return {half(1), half(0), angle < 0.0 ? angle + 180.0 : angle};
 }
 
-/// One ball: where it ends, or where it falls.
+/// One ball: its final position, or its fall.
 struct BallResult {
     int ball;
-    std::optional<std::size_t> fall;                  ///< the event at which it is over its pocket
+    std::optional<std::size_t> fall;                  ///< the event in which it crosses its pocket
     std::vector<Vec2> moves;                          ///< [m] for each nudge
     Ellipse expected;                                 ///< to first order
     std::vector<Vec2> ends;                           ///< [m] of the sweep, unless it is gone
-    std::optional<Ellipse> played;                    ///< of these; nothing if it stays too rarely
+    std::optional<Ellipse> played;                    ///< of these; empty if it stays too rarely
     std::optional<std::pair<double, double>> window;  ///< [degrees] of the aim, in which it still falls
-    std::size_t fell = 0;                             ///< of the sweep, into the same pocket
+    std::size_t fell = 0;  ///< shots of the sweep in which it falls into the same pocket
 };
 
-/// The first event of a ball with the pocket that takes it.
+/// The first event of a ball with its pocket.
 std::optional<std::size_t> fall_of(const Record& record, int ball) {
     std::optional<std::size_t> found;
     for (std::size_t e = 0; e < record.events.size(); ++e) {
@@ -133,7 +133,7 @@ struct Sensitivity {
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// Equal for two shots with the same events: each ball's cushions and pocket, and all events.
+/// Equal for two shots with the same events: cushions and pocket of each ball, and all events.
 bool same_kind(const Outcome& one, const Outcome& two) {
     if (one.events != two.events) return false;
     for (std::size_t i = 0; i < one.balls.size(); ++i)
@@ -214,7 +214,7 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const std::string& id = record.tracks[static_cast<std::size_t>(ball.ball)].id;
         table.columns.emplace_back("", (ball.fall ? id + " at its pocket" : id) + ", mm", ">22");
     }
-    table.columns.emplace_back("", "holds between", ">32");
+    table.columns.emplace_back("", "same events between", ">32");
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
         const Nudge& nudge = s.nudges[k];
         std::vector<Cell> cells{nudge.words};
@@ -256,8 +256,9 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         if (ball.played) text += fmt::format("; played, {}", axes(*ball.played));
         text += '\n';
     }
-    text += fmt::format("  {} of {} have the same events as the shot; the first order speaks of these only\n",
-                        counted(s.same, "shot"), s.shots);
+    text += fmt::format(
+        "  {} of {} have the same events as the shot; the first-order results describe only these\n",
+        counted(s.same, "shot"), s.shots);
     return text;
 }
 
@@ -315,8 +316,7 @@ DiagramShot drawing_of(const Sensitivity& s, const Plan& plan, const Record& rec
 int run(const SensitivityArgs& args) {
     const std::string format = args.plot.empty() ? "" : diagram_format(args.plot);
     const Plan plan = plan_scene(args.scene);
-    if (!plan.scene.cue)
-        throw SceneError(args.scene, {}, "no ball is struck; add a [cue], whose errors are what is measured");
+    if (!plan.scene.cue) throw SceneError(args.scene, {}, "no ball is struck; add a [cue]");
     const Record record = simulate_plan(plan, interruptible());
     const Sensitivity result = measure(plan, record, args);
     if (!args.plot.empty())
@@ -330,15 +330,15 @@ int run(const SensitivityArgs& args) {
 
 void add_sensitivity(Options& program) {
     auto [command, args] = program.command<SensitivityArgs>(
-        "sensitivity", "See what small errors of aim, speed, tip and place do to a shot", run);
+        "sensitivity", "Show how small errors of aim, speed, tip and position change a shot", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command.option("--hand", &args.hand, "ERRORS",
-                   "Standard deviations: aim in degrees, speed in percent, tip in ball radii, elevation in "
-                   "degrees");
-    command.option("--shots", &args.shots, "N", "Shots that are played with these errors").in(1, 1e7);
+                   "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
+                   "ball radii, elevation in degrees");
+    command.option("--shots", &args.shots, "N", "Number of shots to play with these errors").in(1, 1e7);
     command.option("--seed", &args.seed, "S", "Seed of the errors");
     command.option("--plot", &args.plot, "FILE",
-                   "Draw the shot with the errors of where its balls end: .svg, .pdf or .png (default: not "
+                   "Draw the shot and the errors of the final positions: .svg, .pdf or .png (default: not "
                    "drawn)");
     command.flag("--json", args.json, "Print everything as JSON (default: off)");
 }

@@ -39,12 +39,12 @@ struct SimulateArgs {
     bool hash = false;
     bool profile = false;
     bool json = false;
-    bool list = false;  ///< tell every event
+    bool list = false;  ///< print every event
     std::string units = kUnits[0];
     bool verify = false;     ///< check the physical laws after every event
     bool no_record = false;  ///< only the final state
     std::vector<std::string> measures;
-    std::string game;  ///< that measures judge by
+    std::string game;  ///< rules for measures
 };
 
 /// The measures of --measure.
@@ -62,7 +62,7 @@ std::vector<games::Measure> measures_of(const SimulateArgs& args, const Scene& s
     return list;
 }
 
-/// The value of a measure, or why the game cannot judge the shot.
+/// The value of a measure, or the reason why the game cannot judge the shot.
 template <class F>
 auto measured(const games::Measure& measure, F&& f) {
     try {
@@ -169,7 +169,7 @@ std::string summary(const Record& record, const std::string& scene, const Simula
     return fmt::to_string(out);
 }
 
-/// Where the time of a profiled run went.
+/// The distribution of a profiled run's time.
 std::string profile_report(const Record& record) {
     double total = record.setup_detect_ns;
     for (const EventCost& cost : record.costs) total += cost.detect_ns + cost.resolve_ns;
@@ -199,7 +199,7 @@ void check_args(const SimulateArgs& args) {
     }
 }
 
-/// Plays without a record, which takes less time and memory if there are many events.
+/// Plays without a record, which needs less time and memory if there are many events.
 int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions options) {
     const std::pair<const char*, bool> asked[] = {{"--output", !args.record.empty()},
                                                   {"--events", !args.events.empty()},
@@ -318,7 +318,7 @@ void add_simulate(Options& program) {
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");
     command.flag("--list", args.list, "Print every event, also of a long shot (default: off)");
-    command.option("--units", &args.units, "UNITS", "Units of what is printed; files are always in SI")
+    command.option("--units", &args.units, "UNITS", "Units of the printed values; files are always in SI")
         .one_of({kUnits[0], kUnits[1]});
     command.flag("--hash", args.hash,
                  "Print the hash of all bits of the record instead of the summary (default: off)");
@@ -326,7 +326,7 @@ void add_simulate(Options& program) {
                  "Time every event: cost by kind, kernel cost by ball-ball event, extra columns in the "
                  "events file (default: off)");
     command.option("--measure", &args.measures, "EXPRESSION",
-                   "Print a measure that carom describe measures lists, or an expression; may be repeated "
+                   "Print a measure or expression (see carom describe measures); may be repeated "
                    "(default: none)");
     command.option("--game", &args.game, "GAME", "Rules for measures such as point (default: none)")
         .one_of(game_names());

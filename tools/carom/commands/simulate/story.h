@@ -1,4 +1,4 @@
-// The story of a shot, as a person would tell it.
+// The story of a shot in sentences.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace carom::tools {
 
-/// One line per event. A long shot is told by its landmarks: the strike, the first contacts of the struck
-/// ball, and what falls or leaves the table. A line counts the contacts between two landmarks.
+/// One line per event. A long shot is summarised by its landmarks: the strike, the first contacts of the
+/// struck ball, and balls that fall or leave the table. A line counts the contacts between two landmarks.
 std::string story(const Record& record, Units units);
 
 /// One line per event, however many there are.

@@ -1,4 +1,4 @@
-// carom break: the break that a player with this hand should play.
+// carom break: the best break for a hand.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -115,7 +115,7 @@ void add_break(Options& program) {
         program.command<BreakArgs>("break", "Recommend a break: place, cut, speed, and success rate", run);
     Option& game = command.argument("GAME", args.wanted.game, "The game");
     game.choices.assign(games::kBreakGames.begin(), games::kBreakGames.end());
-    command.option("--table", &args.wanted.table, "PRESET", "The table, as a scene names it");
+    command.option("--table", &args.wanted.table, "PRESET", "Preset of the table");
     command.flag("--box", args.wanted.box,
                  "Place the cue ball at least a diamond from either long rail (default: off)");
     command.option("--rack", &args.wanted.rack, "RACK",
@@ -126,7 +126,8 @@ void add_break(Options& program) {
     add_search(command, args.search);
     command.option("--diagram", &args.diagram, "FILE",
                    "Draw the best break: .svg, .pdf or .png (default: not drawn)");
-    command.option("--page", &args.page, "FILE.html", "Write a page that plays it (default: not written)");
+    command.option("--page", &args.page, "FILE.html",
+                   "Write a page that plays the best break (default: not written)");
     command.option("--units", &args.units, "UNITS", "Units of lengths").one_of({kUnits[0], kUnits[1]});
 }
 

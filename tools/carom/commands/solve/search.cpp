@@ -55,13 +55,13 @@ Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
 }  // namespace
 
 void add_search(Options& command, SearchArgs& args) {
-    command.option(
-        "--hand", &args.hand, "ERRORS",
-        "Standard deviations: aim in degrees, speed in percent, tip in ball radii, elevation in degrees");
-    command.option("--shots", &args.shots, "N", "How many shots the search plays").in(1000, 1e10);
-    command.option("--best", &args.best, "N", "How many shots of different kinds are shown").in(1, 20);
+    command.option("--hand", &args.hand, "ERRORS",
+                   "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
+                   "ball radii, elevation in degrees");
+    command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
+    command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
-    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the result does not depend on it")
+    command.option("--jobs", &args.jobs, "J", "Threads, 0 for one per core; the result is always the same")
         .in(0, 256);
     command.option("-o,--output", &args.output, "FILE.toml",
                    "Write the best shot as a scene (default: not written)");
@@ -105,13 +105,12 @@ auto played(const Search& what, const SearchArgs& args, const char* title, Play&
 std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Exact>* exact) {
     if (!args.plot.empty()) {
         diagram_format(args.plot);
-        if (what.choices.size() < 2)
-            throw UsageError("--plot: a map needs two inputs to choose; give two --vary");
+        if (what.choices.size() < 2) throw UsageError("--plot: a map needs two inputs; give two --vary");
     }
     return played(what, args, "search", [&](const games::Measure& want, const games::SolveOptions& options) {
         if (exact != nullptr && want.places().empty())
             throw UsageError(
-                "--exact: no place is wanted; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
+                "--exact: the goal has no place; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
         std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options);
         for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
             exact->push_back(games::exact(found[i], want, chosen_isa(), options));

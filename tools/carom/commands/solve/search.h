@@ -32,22 +32,22 @@ struct Search {
     std::vector<games::Choice> choices;
     std::vector<Scene> layouts;
 };
-/// Searches with a progress bar; with `exact`, moves what is found to where it should be and puts that there.
+/// Searches with a progress bar; with `exact`, refines the found shots and stores the results there.
 /// @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
                                     std::vector<games::Exact>* exact = nullptr);
 
-/// Writes the picture that args.plot asks for: the shot, and success over its two strongest inputs.
+/// Writes the picture requested by args.plot: the shot, and success over its two strongest inputs.
 void plot_best(const Search& what, const games::Solution& best, const std::string& title,
                const SearchArgs& args);
 
-/// "falls 1 into p5 49 %, ..." and what errors cost, a line each.
+/// "falls 1 into p5 49 %, ..." and the costs of errors, a line each.
 std::string falls_text(const games::Solution& solution);
 std::string costs_text(const games::Solution& solution);
 nlohmann::ordered_json solutions_json(const std::vector<games::Solution>& solutions,
                                       const std::vector<games::Choice>& choices);
 
-/// Writes the best shot as a scene with comments that say how it was found.
+/// Writes the best shot as a scene with comments on the search.
 void write_best(const std::string& path, const games::Solution& best, const std::string& want,
                 const SearchArgs& args);
 

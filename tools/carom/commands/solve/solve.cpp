@@ -1,4 +1,4 @@
-// carom solve: the shot that most surely does what is wanted.
+// carom solve: the shot most likely to achieve a goal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ std::string told(const Solution& solution, const std::vector<Choice>& choices, i
     return text + falls_text(solution) + costs_text(solution);
 }
 
-/// An earlier exact shot with the same values, if there is one: two shots that differ in kind may lead to it.
+/// An earlier exact shot with the same values, if any: two shots of different kind may lead to it.
 std::optional<std::size_t> same_before(const std::vector<games::Exact>& exact, std::size_t i) {
     // [of a value] The shots are exact to less.
     constexpr double kSame = 1e-4;
@@ -142,17 +142,18 @@ void add_solve(Options& program) {
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
     command
         .option("--want", &args.want, "EXPRESSION",
-                "The goal, an expression of carom describe measures; several must all hold")
+                "The goal, an expression (see carom describe measures); if repeated, all must hold")
         .required = true;
     command.option("--vary", &args.vary, "KEY=uniform(a,b)",
-                   "An input to search; hit.BALL=uniform(-1,1) aims at a ball (default: aim, speed and "
-                   "height of the tip)");
+                   "Search this input; hit.BALL=uniform(-1,1) aims at a ball (default: aim, speed and height "
+                   "of the tip)");
     command.flag("--exact", args.exact,
-                 "Move the shots until the balls rest at the centre of every near (default: off)");
+                 "Refine the shots until the balls rest at the centre of every near (default: off)");
     command.option("--game", &args.game, "GAME", "Rules for measures such as foul (default: none)")
         .one_of(game_names());
     command
-        .option("--layouts", &args.layouts, "N", "Racks that the shot must cope with, if the scene has one")
+        .option("--layouts", &args.layouts, "N",
+                "Number of random racks to play the shot on, if the scene has a rack")
         .in(1, 100000);
     add_search(command, args.search);
 }

@@ -12,7 +12,7 @@
 namespace carom::tools {
 namespace {
 
-/// [shots] A plot shows the first ones: more would not change it, and need memory.
+/// [shots] A plot shows the first ones: more would not change it, but need memory.
 constexpr std::size_t kMostPlotted = 1000000;
 
 /// The cells of a line of CSV; those in quotes may contain commas.
@@ -37,8 +37,7 @@ PlottedSweep::PlottedSweep(const games::Sweep& sweep, const std::string& file)
     diagram_format(file_);
     if (sweep.measures().empty() || !sweep.measures().front().is_number())
         throw UsageError(
-            "--plot draws the first --measure, which has to be a number; carom describe measures "
-            "lists them");
+            "--plot draws the first --measure, which must be a number; see carom describe measures");
     plot_.measure = sweep.measures().front().text();
     for (const games::SweepColumn& column : sweep.columns()) {
         if (column.of != games::SweepColumn::Of::kKey || column.kind == ValueKind::kText) continue;

@@ -17,7 +17,7 @@ namespace carom::tools {
 using Outcomes = std::array<std::uint64_t, kShotStatuses>;
 
 /// Consecutive shots, the arrays of their outcomes, and their rows, with line ends; invalid and failed shots
-/// have a row, too.
+/// also have a row.
 struct SweepBlock {
     Batch batch;
     games::SweptShots shots;

@@ -1,4 +1,4 @@
-// The progress of a sweep, in a file that other programs read while it runs.
+// The progress of a sweep, in a file for other programs to read while it runs.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace carom::tools {
 class SweepStatus {
   public:
     /// @param path empty: nothing is written
-    /// @param first, last, from shots first to last - 1 are wanted, and those before `from` already exist
+    /// @param first, last, from shots first to last - 1 are requested, and those before `from` already exist
     SweepStatus(std::string path, std::string output, std::uint64_t first, std::uint64_t last,
                 std::uint64_t from);
 

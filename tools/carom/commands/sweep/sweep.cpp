@@ -38,7 +38,7 @@ namespace {
 struct SweepArgs {
     std::string scene;
     std::vector<std::string> vary;      ///< "KEY=DISTRIBUTION"
-    std::optional<std::int64_t> count;  ///< nothing: every point of the grids once
+    std::optional<std::int64_t> count;  ///< empty: every point of the grids once
     std::uint64_t seed = 1;
     int jobs = 0;
     std::string shard;  ///< "2/4"; empty: all
@@ -53,7 +53,7 @@ struct SweepArgs {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kMostShards = 1000000;
-/// A block of shots grows until it takes this long, which is how often the progress moves.
+/// A block of shots grows until it takes this long; progress is shown once per block.
 constexpr std::chrono::milliseconds kBlockTime(100);
 /// [shots] Limits the memory of a block.
 constexpr std::uint64_t kLargestBlock = std::uint64_t{1} << 16;
@@ -100,7 +100,8 @@ struct Totals {
 };
 
 /// Runs the missing shots of the table, block by block, and writes the rows of each while the next is played
-/// and the one after it gets its memory. Two blocks are never played at once, because each uses all threads.
+/// and memory for the one after it is allocated. Two blocks are never played at once, because each uses all
+/// threads.
 void write_rows(TableInParts& table, const games::Sweep& sweep, kernel::Isa isa, int threads,
                 const ShotRange& range, SweepStatus& status, Totals& totals) {
     ProgressLine line("sweep");
@@ -171,7 +172,7 @@ games::Sweep read_sweep(const SweepArgs& args) {
     }
 }
 
-/// The name of the parts of this sweep: each range of shots has its own.
+/// The name of this sweep's parts: each range of shots has its own.
 std::uint64_t id_of(const games::Sweep& sweep, const SweepArgs& args, const ShotRange& range) {
     std::uint64_t columns = 0;
     for (const games::Measure& measure : sweep.measures())
@@ -188,7 +189,7 @@ int run(const SweepArgs& args) {
     const games::Sweep sweep = read_sweep(args);
     const Variation& variation = sweep.variation();
     const std::uint64_t count = args.count ? static_cast<std::uint64_t>(*args.count) : variation.grid();
-    if (count == 0) throw UsageError("--count is missing; only a grid knows how many shots it has");
+    if (count == 0) throw UsageError("--count is missing; give it, or vary a key by grid(...)");
     const ShotRange range = shard_range(args.shard, count);
     for (const std::string& warning : make_plan(variation.base(), isa).warnings)
         message("warning: " + warning);
@@ -207,9 +208,9 @@ int run(const SweepArgs& args) {
         // Another build may have other bits.
         std::mutex playing;
         if (!table.ends_with(play_block(sweep, from - 1, 1, isa, 1, playing).rows.front()))
-            throw std::runtime_error(
-                fmt::format("{}: its last row is not what this program computes; remove it to start again",
-                            table.folder()));
+            throw std::runtime_error(fmt::format(
+                "{}: its last row differs from the one that this program computes; remove it to start again",
+                table.folder()));
         message(fmt::format("continuing with {}: {} of {} shots are done", table.folder(), from - range.first,
                             range.last - range.first));
     }
@@ -244,27 +245,27 @@ void add_sweep(Options& program) {
     auto [command, args] = program.command<SweepArgs>(
         "sweep", "Simulate many shots of one scene with varied values, one row per shot", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    Option& vary = command.option("--vary", &args.vary, "KEY=DISTRIBUTION",
-                                  "What varies and how, once per key: uniform(a,b), normal(sd) around the "
-                                  "scene's value, normal(mean,sd), integer(a,b), list(v,...), or in steps: "
-                                  "grid(a,b,n), n values from a to b, and grid(list(v,...)); several grids "
-                                  "make a product, the last one fastest");
+    Option& vary = command.option(
+        "--vary", &args.vary, "KEY=DISTRIBUTION",
+        "Vary a key, once per key, by uniform(a,b), normal(sd) around the scene's value, normal(mean,sd), "
+        "integer(a,b), list(v,...), or in steps by grid(a,b,n), n values from a to b, or grid(list(v,...)); "
+        "several grids form their product, and the last varies fastest");
     vary.required = true;
     command.option("--measure", &args.measures, "EXPRESSION",
-                   "Add a column and a summary line for a measure or an expression of carom describe "
-                   "measures; may be repeated (default: none)");
+                   "Add a column and a summary line for a measure or expression (see carom describe "
+                   "measures); may be repeated (default: none)");
     command.option("--game", &args.game, "GAME", "Rules for measures such as foul (default: none)")
         .one_of(game_names());
     command.option("--plot", &args.plot, "FILE",
-                   "Draw the first measure: a map over the first two numbers that "
-                   "vary, or a histogram; .svg, .png or .pdf (default: not drawn)");
+                   "Draw the first measure as a map over the first two varied numbers, or as a histogram: "
+                   ".svg, .pdf or .png (default: not drawn)");
     command.flag("--json", args.json, "Print the summary as JSON (default: off)");
     command.option("--count", &args.count, "N", "Number of shots (default: every point of the grids once)");
     command.option("--seed", &args.seed, "S", "Seed of all draws");
-    command.option("--jobs", &args.jobs, "J", "Threads; 0: one per core; the rows do not depend on it")
+    command.option("--jobs", &args.jobs, "J", "Threads, 0 for one per core; the rows are always the same")
         .in(0, 256);
     command.option("--shard", &args.shard, "I/N",
-                   "Play only the I-th of N parts; the files of all parts, concatenated, are the whole table "
+                   "Play only part I of N; the files of all parts, concatenated, form the whole table "
                    "(default: all)");
     command.option("--status", &args.status, "FILE",
                    "Write the progress every second, as JSON (default: not written)");

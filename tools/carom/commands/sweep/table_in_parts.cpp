@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A kill loses no more than the last interval. The first ones are shorter; each is twice the one before.
+/// A kill loses at most the last interval. The first intervals are shorter; each is twice the previous one.
 constexpr std::chrono::milliseconds kFirstWait(50), kLongestWait(1000);
 
 std::string hash_line(std::string_view text) {
@@ -58,7 +58,7 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
     whole_.write(header);
     if (whole_.is_direct()) return;
     const std::string folder = fmt::format("{}.{:016x}.parts", file_of(path), id);
-    // Others may be able to write beside the table and guess the name, so links are not followed.
+    // Other users may be able to write beside the table and guess the name, so links are not followed.
     std::error_code error;
     const fs::file_status there = fs::symlink_status(folder, error);
     if (fs::exists(there) && !fs::is_directory(there))
@@ -67,7 +67,7 @@ TableInParts::TableInParts(const std::string& path, std::uint64_t id, std::strin
         throw std::runtime_error(folder + ": cannot make this folder: " + error.message());
     folder_ = folder;
     lock_.emplace(folder_ + "/lock", true);
-    // Two sweeps that write one table would each believe that their rows are in it.
+    // Two sweeps that write one table would each assume that it contains their rows.
     if (const std::string other = other_sweep(path, folder_); !other.empty())
         throw std::runtime_error(
             fmt::format("{}: another sweep is writing this table (see {}); give each its own", path, other));
@@ -100,7 +100,7 @@ bool TableInParts::take_up() {
     if (!whole || !said.is_object() || said.value("first", next_ + 1) != next_ ||
         said.value("last", next_) <= next_)
         throw std::runtime_error(
-            path + ": its rows differ from those that were written; remove it to have it made again");
+            path + ": its rows were changed after they were written; remove it and run the sweep again");
     if (const std::string version = said.value("version", ""); version != program_version())
         throw std::runtime_error(fmt::format(
             "{}: this is carom {}, and the part was written by carom {}; use that version, or remove {}",

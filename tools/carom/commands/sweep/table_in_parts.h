@@ -15,13 +15,14 @@
 namespace carom::tools {
 
 /// The table appears when it is complete. Until then its rows are kept in a folder, `path`.<id>.parts, by the
-/// rules of all sweeps (docs/guide/clusters.md). A part is named after its
-/// first shot. After its rows it says what it holds, and the last line is the hash of everything before. The
-/// next run with this path and id continues after them. A lock keeps two programs from doing the same work.
+/// rules of all sweeps (docs/guide/clusters.md). The name of a part is its
+/// first shot. Its rows are followed by a description, and the last line is the hash of everything before.
+/// The next run with this path and id continues after them. A lock prevents two programs from doing the same
+/// work.
 class TableInParts {
   public:
     /// @param first  number of the first shot
-    /// @param found  called with the rows of each part that an earlier run has left
+    /// @param found  called with the rows of each part of an earlier run
     TableInParts(const std::string& path, std::uint64_t id, std::string_view header, std::uint64_t first,
                  const std::function<void(std::string_view)>& found = {});
     ~TableInParts();  ///< keeps the parts
@@ -31,12 +32,12 @@ class TableInParts {
     const std::string& folder() const { return folder_; }  ///< empty: nothing is kept
     std::uint64_t next() const { return next_; }           ///< the first missing shot
     std::uint64_t failed() const { return failed_; }       ///< failed shots before it
-    /// Whether the parts that were found end with this row.
+    /// Whether the existing parts end with this row.
     bool ends_with(std::string_view row) const { return found_.ends_with(row); }
 
     /// Rows of the next shots, with their line ends.
     void add(std::string_view rows, std::uint64_t shots, std::uint64_t failed);
-    /// Makes a part of what was added since the last one. add() also does it from time to time.
+    /// Writes the rows added since the last part as a new part. add() also does so from time to time.
     void keep();
     void commit();
 

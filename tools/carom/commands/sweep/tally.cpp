@@ -17,9 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [lines] Texts of a measure that a summary names, the most frequent first.
+// [lines] Number of texts of a measure in a summary, the most frequent first.
 constexpr std::size_t kTexts = 8;
-// Beyond this many different texts the rest is counted together, so that memory has a limit.
+// Beyond this number of different texts the rest is counted together, to limit memory.
 constexpr std::size_t kMostTexts = 100000;
 
 std::vector<std::pair<std::string, std::size_t>> by_frequency(

@@ -48,7 +48,7 @@ MeasuredShot measured_scene(const ViewArgs& args) {
     return {std::move(runs.front().record), std::move(chart)};
 }
 
-/// A record is not simulated again. If it was profiled, it contains the simulation cost of each frame.
+/// A record is not simulated again. If profiled, it contains the simulation cost of each frame.
 MeasuredShot read_record_shot(const ViewArgs& args) {
     std::vector<MarginRun> runs(1);
     Record& record = runs.front().record;
@@ -90,13 +90,12 @@ int run(const ViewArgs& args) {
 }  // namespace
 
 void add_view(Options& program) {
-    auto [command, args] =
-        program.command<ViewArgs>("view", "Write a shot as one HTML page that plays it", run);
+    auto [command, args] = program.command<ViewArgs>("view", "Write one HTML page that plays a shot", run);
     command.argument("SCENE", args.input, "Scene file (TOML) or record (.json)").required = true;
-    command.argument("SECOND", args.second, "Second shot, over or beside the first (default: none)");
+    command.argument("SECOND", args.second, "Second shot, shown over or beside the first (default: none)");
     command.option("-o,--output", &args.output, "FILE.html", "Page to write; FILE.html#t=1.5 opens at 1.5 s");
     command.flag("--margin", args.margin,
-                 "Draw and time every frame, and chart what each one cost (default: off)");
+                 "Draw and time every frame, and chart the cost of each (default: off)");
     add_gl(command, args.gl);
 }
 
