@@ -15,10 +15,9 @@
 namespace carom::tools {
 
 /// The table appears when it is complete. Until then its rows are kept in a folder, `path`.<id>.parts, by the
-/// rules of all sweeps (docs/guide/clusters.md). The name of a part is its
-/// first shot. Its rows are followed by a description, and the last line is the hash of everything before.
-/// The next run with this path and id continues after them. A lock prevents two programs from doing the same
-/// work.
+/// rules of all sweeps (docs/guide/clusters.md). The name of a part is its first shot. Its rows are followed
+/// by a description, and the last line is the hash of everything before. The next run with this path and id
+/// continues after them. A lock prevents two programs from doing the same work.
 class TableInParts {
   public:
     /// @param first  number of the first shot
