@@ -189,7 +189,7 @@ def test_a_plan_reads_back_and_is_refused_if_changed(tmp_path):
          "p.json: the plan was changed by hand or is damaged"),
         (path.read_text().replace('"seed": 4', '"sed": 4'),
          "p.json: the plan was changed by hand or is damaged"),
-        (path.read_text()[:-10], r"p.json:\d+:\d+: .*; a plan is what"),
+        (path.read_text()[:-10], r"p.json:\d+:\d+: .*; a plan is written"),
         ("[]", 'p.json: not a plan of a sweep: "format" must be'),
         ("\udcff", "p.json: cannot read it: .*utf-8"),
     ]:
