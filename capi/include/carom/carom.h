@@ -296,8 +296,9 @@ CAROM_API size_t carom_verdict_foul_count(const carom_verdict* verdict);
 CAROM_API const char* carom_verdict_foul(const carom_verdict* verdict, size_t index);
 CAROM_API const char* carom_verdict_rule(const carom_verdict* verdict, size_t index);
 
-CAROM_API int carom_verdict_points(const carom_verdict* verdict);  /* scored by the shot */
-CAROM_API int carom_verdict_penalty(const carom_verdict* verdict); /* snooker: points for the other player */
+CAROM_API int carom_verdict_points(const carom_verdict* verdict); /* scored by the shot */
+CAROM_API int carom_verdict_penalty(
+    const carom_verdict* verdict); /* snooker: points that the other player gets */
 /* The player who chooses among the options; -1 if there is only one, or if lots decide. */
 CAROM_API int carom_verdict_chooser(const carom_verdict* verdict);
 

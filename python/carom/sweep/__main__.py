@@ -17,11 +17,10 @@ from carom.sweep._shard import need
 if TYPE_CHECKING:
     from types import FrameType
 
-_ABOUT = """Makes the shards of a sweep that are missing in its folder, on the threads of this machine, on a
-Dask cluster or as an array of Slurm. It may be killed at any time; the same command goes on. With --scene it
-writes the plan PLAN instead."""
-_END = """Exit status: 0, 1 where something went wrong, is missing or a shot failed, 2 for bad input, 130 or
-143 after a signal."""
+_ABOUT = """Makes the missing shards of a sweep in its folder, on the threads of this machine, on a Dask
+cluster or as a Slurm array. It may be killed at any time; the same command continues. With --scene it writes
+the plan PLAN instead."""
+_END = """Exit status: 0 done, 1 something failed or is missing, 2 bad input, 130 or 143 after a signal."""
 #: [s] Between two lines of progress if there is no terminal.
 _EVERY = 10.0
 
