@@ -101,6 +101,14 @@ TEST(Player, PotsTheEightLast) {
     EXPECT_GT(best.worth, 0.85);
 }
 
+// A ball behind the cue ball asks for a cue so steep that the tip would meet the ball twice.
+TEST(Player, DoesNotStrikeSteeply) {
+    const Scene scene =
+        table({{"cue", {0.6, 0.6}}, {"1", {0.35, 0.35}}, {"9", {0.643, 0.643}}, {"8", {0.3, 2.4}}});
+    for (const Advice& advice : ask(turn(Game::kEightBall, Group::kSolids), scene))
+        EXPECT_LE(advice.cue.elevation_deg, 30.0);
+}
+
 TEST(Player, PlaysHalfOfItsSnookeredShotsFairly) {
     // A wall of stripes hides the last solid.
     Places places = {{"cue", {0.635, 0.3}}, {"3", {0.635, 2.2}}, {"8", {0.3, 2.4}}};

@@ -155,7 +155,7 @@ def test_a_break():
     told = json.loads(carom_program("break", "ten_ball", "--shots", 1000, "--best", 1, "--json"))
     assert told["solutions"][0]["values"] == best.values
     refused(ValueError, lambda **more: carom.best_break(**more), ({"game": "chess"}, 'no break for "chess"'),
-            ({"speed_max": 50.0}, "1 to 20 m/s"), ({"rack": 0.1}, "the rack \"gap=0.1\""),
+            ({"speed_max": 50.0}, "1 to 20 m/s"), ({"rack": 0.1}, "unknown rack \"gap=0.1\""),
             ({"rack": "wood"}, "use template, triangle"))
 
 

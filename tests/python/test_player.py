@@ -56,6 +56,7 @@ def test_an_opponent_plays_its_turns_until_the_game_ends():
     match = pytest.importorskip("carom.gym.match")
     env = match.env("EightBall", opponent="club")
     env.reset(seed=3)
+    env.action_space("player_0").seed(3)
     mine = 0
     while not any(env.terminations.values()) and mine < 200:
         assert env.agent_selection == "player_0"

@@ -44,6 +44,8 @@ constexpr std::array kSweepSpeeds{0.7, 1.2, 2.0, 3.5};
 constexpr double kThinnestHit = 0.97;
 /// [-] Numbers of safeties and push outs that are rated.
 constexpr std::size_t kSafeties = 24, kPushOuts = 8;
+/// [degrees] With a steeper cue, a ball may rebound from the cloth into the tip, which is not simulated.
+constexpr double kMostElevation = 30.0;
 /// [-] Least estimated chance of a pot to try it.
 constexpr double kLeastChance = 0.04;
 /// [-] How often an aim is played and corrected.
@@ -422,6 +424,8 @@ std::vector<Attempt> Search::best() {
     if (!in_hand_ || candidates.empty()) {
         for (Attempt& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
     }
+    const auto steep = [](const Attempt& candidate) { return candidate.cue.elevation_deg > kMostElevation; };
+    if (!std::all_of(candidates.begin(), candidates.end(), steep)) std::erase_if(candidates, steep);
     std::vector<Attempt*> alive;
     alive.reserve(candidates.size());
     for (Attempt& candidate : candidates) alive.push_back(&candidate);
