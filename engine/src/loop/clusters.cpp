@@ -172,11 +172,11 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// A contact whose balls have no other contact is an impact of two balls: its normal stays fixed, as in the
-// pair kernel. To keep the result from jumping when the last other ball moves out of reach, a normal turns by
-// a fraction: the minimum of how firmly its two balls belong to the cluster and the nearness of the nearest
-// other contact of its balls. The firmness of a ball is the nearness of the weakest contact on the best chain
-// from the first pair; joined balls belong fully. The normals of unlike balls, and in space, turn fully.
+// The fraction by which each normal turns: the least of the firmness of its two balls and the nearness of the
+// nearest other contact of either ball. The firmness of a ball is the nearness of the weakest contact on the
+// best chain from the first pair, and 1 for joined balls. So a contact whose balls touch nothing else keeps
+// its normal, like an impact of two balls, and the result does not jump when the last other ball moves out
+// of reach. The normals of unlike balls, and in space, turn fully.
 void Clusters::share_turning() {
     if (unlike_ || in_space_) {
         for (ClusterContact& c : contacts_) c.turn = 1.0;
