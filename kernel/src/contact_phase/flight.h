@@ -93,8 +93,8 @@ CAROM_INLINE double falling(double x, double from, double to) {
 }
 
 // Moves all balls straight ahead for `time`, when the first contact closes. If that is almost the whole
-// look-ahead, the caller is about to take over with instantaneous impacts of two balls. So such contacts, and
-// those that close soon after, turn less while they are closed. The caller updates the rates.
+// look-ahead, the caller is about to take over with instantaneous impacts of two balls, whose normals do not
+// turn. So the normals of contacts that close then, or soon after, turn less. The caller updates the rates.
 CAROM_INLINE void fly(const ContactPhase& phase, Work& w, double time, double look_ahead) {
     const double less = 1.0 - falling(time, kFlight * look_ahead, look_ahead);
     for (int n = 0; n < kRow * w.rows; n += kRow) add_displacement(w, n, time * load<4>(w.y + n));
