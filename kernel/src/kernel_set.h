@@ -45,7 +45,7 @@ void summed_march(const Ball& ball1, const Ball& ball2, const ImpactParams& para
 void tolerance_single(const Ball& ball1, const Ball& ball2, const ImpactParams& params, double tolerance,
                       ImpactResult& result) noexcept;
 void tolerance_batch(const ImpactBatch& batch, double tolerance, const ImpactBatchResult& result) noexcept;
-std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step,
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance,
                            double look_ahead, double time_limit) noexcept;
 }  // namespace CAROM_ISA_NAMESPACE
 #endif

@@ -1,7 +1,6 @@
 #include "loop/clusters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -12,7 +11,7 @@ namespace carom {
 
 namespace {
 
-// [reach] The normals of contacts with a smaller gap follow the motion of the balls.
+// [reach] Contacts with a smaller gap count fully in the scale of a cluster.
 constexpr double kNearShare = 0.5;
 // [reach] Contacts up to this gap are listed, because balls may close it during the cluster.
 constexpr double kListed = 8.0;
@@ -82,12 +81,11 @@ double Clusters::collect(int a, int b, double v_n) {
         double fastest = v_n;
         for (const ClusterContact& c : contacts_) {
             const ClusterBall &p = members_[c.i], &q = members_[c.j];
-            fastest = std::max(fastest, c.turn * dot3(c.n, p.v - q.v));
+            fastest = std::max(fastest, c.nearness * dot3(c.n, p.v - q.v));
         }
         if (members_.size() < 3 || !(fastest > kClusterFaster * v_n)) break;
         v_n = fastest;
     }
-    share_turning();
     return v_n;
 }
 
@@ -172,61 +170,12 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// The fraction by which each normal turns: the least of the firmness of its two balls and the nearness of the
-// nearest other contact of either ball. The firmness of a ball is the nearness of the weakest contact on the
-// best chain from the first pair, and 1 for joined balls. So a contact whose balls touch nothing else keeps
-// its normal, like an impact of two balls, and the result does not jump when the last other ball moves out
-// of reach. The normals of unlike balls, and in space, turn fully.
-void Clusters::share_turning() {
-    if (unlike_ || in_space_) {
-        for (ClusterContact& c : contacts_) c.turn = 1.0;
-        return;
-    }
-    firm_.clear();
-    const auto is_firm = [this](int ball) {
-        return ball == first_ || ball == second_ ||
-               std::find(joined_.begin(), joined_.end(), ball) != joined_.end();
-    };
-    for (const ClusterBall& m : members_) firm_.push_back(is_firm(m.ball) ? 1.0 : 0.0);
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (const ClusterContact& c : contacts_) {
-            const double chain = std::min(c.turn, std::max(firm_[c.i], firm_[c.j]));
-            for (const int ball : {c.i, c.j}) {
-                changed |= chain > firm_[ball];
-                firm_[ball] = std::max(firm_[ball], chain);
-            }
-        }
-    }
-    for (ClusterContact& c : contacts_) c.turn = std::min(firm_[c.i], firm_[c.j]);
-    nearest_.assign(members_.size(), {});
-    for (const ClusterContact& c : contacts_) {
-        for (const int ball : {c.i, c.j}) {
-            std::array<double, 2>& two = nearest_[ball];  // the largest and the second largest
-            two[1] = std::max(two[1], std::min(two[0], c.turn));
-            two[0] = std::max(two[0], c.turn);
-        }
-    }
-    for (ClusterContact& c : contacts_) {
-        double other = 0.0;
-        for (const int ball : {c.i, c.j})
-            other = std::max(other, nearest_[ball][c.turn < nearest_[ball][0] ? 0 : 1]);
-        c.turn = std::min(c.turn, other);
-    }
-}
-
-// Positions of the balls at the end of the cluster, when no two of them overlap. A ball whose contacts turn
-// less has moved partly as if the impact were instantaneous.
+// Positions of the balls at the end of the cluster, when no two of them overlap.
 // @return false: the balls must stay in place
 bool Clusters::find_paths() {
     double duration = map_.duration();
     paths_.clear();
-    for (std::size_t k = 0; k < members_.size(); ++k) {
-        double share = 0.0;
-        for (const ClusterContact& c : contacts_)
-            if (c.i == static_cast<int>(k) || c.j == static_cast<int>(k)) share = std::max(share, c.turn);
-        paths_.push_back(share * map_.moved(k) + (1.0 - share) * duration * planar(members_[k].v));
-    }
+    for (std::size_t k = 0; k < members_.size(); ++k) paths_.push_back(planar(map_.moved(k)));
     while (const double more = overlap_ends()) {
         duration += more;
         if (!(duration <= kLongest * contact_time_)) break;
@@ -320,8 +269,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .longest_step =
-            plan_.cluster_step * (friction && p.ball_friction().any() ? kClusterFrictionStep : kClusterStep),
+        .tolerance = plan_.impact.tolerance,
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,
@@ -329,8 +277,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     const auto run = [&] {
-        return in_space_ || unlike_ ? map_.compliant_in_space(members_, contacts_, settings, v_n, !in_space_)
-                                    : map_.compliant(members_, contacts_, settings, v_n);
+        return map_.compliant(members_, contacts_, settings, v_n, !in_space_);
     };
     // A falling ball, or one in space, would move up or down during the cluster, and resting contacts would
     // push other balls meanwhile.
@@ -346,8 +293,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         while (obstacle_ != kTable && joined_.size() < kMostJoin) {
             joined_.push_back(obstacle_);
             collect_at(first_, second_, v_n);
-            share_turning();
-            const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
+                    const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
             if (more < 0) break;
             steps += more;
             if (find_paths()) return steps;
@@ -355,8 +301,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         if (!joined_.empty()) {
             joined_.clear();
             collect_at(first_, second_, v_n);
-            share_turning();
-            steps += run();
+                    steps += run();
         }
     }
     if (steps >= 0 && closes_still(v_n)) {

@@ -2,7 +2,6 @@
 // after it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,10 +16,8 @@ struct ClustersMemory {
     ClusterMap map_;
     std::vector<ClusterBall> members_;
     std::vector<ClusterContact> contacts_;
-    std::vector<std::array<double, 2>> nearest_;  // per ball
-    std::vector<double> firm_;                    // per ball
-    std::vector<Vec2> paths_;                     // per ball
-    std::vector<int> joined_;                     // balls that a member would hit during the cluster
+    std::vector<Vec2> paths_;  // per ball
+    std::vector<int> joined_;  // balls that a member would hit during the cluster
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -55,7 +52,6 @@ class Clusters : private Borrowed<ClustersMemory> {
     void collect_at(int a, int b, double v_n);
     double pair_time(int a, int b, double v_n) const;
     std::int64_t rigid(const ClusterSettings& settings);
-    void share_turning();
     bool find_paths();
     double overlap_ends() const;
     int find_obstacle() const;

@@ -88,78 +88,74 @@ double radius(const ClusterBall& ball, const ClusterSettings& settings) {
 
 }  // namespace
 
-void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V,
-                      int axes) {
+void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V) {
     motion_.clear();
     mass_.clear();
-    moved_.assign(2 * balls.size(), 0.0);
+    inverse_mass_.clear();
+    moved_.assign(3 * balls.size(), 0.0);
     for (const ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
-        for (int k = 0; k < axes; ++k) motion_.push_back(ball.v[k] / V);
+        for (int k = 0; k < 3; ++k) motion_.push_back(ball.v[k] / V);
         for (int k = 0; k < 3; ++k) motion_.push_back(R * ball.w[k] / V);
         mass_.push_back(settings.unlike ? ball.mass : 1.0);
+        inverse_mass_.push_back(1.0 / mass_.back());
     }
 }
 
-void ClusterMap::unload(const ClusterSettings& settings, double V, int axes,
-                        std::vector<ClusterBall>& balls) {
+void ClusterMap::unload(const ClusterSettings& settings, double V, std::vector<ClusterBall>& balls) {
     const double L = contact_length(V);
     for (double& x : moved_) x *= L;
     duration_ *= L / V;
     const double* y = motion_.data();
     for (ClusterBall& ball : balls) {
         const double R = radius(ball, settings);
-        for (int k = 0; k < 3; ++k) ball.v[k] = k < axes ? *y++ * V : 0.0;
+        for (int k = 0; k < 3; ++k) ball.v[k] = *y++ * V;
         for (int k = 0; k < 3; ++k) ball.w[k] = *y++ * V / R;
     }
 }
 
-double ClusterMap::energy(int axes) const {
+double ClusterMap::energy() const {
     double e = 0.0;
     const double* m = mass_.data();
-    for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += axes + 3, ++m) {
-        double v2 = y[0] * y[0] + y[1] * y[1];
-        if (axes == 3) v2 += y[2] * y[2];
-        const double* w = y + axes;
-        e += *m * (0.5 * v2 + 0.2 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]));
+    for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += 6, ++m) {
+        const double v2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2], w2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5];
+        e += *m * (0.5 * v2 + 0.2 * w2);
     }
     return e;
 }
 
 // The step error can raise the energy if e = 1 and mu = 0. Scaling the velocities about their mean prevents
 // that and preserves the momentum and the signs of relative velocities.
-void ClusterMap::keep_energy(double before, int axes) {
-    const double after = energy(axes);
+void ClusterMap::keep_energy(double before) {
+    const double after = energy();
     if (!(after > before)) return;
-    const std::size_t stride = static_cast<std::size_t>(axes) + 3;
     double mean[3] = {}, relative = 0.0, all = 0.0;
     for (std::size_t b = 0; b < mass_.size(); ++b) {
         all += mass_[b];
-        for (int k = 0; k < axes; ++k) mean[k] += mass_[b] * motion_[b * stride + k];
+        for (int k = 0; k < 3; ++k) mean[k] += mass_[b] * motion_[6 * b + k];
     }
     for (double& m : mean) m /= all;
     for (std::size_t b = 0; b < mass_.size(); ++b) {
-        const std::size_t n = b * stride;
-        const double x = motion_[n] - mean[0], y = motion_[n + 1] - mean[1];
-        double square = x * x + y * y;
-        if (axes == 3) square += (motion_[n + 2] - mean[2]) * (motion_[n + 2] - mean[2]);
-        relative += mass_[b] * (0.5 * square);
+        for (int k = 0; k < 3; ++k) {
+            const double x = motion_[6 * b + k] - mean[k];
+            relative += 0.5 * mass_[b] * (x * x);
+        }
     }
     const double wanted = relative - (after - before);
     if (!(relative > 0.0) || !(wanted > 0.0)) return;
     const double factor = std::sqrt(wanted / relative);
-    for (std::size_t n = 0; n < motion_.size(); n += stride)
-        for (int k = 0; k < axes; ++k) motion_[n + k] = mean[k] + factor * (motion_[n + k] - mean[k]);
+    for (std::size_t n = 0; n < motion_.size(); n += 6)
+        for (int k = 0; k < 3; ++k) motion_[n + k] = mean[k] + factor * (motion_[n + k] - mean[k]);
 }
 
 namespace {
 
-// L/(2 R), by which normals turn. The stiffness is that of pool balls, so small balls at hundreds of m/s
+// [L] The distance at which balls touch. The stiffness is that of pool balls, so small balls at hundreds of m/s
 // would overlap by more than their radius and have no normal. They are treated as larger balls that touch at
-// the same points.
-double curvature(double L, double R, bool turns) {
-    constexpr double kLargest = 0.125;
-    return turns ? std::min(kLargest, L / (2.0 * R)) : 0.0;
+// the same points. Balls so large that normals do not turn replace them where the balls must stay in place.
+double touching(double L, double distance, bool turns) {
+    constexpr double kLeast = 8.0, kNoTurn = 1e9;
+    return turns ? std::max(kLeast, distance / L) : kNoTurn;
 }
 
 // A slow pair can touch first just before faster ones do. The fastest sets the scale: otherwise its forces
@@ -169,70 +165,6 @@ double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterC
     return V;
 }
 
-}  // namespace
-
-std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
-                                   const std::vector<ClusterContact>& contacts,
-                                   const ClusterSettings& settings, double V) {
-    V = fastest(balls, contacts, V);
-    const double L = contact_length(V);
-    load(balls, settings, V, 2);
-    contacts_.clear();
-    for (const ClusterContact& c : contacts)
-        contacts_.push_back({c.i, c.j, c.n.x(), c.n.y(), -c.gap / L, c.turn});
-    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
-    numbers_.resize(
-        std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
-    places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
-    const double before = energy(2);
-    const kernel::ContactPhase phase{m,
-                                     n,
-                                     motion_.data(),
-                                     contacts_.data(),
-                                     on_cache_line(numbers_),
-                                     places_.data(),
-                                     curvature(L, settings.R, settings.turns),
-                                     moved_.data(),
-                                     &duration_};
-    const std::int64_t steps = settings.integrate(phase, law_of(settings, V), settings.longest_step,
-                                                  kClusterLookAhead, kClusterTimeLimit);
-    if (steps < 0) return steps;
-    keep_energy(before, 2);
-    unload(settings, V, 2, balls);
-    return steps;
-}
-
-namespace {
-
-// A smaller share of the turning counts as none: the distance of the centres would be so large that rounding
-// shows.
-constexpr double kLeastTurn = 1e-4;
-
-}  // namespace
-
-// Hertz: the stiffness is proportional to the root of the effective radius.
-// @return longest step relative to that of alike balls: light balls separate sooner
-double ClusterMap::describe_unlike(const std::vector<ClusterBall>& balls,
-                                   const std::vector<ClusterContact>& contacts, double L,
-                                   const ClusterSettings& settings, bool held) {
-    inverse_mass_.clear();
-    stiffness_.clear();
-    curvature_.clear();
-    for (const ClusterBall& ball : balls) inverse_mass_.push_back(1.0 / ball.mass);
-    double shortest = 1.0;
-    for (const ClusterContact& c : contacts) {
-        const double Ri = balls[c.i].R, Rj = balls[c.j].R, turn = held ? c.turn : 1.0;
-        const double stiffness = std::sqrt(2.0 * Ri * Rj / ((Ri + Rj) * settings.R));
-        stiffness_.push_back(stiffness);
-        curvature_.push_back(turn < kLeastTurn ? 0.0 : turn * curvature(L, 0.5 * (Ri + Rj), settings.turns));
-        shortest =
-            std::min(shortest, std::sqrt(2.0 / ((inverse_mass_[c.i] + inverse_mass_[c.j]) * stiffness)));
-    }
-    return shortest;
-}
-
-namespace {
-
 // [L] Overlap of two balls of this mass, at least the overlap at mass 1.
 double overlap_of(double mass) {
     return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
@@ -240,45 +172,44 @@ double overlap_of(double mass) {
 
 }  // namespace
 
-std::int64_t ClusterMap::compliant_in_space(std::vector<ClusterBall>& balls,
-                                            const std::vector<ClusterContact>& contacts,
-                                            const ClusterSettings& settings, double V, bool held) {
+std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
+                                   const std::vector<ClusterContact>& contacts,
+                                   const ClusterSettings& settings, double V, bool held) {
     V = fastest(balls, contacts, V);
     const double L = contact_length(V);
-    load(balls, settings, V, 3);
-    contacts_in_space_.clear();
-    for (const ClusterContact& c : contacts)
-        contacts_in_space_.push_back({c.i, c.j, {c.n.x(), c.n.y(), c.n.z()}, -c.gap / L});
-    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
-    numbers_.resize(std::max(numbers_.size(), kernel::contact_phase_in_space_numbers(m, n)));
-    kernel::ContactPhaseInSpace phase{m,
-                                      n,
-                                      motion_.data(),
-                                      contacts_in_space_.data(),
-                                      numbers_.data(),
-                                      curvature(L, settings.R, settings.turns),
-                                      nullptr,
-                                      moved_.data(),
-                                      &duration_};
-    double longest_step = settings.longest_step, longest = kClusterTimeLimit;
-    kernel::UnlikeBalls unlike{};
-    if (settings.unlike) {
-        // Heavy balls compress each other for longer and more deeply, and balls between them then oscillate
-        // faster: overlaps are proportional to the 0.4th power of the mass, and frequencies to the fourth
-        // root of the overlaps.
-        const double deepest = overlap_of(*std::max_element(mass_.begin(), mass_.end()));
-        longest *= deepest;
-        longest_step *= describe_unlike(balls, contacts, L, settings, held) / std::sqrt(std::sqrt(deepest));
-        unlike = {inverse_mass_.data(), stiffness_.data(), curvature_.data(), held};
-        phase.unlike = &unlike;
+    load(balls, settings, V);
+    contacts_.clear();
+    for (const ClusterContact& c : contacts) {
+        const double Ri = radius(balls[c.i], settings), Rj = radius(balls[c.j], settings);
+        // Hertz: the stiffness is proportional to the root of the effective radius.
+        const double stiffness = settings.unlike ? std::sqrt(2.0 * Ri * Rj / ((Ri + Rj) * settings.R)) : 1.0;
+        contacts_.push_back({c.i, c.j, {c.n.x(), c.n.y(), c.n.z()}, -c.gap / L,
+                             touching(L, Ri + Rj, settings.turns), stiffness});
     }
-    const double before = energy(3);
-    const std::int64_t steps =
-        kernel::contact_phase_in_space(phase, law_of(settings, V), longest_step, kClusterLookAhead, longest);
-    if (steps < 0) return steps;
-    keep_energy(before, 3);
-    unload(settings, V, 3, balls);
-    return steps;
+    const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
+    numbers_.resize(
+        std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
+    places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
+    const double before = energy();
+    const kernel::ContactPhase phase{.balls = m,
+                                     .contacts = n,
+                                     .motion = motion_.data(),
+                                     .contact = contacts_.data(),
+                                     .numbers = on_cache_line(numbers_),
+                                     .places = places_.data(),
+                                     .held = held,
+                                     .inverse_mass = settings.unlike ? inverse_mass_.data() : nullptr,
+                                     .moved = moved_.data(),
+                                     .time = &duration_};
+    // Heavy balls compress each other for longer.
+    const double longest =
+        kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
+    const std::int64_t evaluations =
+        settings.integrate(phase, law_of(settings, V), settings.tolerance, kClusterLookAhead, longest);
+    if (evaluations < 0) return evaluations;
+    keep_energy(before);
+    unload(settings, V, balls);
+    return evaluations;
 }
 
 std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,

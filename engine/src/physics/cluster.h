@@ -19,12 +19,9 @@ inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Smaller gaps are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
-/// [V] and [L/V] Regularisation of the friction in the compliant model, which causes its errors: 6e-4 V in
-/// touching racks, up to 2.7e-3 V if gaps of 0.3 mm let errors grow (lab/notes/2026-11-moving_normals.md);
-/// and its longest steps, without friction (at the speed V) and with it.
+/// [V] Regularisation of the friction in the compliant model. Against Coulomb's law it errs by 1.4e-3 V in breaks,
+/// in proportion to its size (docs/reference/physics.md, several contacts at once).
 inline constexpr double kClusterEpsilon = 1.3e-3;
-inline constexpr double kClusterStep = 1.0 / 60.0;
-inline constexpr double kClusterFrictionStep = 1.0 / 12.0;
 /// [L/V] A cluster that has not separated after this many contact times of its heaviest balls is solved as
 /// rigid; the slowest of 16 balls needs a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
@@ -40,17 +37,17 @@ struct ClusterContact {
     int i, j;    ///< into the list of balls
     Vec3 n;      ///< unit, from i to j; level if both lie on the cloth
     double gap;  ///< [m], >= 0; 0 if the balls touch
-    /// Fraction of the balls' turning that the normal follows (kernel::HertzContact).
-    double turn = 1.0;
+    /// Weight of this contact's approach in the scale of the cluster: 0 at the edge of reach.
+    double nearness = 1.0;
 };
 
 struct ClusterSettings {
     double R;  ///< [m]
     double mu_s = 0.0, mu_b = 0.0, e_b = 1.0;
     bool published_cloth_slip = false;
-    double epsilon = kClusterEpsilon;    ///< regularisation of the friction directions, in units of V
-    double longest_step = kClusterStep;  ///< in units of L / V
-    kernel::ContactPhaseFunction integrate = nullptr;  ///< not read for balls that are unlike or in space
+    double epsilon = kClusterEpsilon;  ///< regularisation of the friction directions, in units of V
+    double tolerance = 1e-6;           ///< [V] error of the velocities by a step of the integration
+    kernel::ContactPhaseFunction integrate = nullptr;
     /// At a slip of u m/s the friction between balls is mu_b + mu_b_more exp(-mu_b_fall u).
     double mu_b_more = 0.0, mu_b_fall = 0.0;
     double slide = 0.0;   ///< [m/s^2] deceleration of a ball that slips on the cloth
@@ -72,18 +69,12 @@ double fifth_root(double x);
 class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
-    /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of steps, or
-    /// -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls are
-    /// unchanged; see duration() and moved().
+    /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of evaluations of
+    /// the forces, or -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls are
+    /// unchanged; see duration() and moved(). `held`: all balls stay on the cloth. Otherwise a ball flies or may
+    /// leave the cloth, which reacts next: cloth friction is ignored.
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                           const ClusterSettings& settings, double V);
-
-    /// The same along normals in space. `held`: balls that differ in size stay on the cloth, so that their
-    /// normals are tilted. Otherwise a ball flies or may leave the cloth, which reacts next: cloth friction
-    /// and `turn` are ignored.
-    std::int64_t compliant_in_space(std::vector<ClusterBall>& balls,
-                                    const std::vector<ClusterContact>& contacts,
-                                    const ClusterSettings& settings, double V, bool held);
+                           const ClusterSettings& settings, double V, bool held);
 
     /// Rigid: v := (1 + e) P(v) - e v with P the nearest velocities that close no contact (equations 7, 8)
     /// and press no ball on the cloth (r_z not above its R) into it; frictionless. Reads only R, e_b and
@@ -91,29 +82,23 @@ class ClusterMap {
     std::int64_t rigid(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                        const ClusterSettings& settings);
 
-    /// Of the last compliant map, including in space or of unlike balls: its duration [s], and ball k's
-    /// horizontal displacement in it [m].
+    /// Of the last compliant map: its duration [s], and ball k's displacement in it [m].
     double duration() const { return duration_; }
-    Vec2 moved(std::size_t k) const { return {moved_[2 * k], moved_[2 * k + 1]}; }
+    Vec3 moved(std::size_t k) const { return {moved_[3 * k], moved_[3 * k + 1], moved_[3 * k + 2]}; }
 
   private:
-    void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V, int axes);
-    void unload(const ClusterSettings& settings, double V, int axes, std::vector<ClusterBall>& balls);
-    double describe_unlike(const std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
-                           double L, const ClusterSettings& settings, bool held);
-    void keep_energy(double before, int axes);
-    double energy(int axes) const;
+    void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V);
+    void unload(const ClusterSettings& settings, double V, std::vector<ClusterBall>& balls);
+    void keep_energy(double before);
+    double energy() const;
 
-    // Per ball, v along two or three axes and R w along three, in units of V.
+    // Per ball, v and R w, in units of V.
     std::vector<double> motion_;
-    // Per ball x and y [L], and the duration [L/V]; in SI units after the map.
+    // Per ball its displacement [L], and the duration [L/V]; in SI units after the map.
     std::vector<double> moved_;
     double duration_ = 0.0;
-    std::vector<double> mass_;  // per ball
+    std::vector<double> mass_, inverse_mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
-    std::vector<kernel::HertzContactInSpace> contacts_in_space_;
-    // For balls that differ: per ball, and per contact.
-    std::vector<double> inverse_mass_, stiffness_, curvature_;
     std::vector<double> numbers_;
     std::vector<int> places_;
     // For rigid(): per ball [m/s], and per contact.

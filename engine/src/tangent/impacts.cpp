@@ -28,9 +28,8 @@ namespace {
 constexpr double kFirstStep = 3e-4, kLastStep = 2e-8;
 // [-] Two estimates agree if they differ by less; there is no derivative if the best ones differ by more.
 constexpr double kAgree = 1e-9, kDisagree = 1e-5;
-// [usual step] Derivatives of most breaks need shorter steps: a choice of the integration, such as of a
-// method, changes its result by 1e-5 of a speed, and the difference of two results equally.
-constexpr double kClusterFineStep = 1.0 / 8.0;
+// Of a cluster whose derivatives are taken.
+constexpr double kClusterTolerance = 1e-11;
 // [R] Unit of the positions of balls in a cluster: a third of a millimetre, the range of a contact.
 constexpr double kClusterReach = 1e-2;
 // [of the velocities after the impact, per step] Errors of smaller derivatives count relative to this.
@@ -288,7 +287,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
     scene.stop.events = 1;
     // Moves the moving ball into contact, so that resting balls still touch, to the last bit.
     const std::size_t moves = speed_of(states[one], 1.0) < speed_of(states[two], 1.0) ? two : one;
-    const auto resolve = [&](const double* list, double step) {
+    const auto resolve = [&](const double* list, double tolerance) {
         Reader read(laws, list);
         scene.balls = read.balls;
         scene.physics.gravity = read.gravity;
@@ -306,7 +305,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
             planar(other.position) +
             apart * contact_distance(moving.own->R, other.own->R, scene.balls.discs()) / length(apart);
         Plan plan = make_plan(scene, laws.plan.isa);
-        plan.cluster_step = step;
+        plan.impact.tolerance = tolerance;
         const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
@@ -324,18 +323,12 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         }
         return after;
     };
-    const auto by_steps = [&](double step) {
-        return differentiate(laws, in, [&](const double* list) { return resolve(list, step); });
-    };
-    std::vector<Dual> out;
-    try {
-        out = by_steps(1.0);
-    } catch (const TangentError&) {
-        out = by_steps(kClusterFineStep);
-    }
+    // The result is smooth only to the tolerance.
+    std::vector<Dual> out =
+        differentiate(laws, in, [&](const double* list) { return resolve(list, kClusterTolerance); });
     List values;
     for (const Dual& value : in.values()) values.push_back(value.x);
-    const List usual = resolve(values.data(), 1.0);
+    const List usual = resolve(values.data(), laws.plan.impact.tolerance);
     for (std::size_t k = 0; k < out.size(); ++k) out[k].x = usual[k];
     for (std::size_t k = 0; k < balls.size(); ++k) {
         put(states[k], out.data() + 8 * k);

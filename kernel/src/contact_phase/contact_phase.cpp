@@ -1,16 +1,15 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the motions of the balls of four contacts and computes their
-// forces in lanes. Then it adds the forces to the balls, one contact after another in the order of their
-// numbers. A lane computes the same as a scalar program, and every sum has a fixed order. Only contacts that
-// overlap at that stage take part. Memory is laid out for whole registers: the velocity and the horizontal
-// spin of a ball are one row of four numbers.
+// An evaluation of the right-hand side gathers the balls of four closed contacts, computes their forces in lanes,
+// then adds them to the balls, one contact after another in the order of their numbers. A lane computes the same
+// as a scalar program, and every sum has a fixed order. Only the balls of closed contacts take part in a step; the
+// others move on parabolas. After each step all contacts are examined in lanes: overlaps, rates, largest overlaps,
+// and the predicted time at which each closes, opens or turns, where the next step ends.
+#include "carom/kernel/contact_phase.h"
+
 #include <cstdint>
 
-#include "carom/kernel/contact_phase.h"
-#include "contact_phase/flight.h"
-#include "contact_phase/law.h"
-#include "contact_phase/state.h"
+#include "contact_phase/rock4.h"
 #include "kernel_set.h"
 #include "numbers.h"
 #include "simd.h"
@@ -18,407 +17,715 @@
 namespace carom::kernel {
 namespace {
 
-// HertzLaw in lanes. kFalls: the friction between balls depends on the slip.
-template <bool kFalls>
-struct Law {
-    Four a, b, minus_mu_b, mu_s, epsilon2, cloth_sign;
-    Four minus_mu_b_more, fall;
-    int p;
-    bool cloth, friction;
+using Four = Pack<4>;
+
+constexpr double kNever = 1e300;
+// [V] Smaller changes of the balls' speeds by a contact are rounding and may be ignored. Balls that move together
+// would close at such speeds forever.
+constexpr double kNothing = 1e-12;
+// [L/V] An event that is nearer than this is part of the present step. A prediction that misses by as much costs
+// 1e-8 V.
+constexpr double kEarly = 1e-3;
+// [L/V] The first step, that after a flight, and the longest one.
+constexpr double kFirstStep = 0.01, kAfterFlight = 0.05, kLongestStep = 1.0, kShortestStep = 1e-9;
+// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have moved
+// far.
+constexpr double kLongPhase = 40.0;
+// Step after an error: the fourth root aims at this fraction of the tolerance; the factor is within limits.
+constexpr double kSafety = 0.8, kGrow = 5.0, kShrink = 0.2, kRetry = 0.9, kRetryLeast = 0.1;
+// [slide L/V] Regularisation of the slip that the weight stops: it is stopped within 0.03 L/V, so it is not stiff.
+constexpr double kWeightSlip = 0.1;
+
+// [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
+constexpr double kSoon = 0.25;
+
+constexpr int kLanes = 4;
+
+// Numbers per ball. Rows of four: (x, y, v_x, v_y), (R w_x, R w_y, R w_z, -), and in space (z, v_z, -, -). In a
+// slope, the last number of the second row is the vertical force of the contacts.
+constexpr int kPlane = 8, kInSpace = 12;
+constexpr int kSlopes = 6;
+
+CAROM_INLINE int padded(int n) {
+    return (n + kLanes - 1) / kLanes * kLanes;
+}
+
+// e^-x for x >= 0, as the 16th power of a Taylor series: relative error 3e-9 up to x = 10. Constant above x = 16.
+// Summed in pairs, because the chain of forces waits for it.
+CAROM_INLINE Four falling_exponential(Four x) {
+    const auto number = [](double value) { return broadcast<4>(value); };
+    const Four t = smaller((1.0 / 16.0) * x, number(1.0)), t2 = t * t, t4 = t2 * t2;
+    const Four low = (number(1.0) - t) + t2 * (number(0.5) - (1.0 / 6.0) * t);
+    const Four middle = (number(1.0 / 24.0) - (1.0 / 120.0) * t) + t2 * (number(1.0 / 720.0) - (1.0 / 5040.0) * t);
+    const Four high = (number(1.0 / 40320.0) - (1.0 / 362880.0) * t) + (1.0 / 3628800.0) * t2;
+    Four power = (low + t4 * middle) + (t4 * t4) * high;
+    for (int doubling = 0; doubling < 4; ++doubling) power = power * power;
+    return power;
+}
+
+// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant; m0
+// and m1 are the rates at its ends times its length.
+CAROM_INLINE double peak(double before, double after, double m0, double m1) {
+    const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
+    const double s = m0 / (square_root(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
+    return s > 0.0 && s < 1.0 ? before + s * (m0 + s * (q2 + s * q3)) : 0.0;
+}
+
+// Vectors of four contacts.
+struct Apart {
+    Four x, y, z;
 };
 
-// Whether a contact may close within a time.
-CAROM_INLINE bool is_near(const Work& w, int c, double time) {
-    return -w.d[c] < time * (largest(w.rate[0][c], 0.0) + time);
-}
+template <bool kSpace, bool kFalls>
+class Phase {
+    static constexpr int kRow = kSpace ? kInSpace : kPlane;
 
-// Moves overlapping contacts to the front, followed by the near ones. At a stage the distant ones stay
-// distant.
-template <bool kStage>
-void reorder(Work& w, const double* d) {
-    int* place = w.places;
-    for (int c = 0; c < w.contacts; ++c) place[w.id[c]] = c;
-    int overlapping = 0, near = 0, far = w.contacts;
-    for (int n = 0; n < w.contacts; ++n) {
-        const int c = place[n];
-        if (d[c] > 0.0 && (!kStage || c < w.near))
-            w.order[overlapping++] = c;
-        else if (kStage ? c < w.near : is_near(w, c, w.horizon))
-            w.spare[near++] = c;
-        else
-            w.spare[--far] = c;
+  public:
+    Phase(const ContactPhase& phase, const HertzLaw& law, double tolerance)
+        : phase_(phase),
+          law_(law),
+          tolerance_(tolerance),
+          weight_slip2_(kWeightSlip * law.slide * (kWeightSlip * law.slide)),
+          cloth_sign_(law.published_slip_sign ? 1.0 : -1.0),
+          nobody_(kRow * phase.balls),
+          lanes_(padded(phase.contacts)) {
+        double* numbers = phase.numbers;
+        const auto take = [&numbers](int count) {
+            double* taken = numbers;
+            numbers += padded(count);
+            for (int n = 0; n < padded(count); ++n) taken[n] = 0.0;
+            return taken;
+        };
+        const int rows = nobody_ + kRow;
+        double** const states[] = {&y_, &a_, &b_, &c_, &next_};
+        for (double** state : states) *state = take(rows);
+        for (double*& slope : slope_) slope = take(rows);
+        stiff_ = take(phase.balls + 1);
+        double** const of_contacts[] = {&start_[0], &start_[1], &start_[2], &gap2_, &touch_, &d_,
+                                        &rate_, &pull_, &most_, &closes_, &force_};
+        for (double** numbers_of : of_contacts) *numbers_of = take(lanes_);
+        packed_ = take(kPacked * lanes_);
+        forces_ = take(kForces * lanes_);
+        int* places = phase.places;
+        const auto take_places = [&places](int count) {
+            int* taken = places;
+            places += count;
+            return taken;
+        };
+        i_ = take_places(lanes_);
+        j_ = take_places(lanes_);
+        closed_ = take_places(lanes_ + kLanes);
+        at_i_ = take_places(lanes_ + kLanes);
+        at_j_ = take_places(lanes_ + kLanes);
+        active_ = take_places(phase.balls + kLanes);
+        is_active_ = take_places(phase.balls + 1);
+        was_active_ = take_places(phase.balls + 1);
+        for (int b = 0; b <= phase.balls; ++b) is_active_[b] = was_active_[b] = 0;
+        for (int b = 0; b < phase.balls; ++b) {
+            const double* from = phase.motion + 6 * b;
+            double* y = y_ + kRow * b;
+            for (int k = 0; k < 2; ++k) y[2 + k] = from[k];
+            for (int k = 0; k < 3; ++k) y[4 + k] = from[3 + k];
+            if constexpr (kSpace) y[9] = phase.held ? 0.0 : from[2];
+        }
+        for (int c = 0; c < lanes_; ++c) {
+            const bool real = c < phase.contacts;
+            const HertzContact contact = real ? phase.contact[c] : HertzContact{0, 0, {1.0, 0.0, 0.0}, -1.0, 1.0};
+            const double gap = -contact.overlap;
+            for (int k = 0; k < 3; ++k) start_[k][c] = (contact.touch + gap) * contact.n[k];
+            gap2_[c] = gap * (2.0 * contact.touch + gap);
+            touch_[c] = contact.touch;
+            i_[c] = real ? kRow * contact.i : nobody_;
+            j_[c] = real ? kRow * contact.j : nobody_;
+            if (real && phase.history != nullptr) phase.history[c] = {-1.0, 0.0};
+        }
     }
-    w.count = overlapping;
-    w.near = overlapping + near;
-    for (int n = 0; n < near; ++n) w.order[overlapping + n] = w.spare[n];
-    for (int n = w.near; n < w.contacts; ++n) w.order[n] = w.spare[w.contacts - 1 - (n - w.near)];
-    int begin = 0, end = w.contacts;  // range of contacts to be moved
-    while (begin < end && w.order[begin] == begin) ++begin;
-    while (begin < end && w.order[end - 1] == end - 1) --end;
-    const auto move = [&w, begin, end](auto* numbers, auto* moved) {
-        for (int n = begin; n < end; ++n) moved[n] = numbers[w.order[n]];
-        for (int n = begin; n < end; ++n) numbers[n] = moved[n];
-    };
-    double* const arrays[] = {w.d,  w.d_stage, w.rate[0], w.rate[1], w.rate[2], w.rate[3], w.inverse,
-                              w.nx, w.ny,      w.turn,    w.bend,    w.share,   w.watched};
-    for (double* array : arrays) move(array, w.reordered);
-    int* const places[] = {w.i, w.j, w.id};
-    for (int* array : places) move(array, w.spare);
-}
 
-// Whether an overlapping one of the first `lanes` contacts is not at the front.
-CAROM_INLINE bool out_of_order(const Work& w, const double* d, int lanes) {
-    int first = w.count / 4 * 4, change = -1 << (w.count - first);
-    change &= bits_less(broadcast<4>(0.0), load<4>(d + first));
-    for (int c = first + 4; c < lanes; c += 4) change |= bits_less(broadcast<4>(0.0), load<4>(d + c));
-    return change != 0;
-}
-
-// Whether reordering would save a whole register: opening contacts stay at the front without a force.
-CAROM_INLINE bool gaps_add_up(const Work& w) {
-    Four open = broadcast<4>(0.0);
-    for (int c = 0; c < w.count; c += 4)
-        open = open + select(broadcast<4>(0.0) < load<4>(w.d + c), broadcast<4>(0.0), broadcast<4>(1.0));
-    return sum(open) >= 4.0 + padded(w.count) - w.count;
-}
-
-// The forces of four contacts, into w.force. At a stage the normals have turned for `time`, and `rate`
-// receives the rates of the overlaps. Separate from add_forces(), so that a processor that looks a few
-// hundred instructions ahead computes the roots and divisions of all contacts in parallel.
-template <bool kFalls, bool kStage>
-CAROM_INLINE void find_forces(const Work& w, const Law<kFalls>& law, const double* y, const double* d,
-                              double time, int first, double* rate) {
-    const int *i = w.i + first, *j = w.j + first;
-    Four nx = load<4>(w.nx + first), ny = load<4>(w.ny + first);
-    Four motion[4];
-    for (int lane = 0; lane < 4; ++lane)
-        motion[lane] = subtract_add(load<4>(y + i[lane]), load<4>(y + j[lane]));
-    transpose(motion[0], motion[1], motion[2], motion[3]);
-    if (kStage) {
-        const Four angle = time * load<4>(w.turn + first), x = nx - angle * ny;
-        ny = ny + angle * nx;
-        nx = x;
-        store(rate + first, motion[0] * nx + motion[2] * ny);
+    std::int64_t run(double look_ahead, double time_limit) {
+        double h = kFirstStep, longest = kFirstStep;
+        examine(0.0);
+        for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit; ++steps) {
+            const bool same = gather();
+            if (!presses(time_limit - time_)) {
+                const double flight = next_closing();
+                if (!(flight < look_ahead) || (time_ > kLongPhase && actives_ == 0)) {
+                    leave();
+                    return evaluations_;
+                }
+                if (actives_ == 0) {
+                    for (int b = 0; b < phase_.balls; ++b) glide(b, flight);
+                    time_ += flight;
+                    examine(0.0);
+                    h = longest = kAfterFlight;
+                    continue;
+                }
+            }
+            if (!same || steps == 0) evaluate(y_, slope_[0]);
+            const double stiffest = find_stiffest();
+            const double event = event_;
+            bool again = false;
+            double wanted = h;
+            for (;;) {
+                h = smallest(h, kLongestStep);
+                if (stiffest > 0.0) h = smallest(h, kReach / stiffest);
+                // Approach an event in equal steps.
+                if (!again && event < 4.0 * h) h = event / ceiling(event / h - 0.1);
+                const double error = step(h, stiffest);
+                const double ratio = error > 0.0 ? kSafety * root4(tolerance_ / error) : kGrow;
+                const bool good = error <= tolerance_;
+                if (good || !(h > kShortestStep)) {
+                    wanted = h * smallest(again ? 1.0 : kGrow, largest(kShrink, ratio));
+                    break;
+                }
+                again = true;
+                h *= ratio > kRetryLeast ? smallest(kRetry, ratio) : kRetryLeast;
+            }
+            accept(h);
+            // A step that an event cut short says little about the next one.
+            const double before = longest;
+            longest = wanted;
+            h = h == event ? largest(wanted, before) : wanted;
+        }
+        return -1;
     }
-    const double* turn = y + kTurn;
-    const Four turning = pack(turn[i[0]] + turn[j[0]], turn[i[1]] + turn[j[1]], turn[i[2]] + turn[j[2]],
-                              turn[i[3]] + turn[j[3]]);
-    const Four overlap = load<4>(d + first), none = broadcast<4>(0.0);
-    // The last four may include contacts that do not overlap.
-    const Four F =
-        select(none < overlap, normal_force(law.a, law.b, law.p, overlap, load<4>(w.inverse + first)), none);
-    // t = n x z = (n_y, -n_x); s_x = (v_i - v_j) . t - R (w_iz + w_jz), s_z = R (w_i + w_j) . t.
-    const Four s_x = motion[0] * ny - motion[2] * nx - turning;
-    const Four s_z = motion[1] * ny - motion[3] * nx;
-    const Four slip2 = s_x * s_x + s_z * s_z + law.epsilon2, slip = square_root(slip2);
-    Four minus_mu_b = law.minus_mu_b;
-    if (kFalls) minus_mu_b = minus_mu_b + law.minus_mu_b_more * falling_exponential(law.fall * slip);
-    const Four k = minus_mu_b * F / slip2 * slip;  // the root and the quotient in parallel
-    double* force = w.force + kForce * first;
-    store(force, nx);
-    store(force + 4, ny);
-    store(force + 8, F);
-    store(force + 12, k * s_x);
-    store(force + 16, k * s_z);
-    store(force + 20, k);
-}
 
-// Adds the forces of four contacts to the slopes of their balls.
-CAROM_INLINE void add_forces(const Work& w, int first, double* dy) {
-    const int *i = w.i + first, *j = w.j + first;
-    const double* force = w.force + kForce * first;
-    const Four nx = load<4>(force), ny = load<4>(force + 4), F = load<4>(force + 8),
-               f_x = load<4>(force + 12), f_z = load<4>(force + 16), k = load<4>(force + 20);
-    const Four twist = 2.5 * f_z;
-    Four rows[4] = {f_x * ny - F * nx, twist * ny, -F * ny - f_x * nx, -twist * nx};
-    Four ends[4] = {f_z, -2.5 * f_x, f_z, k};
-    transpose(rows[0], rows[1], rows[2], rows[3]);
-    transpose(ends[0], ends[1], ends[2], ends[3]);
-    for (int lane = 0; lane < 4; ++lane) {
-        double *dy_i = dy + i[lane], *dy_j = dy + j[lane];
-        store(dy_i, load<4>(dy_i) + rows[lane]);
-        store(dy_i + 4, load<4>(dy_i + 4) + ends[lane]);
-        store(dy_j, subtract_add(load<4>(dy_j), rows[lane]));
-        store(dy_j + 4, subtract_add(load<4>(dy_j + 4), ends[lane]));
+  private:
+    // Numbers per closed contact, in packs of four: from start_, gap2_, touch_, 1 over the largest overlap, the
+    // stiffness, friction over slip, and the normal force.
+    static constexpr int kGap2 = 3, kTouch = 4, kInverse = 5, kStiffness = 6, kFriction = 7, kNormal = 8, kPacked = 9;
+    static constexpr int kForces = 3 * kLanes;
+    static constexpr double kReach = 0.353 * kMostStages * kMostStages - 3.0;
+
+    static double root4(double x) { return square_root(square_root(x)); }
+    static double ceiling(double x) {
+        const double whole = static_cast<double>(static_cast<std::int64_t>(x));
+        return largest(1.0, whole < x ? whole + 1.0 : whole);
     }
-}
+    double mobility(int ball) const { return phase_.inverse_mass == nullptr ? 1.0 : phase_.inverse_mass[ball]; }
 
-// The friction of the cloth between two steps, on the balls that are pressed down. Leapfrog: apply half of
-// the last step's load and half of the load predicted at its end for a next step of equal length, so that the
-// error is of second order. The part applied in advance (kAhead) is subtracted the next time. The slip u
-// decays at the rate 3.5 mu_s N / |u|, by the implicit midpoint rule, which is stable for any step and exact
-// while the ball slides. |u| at the midpoint comes from half an implicit step.
-template <bool kFalls>
-CAROM_INLINE void drag(const Work& w, const Law<kFalls>& law, double* y) {
-    const Four zero = broadcast<4>(0.0);
-    const auto below_zero = [&zero](const Four& v) { return select(v < zero, v, zero); };
-    // The last four may include the additional ball.
-    for (int n = 0; n < 3; ++n) w.active[w.actives + n] = kRow * w.balls;
-    for (int n = 0; n < w.actives; n += 4) {
-        const int* const rows_of = w.active + n;
-        Four lift[4];
-        for (int lane = 0; lane < 4; ++lane) lift[lane] = load<4>(y + rows_of[lane] + kLift);
-        transpose(lift[0], lift[1], lift[2], lift[3]);
-        const Four past = below_zero(lift[0]), next = below_zero(lift[2]), ahead = lift[3];
-        const Four wanted = (past - ahead) + next;
-        if (bits_less((past + next) + ahead, zero) == 0) continue;
-        Four motion[4];
-        for (int lane = 0; lane < 4; ++lane) motion[lane] = load<4>(y + rows_of[lane]);
-        transpose(motion[0], motion[1], motion[2], motion[3]);
-        const Four ux = motion[0] + law.cloth_sign * motion[3], uy = motion[2] - law.cloth_sign * motion[1];
-        const Four pressed = law.mu_s * below_zero(wanted);
-        const Four slip2 = ux * ux + uy * uy, slip = square_root(slip2 + law.epsilon2);
-        const Four half = slip / (slip - 1.75 * pressed);
-        const Four k = pressed / (square_root(half * half * slip2 + law.epsilon2) - 1.75 * pressed);
-        double left[4];
-        store(left, select(wanted < zero, next, ahead - past));
-        Four rows[4] = {k * ux, 2.5 * k * uy, k * uy, -2.5 * k * ux};
+    // The closed contacts, and those about to close, with their balls.
+    // @return whether the same balls were active before
+    bool gather() {
+        int* const before = was_active_;
+        was_active_ = is_active_;
+        is_active_ = before;
+        for (int b = 0; b <= phase_.balls; ++b) is_active_[b] = 0;
+        const int count = count_;
+        actives_ = count_ = 0;
+        bool same = true;
+        for (int c = 0; c < phase_.contacts; ++c) {
+            if (!(d_[c] > 0.0)) {
+                force_[c] = 0.0;
+                if (!(closes_[c] < kEarly)) continue;
+            }
+            same = same && count_ < count && closed_[count_] == c;
+            closed_[count_++] = c;
+            const int rows[] = {i_[c], j_[c]};
+            for (const int row : rows) {
+                const int ball = row / kRow;
+                if (is_active_[ball] != 0) continue;
+                is_active_[ball] = 1;
+                active_[actives_++] = row;
+                same = same && was_active_[ball] != 0;
+            }
+            if (phase_.history != nullptr && d_[c] > 0.0 && phase_.history[c].first < 0.0)
+                phase_.history[c].first = time_;
+        }
+        for (int n = 0; n < kLanes; ++n) active_[actives_ + n] = nobody_;
+        for (int b = 0; b < phase_.balls; ++b) {
+            if (was_active_[b] == 0 || is_active_[b] != 0) continue;
+            // No force acts on it now.
+            double* slope = slope_[0] + kRow * b;
+            for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
+            same = false;
+        }
+        for (int n = 0; n < padded(count_); ++n) {
+            const bool real = n < count_;
+            const int c = real ? closed_[n] : 0;
+            at_i_[n] = real ? i_[c] : nobody_;
+            at_j_[n] = real ? j_[c] : nobody_;
+            double* const to = packed_ + kPacked * (n / kLanes * kLanes) + n % kLanes;
+            const double nowhere[] = {2.0, 0.0, 0.0, 3.0, 1.0, kNever, 1.0};
+            const double here[] = {start_[0][c], start_[1][c], start_[2][c], gap2_[c], touch_[c],
+                                   most_[c] > 0.0 ? 1.0 / most_[c] : kNever,
+                                   real ? phase_.contact[c].stiffness : 1.0};
+            for (int k = 0; k <= kStiffness; ++k) to[kLanes * k] = real ? here[k] : nowhere[k];
+        }
+        return same;
+    }
+
+    // Difference j - i of four contacts: places in `apart`, velocities in `v`.
+    CAROM_INLINE void differences(const double* y, const int* i, const int* j, Apart& apart, Apart& v) const {
+        Four rows[4];
+        for (int lane = 0; lane < kLanes; ++lane) rows[lane] = load<4>(y + j[lane]) - load<4>(y + i[lane]);
         transpose(rows[0], rows[1], rows[2], rows[3]);
-        for (int lane = 0; lane < 4; ++lane) {
-            double* row = y + rows_of[lane];
-            store(row, load<4>(row) + rows[lane]);
-            row[kAhead] = left[lane];
+        apart.x = rows[0];
+        apart.y = rows[1];
+        v.x = rows[2];
+        v.y = rows[3];
+        if constexpr (kSpace) {
+            for (int lane = 0; lane < kLanes; ++lane)
+                rows[lane] = load<4>(y + j[lane] + kPlane) - load<4>(y + i[lane] + kPlane);
+            transpose(rows[0], rows[1], rows[2], rows[3]);
+            apart.z = rows[0];
+            v.z = rows[1];
         }
     }
-}
-
-// Adds the right-hand side to dy, in units of V and L: forces are d^1.5, masses 1. At a stage `rate` receives
-// the rates of the overlaps.
-template <bool kStage, bool kFalls>
-CAROM_INLINE void forces(Work& w, const Law<kFalls>& law, const double* y, const double* d, double time,
-                         double* dy, double* rate) {
-    if (out_of_order(w, d, kStage ? w.near : w.lanes) || (!kStage && gaps_add_up(w))) {
-        reorder<kStage>(w, d);
-        if (kStage) activate(w);
+    CAROM_INLINE static Four dot(const Apart& a, const Apart& b) {
+        if constexpr (kSpace)
+            return (a.x * b.x + a.y * b.y) + a.z * b.z;
+        else
+            return a.x * b.x + a.y * b.y;
     }
-    if (!kStage) find_active(w);
-    int c = 0;
-    for (; c < w.count; c += 4) find_forces<kFalls, kStage>(w, law, y, d, time, c, rate);
-    for (int n = 0; n < w.count; n += 4) add_forces(w, n, dy);
-    if (kStage) rates(w, y, time, c, rate);
-}
 
-// y_stage = y + share * slope
-CAROM_INLINE void shift(const Work& w, const double* slope, double share) {
-    for (int k = 0; k < w.actives; ++k) {
-        const int n = w.active[k];
-        for (int half = n; half < n + kRow; half += 4)
-            store(w.y_stage + half, load<4>(w.y + half) + share * load<4>(slope + half));
-    }
-}
-
-// The same for the overlaps. A contact that is not watched stays open.
-CAROM_INLINE void shift_overlaps(const Work& w, const double* rate, double share) {
-    const Four none = broadcast<4>(0.0);
-    for (int c = 0; c < w.near; c += 4) {
-        const Four d = load<4>(w.d + c), watched = load<4>(w.watched + c);
-        store(w.d_stage + c, select(none < watched, d + share * load<4>(rate + c), d));
-    }
-}
-
-CAROM_INLINE void clear(const Work& w, double* slope) {
-    for (int k = 0; k < w.actives; ++k) {
-        store(slope + w.active[k], broadcast<4>(0.0));
-        store(slope + w.active[k] + 4, broadcast<4>(0.0));
-    }
-}
-
-CAROM_INLINE double largest_lane(const Four& v) {
-    double each[4];
-    store(each, v);
-    return largest(largest(each[0], each[1]), largest(each[2], each[3]));
-}
-
-// Computes the state after a step of length h, into y_stage. If kWatched, returns its largest difference from
-// the midpoint rule in a velocity or spin. Clears the slopes of the later stages, to which forces() adds.
-template <bool kWatched>
-CAROM_INLINE double finish(const Work& w, const RungeKutta& method, double h) {
-    double *k0 = w.dy[0], *k1 = w.dy[1], *k2 = w.dy[2], *k3 = w.dy[3];
-    const double w0 = h * method.weight[0], w1 = h * method.weight[1], w2 = h * method.weight[2],
-                 w3 = h * method.weight[3];
-    const Four zero = broadcast<4>(0.0), turn_only = pack(0.0, 1.0, 0.0, 0.0),
-               kept = pack(0.0, 1.0, 0.0, 1.0);
-    // For the second half of a row (Work).
-    const Four two = pack(1.0, 1.0, 0.0, 0.0);
-    const Four v0 = w0 * two, v1 = w1 * two, v2 = w2 * two, v3 = w3 * two + h * pack(0.0, 0.0, 0.5, 0.0);
-    Four most = zero;
-    const auto take = [&most](const Four& difference) { most = larger(absolute(difference), most); };
-    for (int k = 0; k < w.actives; ++k) {
-        const int n = w.active[k];
-        const Four a0 = load<4>(k0 + n), a2 = load<4>(k2 + n), a3 = load<4>(k3 + n);
-        const Four b0 = load<4>(k0 + n + 4), b2 = load<4>(k2 + n + 4), b3 = load<4>(k3 + n + 4);
-        Four first = w0 * a0, second = v0 * b0;
-        if (kWatched) {
-            take((a0 + a3) - 2.0 * a2);
-            take(turn_only * ((b0 + b3) - 2.0 * b2));
-        } else {
-            first = first + w1 * load<4>(k1 + n);
-            second = second + v1 * load<4>(k1 + n + 4);
-        }
-        store(w.y_stage + n, load<4>(w.y + n) + (first + (w2 * a2 + w3 * a3)));
-        store(w.y_stage + n + 4, kept * load<4>(w.y + n + 4) + (second + (v2 * b2 + v3 * b3)));
-        for (int half = n; half < n + kRow; half += 4) {
-            store(k1 + half, zero);
-            store(k2 + half, zero);
-            store(k3 + half, zero);
-        }
-    }
-    return h / 6.0 * largest_lane(most);
-}
-
-// The largest sum of friction divided by slip, over both balls of a contact that overlaps.
-CAROM_INLINE double stiffest(const Work& w, const double* dy) {
-    const double* stiffness = dy + kStiffness;
-    const Four none = broadcast<4>(0.0);
-    Four most = none;
-    for (int c = 0; c < w.count; c += 4) {
-        const int *i = w.i + c, *j = w.j + c;
-        const Four both = pack(stiffness[i[0]] + stiffness[j[0]], stiffness[i[1]] + stiffness[j[1]],
-                               stiffness[i[2]] + stiffness[j[2]], stiffness[i[3]] + stiffness[j[3]]);
-        most = larger(select(none < load<4>(w.d + c), -both, none), most);
-    }
-    return largest_lane(most);
-}
-
-// The square of the fastest contact's speed (slowness()). Opening contacts count only if they overlap.
-template <bool kFalls>
-CAROM_INLINE double fastest_squared(const Work& w, const Law<kFalls>& law) {
-    const Four none = broadcast<4>(0.0), first = broadcast<4>(kNoMemory);
-    Four most = none;
-    for (int c = 0; c < w.lanes; c += 4) {
-        const Four d = load<4>(w.d + c), rate = load<4>(w.rate[0] + c), overlap = larger(d, none);
-        const Four memory = select(none < rate, first, load<4>(w.inverse + c));
-        const Four speed = select(none < d, rate, larger(rate, none));
-        most = larger(most, speed * speed + overlap * normal_force(law.a, law.b, law.p, overlap, memory));
-    }
-    return largest_lane(most);
-}
-
-// Marks the contacts that may close within a step of length h. The others need no rates at its stages.
-CAROM_INLINE void watch(Work& w, double h) {
-    const Four zero = broadcast<4>(0.0), one = broadcast<4>(1.0);
-    int beyond = 0;
-    for (int c = 0; c < w.lanes; c += 4) {
-        const Four most = h * (larger(load<4>(w.rate[0] + c), zero) + broadcast<4>(h));
-        const Four watched = select(zero - load<4>(w.d + c) < most, one, zero);
-        store(w.watched + c, watched);
-        const int bits = bits_less(zero, watched);
-        if (c + 4 > w.near && (bits >> (w.near > c ? w.near - c : 0)) != 0) beyond = 1;
-    }
-    if (beyond == 0) return;
-    // A margin, so that they need not move again soon.
-    w.horizon = 2.0 * h;
-    reorder<false>(w, w.d);
-}
-
-// The slopes of the stages of a step of length h, except the first.
-template <bool kFalls>
-CAROM_INLINE void stages(Work& w, const Law<kFalls>& law, const RungeKutta& method, double h) {
-    for (int n = 0; n < method.stages(); ++n) {
-        const int from = method.slope(n), to = method.slope(n + 1);
-        const double time = h * method.node[n];
-        shift(w, w.dy[from], time);
-        shift_overlaps(w, w.rate[from], time);
-        if (from == to) clear(w, w.dy[to]);
-        forces<true>(w, law, w.y_stage, w.d_stage, time, w.dy[to], w.rate[to]);
-    }
-}
-
-// One Runge-Kutta step; returns its length. On entry rate[0] belongs to the state. `longest` limits the step.
-// With friction the error sets the limit of the next step, in `next`; without friction `next` is ignored.
-template <bool kFalls>
-CAROM_INLINE double step(Work& w, const Law<kFalls>& law, double shortest, double longest, double& next) {
-    forces<false>(w, law, w.y, w.d, 0.0, w.dy[0], nullptr);
-    const double most = law.friction ? stiffest(w, w.dy[0]) : 0.0;
-    Plan plan = law.friction ? plan_step(most, smallest(longest, next)) : Plan{&kClassical, longest};
-    watch(w, plan.h);
-    for (;;) {
-        stages(w, law, *plan.method, plan.h);
-        if (!law.friction) {
-            finish<false>(w, *plan.method, plan.h);
-            break;
-        }
-        const double error = finish<true>(w, *plan.method, plan.h);
-        next = step_after(next, plan.h, error);
-        if (!(error > kStepError && plan.h > shortest)) break;
-        plan = plan_step(most, 0.5 * plan.h);
-    }
-    const double h = plan.h;
-    clear(w, w.dy[0]);
-    double* const before = w.y;
-    w.y = w.y_stage;
-    w.y_stage = before;
-    // The trapezoidal rule: forces begin and end at 0, so the errors of the steps cancel.
-    for (int n = 0; n < kRow * w.rows; n += kRow)
-        add_displacement(w, n, 0.5 * h * (load<4>(before + n) + load<4>(w.y + n)));
-    if (law.cloth) drag(w, law, w.y);
-    advance(w, *plan.method, h);
-    return h;
-}
-
-template <bool kFalls>
-std::int64_t integrate(const ContactPhase& phase, const HertzLaw& law, double longest_step, double look_ahead,
-                       double time_limit) {
-    Work w = lay_out(phase);
-    const Law<kFalls> lanes{broadcast<4>(law.a),
-                            broadcast<4>(law.b),
-                            broadcast<4>(-law.mu_b),
-                            broadcast<4>(law.mu_s),
-                            broadcast<4>(law.epsilon * law.epsilon),
-                            broadcast<4>(law.published_slip_sign ? 1.0 : -1.0),
-                            broadcast<4>(-law.mu_b_more),
-                            broadcast<4>(law.mu_b_fall),
-                            law.p,
-                            law.mu_s > 0.0 && has_friction(law),
-                            has_friction(law)};
-    update_rates(w);
-    std::int64_t steps = 0;
-    double next = longest_step;
-    double time = 0.0, braked = 0.0;
-    const auto brake_all = [&w, &law, &time, &braked] {
-        for (int n = 0; n < kRow * w.balls && law.slide > 0.0; n += kRow) {
-            brake(law.slide * (time - braked), w.y[n], w.y[n + 2], w.y[n + 1], w.y[n + 3]);
-            copy_row(w.y_stage + n, w.y + n);
-        }
-        braked = time;
+    // The overlap touch - |start + moved| without subtracting nearly equal numbers, and the normal.
+    struct Geometry {
+        Four d, inverse;
+        Apart n;
     };
-    for (;;) {
-        if (!(time < time_limit)) return -1;
-        const double most = longest_step * slowness(fastest_squared(w, lanes));
-        const double longest = w.shares ? update_turning(phase, w, most) : most;
-        const double h = step(w, lanes, kShortest * longest_step, longest, next);
-        ++steps;
-        time += h;
-        if (time - braked > kBrakes) brake_all();
-        if (any_pressed(w, law, time_limit - time)) continue;
-        const double flight = next_touch(w);
-        if (!(flight < look_ahead)) break;
-        // Contacts that overlap without force continue to open.
-        if (any_overlap(w)) continue;
-        if (time > kLongPhase) break;
-        fly(phase, w, flight, look_ahead);
-        time += flight;
-        brake_all();
-        update_rates(w);
+    CAROM_INLINE static Geometry geometry(const Apart& start, Four gap2, Four touch, const Apart& moved) {
+        Apart z{start.x + moved.x, start.y + moved.y, {}};
+        if constexpr (kSpace) z.z = start.z + moved.z;
+        const Four distance = square_root(dot(z, z)), sum = touch + distance;
+        const Four inverse = broadcast<4>(1.0) / distance;
+        Geometry g{-((gap2 + 2.0 * dot(start, moved)) + dot(moved, moved)) / sum, inverse, z};
+        g.n.x = z.x * inverse;
+        g.n.y = z.y * inverse;
+        if constexpr (kSpace) g.n.z = z.z * inverse;
+        return g;
     }
-    brake_all();
-    for (int b = 0; b < w.balls; ++b) {
-        for (int k = 0; k < kPerBall; ++k) phase.motion[kPerBall * b + k] = w.y[kRow * b + kPlace[k]];
-        if (phase.moved == nullptr) continue;
-        for (int k = 0; k < 2; ++k) phase.moved[2 * b + k] = w.moved[kRow / 2 * b + kPlace[k]];
+
+    // The forces of four contacts at y, into `forces_`, as rows of slopes.
+    CAROM_INLINE void find_forces(const double* y, int first) {
+        double* const from = packed_ + kPacked * first;
+        const auto packed = [from](int k) { return load<4>(from + kLanes * k); };
+        const int *i = at_i_ + first, *j = at_j_ + first;
+        Apart moved, v;
+        differences(y, i, j, moved, v);
+        Four w[4];
+        for (int lane = 0; lane < kLanes; ++lane) w[lane] = load<4>(y + i[lane] + 4) + load<4>(y + j[lane] + 4);
+        transpose(w[0], w[1], w[2], w[3]);
+        const Geometry g = geometry({packed(0), packed(1), packed(2)}, packed(kGap2), packed(kTouch), moved);
+        const Apart& n = g.n;
+        const Four zero = broadcast<4>(0.0), d = larger(g.d, zero);
+        const Four loading = d * square_root(d), share = d * packed(kInverse);
+        Four power = share;
+        for (int p = law_.p; p > 1; p /= 2) power = power * power;
+        Four F = select(share < broadcast<4>(1.0), loading * (broadcast<4>(law_.a) + law_.b * power), loading);
+        if constexpr (kSpace) F = packed(kStiffness) * F;
+        Apart s;  // slip of i on j, and in the plane: along (n_y, -n_x), and upwards in z
+        Four slip2;
+        if constexpr (kSpace) {
+            const Four closing = dot(v, n);
+            s.x = (closing * n.x - v.x) + (w[1] * n.z - w[2] * n.y);
+            s.y = (closing * n.y - v.y) + (w[2] * n.x - w[0] * n.z);
+            s.z = (closing * n.z - v.z) + (w[0] * n.y - w[1] * n.x);
+            slip2 = dot(s, s) + broadcast<4>(law_.epsilon * law_.epsilon);
+        } else {
+            s.x = (v.y * n.x - v.x * n.y) - w[2];
+            s.z = w[0] * n.y - w[1] * n.x;
+            slip2 = (s.x * s.x + s.z * s.z) + broadcast<4>(law_.epsilon * law_.epsilon);
+        }
+        const Four slip = square_root(slip2);
+        Four mu = broadcast<4>(law_.mu_b);
+        if constexpr (kFalls) mu = mu + law_.mu_b_more * falling_exponential(law_.mu_b_fall * slip);
+        const Four k = mu * (F / slip2 * slip);  // roots, quotient and exponential in parallel
+        store(from + kLanes * kFriction, k);
+        store(from + kLanes * kNormal, F);
+        Four centre[4], spin[4];
+        double* const to = forces_ + kForces * first;
+        if constexpr (kSpace) {
+            const Apart f{-k * s.x, -k * s.y, -k * s.z};
+            const Four up = f.z - F * n.z;
+            centre[0] = up, centre[1] = zero, centre[2] = f.x - F * n.x, centre[3] = f.y - F * n.y;
+            spin[0] = 2.5 * (n.y * f.z - n.z * f.y), spin[1] = 2.5 * (n.z * f.x - n.x * f.z);
+            spin[2] = 2.5 * (n.x * f.y - n.y * f.x), spin[3] = up;
+        } else {
+            const Four f_x = -k * s.x, f_z = -k * s.z, twist = 2.5 * f_z;
+            centre[0] = centre[1] = zero, centre[2] = f_x * n.y - F * n.x, centre[3] = -F * n.y - f_x * n.x;
+            spin[0] = twist * n.y, spin[1] = -twist * n.x, spin[2] = -2.5 * f_x, spin[3] = f_z;
+        }
+        transpose(centre[0], centre[1], centre[2], centre[3]);
+        transpose(spin[0], spin[1], spin[2], spin[3]);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            store(to + kForces * lane, centre[lane]);
+            store(to + kForces * lane + 4, spin[lane]);
+        }
     }
-    if (phase.time != nullptr) *phase.time = time;
-    return steps;
+
+    // Adds the force of the contact in this place to the slopes of its balls.
+    CAROM_INLINE void add_force(int place, double* slope) const {
+        const double* from = forces_ + kForces * place;
+        Four centre = load<4>(from), spin = load<4>(from + 4);
+        const Four other = pack(1.0, 1.0, 1.0, -1.0);
+        const int rows[] = {at_i_[place], at_j_[place]};
+        for (const int row : rows) {
+            double* to = slope + row;
+            Four light = broadcast<4>(1.0), spin_light = light;
+            if constexpr (kSpace) {
+                const double m = row == nobody_ ? 0.0 : mobility(row / kRow);
+                light = pack(0.0, 0.0, m, m);
+                spin_light = pack(m, m, m, 1.0);
+                if (!phase_.held) to[9] += (row == at_i_[place] ? m : -m) * from[0];
+            }
+            store(to, load<4>(to) + (kSpace ? light * centre : centre));
+            store(to + 4, load<4>(to + 4) + (kSpace ? spin_light * spin : spin));
+            centre = -centre;
+            spin = spin * other;
+        }
+    }
+
+    // The friction of the cloth on four active balls: of those pressed down by contacts, and of their weight.
+    CAROM_INLINE void add_cloth(const double* y, int first, double* slope) {
+        const int* rows = active_ + first;
+        Four s[4], v[4], w[4];
+        for (int lane = 0; lane < kLanes; ++lane) s[lane] = load<4>(slope + rows[lane] + 4);
+        transpose(s[0], s[1], s[2], s[3]);
+        const Four zero = broadcast<4>(0.0);
+        const bool pressed = law_.mu_s > 0.0 && bits_less(s[3], zero) != 0;
+        if (!pressed && !(law_.slide > 0.0)) return;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            v[lane] = load<4>(y + rows[lane]);
+            w[lane] = load<4>(y + rows[lane] + 4);
+        }
+        transpose(v[0], v[1], v[2], v[3]);
+        transpose(w[0], w[1], w[2], w[3]);
+        Four x = zero, z = zero;  // the deceleration
+        if (law_.slide > 0.0) {
+            const Four ux = v[2] - w[1], uy = v[3] + w[0];
+            const Four k = law_.slide / square_root((ux * ux + uy * uy) + broadcast<4>(weight_slip2_));
+            x = k * ux;
+            z = k * uy;
+        }
+        if (pressed) {
+            const Four ux = v[2] + cloth_sign_ * w[1], uy = v[3] - cloth_sign_ * w[0];
+            const Four slip2 = (ux * ux + uy * uy) + broadcast<4>(law_.epsilon * law_.epsilon);
+            Four load_on = select(s[3] < zero, -law_.mu_s * s[3], zero);
+            if constexpr (kSpace) {
+                for (int lane = 0; lane < kLanes; ++lane)
+                    if (rows[lane] != nobody_)
+                        set_lane(load_on, lane, kernel::lane(load_on, lane) * mobility(rows[lane] / kRow));
+            }
+            const Four k = load_on / slip2 * square_root(slip2);
+            x = x + k * ux;
+            z = z + k * uy;
+            for (int lane = 0; lane < kLanes; ++lane) stiff_[rows[lane] / kRow] += kernel::lane(k, lane);
+        }
+        Four to_v[4] = {zero, zero, -x, -z}, to_w[4] = {-2.5 * z, 2.5 * x, zero, zero};
+        transpose(to_v[0], to_v[1], to_v[2], to_v[3]);
+        transpose(to_w[0], to_w[1], to_w[2], to_w[3]);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            double* to = slope + rows[lane];
+            store(to, load<4>(to) + to_v[lane]);
+            store(to + 4, load<4>(to + 4) + to_w[lane]);
+        }
+    }
+
+    // The slopes of the active balls at y.
+    void evaluate(const double* y, double* slope) {
+        ++evaluations_;
+        const Four zero = broadcast<4>(0.0);
+        for (int n = 0; n < actives_; ++n) {
+            const double* from = y + active_[n];
+            double* to = slope + active_[n];
+            store(to, pack(from[2], from[3], 0.0, 0.0));
+            store(to + 4, zero);
+            if constexpr (kSpace) store(to + kPlane, pack(from[9], 0.0, 0.0, 0.0));
+            stiff_[active_[n] / kRow] = 0.0;
+        }
+        for (int n = 0; n < count_; n += kLanes) find_forces(y, n);
+        for (int n = 0; n < count_; ++n) add_force(n, slope);
+        if (phase_.held)
+            for (int n = 0; n < actives_; n += kLanes) add_cloth(y, n, slope);
+    }
+
+    // An upper bound of the rates at which friction makes slips decay, after an evaluation. With k = mu_b F / |s|,
+    // the friction of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two balls
+    // adds at most 3.5 times its own k, as does the cloth. By Gershgorin's theorem no rate of all contacts together
+    // exceeds 3.5 times the largest sum of k over both balls of a contact.
+    double find_stiffest() {
+        for (int n = 0; n < count_; ++n) {
+            const double k = packed(n, kFriction);
+            const int rows[] = {at_i_[n], at_j_[n]};
+            for (const int row : rows) stiff_[row / kRow] += k * mobility(row / kRow);
+        }
+        double most = law_.slide > 0.0 ? 1.0 / kWeightSlip : 0.0;
+        for (int n = 0; n < count_; ++n)
+            most = largest(most, stiff_[at_i_[n] / kRow] + stiff_[at_j_[n] / kRow]);
+        return 3.5 * most;
+    }
+    double packed(int place, int k) const {
+        return packed_[kPacked * (place / kLanes * kLanes) + kLanes * k + place % kLanes];
+    }
+
+    // to = y + the sum of factors times slopes, for the active balls.
+    template <int kCount>
+    CAROM_INLINE void combine(double* to, const double* y, const double (&factor)[kCount],
+                              double* const* slopes) const {
+        for (int n = 0; n < actives_; ++n) {
+            for (int k = 0; k < kRow; k += 4) {
+                const int at = active_[n] + k;
+                Four sum = factor[0] * load<4>(slopes[0] + at);
+                for (int m = 1; m < kCount; ++m) sum = sum + factor[m] * load<4>(slopes[m] + at);
+                store(to + at, load<4>(y + at) + sum);
+            }
+        }
+    }
+
+    // One step of ROCK4 from y_ and slope_[0] into next_, with the slope there in slope_[5].
+    // @return the largest error of a velocity or spin
+    double step(double h, double stiffest) {
+        const double wanted = square_root((3.0 + h * stiffest) / 0.353) + 1.0;
+        const int whole = static_cast<int>(wanted);
+        const int stages = whole < kFewestStages ? kFewestStages : whole > kMostStages ? kMostStages : whole;
+        const int chain = stages - 4;
+        const double* rec = kChain + (chain - 1) * (chain - 1);
+        double *const* k = slope_ + 1, *older = a_, *old = b_, *now = c_;
+        combine<1>(old, y_, {h * rec[0]}, slope_);
+        const double* before = y_;
+        for (int n = 2; n <= chain; ++n) {
+            evaluate(old, k[0]);
+            const double mu = h * rec[2 * n - 3], kappa = rec[2 * n - 2], nu = 1.0 + kappa;
+            for (int m = 0; m < actives_; ++m) {
+                for (int q = 0; q < kRow; q += 4) {
+                    const int at = active_[m] + q;
+                    store(now + at, (mu * load<4>(k[0] + at) + nu * load<4>(old + at)) - kappa * load<4>(before + at));
+                }
+            }
+            before = old;
+            double* const free = older;
+            older = old;
+            old = now;
+            now = free;
+        }
+        const double* in = kInner[chain - 1];
+        const double* last = kLast[chain - 1];
+        const double* embedded = kEmbedded[chain - 1];
+        evaluate(old, k[0]);
+        combine<1>(now, old, {h * in[0]}, k);
+        evaluate(now, k[1]);
+        combine<2>(now, old, {h * in[1], h * in[2]}, k);
+        evaluate(now, k[2]);
+        combine<3>(now, old, {h * in[3], h * in[4], h * in[5]}, k);
+        evaluate(now, k[3]);
+        combine<4>(next_, old, {h * last[0], h * last[1], h * last[2], h * last[3]}, k);
+        evaluate(next_, k[4]);
+        Four most = broadcast<4>(0.0);
+        const double e[] = {h * (embedded[0] - last[0]), h * (embedded[1] - last[1]), h * (embedded[2] - last[2]),
+                            h * (embedded[3] - last[3]), h * embedded[4]};
+        const Four velocities[] = {pack(0.0, 0.0, 1.0, 1.0), pack(1.0, 1.0, 1.0, 0.0), pack(0.0, 1.0, 0.0, 0.0)};
+        for (int n = 0; n < actives_; ++n) {
+            for (int q = 0; q < kRow; q += 4) {
+                const int at = active_[n] + q;
+                Four error = e[0] * load<4>(k[0] + at);
+                for (int m = 1; m < 5; ++m) error = error + e[m] * load<4>(k[m] + at);
+                most = larger(absolute(error) * velocities[q / 4], most);
+            }
+        }
+        double error = 0.0;
+        for (int lane = 0; lane < kLanes; ++lane) error = largest(error, kernel::lane(most, lane));
+        return error;
+    }
+
+    // Takes over the state after a step of length h.
+    void accept(double h) {
+        if (phase_.history != nullptr) {
+            for (int n = 0; n < count_; ++n) {
+                const double F = packed(n, kNormal);
+                phase_.history[closed_[n]].impulse += 0.5 * h * (force_[closed_[n]] + F);
+                force_[closed_[n]] = F;
+            }
+        }
+        for (int b = 0; b < phase_.balls; ++b) {
+            if (is_active_[b] == 0)
+                glide(b, h);
+            else
+                for (int k = 0; k < kRow; k += 4) store(y_ + kRow * b + k, load<4>(next_ + kRow * b + k));
+        }
+        double* const now = slope_[0];
+        slope_[0] = slope_[kSlopes - 1];
+        slope_[kSlopes - 1] = now;
+        for (int b = 0; b < phase_.balls; ++b) {
+            if (is_active_[b] != 0) continue;
+            double* slope = slope_[0] + kRow * b;
+            for (int k = 0; k < kRow; ++k) slope[k] = 0.0;
+        }
+        time_ += h;
+        examine(h);
+    }
+
+    // Moves a ball that nothing touches: it slides with constant deceleration until it rolls.
+    CAROM_INLINE void glide(int ball, double h) {
+        double* y = y_ + kRow * ball;
+        const double v[] = {y[2], y[3]};
+        if (phase_.held && law_.slide > 0.0) {
+            const double ux = y[2] - y[5], uy = y[3] + y[4], slip = square_root(ux * ux + uy * uy);
+            if (slip > 0.0) {
+                const double ends = slip / (3.5 * law_.slide), lasts = smallest(h, ends);
+                // Once it rolls, the slip is exactly 0.
+                const double dv = ends < h ? 2.0 / 7.0 : law_.slide * lasts / slip, back = dv * (h - 0.5 * lasts);
+                y[0] -= back * ux;
+                y[1] -= back * uy;
+                y[2] -= dv * ux;
+                y[3] -= dv * uy;
+                y[4] -= 2.5 * dv * uy;
+                y[5] += 2.5 * dv * ux;
+            }
+        }
+        y[0] += h * v[0];
+        y[1] += h * v[1];
+        if constexpr (kSpace) y[8] += h * y[9];
+    }
+
+    // The contacts after a step of length h (0: at the start, or after a flight): overlaps, rates, largest overlaps,
+    // and the predicted times of events. Contacts that nothing acts on need it only when they are about to close.
+    void examine(double h) {
+        const Four zero = broadcast<4>(0.0), never = broadcast<4>(kNever);
+        const double *y = y_, *slope = slope_[0];
+        Four first = never;
+        for (int c = 0; c < lanes_; c += kLanes) {
+            const int *i = i_ + c, *j = j_ + c;
+            if (h > 0.0) {
+                const Four soon = load<4>(closes_ + c) - broadcast<4>(h);
+                int acted = bits_less(soon, broadcast<4>(kSoon));
+                for (int lane = 0; lane < kLanes; ++lane)
+                    acted |= is_active_[i[lane] / kRow] | is_active_[j[lane] / kRow];
+                if (acted == 0) {
+                    store(closes_ + c, soon);
+                    first = smaller(first, soon);
+                    continue;
+                }
+            }
+            Apart moved, v, none, pull;
+            differences(y, i, j, moved, v);
+            differences(slope, i, j, none, pull);
+            const Geometry g = geometry({load<4>(start_[0] + c), load<4>(start_[1] + c), load<4>(start_[2] + c)},
+                                        load<4>(gap2_ + c), load<4>(touch_ + c), moved);
+            const Four d = g.d, rate = -dot(v, g.n), across2 = larger(dot(v, v) - rate * rate, zero);
+            const Four acceleration = -dot(pull, g.n) - across2 * g.inverse;
+            const int closed = bits_less(zero, d);
+            Four closes = never, turns = never;
+            if (closed != 15) {
+                const Four root2 = rate * rate - 2.0 * acceleration * d;
+                const Four denominator = rate + square_root(larger(root2, zero));
+                const Four time = select(zero < denominator, -2.0 * d / denominator, never);
+                closes = select(zero < d, never, select(zero < root2, time, never));
+            }
+            if (closed != 0) {
+                const Four d_before = load<4>(d_ + c), rate_before = load<4>(rate_ + c), most = load<4>(most_ + c);
+                store(most_ + c, select(zero < d, larger(most, d), zero));
+                const int turned = h > 0.0 ? bits_less(zero, rate_before) & bits_less(rate, zero) & closed : 0;
+                for (int k = 0; turned >> k != 0; ++k) {
+                    if ((turned >> k & 1) == 0) continue;
+                    const double top = peak(kernel::lane(d_before, k), kernel::lane(d, k),
+                                            h * kernel::lane(rate_before, k), h * kernel::lane(rate, k));
+                    most_[c + k] = largest(most_[c + k], top);
+                }
+                // The third derivative, from the last step. A closed contact turns where the rate is 0, or opens where
+                // d is: from there two of Newton's steps.
+                const Four third = h > 0.0 ? (acceleration - load<4>(pull_ + c)) / broadcast<4>(h) : zero;
+                const auto loads = zero < rate;
+                const Four c0 = select(loads, rate, d), c1 = select(loads, acceleration, rate),
+                           c2 = select(loads, third, acceleration), c3 = select(loads, zero, third);
+                Four t = -c0 / c1;
+                for (int round = 0; round < 2; ++round) {
+                    const Four fall = c1 + t * (c2 + 0.5 * t * c3);
+                    const Four value = c0 + t * (c1 + t * (0.5 * c2 + (1.0 / 6.0) * t * c3));
+                    t = select(fall < zero, t - value / fall, t);
+                }
+                turns = select(c1 < zero, select(zero < d, t, never), never);
+            } else {
+                store(most_ + c, zero);
+            }
+            store(d_ + c, d);
+            store(rate_ + c, rate);
+            store(pull_ + c, acceleration);
+            store(closes_ + c, closes);
+            const Four event = smaller(closes, turns), early = broadcast<4>(kEarly);
+            // An event that is too near has no step of its own.
+            first = smaller(first, select(early < event, event, select(early < closes, closes, never)));
+        }
+        event_ = kNever;
+        for (int lane = 0; lane < kLanes; ++lane) event_ = smallest(event_, kernel::lane(first, lane));
+    }
+
+    // Time at which the next contact closes faster than rounding.
+    double next_closing() const {
+        double first = kNever;
+        for (int c = 0; c < phase_.contacts; ++c)
+            if (rate_[c] > kNothing) first = smallest(first, closes_[c]);
+        return first;
+    }
+
+    // Whether a contact still acts: it closes, or its force changes speeds by more than kNothing until it has
+    // opened, or in the remaining time.
+    bool presses(double time_left) const {
+        for (int n = 0; n < count_; ++n) {
+            const int c = closed_[n];
+            const double d = d_[c], rate = rate_[c];
+            if (!(d > 0.0)) {
+                if (rate > kNothing) return true;
+                continue;
+            }
+            if (rate > kNothing) return true;
+            const double share = most_[c] > 0.0 ? d / most_[c] : 1.0;
+            double power = share, F = d * square_root(d);
+            for (int p = law_.p; p > 1; p /= 2) power *= power;
+            if (share < 1.0) F *= law_.a + law_.b * power;
+            if (F * time_left > kNothing && F * d > -rate * kNothing) return true;
+        }
+        return false;
+    }
+
+    void leave() {
+        for (int b = 0; b < phase_.balls; ++b) {
+            const double* y = y_ + kRow * b;
+            double* to = phase_.motion + 6 * b;
+            for (int k = 0; k < 2; ++k) to[k] = y[2 + k];
+            if constexpr (kSpace) to[2] = phase_.held ? 0.0 : y[9];
+            for (int k = 0; k < 3; ++k) to[3 + k] = y[4 + k];
+            if (phase_.moved == nullptr) continue;
+            for (int k = 0; k < 2; ++k) phase_.moved[3 * b + k] = y[k];
+            phase_.moved[3 * b + 2] = kSpace ? y[kRow - 4] : 0.0;
+        }
+        if (phase_.time != nullptr) *phase_.time = time_;
+    }
+
+    const ContactPhase& phase_;
+    const HertzLaw& law_;
+    const double tolerance_, weight_slip2_, cloth_sign_;
+    const int nobody_, lanes_;  // the row of a ball at rest that fills packs; contacts in whole packs
+    double time_ = 0.0, event_ = 0.0;  // now; time until the next event
+    std::int64_t evaluations_ = 0;
+    double *y_, *a_, *b_, *c_, *next_, *slope_[kSlopes];
+    double* stiff_;  // per ball: the sum of friction over slip, times its mobility
+    // Per contact: the vector from i to j at the start, and |it|^2 - touch^2; overlap, its derivatives, and its maximum
+    // since the contact opened; the time until it closes; its last force.
+    double *start_[3], *gap2_, *touch_, *d_, *rate_, *pull_, *most_, *closes_, *force_;
+    double *packed_, *forces_;  // per closed contact
+    int *i_, *j_;               // rows of the balls
+    int *closed_, *at_i_, *at_j_, *active_, *is_active_, *was_active_;
+    int count_ = 0, actives_ = 0;
+};
+
+template <bool kSpace>
+std::int64_t run(const ContactPhase& phase, const HertzLaw& law, double tolerance, double look_ahead,
+                 double time_limit) {
+    if (law.mu_b_more > 0.0) return Phase<kSpace, true>(phase, law, tolerance).run(look_ahead, time_limit);
+    return Phase<kSpace, false>(phase, law, tolerance).run(look_ahead, time_limit);
 }
 
 }  // namespace
 
 namespace CAROM_ISA_NAMESPACE {
 
-std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double longest_step,
-                           double look_ahead, double time_limit) noexcept {
-    return law.mu_b_more > 0.0 ? integrate<true>(phase, law, longest_step, look_ahead, time_limit)
-                               : integrate<false>(phase, law, longest_step, look_ahead, time_limit);
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance, double look_ahead,
+                           double time_limit) noexcept {
+    bool level = phase.held && phase.inverse_mass == nullptr;
+    for (int c = 0; c < phase.contacts && level; ++c)
+        level = phase.contact[c].n[2] == 0.0 && phase.contact[c].stiffness == 1.0;
+    return level ? run<false>(phase, law, tolerance, look_ahead, time_limit)
+                 : run<true>(phase, law, tolerance, look_ahead, time_limit);
 }
 
 }  // namespace CAROM_ISA_NAMESPACE

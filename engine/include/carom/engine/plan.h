@@ -75,7 +75,6 @@ struct Plan {
     double e_b() const { return ball_ball->restitution(balls); }
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
-    double cluster_step = 1.0;                             ///< their longest step, over the usual one
     /// kSequential if there are fewer than three balls
     ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls
