@@ -62,7 +62,7 @@ MovingContacts contacts_of(const Hit& hit, const Scene& scene) {
     law.mu_s = scene.balls.mu_s;
     law.e_b = scene.balls.e_b;
     law.slip = kClusterEpsilon;
-    law.step = 5e-3;
+    law.step = 2e-3;
     law.weight = scene.physics.gravity;
     law.reach = 1e9;
     return {hit.balls, law, hit.speed};

@@ -72,7 +72,8 @@ ClusterBall Clusters::member(int ball) const {
 // contacts between them. The fastest approach among near balls sets the scale of the solution, because a pair
 // may touch very slowly while its neighbours are about to collide at full speed. Each approach is weighted by
 // nearness, so that the result does not jump when a fast ball comes within reach.
-double Clusters::collect(int a, int b, double v_n) {
+double Clusters::collect(int a, int b, double v_n, bool pair) {
+    pair_ = pair;
     first_ = a;
     second_ = b;
     joined_.clear();
@@ -98,18 +99,9 @@ Box Clusters::near_box(const ClusterBall& ball, double gap) const {
     return {x - half, y - half, x + half, y + half};
 }
 
-// [s] Duration of the contact of two balls, proportional to (mass / stiffness)^0.4.
-double Clusters::pair_time(int a, int b, double v_n) const {
-    const BallSize &p = plan_.sizes[a], &q = plan_.sizes[b];
-    const double time = contact_time(v_n);
-    if (p == q) return time;
-    const double mass = 2.0 * p.m * q.m / ((p.m + q.m) * plan_.balls.m);
-    const double softness2 = (p.R + q.R) * plan_.balls.R / (2.0 * p.R * q.R);
-    return time * fifth_root(mass * mass * softness2);
-}
-
 void Clusters::collect_at(int a, int b, double v_n) {
-    const double time = plan_.clusters == ClusterModel::kCompliant ? pair_time(a, b, v_n) : 0.0;
+    const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) * pair_softness(plan_.sizes[a], plan_.sizes[b], {plan_.balls.R, plan_.balls.m})
+                            : 0.0;
     contact_time_ = time;
     const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
@@ -144,7 +136,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
                              std::any_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
                                  return flies(balls_.segment(m.ball).state);
                              }));
-    if (members_.size() < 3) return;
+    if (members_.size() < 3 && !pair_) return;
     std::sort(members_.begin(), members_.end(), [](const ClusterBall& p, const ClusterBall& q) {
         const Vec2 here = planar(p.r), there = planar(q.r);
         return here == there ? p.r.z() < q.r.z() : before_place(here, there);

@@ -25,8 +25,9 @@ class Clusters : private Borrowed<ClustersMemory> {
     Clusters(const Plan& plan, const Balls& balls, const Detector& detector, ClustersMemory& memory);
 
     /// Finds the cluster of two balls that collide at v_n [m/s]. @return the fastest approach in it [m/s]
-    double collect(int a, int b, double v_n);
-    /// The result of the last collect(). Without a third ball: two balls and no contacts.
+    /// @param pair  also if there is no third ball
+    double collect(int a, int b, double v_n, bool pair = false);
+    /// The result of the last collect(). Without a third ball: two balls and, unless `pair`, no contacts.
     const std::vector<ClusterBall>& balls() const { return members_; }
     const std::vector<ClusterContact>& contacts() const { return contacts_; }
 
@@ -50,7 +51,6 @@ class Clusters : private Borrowed<ClustersMemory> {
 
   private:
     void collect_at(int a, int b, double v_n);
-    double pair_time(int a, int b, double v_n) const;
     std::int64_t rigid(const ClusterSettings& settings);
     bool find_paths();
     double overlap_ends() const;
@@ -74,6 +74,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     static constexpr int kNone = -1, kTable = -2;
     int obstacle_ = kTable;
     bool in_space_ = false;
+    bool pair_ = false;    // of the last collect()
     bool unlike_ = false;  // the last collect() found balls of different size
 };
 

@@ -117,12 +117,21 @@ void Resolver::ball_ball(int a, int b) {
     const bool sinks = balls_.sinks(one) || balls_.sinks(two);
     const double up = plan_.sizes[two].R - plan_.sizes[one].R;
     const Vec3 level2(r2.x(), r2.y(), sinks ? r1.z() + up : r2.z());
-    Velocities ball1{balls_.velocity(one), balls_.spin(one)}, ball2{balls_.velocity(two), balls_.spin(two)};
+    const Velocities before1{balls_.velocity(one), balls_.spin(one)},
+        before2{balls_.velocity(two), balls_.spin(two)};
+    Velocities ball1 = before1, ball2 = before2;
     PairImpact impact{};
-    {
+    const auto hit = [&](bool contact_time) {
         const Stopwatch watch(kernel_ns_);
-        impact = collide({*plan_.ball_ball, plan_.impact, plan_.balls}, plan_.sizes[one], plan_.sizes[two],
-                         r1, level2, ball1, ball2);
+        ball1 = before1;
+        ball2 = before2;
+        impact = collide({*plan_.ball_ball, plan_.impact, plan_.balls, contact_time}, plan_.sizes[one],
+                         plan_.sizes[two], r1, level2, ball1, ball2);
+    };
+    hit(plan_.in_force(Effect::kContactTime));
+    if (impact.grazes) {
+        if (cluster(a, b, approach.v_n, true)) return;
+        hit(false);
     }
     if (cost_ != nullptr) {
         cost_->steps = impact.steps;
@@ -164,11 +173,11 @@ bool Resolver::hold_in_cluster(Pressed when) {
 
 // @return true if a cluster was resolved, or one of its contacts became a resting contact; false: use the
 // pair kernel
-bool Resolver::cluster(int a, int b, double v_n) {
+bool Resolver::cluster(int a, int b, double v_n, bool pair) {
     const bool parts_slowly =
         !restitution_in_air(plan_.e_b(), v_n, parting_speed(balls_.radius(a), plan_.gravity));
-    v_n = clusters_.collect(a, b, v_n);
-    if (clusters_.balls().size() < 3) return false;
+    v_n = clusters_.collect(a, b, v_n, pair);
+    if (clusters_.balls().size() < 3 && !pair) return false;
     const bool in_space = clusters_.in_space();
     // Slow contacts of flying balls separate pair by pair, however fast other contacts are: otherwise the
     // cloth would press them together again and again.
@@ -190,6 +199,7 @@ bool Resolver::cluster(int a, int b, double v_n) {
         cost_->method = name(plan_.clusters);
     }
     if (slow && hold_in_cluster(Pressed::kAfter)) return true;
+    if (pair && !(clusters_.duration() > 0.0)) return false;
     if (clusters_.duration() > 0.0) {
         begin_cluster(a, b);
         return true;

@@ -27,7 +27,8 @@ class Resolver {
   private:
     void ball_ball(int a, int b);
     bool stop_at_once(int one, int two, double v_n);
-    bool cluster(int a, int b, double v_n);
+    /// @param pair  also if no third ball is near: balls that graze each other
+    bool cluster(int a, int b, double v_n, bool pair = false);
     void begin_cluster(int a, int b);
     void end_cluster(int ball);
     bool leave_cluster(const Contact& contact);

@@ -56,6 +56,13 @@ double contact_time(double V) {
     return kContactTimeFactor * contact_length(V) / V;
 }
 
+double pair_softness(const BallSize& one, const BallSize& two, const BallSize& usual) {
+    if (one == usual && two == usual) return 1.0;
+    const double mass = 2.0 * one.m * two.m / ((one.m + two.m) * usual.m);
+    const double softness2 = (one.R + two.R) * usual.R / (2.0 * one.R * two.R);
+    return fifth_root(mass * mass * softness2);
+}
+
 namespace {
 
 // The exponent p of the unloading law: the smallest power of 2 with e^2 >= 2.5 / (2.5 + p), so that the force

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 #include "carom/kernel/contact_phase.h"
@@ -61,6 +62,10 @@ double contact_time(double V);
 
 /// L = (V^2 m / k)^0.4 [m] with kContactStiffness.
 double contact_length(double V);
+
+/// The duration of the contact of two balls over that of two balls of this size: proportional to (mass /
+/// stiffness)^0.4.
+double pair_softness(const BallSize& one, const BallSize& two, const BallSize& usual);
 
 /// x^(1/5) for x > 0, from + - * / only, correct to about 1 ulp.
 double fifth_root(double x);

@@ -142,6 +142,16 @@ Need clusters(const Facts& f) {
                         name(model))};
 }
 
+Need contact_time(const Facts& f) {
+    if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
+    if (f.scene.physics.clusters != ClusterModel::kCompliant)
+        return {false, f.say("clusters = \"{}\": impacts are instants", name(f.scene.physics.clusters))};
+    if (f.scene.physics.substeps) return {false, f.say("substeps = {}: the published result", *f.scene.physics.substeps)};
+    if (f.plan.ball_ball->free) return {false, f.say("model {} has free impacts", f.plan.ball_ball->name)};
+    if (!f.plan.pairs) return no_two_balls_meet(f);
+    return {true, f.say("clusters = \"compliant\": the line of centres turns while two balls touch")};
+}
+
 Need airborne(const Facts& f) {
     const Scene& s = f.scene;
     if (s.physics.vertical == Vertical::kDrop)
@@ -220,6 +230,10 @@ constexpr EffectInfo kTable[kEffects] = {
          "ball (`e_h` 0, a model other than `two_step`)",
      .keys = "`vertical`, `height`, `velocity`, `elevation_deg`, `ball_ball`, `e_h`",
      .need = airborne},
+    {.keyword = "contact_time",
+     .skipped_when = "`clusters` is not `compliant`, `substeps`, model `two_step`, or no two balls can meet",
+     .keys = "`clusters`, `substeps`",
+     .need = contact_time},
 };
 
 /// The plan's decision, overridden by [effects].

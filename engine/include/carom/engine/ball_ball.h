@@ -73,6 +73,9 @@ struct PairLaw {
     const BallBallModelInfo& model;
     const BallBallSettings& settings;
     const BallParams& balls;
+    /// The impact lasts for the time of a Hertz contact, in which the balls move past each other, so it acts along
+    /// the line of centres in the middle of that time: docs/reference/physics.md, "Ball-ball impact".
+    bool contact_time = false;
 
     /// The parameters of an impact with the friction mu_b between the balls.
     kernel::ImpactParams params(const BallSize& size1, const BallSize& size2, double mu_b) const;
@@ -82,6 +85,9 @@ struct PairImpact {
     kernel::ImpactStatus status;
     std::int64_t steps;
     const char* method;  ///< for people: the model, or how the kernel integrated it
+    /// They still close where they met: they only graze each other, and separate by moving past each other. Without
+    /// contact_time never.
+    bool grazes = false;
 };
 
 /// Replaces the velocities of two colliding balls on the cloth, unless the status is an error. The friction

@@ -429,8 +429,9 @@ enum class Effect : std::uint8_t {
     kSquirt,
     kClusters,
     kAirborne,
+    kContactTime,
 };
-inline constexpr std::size_t kEffects = 11;
+inline constexpr std::size_t kEffects = 12;
 
 /// [effects]: one effect forced on or off.
 struct EffectOverride {
