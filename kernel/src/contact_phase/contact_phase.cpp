@@ -228,7 +228,7 @@ class Phase {
                 active_[actives_++] = row;
                 same = same && was_active_[ball] != 0;
             }
-            if (phase_.history != nullptr && d_[c] > 0.0 && phase_.history[c].first < 0.0)
+            if (phase_.history != nullptr && phase_.history[c].first < 0.0)
                 phase_.history[c].first = time_;
         }
         for (int n = 0; n < kLanes; ++n) active_[actives_ + n] = nobody_;
