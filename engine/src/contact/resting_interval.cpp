@@ -69,15 +69,15 @@ double time_of_rest(const Group& g, double h) {
 
 // [s] How far an interval may extend past a stop: its ball decelerates uniformly until the end of the
 // interval, and so moves too far.
-double after_stop(double speed) {
-    return std::min(kStopsWithin, 2.0 * kPlaceError / speed);
+double after_stop(const Group& g, double speed) {
+    return std::min(kStopsWithin, 2.0 * g.around.precision * kPlaceError / speed);
 }
 
 // Time at which the slip or velocity ends, if the interval has to end there.
 double gone_fast(const Group& g, const Body& b, double h) {
     const double gone = gone_within(g, b, h);
     if (gone == kNever) return kNever;
-    const double slack = after_stop(length(moving(g, b).start));
+    const double slack = after_stop(g, length(moving(g, b).start));
     return slack <= kSoon * gone && h > gone + slack ? gone : kNever;
 }
 
@@ -86,7 +86,7 @@ double gone_later(const Group& g, const Body& b, double h) {
     const Moving m = moving(g, b);
     const double start = length(m.start), along = start > 0.0 ? dot(m.end, m.start) / start : 0.0;
     const bool goes =
-        b.mode != Mode::kResting && along > 0.0 && along < start && after_stop(start) < kSoon * h;
+        b.mode != Mode::kResting && along > 0.0 && along < start && after_stop(g, start) < kSoon * h;
     return goes ? h * start / (start - along) : kNever;
 }
 
@@ -98,19 +98,19 @@ double friction_interval(const Group& g, const Body& b, double h) {
     if (!moves(m.start)) return kNever;
     const double gone = gone_within(g, b, h);
     if (gone < kNever) {
-        const double slack = after_stop(length(m.start));
+        const double slack = after_stop(g, length(m.start));
         double limit = h <= gone + slack || slack <= kSoon * gone ? kNever : gone + slack;
         if (moves(b.u) && b.mode == Mode::kResting) {
             const double stop = time_gone(b.v, (5.0 / 7.0) * (b.push + b.couple) / h, g.motion.roll) +
-                                after_stop(length(b.v));
+                                after_stop(g, length(b.v));
             if (h > stop) limit = std::min(limit, stop);
         }
         return limit;
     }
     const double turn = turn_of(m.start, m.end);
     if (turn <= kSame) return kNever;
-    if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, kPlaceError, 2);
-    return allowed_interval(h, m.strength * turn * h * h / 12.0, kPlaceError, 3);
+    if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, g.around.precision * kPlaceError, 2);
+    return allowed_interval(h, m.strength * turn * h * h / 12.0, g.around.precision * kPlaceError, 3);
 }
 
 // Whether a gap stays within its allowed range until h.
@@ -147,7 +147,7 @@ double link_interval(const Group& g, const Link& link, double h) {
         // The friction between two balls changes with their slip, until that has ended.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, kFrictionError,
+        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, g.around.precision * kFrictionError,
                                                        slips_on(g, link) ? 3 : 2));
     }
     if (link.distance == 0.0) return interval;
@@ -155,7 +155,7 @@ double link_interval(const Group& g, const Link& link, double h) {
     // [rad] Largest possible turn of the normal.
     const double turn = 0.5 * h / std::abs(link.distance) *
                         (std::abs(cross(link.first, v)) + std::abs(cross(link.first, v_end)));
-    return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, kPlaceError, 3));
+    return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, g.around.precision * kPlaceError, 3));
 }
 
 // First attempt: until friction alone would have stopped the first ball.
@@ -165,7 +165,7 @@ double first_attempt(const Group& g) {
         const bool slips = moves(b.u);
         const double strength = slips ? g.motion.slide : g.motion.roll, speed = length(slips ? b.u : b.v);
         if (speed > 0.0 && strength > 0.0)
-            h = std::min(h, (slips ? 1.0 : 2.0) * speed / strength + after_stop(speed));
+            h = std::min(h, (slips ? 1.0 : 2.0) * speed / strength + after_stop(g, speed));
     }
     return h;
 }

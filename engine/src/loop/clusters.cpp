@@ -20,8 +20,6 @@ constexpr double kListed = 8.0;
 constexpr double kLongest = 20.0;
 // Most balls that may join a cluster because one of its balls would hit them.
 constexpr std::size_t kMostJoin = 4;
-// [m/s] A slower cluster is instantaneous: it would last for milliseconds, in which other balls arrive.
-constexpr double kSlowest = 0.2;
 // [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
 
@@ -273,7 +271,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     };
     // A falling ball, or one in space, would move up or down during the cluster, and resting contacts would
     // push other balls meanwhile.
-    may_last &= v_n > kSlowest && !in_space_ &&
+    may_last &= !in_space_ &&
                 std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
                     return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
                 });

@@ -276,7 +276,7 @@ void Resolver::cushion(const Contact& contact) {
     const MotionParams& motion = balls_.motion(ball);
     const bool hops = flights_ && balls_.segment(ball).state != MotionState::kFalling;
     if (!bounce(plan_.balls, plan_.sizes[ball], touches.noses(),
-                hops ? std::optional(motion.gravity) : std::nullopt, moves))
+                hops ? std::optional(motion.gravity) : std::nullopt, plan_.impact.tolerance, moves))
         log_.fail(
             fmt::format("the cushion model {} found no solution for the impact of ball {}; use another model",
                         model, log_.id(ball)));

@@ -17,6 +17,8 @@ constexpr std::size_t kCacheLine = 64;  // [bytes]
 
 // [L/V] The integration continues while a listed pair would touch within this time.
 constexpr double kClusterLookAhead = 4.0;
+// [V] With smaller errors of a step, rounding prevails.
+constexpr double kClusterTightest = 1e-11;
 // [-] Largest exponent of the unloading law; in a cluster, restitutions below 0.05 count as 0.05.
 constexpr int kLargestLawExponent = 1024;
 // [-] Limit on sweeps of the rigid projection; a rack of 15 needs about 500.
@@ -172,6 +174,17 @@ double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterC
     return V;
 }
 
+// [m/s] The unit of speed of a cluster whose fastest approach is V. Below about 1 mm/s the weight's friction is
+// stronger than the contacts, and in units of V it would need a million steps: with this unit it is at most 1.
+double unit_of_speed(double V, double slide) {
+    constexpr double kFast = 1e-3;
+    constexpr int kRounds = 8;
+    double U = V;
+    if (!(slide * contact_length(V) > kFast * V * V)) return U;
+    for (int round = 0; round < kRounds; ++round) U = std::sqrt(V * V + slide * contact_length(U));
+    return U;
+}
+
 // [L] Overlap of two balls of this mass, at least the overlap at mass 1.
 double overlap_of(double mass) {
     return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
@@ -182,8 +195,9 @@ double overlap_of(double mass) {
 std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                    const std::vector<ClusterContact>& contacts,
                                    const ClusterSettings& settings, double V, bool held) {
-    V = fastest(balls, contacts, V);
-    const double L = contact_length(V);
+    const double approach = fastest(balls, contacts, V);
+    V = unit_of_speed(approach, settings.slide);
+    const double L = contact_length(V), share = approach / V;
     load(balls, settings, V);
     contacts_.clear();
     for (const ClusterContact& c : contacts) {
@@ -211,8 +225,13 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     // Heavy balls compress each other for longer.
     const double longest =
         kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
+    kernel::HertzLaw law = law_of(settings, V);
+    law.epsilon *= share;
+    // A slow contact lasts longer in this unit of time.
+    const double slow = contact_length(approach) / (approach * (L / V));
+    const double tolerance = std::max(kClusterTightest, share * settings.tolerance);
     const std::int64_t evaluations =
-        settings.integrate(phase, law_of(settings, V), settings.tolerance, kClusterLookAhead, longest);
+        settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, slow * longest);
     if (evaluations < 0) return evaluations;
     keep_energy(before);
     unload(settings, V, balls);

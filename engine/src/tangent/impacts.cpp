@@ -346,7 +346,8 @@ void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dua
         laws, ball, {normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0, speed, s,
         [&](const Reader& in, const BallSize& size, const Vec3& nose, Velocities& at) {
             const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
-            if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt, at))
+            if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt,
+                        laws.plan.impact.tolerance, at))
                 throw TangentError("its model has no solution nearby");
         });
     if (!hops) s.v[2] = fall;

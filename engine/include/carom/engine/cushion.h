@@ -19,6 +19,8 @@ struct CushionContact {
     double e_c;     ///< restitution
     double f_c;     ///< friction
     double height;  ///< of the nose above the cloth [m], 0 < height < 2 R
+    /// [of the approach speed] For models that integrate: physics.tolerance.
+    double tolerance = 1e-6;
 };
 
 /// Input for a ball with velocity v and spin w: the friction at its slip at the nose, and the restitution at

@@ -368,7 +368,7 @@ struct Physics {
     const CushionModelInfo* jaw_model() const { return jaw != nullptr ? jaw : cushion; }
     kernel::ClothSlip cloth_slip = kernel::ClothSlip::kConsistent;
     ClusterModel clusters = ClusterModel::kCompliant;
-    double tolerance = 1e-6;
+    double tolerance = kDefaultTolerance;
     /// If set: the published integration with this many steps, instead of the tolerance.
     std::optional<int> substeps;
     March march = March::kSummed;

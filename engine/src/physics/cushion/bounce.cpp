@@ -27,8 +27,8 @@ double closing(const NoseTouch& touch, const Velocities& m) {
 
 class Bounce {
   public:
-    Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches)
-        : balls_(balls), size_(size), touches_(touches) {}
+    Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches, double tolerance)
+        : balls_(balls), size_(size), touches_(touches), tolerance_(tolerance) {}
 
     bool run(Velocities& m) const {
         if (touches_.size() == 1) return alone(touches_[0], m);
@@ -40,7 +40,8 @@ class Bounce {
     // e_c < 1/c^2 - 1). The next impact is at the same instant, so a bounce is a sequence of impacts, until
     // the closing speed is within rounding.
     bool alone(const NoseTouch& touch, Velocities& m) const {
-        const CushionContact nose = cushion_contact(balls_, size_, touch.height, touch.normal, m.v, m.w);
+        CushionContact nose = cushion_contact(balls_, size_, touch.height, touch.normal, m.v, m.w);
+        nose.tolerance = tolerance_;
         const double noise = closing_noise(size_.R, m);
         for (int impacts = 0; impacts < kMostImpacts; ++impacts) {
             if (!touch.model->resolve(nose, touch.normal, m.v, m.w)) return false;
@@ -120,6 +121,7 @@ class Bounce {
     const BallParams& balls_;
     const BallSize& size_;
     const std::span<const NoseTouch> touches_;
+    const double tolerance_;
 };
 
 /// [m/s] Upward speed of a ball on the cloth after it hits a nose: the result of (A6), or e_h times its
@@ -135,9 +137,9 @@ double hop_speed(const BallParams& balls, double R, double gravity, const NoseTo
 }  // namespace
 
 bool bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches,
-            std::optional<double> hops, Velocities& ball) {
+            std::optional<double> hops, double tolerance, Velocities& ball) {
     const Velocities came = ball;
-    if (!Bounce(balls, size, touches).run(ball)) return false;
+    if (!Bounce(balls, size, touches, tolerance).run(ball)) return false;
     ball.v.z() = 0.0;
     const NoseTouch& first = touches.front();
     if (!hops || balls.e_h == 0.0 || first.model->grip == nullptr) return true;

@@ -28,8 +28,9 @@ inline double closing_noise(double R, const Velocities& ball) {
 /// touches: the mean of the states after each, repeated until none closes (docs/design/hard_cases.md, "Two
 /// contacts at one instant").
 /// @param hops  [m/s^2] gravity, if the first nose may throw the ball up: v_z is then the hop, otherwise 0
+/// @param tolerance  of models that integrate: physics.tolerance
 /// @return false if a model has no solution
 bool bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches,
-            std::optional<double> hops, Velocities& ball);
+            std::optional<double> hops, double tolerance, Velocities& ball);
 
 }  // namespace carom

@@ -29,9 +29,8 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [of the approach speed] Error allowed in each step. The error of a result, after about ten steps, is about
-// the same, far below the default tolerance of a ball-ball impact.
-constexpr double kCushionTolerance = 1e-7;
+// [of the tolerance] Error allowed in each step. The error of a result, after about ten steps, is about the same.
+constexpr double kCushionStep = 0.1;
 // [of the approach speed] A nose that can stick is treated as sticking below this slip. The error is of
 // second order (docs/reference/physics.md, "Cushion impact").
 constexpr double kCushionStick = 3e-5;
@@ -333,7 +332,7 @@ class Impact {
 }  // namespace
 
 bool cushion_mathavan_2010(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w) {
-    return cushion_mathavan_2010_to(p, normal, v, w, kCushionTolerance);
+    return cushion_mathavan_2010_to(p, normal, v, w, kCushionStep * p.tolerance);
 }
 
 bool cushion_mathavan_2010_to(const CushionContact& p, const Vec2& normal, Vec3& v, Vec3& w,
