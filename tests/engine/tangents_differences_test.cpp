@@ -237,7 +237,7 @@ TEST(Tangents, Clusters) {
                 Scene moved = broken;
                 number.put(moved, number.value(broken) + by);
                 Plan plan = plan_of(moved);
-                plan.impact.tolerance = tolerance;
+                plan.cluster_tolerance = tolerance;
                 at.push_back(simulate(plan));
             }
             double worst = 0.0, largest = 0.0;

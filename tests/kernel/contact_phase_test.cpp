@@ -10,12 +10,14 @@
 #include <set>
 #include <vector>
 
-#include "kernel/contact_reference.h"
+#include "reference/contact_phase.h"
 #include "reference/random_impacts.h"
 
 namespace carom::kernel {
 namespace {
 
+using reference::Cluster;
+using reference::ContactReference;
 using reference::Generator;
 
 constexpr double kLookAhead = 2.0, kTimeLimit = 2000.0;
@@ -149,7 +151,6 @@ TEST(ContactPhase, TheErrorFollowsTheTolerance) {
             const Cluster c = random_cluster(rng);
             HertzLaw law = random_law(rng);
             law.p = 1 << k % 4;
-            law.slide = 0.0;
             if (c.contacts.empty()) continue;
             const Outcome out = run(best_isa(), c, law, tolerance);
             ASSERT_GE(out.evaluations, 0);

@@ -105,36 +105,28 @@ Scene seeded_break(reference::Generator& rng, int seed) {
     return parse_scene(text, "break.toml");
 }
 
-// The recommendation promises: the tolerance derived from the gain meets 1 mm on at least 95 of every 100
-// breaks for which double precision suffices.
+// The recommendation promises: played with it, a break ends within 1 mm of the other converged method, in at least 19
+// of 20 breaks.
 TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
-    constexpr double kTarget = 1e-3;
     reference::Generator rng(9);
-    int allowed = 0, met = 0, unresolved = 0, looser = 0;
-    for (int i = 0; i < 100; ++i) {
+    AccuracySceneArgs args;
+    args.march.clear();
+    args.repeat = 1;
+    int allowed = 0, met = 0, looser = 0;
+    for (int i = 0; i < 20; ++i) {
         const Scene scene = seeded_break(rng, i + 1);
-        const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
-        const Record truth = simulate(tight);
-        const std::vector<Vec2> end = final_positions(truth);
-        const double agreement =
-            final_error(final_positions(simulate(with_power_series(scene))), end).largest;
-        const auto tolerance = deserved_tolerance(gain_of(tight, truth), kTarget);
-        if (!tolerance || agreement > 0.1 * kTarget) {
-            ++unresolved;
-            continue;
-        }
+        const SceneAccuracy result = measure_scene_accuracy(scene, args);
+        if (!result.recommended) continue;
         ++allowed;
+        const std::vector<Vec2> end = final_positions(simulate(with_reference(scene)));
         const auto error = [&](double t) {
             return final_error(final_positions(simulate(with_tolerance(scene, t))), end).largest;
         };
-        met += error(*tolerance) <= kTarget ? 1 : 0;
-        looser += error(1e-3) <= kTarget ? 1 : 0;
+        met += error(*result.recommended) <= args.target ? 1 : 0;
+        looser += error(1e-4) <= args.target ? 1 : 0;
     }
-    RecordProperty("allowed", allowed);
-    RecordProperty("met", met);
-    std::printf("allowed %d, met %d, unresolved %d; tolerance 1e-3 would have met %d\n", allowed, met,
-                unresolved, looser);
-    EXPECT_GE(allowed, 50);
+    std::printf("allowed %d, met %d; tolerance 1e-4 would have met %d\n", allowed, met, looser);
+    EXPECT_GE(allowed, 15);
     EXPECT_GE(20 * met, 19 * allowed);
     // A tolerance chosen without the shot does not: the recommendation is informative.
     EXPECT_LT(looser, met);

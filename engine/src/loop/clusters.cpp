@@ -259,7 +259,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .e_b = plan_.e_b(),
         .published_cloth_slip = plan_.scene.physics.cloth_slip == kernel::ClothSlip::kAsPublished,
         .epsilon = kClusterEpsilon,
-        .tolerance = plan_.impact.tolerance,
+        .tolerance = plan_.cluster_tolerance,
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,

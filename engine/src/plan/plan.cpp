@@ -106,7 +106,7 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     for (const BallSize& size : plan.sizes) plan.motion.push_back(motion_of(plan, size.R));
     choose_search(plan);
     plan.impact = {};
-    plan.impact.tolerance = scene.physics.tolerance;
+    plan.impact.tolerance = plan.cluster_tolerance = scene.physics.tolerance;
     plan.impact.cloth_slip = scene.physics.cloth_slip;
     if (scene.physics.substeps) {
         plan.impact.march = scene.physics.march == March::kPublished

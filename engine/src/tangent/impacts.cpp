@@ -305,7 +305,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
             planar(other.position) +
             apart * contact_distance(moving.own->R, other.own->R, scene.balls.discs()) / length(apart);
         Plan plan = make_plan(scene, laws.plan.isa);
-        plan.impact.tolerance = tolerance;
+        plan.cluster_tolerance = tolerance;
         const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
             record.clusters[0].size() != balls.size())
@@ -328,7 +328,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         differentiate(laws, in, [&](const double* list) { return resolve(list, kClusterTolerance); });
     List values;
     for (const Dual& value : in.values()) values.push_back(value.x);
-    const List usual = resolve(values.data(), laws.plan.impact.tolerance);
+    const List usual = resolve(values.data(), laws.plan.cluster_tolerance);
     for (std::size_t k = 0; k < out.size(); ++k) out[k].x = usual[k];
     for (std::size_t k = 0; k < balls.size(); ++k) {
         put(states[k], out.data() + 8 * k);

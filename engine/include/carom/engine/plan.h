@@ -16,6 +16,7 @@
 #include "carom/engine/geometry.h"
 #include "carom/engine/motion.h"
 #include "carom/engine/scene.h"
+#include "carom/engine/tolerances.h"
 #include "carom/kernel/contact_phase.h"
 
 namespace carom {
@@ -75,6 +76,7 @@ struct Plan {
     double e_b() const { return ball_ball->restitution(balls); }
     BallBallSettings impact;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
+    double cluster_tolerance = kDefaultTolerance;          ///< of theirs; physics.tolerance
     /// kSequential if there are fewer than three balls
     ClusterModel clusters = ClusterModel::kSequential;
     Search ball_search = Search::kDirect;   ///< among balls

@@ -158,7 +158,7 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     result.target = args.target;
     const Plan tight = with_tolerance(scene, kernel::kTightestTolerance);
     const Record truth = simulate_plan(tight, {});
-    const Record other = simulate_plan(with_power_series(scene), {});
+    const Record other = simulate_plan(with_reference(scene), {});
     const ShotContacts outcome = contacts_of(scene, truth), other_outcome = contacts_of(scene, other);
     const std::vector<Vec2> end = final_positions(truth);
     result.contacts = outcome.contacts.size();
@@ -167,6 +167,8 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
     result.outcome_agrees =
         outcome.contacts == other_outcome.contacts && outcome.pockets == other_outcome.pockets;
     result.converged = result.outcome_agrees && result.agreement <= kAgreement * args.target;
+    result.clusters = has_clusters(truth);
+    result.twin = twin_step(truth);
     result.gain = gain_of(tight, truth);
     if (result.converged) result.recommended = deserved_tolerance(result.gain, args.target);
 
@@ -175,6 +177,11 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
         throw_if_interrupted();
         try {
             compare(s.row, scene, simulate(s.plan, interruptible()), outcome, end);
+            if (result.clusters) {
+                Plan only = tight;
+                only.cluster_tolerance = s.plan.cluster_tolerance;
+                s.row.cluster_error = final_error(final_positions(simulate(only, interruptible())), end).largest;
+            }
             set_shares(s.row, s.plan);
         } catch (const SimulationError& error) {
             s.row.failed = error.what();
@@ -191,7 +198,12 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
         set_times(list[i].row, samples[i]);
         result.rows.push_back(list[i].row);
     }
-    if (result.converged) result.loosest = loosest_measured(result);
+    if (result.converged) {
+        result.loosest = loosest_measured(result);
+        // A recommendation that this shot does not meet is none.
+        if (result.recommended && !(result.loosest && *result.loosest >= *result.recommended))
+            result.recommended = result.loosest;
+    }
     result.sentence = sentence_of(result);
     return result;
 }

@@ -52,28 +52,35 @@ struct SceneAccuracyRow {
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double kernel_share = 0.0, cluster_share = 0.0;  ///< of a profiled run
     FinalError error;                                ///< relative to the converged run
+    double cluster_error = 0.0;  ///< [m] the same if only clusters have this setting, and impacts of two balls none
     bool order_same = false, first_same = false, pocketed_same = false;
     std::string failed;  ///< why the run failed, or ""
 };
 
 struct SceneAccuracy {
     double target = 0.0;
-    double gain = 0.0;       ///< final displacement over initial displacement, for a twin moved by 1e-12 m
+    double gain = 0.0;       ///< final displacement over initial displacement, for a twin moved by `twin`
+    double twin = 0.0;       ///< [m]
+    bool clusters = false;   ///< three or more balls meet at once
     double agreement = 0.0;  ///< largest final distance between the two converged runs [m]
     bool outcome_agrees = false;  ///< of the two converged runs
     /// both agree far more closely than the target, so differences may be called errors
     bool converged = false;
-    std::optional<double> recommended;        ///< by gain alone; empty if double precision does not allow it
+    /// By gain, and met here by it and every tighter one; empty if double precision does not allow it.
+    std::optional<double> recommended;
     std::optional<double> loosest;            ///< measured here: it and every tighter one met the target
     std::size_t contacts = 0, ball_hits = 0;  ///< of the converged run; hits: of two balls or a cluster
     std::string sentence;
     std::vector<SceneAccuracyRow> rows;
 };
 
-/// The gain, from twins of the plan whose struck ball starts kTwinStep to the side and ahead; the
-/// larger of the two.
-inline constexpr double kTwinStep = 1e-12;
+/// The gain, from twins of the plan whose struck ball starts a twin_step() to the side and ahead; the larger of the
+/// two.
 double gain_of(const Plan& plan, const Record& record);
+/// [m] Clusters are smooth only to their own error, so their twins must differ by more.
+double twin_step(const Record& record);
+/// Whether three or more balls meet at once.
+bool has_clusters(const Record& record);
 
 /// The loosest power of ten that keeps gain x tolerance x kFlight within the target; empty if that is below
 /// the tightest tolerance, where double precision ends.
@@ -85,9 +92,9 @@ inline constexpr double kFlight = 1.0;
 /// A plan of the same scene with another setting.
 Plan with_tolerance(const Scene& scene, double tolerance);
 Plan with_substeps(const Scene& scene, int substeps, March march = March::kSummed);
-/// Solves every ball-ball impact by power series in extended precision, which shares no code with the
-/// kernels: the second converged method.
-Plan with_power_series(const Scene& scene);
+/// Solves every impact of two balls by power series in extended precision, and clusters by short steps between located
+/// events, which share no code with the kernels: the second converged method.
+Plan with_reference(const Scene& scene);
 
 SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs& args);
 /// Minimum, median and maximum of a row's times.
