@@ -337,6 +337,14 @@ std::vector<Kind> kinds() {
          motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.01; })},
         {"the velocity after an impact is 1e-4 smaller", "U5 U7",
          motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.0 - 1e-4; })},
+        {"the velocity after an impact is 1e-4 smaller, with the motion that follows", "U5 U7",
+         motion([](const Record& r, const BallTrack& t,
+                   std::size_t k) { return is_free_after(r, t, k) && !is_off_cloth(t.segments[k].state); },
+                [](Record& r, const Place& p) {
+                    const Segment& s = p.at();
+                    MotionParams params = motion_params(r.balls, r.gravity, s.r.z());
+                    p.at() = start_segment(s.start, s.r, (1.0 - 1e-4) * s.v, s.w, params);
+                })},
         {"an impact and the motion after it turn by 1 degree", "U5",
          motion([](const Record& r, const BallTrack& t, std::size_t k) {
                     return is_free_after(r, t, k) && t.segments[k].state != MotionState::kRolling;

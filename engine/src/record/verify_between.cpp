@@ -72,7 +72,7 @@ class Between {
         while (event < record_.events.size() && record_.events[event].time <= t) ++event;
         found_ = Violation{event, law,
                            fmt::format(message, std::forward<Values>(values)...) +
-                               fmt::format(", {:.17g} s after the start, between two events", t)};
+                               fmt::format(", {:.17g} s after the start", t)};
     }
 
     Vec2 place(std::size_t ball, double t) const {
@@ -172,6 +172,7 @@ class Between {
         if (lossless_ && now < last_energy_ - allowed - (clusters_ ? kStepsLose * last_energy_ : 0.0))
             report("U4", t, "energy falls from {:.17g} to {:.17g} J/kg, and nothing dissipates it",
                    last_energy_, now);
+        if (found_ && event_ > 0) found_->event = event_ - 1;
         last_energy_ = now;
         clusters_ = lasts;
     }
@@ -236,11 +237,11 @@ class Between {
                 ball, nose, nose.is_arc() ? 0.0 : nose.radius, from, to,
                 [&](const SeenBall& there, double t) {
                     // A ball may come through an arc from behind.
-                const Vec2 towards = nearest_point(nose, planar(there.r)) - planar(there.r);
-                const Vec3 v = velocity_at(segment(ball), t - segment(ball).start);
-                const bool leaves = nose.is_arc() && dot(towards, planar(v)) < 0.0;
-                const double gap = gap_to(nose, there);
-                if (gap < -allowed_depth(there, nose.center) && !leaves)
+                    const Vec2 towards = nearest_point(nose, planar(there.r)) - planar(there.r);
+                    const Vec3 v = velocity_at(segment(ball), t - segment(ball).start);
+                    const bool leaves = nose.is_arc() && dot(towards, planar(v)) < 0.0;
+                    const double gap = gap_to(nose, there);
+                    if (gap < -allowed_depth(there, nose.center) && !leaves)
                         report("U3", t, "ball {} is {:.3g} m deep in a jaw or cushion end", id(ball), -gap);
                     // It would land inside the jaw.
                     const double over = nose.radius - length(planar(there.r) - nose.center);
