@@ -13,6 +13,7 @@
 
 #include "carom/engine/next_scene.h"
 #include "carom/engine/simulate.h"
+#include "carom/engine/verify.h"
 #include "cue.h"
 #include "guard.h"
 #include "handles.h"
@@ -190,6 +191,16 @@ carom_status carom_record_hash(const carom_record* record, char hash[17]) {
         need({record, hash});
         const std::string text = record->record.hash();
         std::memcpy(hash, text.c_str(), 17);
+    });
+}
+
+size_t carom_record_verify(const carom_record* record, char* broken, size_t size) {
+    return written(broken, size, [&]() -> std::string {
+        need({record});
+        const carom::Plan plan = carom::make_plan(record->scene, chosen_isa());
+        carom::require_scene(record->record, plan, "record");
+        const auto violation = carom::verify(record->record, plan);
+        return violation ? carom::describe(*violation, record->record) : "";
     });
 }
 

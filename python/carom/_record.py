@@ -315,6 +315,16 @@ class Record:
         machine."""
         return self._native.hash()
 
+    def verify(self, scene: SceneLike | None = None) -> str | None:
+        """Checks the laws of mechanics, as `carom simulate --verify` does: None, or the first law that is
+        broken, with the event and a residual.
+
+        scene: of the record; a record from `simulate` knows its own, one from a file needs it
+
+        Raises SceneError if the record is of another scene, and names the first difference.
+        """
+        return self._native.verify(None if scene is None else as_scene(scene)._native)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the record as JSON, as `carom simulate -o` does; the file appears complete or not at all.
 

@@ -18,6 +18,7 @@
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/simulate.h"
+#include "carom/engine/verify.h"
 #include "carom/render/draw_list.h"
 #include "native.h"
 #include "page/shot_page.h"
@@ -186,6 +187,16 @@ void add_records(nb::module_& m) {
                          if (r.scene == nullptr) return std::nullopt;
                          return NativeScene{r.scene, scene_text(*r.scene)};
                      })
+        .def(
+            "verify",
+            [](const NativeRecord& r, const NativeScene* other) -> std::optional<std::string> {
+                const nb::gil_scoped_release no_gil;
+                const Plan plan = make_plan(scene_of(r, other), chosen_isa());
+                require_scene(*r.record, plan, "record");
+                const auto violation = verify(*r.record, plan);
+                return violation ? std::optional(describe(*violation, *r.record)) : std::nullopt;
+            },
+            nb::arg("scene").none())
         .def("save", [](const NativeRecord& r, const std::string& path) { write_record(*r.record, path); });
     // Functions, because only they receive the object itself, which the views keep alive.
     m.def("events_of", [](nb::handle_t<NativeRecord> r) {

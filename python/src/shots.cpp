@@ -53,8 +53,7 @@ RecordObject simulate_one(const NativeScene& native, std::optional<double> until
         warnings = plan.warnings;
         record = std::make_shared<const Record>(simulate(plan, options));
         if (const auto violation = check ? verify(*record, plan) : std::nullopt)
-            why = violation->law + " broken at event " + std::to_string(violation->event) + ": " +
-                  violation->message;
+            why = describe(*violation, *record);
     } catch (const Stopped&) {
         throw nb::python_error();
     } catch (const SimulationError& error) {

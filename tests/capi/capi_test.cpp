@@ -132,6 +132,31 @@ struct Handles {
     }
 };
 
+TEST(CApi, ARecordIsVerified) {
+    const auto scene = shipped_scene("draw");
+    const RecordPtr shot = played(scene.get());
+    char broken[200] = "?";
+    EXPECT_EQ(carom_record_verify(shot.get(), broken, sizeof broken), 0u);
+    EXPECT_STREQ(broken, "");
+    std::string text(carom_record_text(shot.get(), nullptr, 0), ' ');
+    carom_record_text(shot.get(), text.data(), text.size() + 1);
+    const auto check = [&](const std::string& changed) {
+        Handles read;
+        EXPECT_EQ(carom_record_parse(changed.c_str(), scene.get(), &read.record), CAROM_OK);
+        return carom_record_verify(read.record, broken, sizeof broken);
+    };
+    EXPECT_EQ(check(text), 0u);
+    std::string late = text;
+    late.replace(late.find("\"type\":\"ball_ball\""), 18, "\"type\":\"ball_ball_hold\"");
+    EXPECT_GT(check(late), 0u);
+    EXPECT_EQ(std::string(broken).substr(0, 3), "U6 ") << broken;
+    std::string other = text;
+    other.replace(other.find("\"gravity\": 9.81"), 15, "\"gravity\": 9.80");
+    EXPECT_EQ(check(other), static_cast<std::size_t>(-1));
+    EXPECT_NE(std::string(carom_last_error()).find("gravity is 9.8, and 9.81 in the scene"),
+              std::string::npos);
+}
+
 TEST(CApi, AShotMatchesTheEngine) {
     const RecordPtr c = played(shipped_scene("eight_ball_break").get());
     const Record record =

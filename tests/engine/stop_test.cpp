@@ -192,7 +192,7 @@ TEST(Stop, EndlessMotionIsNotRest) {
     record.stopped = StopReason::kAtRest;
     const auto violation = verify(record, plan);
     ASSERT_TRUE(violation);
-    EXPECT_EQ(violation->law, "U9");
+    EXPECT_EQ(violation->law, "U8");
 }
 
 }  // namespace

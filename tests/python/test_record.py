@@ -26,6 +26,24 @@ def test_a_record_has_the_bits_of_the_program(path):
         assert record.MOTIONS[record.motion(record.duration)[i]] == ball["state"]
 
 
+def test_a_record_from_a_file_is_verified(break_scene, tmp_path):
+    record = carom.simulate(break_scene)
+    assert record.verify() is None
+    record.save(tmp_path / "shot.json")
+    data = json.loads((tmp_path / "shot.json").read_text())
+    assert carom.Record.load(tmp_path / "shot.json").verify(break_scene) is None
+    with pytest.raises(ValueError, match="give the scene that was played"):
+        carom.Record.load(tmp_path / "shot.json").verify()
+    del data["events"][5]
+    (tmp_path / "bad.json").write_text(json.dumps(data))
+    broken = carom.Record.load(tmp_path / "bad.json").verify(break_scene)
+    assert broken is not None and broken.startswith("U6 broken at ")
+    data["gravity"] = 9.8
+    (tmp_path / "other.json").write_text(json.dumps(data))
+    with pytest.raises(carom.SceneError, match="gravity is 9.8, and 9.81 in the scene"):
+        carom.Record.load(tmp_path / "other.json").verify(break_scene)
+
+
 def test_states_match_the_samples(break_scene, tmp_path):
     carom_program("simulate", SOURCE / "scenes/eight_ball_break.toml", "--samples", tmp_path / "s.csv",
                   "--sample-dt", 0.25)

@@ -93,7 +93,7 @@ inline Plan plan_of(const Scene& scene) {
     return make_plan(scene, kernel::best_isa());
 }
 
-/// Runs and checks U1..U9 after every event.
+/// Runs and checks the laws of verify().
 inline Record run_verified(const Scene& scene) {
     const Plan plan = plan_of(scene);
     Record record = simulate(plan);

@@ -98,6 +98,32 @@ TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     EXPECT_EQ(carom({"simulate", scene, "--hash"}).status, 0);
 }
 
+// A record of another program is any file.
+TEST_F(CliSimulate, VerifyChecksARecordFromAFile) {
+    const std::string record = folder_.file("shot.json");
+    ASSERT_EQ(run({"--hash", "-o", record}).status, 0);
+    const ProcessResult good = run({"--verify", record});
+    EXPECT_EQ(good.status, 0) << good.err;
+    EXPECT_NE(good.out.find("every law holds"), std::string::npos) << good.out;
+    Json bad = Json::parse(read_file(record));
+    bad["events"].erase(1);
+    const ProcessResult broken = run({"--verify", folder_.write("bad.json", bad.dump())});
+    EXPECT_EQ(broken.status, 1);
+    EXPECT_NE(broken.err.find("U6 broken at "), std::string::npos) << broken.err;
+    // Refused by the first difference.
+    bad = Json::parse(read_file(record));
+    bad["balls"]["mu_s"] = 0.3;
+    const ProcessResult other = run({"--verify", folder_.write("other.json", bad.dump())});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(
+        other.err.find("other.json: the record is of another scene or physics: balls.mu_s is 0.3, and 0.2 "
+                       "in the scene"),
+        std::string::npos)
+        << other.err;
+    EXPECT_EQ(run({record}).status, 2) << "a record without --verify";
+    EXPECT_EQ(run({"--verify", folder_.file("none.json")}).status, 2);
+}
+
 TEST_F(CliSimulate, AnotherSceneHasAnotherHash) {
     std::string text = kSmallScene;
     text.replace(text.find("speed = 4.0"), 11, "speed = 4.1");

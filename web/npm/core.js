@@ -218,6 +218,10 @@ export class Scene extends Held {
   get cue() { return this.describe().cue; }
   get table() { return this.describe().table; }
   look() { return JSON.parse(call("carom_scene_look", this.handle)); }
+  verify(recordJson) {
+    expectText("recordJson", recordJson);
+    return call("carom_verify", this.handle, recordJson) || null;
+  }
 }
 
 /** The record's motion from its numbers: of the shot, then of each ball and its segments. */

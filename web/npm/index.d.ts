@@ -88,6 +88,9 @@ export class Scene {
   readonly table: TableInfo;
   /** The table's outlines [m] and how the balls look, for drawing. */
   look(): {shape: object; styles: {color: [number, number, number]; pattern: string; number: number}[]};
+  /** Checks a record of this scene, perhaps another program's: null, or the first law of mechanics that it
+   * breaks, with the event and a residual. @throws CaromError if it is of another scene */
+  verify(recordJson: string): string | null;
   /** Frees its memory now; otherwise the garbage collector does. */
   free(): void;
 }

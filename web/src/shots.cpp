@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/game_state.h"
@@ -14,6 +15,7 @@
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/plan.h"
+#include "carom/engine/verify.h"
 #include "carom/games/measures.h"
 #include "web.h"
 
@@ -168,6 +170,16 @@ CAROM_WEB int carom_shot_motion(const WebShot* shot) {
                                        s.w.z(), s.a.x(), s.a.y(), s.dw.x(), s.dw.y(), s.spin_decay});
         }
         give(nullptr, std::string(reinterpret_cast<const char*>(all.data()), all.size() * sizeof(double)));
+    });
+}
+/// The first law that a record of this scene breaks, or "".
+CAROM_WEB int carom_verify(const WebScene* scene, const char* text, std::size_t size) {
+    return guarded([&] {
+        const Record record = parse_record(std::string_view(text, size), "record");
+        const Plan plan = make_plan(scene->scene, kIsa);
+        require_scene(record, plan, "record");
+        const auto violation = verify(record, plan);
+        give(nullptr, violation ? describe(*violation, record) : "");
     });
 }
 CAROM_WEB int carom_shot_events(const WebShot* shot) {

@@ -170,6 +170,11 @@ CAROM_API carom_status carom_record_state(const carom_record* record, size_t bal
 /* Hash of all bits of the record: 16 hexadecimal digits and a final 0. */
 CAROM_API carom_status carom_record_hash(const carom_record* record, char hash[17]);
 
+/* Checks the laws of mechanics, as `carom simulate --verify` does; the record may be another program's
+ * (carom_record_read). Writes the first law that is broken, up to `size` bytes with the final 0, and returns
+ * the length of the text: 0 if every law holds, (size_t)-1 on failure (a record of another scene). */
+CAROM_API size_t carom_record_verify(const carom_record* record, char* broken, size_t size);
+
 /* The motion of a ball between two events that involve it, in closed form. At u = t - start,
  * 0 <= u <= duration, its centre is at r + u (v + u a / 2). Its velocity is v + u a, or v (1 - u / duration)
  * if it rolls and is not held. Its angular velocity is w + u dw in x and y, or that of rolling if it rolls;

@@ -51,9 +51,12 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
     return seen;
 }
 
+bool in_space(const SeenBall& one, const SeenBall& two) {
+    return one.flies || two.flies || one.flew >= two.fell || two.flew >= one.fell;
+}
+
 double gap_between(const SeenBall& one, const SeenBall& two) {
-    const bool in_space = one.flies || two.flies || one.flew >= two.fell || two.flew >= one.fell;
-    return (in_space ? touch_ball(at(one), at(two)) : touch_level(at(one), at(two), one.disc)).gap;
+    return (in_space(one, two) ? touch_ball(at(one), at(two)) : touch_level(at(one), at(two), one.disc)).gap;
 }
 
 double gap_to(const CushionLine& line, const SeenBall& ball) {

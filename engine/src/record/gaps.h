@@ -33,8 +33,10 @@ double allowed_depth(const SeenBall& ball, const Vec2& wall);
 SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const Vec3& r, double rounding,
              bool flights);
 
-/// [m] Between two balls, negative if they overlap. The planar distance, unless one flies, or has flown since
-/// the other began to fall into a pocket.
+/// Whether two balls meet in space rather than in the plane: one flies, or has flown since the other began to
+/// fall into a pocket.
+bool in_space(const SeenBall& one, const SeenBall& two);
+/// [m] Between two balls, in space or in the plane; negative if they overlap.
 double gap_between(const SeenBall& one, const SeenBall& two);
 /// [m] To the nose of a cushion; infinite if the ball is beyond its ends.
 double gap_to(const CushionLine& line, const SeenBall& ball);

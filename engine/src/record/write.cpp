@@ -13,6 +13,7 @@
 #include "base/output_file.h"
 #include "carom/engine/record.h"
 #include "record/format.h"
+#include "record/inputs_json.h"
 
 namespace carom {
 namespace {
@@ -51,6 +52,8 @@ OrderedJson json_of(const Field<T> (&fields)[kRows], const std::vector<T>& list)
     return json;
 }
 
+}  // namespace
+
 OrderedJson table_json(const Table& table) {
     OrderedJson json = json_of(kTableFields, table);
     if (const OrderedJson changed = json_of(kMeasureFields, table.measures); !changed.is_null())
@@ -63,6 +66,12 @@ OrderedJson table_json(const Table& table) {
     json["pockets"] = json_of(kPocketFields, table.pockets);
     return json;
 }
+
+OrderedJson balls_json(const BallParams& balls) {
+    return json_of(kBallFields, balls);
+}
+
+namespace {
 
 OrderedJson segment_json(const Segment& s) {
     return {{"start", s.start},
@@ -139,7 +148,7 @@ void write_all(const Record& record, Sink& file) {
                ", \"setup_detect_ns\": " + dump(record.setup_detect_ns));
     file.write(",\n\"render\": " + dump(json_of(kRenderFields, record.render)));
     file.write(",\n\"table\": " + dump(table_json(record.table)));
-    file.write(",\n\"balls\": " + dump(json_of(kBallFields, record.balls)));
+    file.write(",\n\"balls\": " + dump(balls_json(record.balls)));
     file.write(",\n\"tracks\": ");
     write_lines(file, record.tracks, " ", [&](const BallTrack& track) { write_track(track, file); });
     file.write(",\n\"events\": ");

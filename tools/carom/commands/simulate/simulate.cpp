@@ -31,7 +31,8 @@ using Json = nlohmann::ordered_json;
 
 struct SimulateArgs {
     std::string scene;
-    std::string record;  ///< file names; empty: not written
+    std::string checked;  ///< a record to verify; empty: the run is verified
+    std::string record;   ///< file names; empty: not written
     std::string events;
     std::string samples;
     std::optional<double> sample_dt;  ///< [s]
@@ -189,6 +190,8 @@ std::string profile_report(const Record& record) {
 }
 
 void check_args(const SimulateArgs& args) {
+    if (!args.checked.empty() && !args.verify)
+        throw UsageError(fmt::format("{}: a record is read only to check it; add --verify", args.checked));
     if (!args.samples.empty() && !args.sample_dt) throw UsageError("--samples needs --sample-dt S");
     if (args.samples.empty() && args.sample_dt) throw UsageError("--sample-dt needs --samples FILE");
     if (args.sample_dt && !(*args.sample_dt > 0.0 && std::isfinite(*args.sample_dt))) {
@@ -256,23 +259,31 @@ void write_files(const SimulateArgs& args, const Record& record) {
     if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
 }
 
-/// Reports the first law that the run broke, if any.
+/// Reports the first law that the record breaks, if any.
 int verified(const Record& record, const Plan& plan) {
     const std::optional<Violation> violation = verify(record, plan);
-    if (!violation) return kOk;
-    std::string where = "after the last event";
-    if (violation->event < record.events.size()) {
-        const Event& event = record.events[violation->event];
-        where = fmt::format("event {} ({} {} {}, t = {:.17g} s)", violation->event, name(event.type),
-                            record.tracks.at(event.a).id, record.partner_id(event), event.time);
-    }
-    message(fmt::format("{} broken at {}: {}", violation->law, where, violation->message));
-    return kFailed;
+    if (violation) message(describe(*violation, record));
+    return violation ? kFailed : kOk;
+}
+
+/// Checks a record from a file, which this or another program wrote.
+int verified_file(const SimulateArgs& args, const Plan& plan) {
+    if (!is_record(args.checked))
+        throw UsageError(fmt::format("{}: a record has a name that ends in .json", args.checked));
+    const Record record = read_shot(args.checked, {});
+    require_scene(record, plan, args.checked);
+    const int status = verified(record, plan);
+    if (status == kOk)
+        print(fmt::format("{}: {} and {}, {:.4f} s: every law holds\n", args.checked,
+                          counted(record.tracks.size(), "ball"), counted(record.events.size(), "event"),
+                          record.duration));
+    return status;
 }
 
 int run(const SimulateArgs& args) {
     check_args(args);
     const Plan plan = plan_scene(args.scene);
+    if (!args.checked.empty()) return verified_file(args, plan);
     SimulateOptions options;
     options.profile = args.profile;
     options.until = args.until;
@@ -302,6 +313,8 @@ void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
         "simulate", "Simulate a scene: print what happened, write events, record or samples", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
+    command.argument("RECORD", args.checked,
+                     "With --verify: check this record of the scene, a .json file, and simulate nothing");
     command
         .option("-o,--output", &args.record, "FILE.json",
                 "Write the record, which carom render reads (default: not written)")
@@ -332,7 +345,7 @@ void add_simulate(Options& program) {
         .one_of(game_names());
     command.flag("--json", args.json, "Print JSON (default: off)");
     command.flag("--verify", args.verify,
-                 "Check the physical laws after every event; report the first one broken, with exit status 1 "
+                 "Check the laws of mechanics; report the first one broken, with exit status 1 "
                  "(default: off)");
     command.flag("--no-record", args.no_record, "Keep and print only the final state (default: off)");
 }
