@@ -111,8 +111,8 @@ const RackRow kRack[] = {
 };
 
 TEST(Cluster, TouchingRack) {  // H1
-    const ClusterSettings columns[] = {settings(0.0, 0.0, 1.0, kClusterEpsilon, 1.0 / 500.0),
-                                       settings(0.0, 0.0, 0.95, kClusterEpsilon, 1.0 / 500.0),
+    const ClusterSettings columns[] = {settings(0.0, 0.0, 1.0, kClusterEpsilon, 1e-8),
+                                       settings(0.0, 0.0, 0.95, kClusterEpsilon, 1e-8),
                                        settings(0.05, 0.2, 0.95), settings(0.05, 0.2, 0.95, 1e-4)};
     const double tolerance[] = {1e-6, 1e-6, 3e-3, 3e-4}, energy_left[] = {1.0, .8022334, .76032, .76032};
     for (int column = 0; column < 4; ++column) {
@@ -160,14 +160,13 @@ TEST(Cluster, SlowPairFirst) {
                  fast = run(rack(1.0), settings(0.05, 0.2, 0.95), 1.0);
     EXPECT_EQ(slow.steps, fast.steps);
     for (std::size_t b = 0; b < fast.balls.size(); ++b) EXPECT_EQ(slow.balls[b].v, fast.balls[b].v);
-    EXPECT_LE(fast.steps, 310) << "of a touching rack";
+    EXPECT_LE(fast.steps, 1140) << "of a touching rack";
 }
 
-// Large friction is stiff while it sticks; steps then have six or eight stages and are longer. With four
-// stages these racks needed 483, 1233 and 2747.
+// Large friction is stiff while it sticks; steps then have up to twelve stages and are longer.
 TEST(Cluster, LargeFriction) {
     const double mu_b[] = {0.2, 0.4, 0.8};
-    const long most[] = {366, 600, 970};
+    const long most[] = {2340, 4020, 6800};
     for (int k = 0; k < 3; ++k) {
         const ClusterSettings s = settings(mu_b[k], 0.2, 0.95);
         ClusterSettings fine_steps = s;
@@ -176,12 +175,12 @@ TEST(Cluster, LargeFriction) {
         balls[0].v.x() = 0.05;
         balls[0].w = Vec3(20.0, -10.0, 15.0);
         const Result result = run(balls, s, 1.0), fine = run(balls, fine_steps, 1.0);
-        EXPECT_LE(result.steps, most[k]) << "steps at mu_b = " << mu_b[k];
+        EXPECT_LE(result.steps, most[k]) << "evaluations at mu_b = " << mu_b[k];
         double worst = 0.0;
         for (std::size_t b = 0; b < fine.balls.size(); ++b)
             worst = std::max({worst, (result.balls[b].v - fine.balls[b].v).norm(),
                               kR * (result.balls[b].w - fine.balls[b].w).norm()});
-        EXPECT_LT(worst, 1e-4) << "error of the steps at mu_b = " << mu_b[k];
+        EXPECT_LT(worst, 4e-6) << "error of the steps at mu_b = " << mu_b[k];
     }
 }
 
@@ -239,7 +238,7 @@ TEST(Cluster, Cradles) {  // H3
     const double e[] = {1.0, 0.95, 0.9};
     for (int n = 2; n <= 6; ++n) {
         for (int k = 0; k < 3; ++k) {
-            const Result result = run(line(n), settings(0.0, 0.0, e[k]), 1.0);
+            const Result result = run(line(n), settings(0.0, 0.0, e[k], kClusterEpsilon, 1e-8), 1.0);
             double sum = 0.0;
             for (int b = 0; b < n; ++b) {
                 EXPECT_NEAR(result.balls[b].v.y(), expected[n - 2][k][b], 1e-6)

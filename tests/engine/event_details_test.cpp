@@ -18,7 +18,7 @@ constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 /// Equal balls without friction that lose nothing, on an endless cloth.
 Scene ideal() {
-    Scene scene = empty_scene();
+    Scene scene = instant_scene();
     scene.balls.mu_s = scene.balls.mu_r = scene.balls.mu_sp = scene.balls.mu_b = 0.0;
     scene.balls.e_b = 1.0;
     scene.physics.ball_ball = ball_ball_model("elastic");

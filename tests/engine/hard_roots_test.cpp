@@ -26,7 +26,7 @@ TEST(HardRoots, Graze) {
     for (const double v : {1.0, 5.0, 0.5}) {
         for (const double h : depths) {
             SCOPED_TRACE("v = " + std::to_string(v) + ", h = " + std::to_string(h * 1e12) + "e-12");
-            Scene scene = empty_scene();
+            Scene scene = instant_scene();
             const double R = scene.balls.R, x = 2.0 * R - h;
             add_ball(scene, "cue", x, -1.0, 0.0, v, rolling_spin(0.0, v, R));
             add_ball(scene, "object", 0.0, 0.0);

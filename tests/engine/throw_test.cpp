@@ -19,7 +19,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180.0;
 // One impact at cut angle phi [degrees] of a ball with speed v and spin (about the left of its path, and
 // vertical).
 double throw_deg(double phi, double v, bool rolls, double w_z, double fall, double e_b = 1.0) {
-    Scene scene = empty_scene();
+    Scene scene = instant_scene();
     scene.balls.mu_b = 9.951e-3;
     scene.balls.mu_b_more = 0.108;
     scene.balls.mu_b_fall = fall;
@@ -111,7 +111,7 @@ TEST(Throw, FrictionFallsWithTheSlip) {
 
 // In the model mathavan the fit sets the friction of the impact.
 TEST(Throw, MathavanUsesTheFrictionOfItsSlip) {
-    Scene fit = empty_scene();
+    Scene fit = instant_scene();
     fit.stop.events = 1;
     fit.balls.mu_b = 0.01;
     fit.balls.mu_b_more = 0.1;
@@ -131,7 +131,7 @@ TEST(Throw, MathavanUsesTheFrictionOfItsSlip) {
 // point where the cue's line meets the cloth. Without elevation, a ball struck with side goes straight.
 TEST(Masse, ElevationAndSideCurveThePath) {
     const auto shot = [](double elevation, double side) {
-        Scene scene = empty_scene();
+        Scene scene = instant_scene();
         add_ball(scene, "cue", 0.0, 0.0);
         Cue cue;
         cue.speed = 3.0;

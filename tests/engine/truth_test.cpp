@@ -30,7 +30,7 @@ struct Hit {
     }
 };
 Hit hit(double phi, double roll, double e_b) {
-    Scene scene = empty_scene();
+    Scene scene = instant_scene();
     scene.balls.mu_b = 0.0;
     scene.balls.e_b = e_b;
     const double R = scene.balls.R;
@@ -94,7 +94,7 @@ TEST(Truth, T9TrisectRule) {
 TEST(Truth, AfterACushionTheBallSlidesThenRollsAndTopspinBendsItBack) {
     for (const CushionModelInfo* model :
          {&kHan2005, cushion_model("mathavan_2010"), cushion_model("impulse"), cushion_model("stronge")}) {
-        Scene scene = empty_scene();
+        Scene scene = instant_scene();
         scene.table.cushions = {{"c1", {0.0, -5.0}, {0.0, 5.0}, 1.28 * scene.balls.R}};
         scene.physics.cushion = model;
         const double R = scene.balls.R, v = std::sqrt(0.5);

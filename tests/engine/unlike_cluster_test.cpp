@@ -21,6 +21,7 @@ ClusterSettings settings(double mu_b, double mu_s, double e) {
             .mu_s = mu_s,
             .mu_b = mu_b,
             .e_b = e,
+            .tolerance = 1e-7,
             .integrate = kernel::contact_phase_function(kernel::best_isa()),
             .unlike = true};
 }

@@ -56,6 +56,13 @@ inline Scene empty_scene() {
     return scene;
 }
 
+/// Impacts take no time, as in the textbooks' formulas.
+inline Scene instant_scene() {
+    Scene scene = empty_scene();
+    scene.physics.clusters = ClusterModel::kSequential;
+    return scene;
+}
+
 inline void add_ball(Scene& scene, const std::string& id, const Vec3& r, const Vec3& v = Vec3::Zero(),
                      const Vec3& w = Vec3::Zero()) {
     BallStart ball;

@@ -206,10 +206,13 @@ int Clusters::find_obstacle() const {
         detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { found = kTable; });
         const double most = length(path) + duration_ * detector_.fastest();
         detector_.balls_near(near_box(ball, most), [&](int q) {
+            const auto is_before = [this](int one, int two) {
+                return before_place(planar(balls_.position(one)), planar(balls_.position(two)));
+            };
             if (found == kTable || is_member(q) || has_room(ball, path, q)) return;
             const bool joins = !balls_.collides(q) && !balls_.segment(q).held && !balls_.sinks(q) &&
                                !flies(balls_.segment(q).state);
-            found = !joins ? kTable : found == kNone ? q : std::min(found, q);
+            found = !joins ? kTable : found == kNone || is_before(q, found) ? q : found;
         });
     }
     return found;

@@ -128,7 +128,7 @@ void Resolver::ball_ball(int a, int b) {
         impact = collide({*plan_.ball_ball, plan_.impact, plan_.balls, contact_time}, plan_.sizes[one],
                          plan_.sizes[two], r1, level2, ball1, ball2);
     };
-    hit(plan_.in_force(Effect::kContactTime));
+    hit(plan_.contact_time);
     if (impact.grazes) {
         if (cluster(a, b, approach.v_n, true)) return;
         hit(false);

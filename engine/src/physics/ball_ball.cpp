@@ -236,8 +236,10 @@ PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& si
                         std::sqrt(1.0 + turn.tangent * turn.tangent);
     Ball one = kernel_ball(r1, ball1), two = kernel_ball(r2, ball2);
     if (turn.tangent != 0.0) {
-        two.r[0] = r1.x() + middle.x();
-        two.r[1] = r1.y() + middle.y();
+        // From the origin, so that mirrored impacts round alike.
+        one.r[0] = one.r[1] = 0.0;
+        two.r[0] = middle.x();
+        two.r[1] = middle.y();
         one.w[2] += turn.spin;
         two.w[2] += turn.spin;
     }

@@ -144,6 +144,7 @@ Need clusters(const Facts& f) {
 
 Need contact_time(const Facts& f) {
     if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
+    // Forced on, it does not change the model.
     if (f.scene.physics.clusters != ClusterModel::kCompliant)
         return {false, f.say("clusters = \"{}\": impacts are instants", name(f.scene.physics.clusters))};
     if (f.scene.physics.substeps) return {false, f.say("substeps = {}: the published result", *f.scene.physics.substeps)};
@@ -233,7 +234,8 @@ constexpr EffectInfo kTable[kEffects] = {
     {.keyword = "contact_time",
      .skipped_when = "`clusters` is not `compliant`, `substeps`, model `two_step`, or no two balls can meet",
      .keys = "`clusters`, `substeps`",
-     .need = contact_time},
+     .need = contact_time,
+     .leave_out = [](Plan& plan) { plan.contact_time = false; }},
 };
 
 /// The plan's decision, overridden by [effects].

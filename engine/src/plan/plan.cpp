@@ -101,6 +101,8 @@ void fill(Plan& plan, const Geometry& geometry, ReachMemory& memory, const Words
     plan.ball_ball = scene.physics.ball_ball;
     plan.cushion = scene.physics.cushion;
     plan.jaw = scene.physics.jaw_model();
+    plan.contact_time = scene.physics.clusters == ClusterModel::kCompliant && !scene.physics.substeps &&
+                        !scene.physics.ball_ball->free;
     decide_effects(plan, memory, say);
     plan.motion.clear();
     for (const BallSize& size : plan.sizes) plan.motion.push_back(motion_of(plan, size.R));

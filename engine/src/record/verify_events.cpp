@@ -495,7 +495,7 @@ class Events {
                 v2 = two;
                 return true;
             };
-            if (!hit(plan_.in_force(Effect::kContactTime))) hit(false);
+            if (!hit(plan_.contact_time)) hit(false);
         };
         Velocities other1 = m1, other2 = m2;
         solve(model_, m1, m2);
@@ -547,7 +547,8 @@ class Events {
         }
         Velocities m{body(ball, true).v, c.w};
         if (!bounce(plan_.balls, plan_.sizes[ball], touches,
-                    flights() && !falls(ball) ? std::optional(record_.gravity) : std::nullopt, m))
+                    flights() && !falls(ball) ? std::optional(record_.gravity) : std::nullopt,
+                        plan_.impact.tolerance, m))
             return;
         if (falls(ball)) m.v.z() = c.at.velocity.z();
         free(ball, m.v, m.w);

@@ -234,7 +234,7 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
                       planar(r) * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(planar(r)));
                   // A skipped friction has no effect, but may have derivatives: skip none.
                   const PairImpact impact =
-                      carom::collide({*plan.ball_ball, settings, in.balls, plan.in_force(Effect::kContactTime)}, size1,
+                      carom::collide({*plan.ball_ball, settings, in.balls, plan.contact_time}, size1,
                                      size2, {0.0, 0.0, size1.R}, {level.x(), level.y(), size2.R}, ball1, ball2);
                   if (impact.status != kernel::ImpactStatus::kOk)
                       throw TangentError("its model has no solution nearby, as at the edge of a miss");

@@ -75,6 +75,8 @@ struct Plan {
     /// e_b as the ball-ball model reads it: 1 if it does not read it.
     double e_b() const { return ball_ball->restitution(balls); }
     BallBallSettings impact;
+    /// Impacts of two balls act along the line of centres in the middle of their contact.
+    bool contact_time = false;
     kernel::ContactPhaseFunction contact_phase = nullptr;  ///< of compliant clusters
     double cluster_tolerance = kDefaultTolerance;          ///< of theirs; physics.tolerance
     /// kSequential if there are fewer than three balls
