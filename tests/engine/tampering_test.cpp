@@ -178,389 +178,396 @@ std::vector<Kind> kinds() {
     const auto another = [](int index, std::size_t count, Generator& random) {
         return (index + 1 + draw(random, count - 1)) % static_cast<int>(count);
     };
-    std::vector<Kind> all = {
-        {"all events are gone", "U6",
-         [](Record& r, Generator&) {
-             const bool any = !r.events.empty();
-             r.events.clear();
-             return any;
-         }},
-        {"a number is NaN", "U1",
-         motion([](auto&, auto&, std::size_t) { return true; },
-                [](Record&, const Place& p) { p.at().v.y() = std::numeric_limits<double>::quiet_NaN(); })},
-        {"an event is 20 ms late", "U5 U6",
-         [](Record& r, Generator& random) {
-             Event* e = one_of(r.events, random, any_event);
-             if (e == nullptr) return false;
-             e->time += 0.02;
-             std::stable_sort(r.events.begin(), r.events.end(),
-                              [](const Event& p, const Event& q) { return p.time < q.time; });
-             return true;
-         }},
-        {"all events are 20 ms late", "U6",
-         [](Record& r, Generator&) {
-             for (Event& e : r.events) e.time += 0.02;
-             return !r.events.empty();
-         }},
-        {"two events are exchanged", "U2",
-         [](Record& r, Generator&) {
-             if (r.events.size() < 2 || r.events.front().time == r.events.back().time) return false;
-             std::swap(r.events.front(), r.events.back());
-             return true;
-         }},
-        {"an event is twice in the list", "U5 U6",
-         event([](const Event& e) { return kind(e.type).phase != EventPhase::kRelease &&
-                                           kind(e.type).phase != EventPhase::kHold &&
-                                           e.type != EventType::kBallCluster &&
-                                           e.type != EventType::kBallOut &&
-                                           kind(e.type).phase != EventPhase::kStrike &&
-                                           kind(e.type).partner != Partner::kPocket && kind(e.type).phase != EventPhase::kTransition; },
-               [](Record& r, Event& e, Generator&) {
-                   if (!is_needed(r, e)) return false;
-                   const Event copy = e;
-                   r.events.insert(r.events.begin() + (&e - r.events.data()), copy);
-                   return true;
-               })},
-        {"an event names another ball", "U5 U6",
-         event(any_event,
-               [another](Record& r, Event& e, Generator& random) {
-                   // Any two of its balls may have met first.
-                   if (r.tracks.size() < 3 || e.type == EventType::kBallCluster) return false;
-                   e.a = another(e.a, r.tracks.size(), random);
-                   return !has_partner(e, Partner::kBall) || e.a != e.b;
-               })},
-        {"an impact names another partner", "U5 U6",
-         event([](const Event& e) { return e.type == EventType::kBallBall; },
-               [another](Record& r, Event& e, Generator& random) {
-                   if (r.tracks.size() < 3) return false;
-                   e.b = another(e.b, r.tracks.size(), random);
-                   return e.a != e.b;
-               })},
-        {"an impact names another cushion", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallCushion && e.detail < 0; },
-               [another](Record& r, Event& e, Generator& random) {
-                   if (r.table.cushions.size() < 2) return false;
-                   e.b = another(e.b, r.table.cushions.size(), random);
-                   return true;
-               })},
-        {"a jaw becomes another", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallJaw; },
-               [another](Record& r, Event& e, Generator& random) {
-                   if (r.table.jaws.size() < 2) return false;
-                   e.b = another(e.b, r.table.jaws.size(), random);
-                   return true;
-               })},
-        {"a ball falls into another pocket", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallPocket; },
-               [another](Record& r, Event& e, Generator& random) {
-                   e.b = another(e.b, r.table.pockets.size(), random);
-                   r.tracks[static_cast<std::size_t>(e.a)].pocket = e.b;
-                   return true;
-               })},
-        {"a ball passes the edge of another pocket", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallEdge; },
-               [another](Record& r, Event& e, Generator& random) {
-                   e.b = another(e.b, r.table.pockets.size(), random);
-                   return true;
-               })},
-        {"a pocketed ball lies in another pocket", "U8",
-         [another](Record& r, Generator& random) {
-             BallTrack* t = one_of(r.tracks, random, [](const BallTrack& of) { return of.pocket >= 0; });
-             if (t != nullptr) t->pocket = another(t->pocket, r.table.pockets.size(), random);
-             return t != nullptr;
-         }},
-        {"a pocketed ball is not in a pocket", "U8",
-         [](Record& r, Generator& random) {
-             BallTrack* t = one_of(r.tracks, random, [](const BallTrack& of) { return of.pocket >= 0; });
-             if (t != nullptr) t->pocket = -1;
-             return t != nullptr;
-         }},
-        {"a ball is pocketed without reason", "U6",
-         [](Record& r, Generator& random) {
-             if (r.table.pockets.empty()) return false;
-             const auto p = segment(r, random, [](const BallTrack& t, std::size_t k) {
-                 return k > 0 && (is(MotionState::kRolling)(t, k) || is(MotionState::kSliding)(t, k));
-             });
-             if (!p) return false;
-             const int pocket = draw(random, r.table.pockets.size());
-             const Pocket& of = r.table.pockets[static_cast<std::size_t>(pocket)];
-             stop_dead(r, *p);
-             p->at().state = MotionState::kPocketed;
-             p->at().r = Vec3(of.center.x(), of.center.y(), -of.depth);
-             p->track->pocket = pocket;
-             const Event e{p->at().start, EventType::kBallPocket, static_cast<int>(p->track - r.tracks.data()),
-                           pocket};
-             std::erase_if(r.events, [&](const Event& x) { return x.a == e.a && x.time >= e.time; });
-             r.events.insert(std::find_if(r.events.begin(), r.events.end(),
-                                          [&](const Event& x) { return x.time > e.time; }),
-                             e);
-             return true;
-         }},
-        {"a transition has another type", "U6",
-         event([](const Event& e) { return kind(e.type).phase == EventPhase::kTransition && !has_partner(e, Partner::kPocket) && e.type != EventType::kBallOut; },
-               [](Record&, Event& e, Generator&) {
-                   e.type = e.type == EventType::kSlideRoll ? EventType::kRollStop : EventType::kSlideRoll;
-                   return true;
-               })},
-        {"a cluster lacks a ball", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallCluster; },
-               [](Record& r, Event& e, Generator& random) {
-                   if (in_group(r, e)) return false;
-                   std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
-                   list.erase(list.begin() + draw(random, list.size()));
-                   return true;
-               })},
-        {"a cluster has one more ball", "U6",
-         event([](const Event& e) { return e.type == EventType::kBallCluster; },
-               [](Record& r, Event& e, Generator&) {
-                   std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
-                   for (int ball = 0; ball < static_cast<int>(r.tracks.size()); ++ball) {
-                       if (std::find(list.begin(), list.end(), ball) != list.end()) continue;
-                       const BallTrack& t = r.tracks[static_cast<std::size_t>(ball)];
-                       if (t.segments[t.segment_at(e.time)].start == e.time) continue;
-                       list.push_back(ball);
-                       return true;
-                   }
-                   return false;
-               })},
-        {"two balls at rest meet", "U6",
-         [](Record& r, Generator& random) {
-             if (r.tracks.size() < 2 || r.events.empty()) return false;
-             const int a = draw(random, r.tracks.size()), b = (a + 1) % static_cast<int>(r.tracks.size());
-             const double t = 0.5 * r.duration;
-             r.events.insert(std::find_if(r.events.begin(), r.events.end(),
-                                          [&](const Event& x) { return x.time > t; }),
-                             Event{t, EventType::kBallBall, a, b});
-             return true;
-         }},
-        {"the velocity after an impact is 1 % larger", "U4 U5 U7",
-         motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.01; })},
-        {"the velocity after an impact is 1e-4 smaller", "U5 U7",
-         motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.0 - 1e-4; })},
-        {"the velocity after an impact is 1e-4 smaller, with the motion that follows", "U5 U7",
-         motion([](const Record& r, const BallTrack& t,
-                   std::size_t k) { return is_free_after(r, t, k) && !is_off_cloth(t.segments[k].state); },
-                [](Record& r, const Place& p) {
-                    const Segment& s = p.at();
-                    MotionParams params = motion_params(r.balls, r.gravity, s.r.z());
-                    p.at() = start_segment(s.start, s.r, (1.0 - 1e-4) * s.v, s.w, params);
-                })},
-        {"an impact and the motion after it turn by 1 degree", "U5",
-         motion([](const Record& r, const BallTrack& t, std::size_t k) {
-                    return is_free_after(r, t, k) && t.segments[k].state != MotionState::kRolling;
-                },
-                [](Record&, const Place& p) {
-                    const double c = std::cos(0.01745), s = std::sin(0.01745);
-                    Segment& at = p.at();
-                    for (auto* v : {&at.v, &at.w}) *v = Vec3(c * v->x() - s * v->y(), s * v->x() + c * v->y(), v->z());
-                    for (auto* v : {&at.a, &at.dw}) *v = Vec2(c * v->x() - s * v->y(), s * v->x() + c * v->y());
-                })},
-        {"an impact's velocity is mirrored", "U5 U7",
-         motion(is_free_after,
-                [](Record&, const Place& p) {
-                    const Vec3 came = p.track->segments[p.k - 1].v;
-                    Vec3& v = p.at().v;
-                    v = came.norm() > 1e-3 && (came + v).norm() > 1e-3 ? Vec3(-v) : Vec3(-0.5 * v);
-                })},
-        {"the spin after an impact is 1 % larger", "U5 U7",
-         motion([](const Record& r, const BallTrack& t, std::size_t k) {
-                    return is_free_after(r, t, k) && t.segments[k].w.norm() > 1.0;
-                },
-                [](Record&, const Place& p) { p.at().w *= 1.01; })},
-        {"the vertical spin is 0 from one motion on", "U5 U6 U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return !t.segments[k].held && (k == 0 || (!t.segments[k - 1].held && t.segments[k-1].state != MotionState::kColliding && t.segments[k-1].start < t.segments[k].start)) &&
-                           t.segments[k].state != MotionState::kColliding && std::abs(t.segments[k].w.z()) > 0.1 &&
-                           (k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start);
-                },
-                [](Record&, const Place& p) {
-                    for (std::size_t k = p.k; k < p.track->segments.size(); ++k) {
-                        p.track->segments[k].w.z() = p.track->segments[k].spin_decay = 0.0;
-                    }
-                })},
-        {"a ball stops dead", "U5 U6 U7",
-         motion([](const Record& r, const BallTrack& t, std::size_t k) { return is_free_after(r, t, k); },
-                stop_dead)},
-        {"a rolling ball stops dead in the middle", "U6",
-         motion(lasting(MotionState::kRolling),
-                [](Record& r, const Place& p) {
-                    const double until = p.k + 1 < p.track->segments.size() ? p.track->segments[p.k + 1].start : r.duration;
-                    const double t = 0.5 * (p.at().start + until);
-                    Segment half = p.at();
-                    half.start = t;
-                    half.r = r.state_at(static_cast<int>(p.track - r.tracks.data()), t).position;
-                    p.track->segments.insert(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k) + 1, half);
-                    stop_dead(r, {p.track, p.k + 1});
-                })},
-        {"a ball that was hit never moves", "U6",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k == 0 && t.segments.size() > 2 && t.segments[0].state == MotionState::kStationary &&
-                           t.segments[1].start > 0.0;
-                },
-                [](Record&, const Place& p) { p.track->segments.resize(1); })},
-        {"a ball rolls with half the deceleration", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return is(MotionState::kRolling)(t, k) && t.segments[k].a.norm() > 0.0;
-                },
-                [](Record&, const Place& p) {
-                    p.at().a *= 0.5, p.at().dw *= 0.5, p.at().duration *= 2.0;
-                })},
-        {"a ball slides with less friction", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return is(MotionState::kSliding)(t, k) && t.segments[k].a.norm() > 0.0;
-                },
-                [](Record&, const Place& p) { p.at().a *= 0.99; })},
-        {"the friction of a sliding ball has another direction", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return is(MotionState::kSliding)(t, k) && t.segments[k].a.norm() > 0.0;
-                },
-                [](Record&, const Place& p) { p.at().a = Vec2(-p.at().a.y(), p.at().a.x()); })},
-        {"the spin of a sliding ball does not change", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return is(MotionState::kSliding)(t, k) && t.segments[k].dw.norm() > 0.0;
-                },
-                [](Record&, const Place& p) { p.at().dw = Vec2::Zero(); })},
-        {"the vertical spin decays at half the rate", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) { return t.segments[k].spin_decay > 0.0; },
-                [](Record&, const Place& p) { p.at().spin_decay *= 0.5; })},
-        {"a motion lasts 1 % longer", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return !t.segments[k].held && std::isfinite(t.segments[k].duration) &&
-                           t.segments[k].duration > 1e-4 && t.segments[k].state != MotionState::kColliding;
-                },
-                [](Record&, const Place& p) { p.at().duration *= 1.01; })},
-        {"a sliding ball is called rolling", "U7",
-         motion(lasting(MotionState::kSliding),
-                [](Record&, const Place& p) { p.at().state = MotionState::kRolling; })},
-        {"a rolling ball is called sliding", "U7",
-         motion(lasting(MotionState::kRolling),
-                [](Record&, const Place& p) { p.at().state = MotionState::kSliding; })},
-        {"a rolling ball slips", "U7",
-         motion(lasting(MotionState::kRolling), [](Record&, const Place& p) { p.at().w.x() += 1.0; })},
-        {"a flying ball is called sliding", "U6 U7",
-         motion(lasting(MotionState::kAirborne),
-                [](Record&, const Place& p) { p.at().state = MotionState::kSliding; })},
-        {"a flying ball rises faster", "U5 U7",
-         motion(lasting(MotionState::kAirborne), [](Record&, const Place& p) { p.at().v.z() += 0.01; })},
-        {"a falling ball falls faster", "U6 U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return t.segments[k].state == MotionState::kFalling;
-                },
-                [](Record&, const Place& p) { p.at().v.z() -= 0.01; })},
-        {"a ball rises above the cloth", "U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return is(MotionState::kRolling)(t, k) || is(MotionState::kStationary)(t, k);
-                },
-                [](Record&, const Place& p) { p.at().r.z() += 1e-4; })},
-        {"the last motion of a ball is 0.2 m away", "U6",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k + 1 == t.segments.size() && t.segments[k].state != MotionState::kPocketed;
-                },
-                [](Record&, const Place& p) { p.at().r.x() += 0.2; })},
-        {"a motion is 0.01 mm away", "U6",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start;
-                },
-                [](Record&, const Place& p) { p.at().r.y() += 1e-5; })},
-        {"a ball begins elsewhere", "U6",
-         motion([](const Record&, const BallTrack&, std::size_t k) { return k == 0; },
-                [](Record&, const Place& p) {
-                    for (Segment& s : p.track->segments) s.r.x() += 1e-3;
-                })},
-        {"a motion begins 1 ms later", "U6 U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k > 0 && k + 1 < t.segments.size() && t.segments[k + 1].start > t.segments[k].start + 0.002;
-                },
-                [](Record&, const Place& p) { p.at().start += 1e-3; })},
-        {"a motion begins before the one before it", "U2",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k > 0 && t.segments[k - 1].start > 1e-3;
-                },
-                [](Record&, const Place& p) { p.at().start = p.track->segments[p.k - 1].start - 1e-4; })},
-        {"a motion is left out", "U6 U7 U8",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k > 0 && t.segments[k].start > t.segments[k - 1].start &&
-                           (k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start) &&
-                           !t.segments[k].held && !t.segments[k-1].held && t.segments[k].state != MotionState::kColliding;
-                },
-                [](Record&, const Place& p) {
-                    p.track->segments.erase(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k));
-                })},
-        {"a motion is cut in two, with another velocity", "U6 U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return !t.segments[k].held && translates(t.segments[k].state) && t.segments[k].state != MotionState::kColliding &&
-                           k + 1 < t.segments.size() && t.segments[k + 1].start > t.segments[k].start + 1e-3;
-                },
-                [](Record& r, const Place& p) {
-                    const double t = 0.5 * (p.at().start + p.track->segments[p.k + 1].start);
-                    const BallState s = r.state_at(static_cast<int>(p.track - r.tracks.data()), t);
-                    Segment half = p.at();
-                    half.start = t, half.r = s.position, half.v = 0.9 * s.velocity, half.w = s.spin;
-                    p.track->segments.insert(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k) + 1, half);
-                })},
-        {"two balls exchange their motions", "U6",
-         [](Record& r, Generator& random) {
-             if (r.tracks.size() < 2) return false;
-             const int a = draw(random, r.tracks.size() - 1);
-             std::swap(r.tracks[static_cast<std::size_t>(a)].segments, r.tracks[static_cast<std::size_t>(a) + 1].segments);
-             return true;
-         }},
-        {"all times are 1 % longer", "U6 U7",
-         [](Record& r, Generator&) {
-             for (BallTrack& t : r.tracks)
-                 for (Segment& s : t.segments) s.start *= 1.01;
-             for (Event& e : r.events) e.time *= 1.01;
-             r.duration *= 1.01;
-             return r.duration > 0.0 && r.events.size() > 1;
-         }},
-        {"the strike is 0.1 % faster", "U5 U7",
-         [](Record& r, Generator&) {
-             if (r.events.empty() || r.events[0].type != EventType::kCueStrike) return false;
-             std::vector<Segment>& s = r.tracks[static_cast<std::size_t>(r.events[0].a)].segments;
-             if (s.size() < 2 || s[1].start > 0.0) return false;
-             s[1].v *= 1.001;
-             return true;
-         }},
-        {"a cluster lasts longer for one ball", "U6 U7",
-         motion(lasting(MotionState::kColliding), [](Record&, const Place& p) { p.at().duration *= 1.1; })},
-        {"a ball in a cluster takes another path", "U6",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return t.segments[k].state == MotionState::kColliding;
-                },
-                [](Record&, const Place& p) { p.at().v += Vec3(0.1, -0.1, 0.0); })},
-        {"the spin after a cluster differs from that in it", "U6",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return t.segments[k].state == MotionState::kColliding;
-                },
-                [](Record&, const Place& p) { p.at().w.z() += 1.0; })},
-        {"a cluster makes a ball twice as fast", "U4 U5 U7",
-         motion([](const Record&, const BallTrack& t, std::size_t k) {
-                    return k > 0 && t.segments[k - 1].state == MotionState::kColliding && t.segments[k].v.norm() > 0.5;
-                },
-                [](Record&, const Place& p) { p.at().v *= 2.0; })},
-        {"the record ends twice as late", "U7 U8",
-         [](Record& r, Generator&) {
-             r.duration *= 2.0;
-             return r.duration > 0.0;
-         }},
-        {"the record ends before its last change", "U8",
-         [](Record& r, Generator&) {
-             if (r.stopped == StopReason::kTime) return false;
-             r.duration *= 0.9;
-             return r.duration > 0.0;
-         }},
-        {"the record stopped for another reason", "U8",
-         [](Record& r, Generator&) {
-             r.stopped = r.stopped == StopReason::kAtRest ? StopReason::kTime : StopReason::kAtRest;
-             return true;
-         }},
-        {"a ball in the end does not rest", "U6 U7 U8",
-         motion([](const Record& r, const BallTrack& t, std::size_t k) {
-                    return r.stopped == StopReason::kAtRest && k > 0 && k + 1 == t.segments.size() &&
-                           t.segments[k].start > t.segments[k - 1].start && t.segments[k].state == MotionState::kStationary && !t.segments[k].held && !t.segments[k-1].held;
-                },
-                [](Record&, const Place& p) { p.track->segments.pop_back(); })},
+    std::vector<Kind> all;
+    const auto add = [&all](const char* name, const char* laws, Spoil spoil) {
+        all.push_back({name, laws, std::move(spoil)});
     };
+    add("all events are gone", "U6", [](Record& r, Generator&) {
+        const bool any = !r.events.empty();
+        r.events.clear();
+        return any;
+    });
+    add("a number is NaN", "U1",
+        motion([](auto&, auto&, std::size_t) { return true; },
+               [](Record&, const Place& p) { p.at().v.y() = std::numeric_limits<double>::quiet_NaN(); }));
+    add("an event is 20 ms late", "U5 U6", [](Record& r, Generator& random) {
+        Event* e = one_of(r.events, random, any_event);
+        if (e == nullptr) return false;
+        e->time += 0.02;
+        std::stable_sort(r.events.begin(), r.events.end(),
+                         [](const Event& p, const Event& q) { return p.time < q.time; });
+        return true;
+    });
+    add("all events are 20 ms late", "U6", [](Record& r, Generator&) {
+        for (Event& e : r.events) e.time += 0.02;
+        return !r.events.empty();
+    });
+    add("two events are exchanged", "U2", [](Record& r, Generator&) {
+        if (r.events.size() < 2 || r.events.front().time == r.events.back().time) return false;
+        std::swap(r.events.front(), r.events.back());
+        return true;
+    });
+    add("an event is twice in the list", "U5 U6",
+        event(
+            [](const Event& e) {
+                return kind(e.type).phase != EventPhase::kRelease &&
+                       kind(e.type).phase != EventPhase::kHold && e.type != EventType::kBallCluster &&
+                       e.type != EventType::kBallOut && kind(e.type).phase != EventPhase::kStrike &&
+                       kind(e.type).partner != Partner::kPocket &&
+                       kind(e.type).phase != EventPhase::kTransition;
+            },
+            [](Record& r, Event& e, Generator&) {
+                if (!is_needed(r, e)) return false;
+                const Event copy = e;
+                r.events.insert(r.events.begin() + (&e - r.events.data()), copy);
+                return true;
+            }));
+    add("an event names another ball", "U5 U6",
+        event(any_event, [another](Record& r, Event& e, Generator& random) {
+            // Any two of its balls may have met first.
+            if (r.tracks.size() < 3 || e.type == EventType::kBallCluster) return false;
+            e.a = another(e.a, r.tracks.size(), random);
+            return !has_partner(e, Partner::kBall) || e.a != e.b;
+        }));
+    add("an impact names another partner", "U5 U6",
+        event([](const Event& e) { return e.type == EventType::kBallBall; },
+              [another](Record& r, Event& e, Generator& random) {
+                  if (r.tracks.size() < 3) return false;
+                  e.b = another(e.b, r.tracks.size(), random);
+                  return e.a != e.b;
+              }));
+    add("an impact names another cushion", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallCushion && e.detail < 0; },
+              [another](Record& r, Event& e, Generator& random) {
+                  if (r.table.cushions.size() < 2) return false;
+                  e.b = another(e.b, r.table.cushions.size(), random);
+                  return true;
+              }));
+    add("a jaw becomes another", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallJaw; },
+              [another](Record& r, Event& e, Generator& random) {
+                  if (r.table.jaws.size() < 2) return false;
+                  e.b = another(e.b, r.table.jaws.size(), random);
+                  return true;
+              }));
+    add("a ball falls into another pocket", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallPocket; },
+              [another](Record& r, Event& e, Generator& random) {
+                  e.b = another(e.b, r.table.pockets.size(), random);
+                  r.tracks[static_cast<std::size_t>(e.a)].pocket = e.b;
+                  return true;
+              }));
+    add("a ball passes the edge of another pocket", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallEdge; },
+              [another](Record& r, Event& e, Generator& random) {
+                  e.b = another(e.b, r.table.pockets.size(), random);
+                  return true;
+              }));
+    add("a pocketed ball lies in another pocket", "U8", [another](Record& r, Generator& random) {
+        BallTrack* t = one_of(r.tracks, random, [](const BallTrack& of) { return of.pocket >= 0; });
+        if (t != nullptr) t->pocket = another(t->pocket, r.table.pockets.size(), random);
+        return t != nullptr;
+    });
+    add("a pocketed ball is not in a pocket", "U8", [](Record& r, Generator& random) {
+        BallTrack* t = one_of(r.tracks, random, [](const BallTrack& of) { return of.pocket >= 0; });
+        if (t != nullptr) t->pocket = -1;
+        return t != nullptr;
+    });
+    add("a ball is pocketed without reason", "U6", [](Record& r, Generator& random) {
+        if (r.table.pockets.empty()) return false;
+        const auto p = segment(r, random, [](const BallTrack& t, std::size_t k) {
+            return k > 0 && (is(MotionState::kRolling)(t, k) || is(MotionState::kSliding)(t, k));
+        });
+        if (!p) return false;
+        const int pocket = draw(random, r.table.pockets.size());
+        const Pocket& of = r.table.pockets[static_cast<std::size_t>(pocket)];
+        stop_dead(r, *p);
+        p->at().state = MotionState::kPocketed;
+        p->at().r = Vec3(of.center.x(), of.center.y(), -of.depth);
+        p->track->pocket = pocket;
+        const Event e{p->at().start, EventType::kBallPocket, static_cast<int>(p->track - r.tracks.data()),
+                      pocket};
+        std::erase_if(r.events, [&](const Event& x) { return x.a == e.a && x.time >= e.time; });
+        r.events.insert(
+            std::find_if(r.events.begin(), r.events.end(), [&](const Event& x) { return x.time > e.time; }),
+            e);
+        return true;
+    });
+    add("a transition has another type", "U6",
+        event(
+            [](const Event& e) {
+                return kind(e.type).phase == EventPhase::kTransition && !has_partner(e, Partner::kPocket) &&
+                       e.type != EventType::kBallOut;
+            },
+            [](Record&, Event& e, Generator&) {
+                e.type = e.type == EventType::kSlideRoll ? EventType::kRollStop : EventType::kSlideRoll;
+                return true;
+            }));
+    add("a cluster lacks a ball", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallCluster; },
+              [](Record& r, Event& e, Generator& random) {
+                  if (in_group(r, e)) return false;
+                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
+                  list.erase(list.begin() + draw(random, list.size()));
+                  return true;
+              }));
+    add("a cluster has one more ball", "U6",
+        event([](const Event& e) { return e.type == EventType::kBallCluster; },
+              [](Record& r, Event& e, Generator&) {
+                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
+                  for (int ball = 0; ball < static_cast<int>(r.tracks.size()); ++ball) {
+                      if (std::find(list.begin(), list.end(), ball) != list.end()) continue;
+                      const BallTrack& t = r.tracks[static_cast<std::size_t>(ball)];
+                      if (t.segments[t.segment_at(e.time)].start == e.time) continue;
+                      list.push_back(ball);
+                      return true;
+                  }
+                  return false;
+              }));
+    add("two balls at rest meet", "U6", [](Record& r, Generator& random) {
+        if (r.tracks.size() < 2 || r.events.empty()) return false;
+        const int a = draw(random, r.tracks.size()), b = (a + 1) % static_cast<int>(r.tracks.size());
+        const double t = 0.5 * r.duration;
+        r.events.insert(
+            std::find_if(r.events.begin(), r.events.end(), [&](const Event& x) { return x.time > t; }),
+            Event{t, EventType::kBallBall, a, b});
+        return true;
+    });
+    add("the velocity after an impact is 1 % larger", "U4 U5 U7",
+        motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.01; }));
+    add("the velocity after an impact is 1e-4 smaller", "U5 U7",
+        motion(is_free_after, [](Record&, const Place& p) { p.at().v *= 1.0 - 1e-4; }));
+    add("the velocity after an impact is 1e-4 smaller, with the motion that follows", "U5 U7",
+        motion([](const Record& r, const BallTrack& t,
+                  std::size_t k) { return is_free_after(r, t, k) && !is_off_cloth(t.segments[k].state); },
+               [](Record& r, const Place& p) {
+                   const Segment& s = p.at();
+                   MotionParams params = motion_params(r.balls, r.gravity, s.r.z());
+                   p.at() = start_segment(s.start, s.r, (1.0 - 1e-4) * s.v, s.w, params);
+               }));
+    add("an impact and the motion after it turn by 1 degree", "U5",
+        motion(
+            [](const Record& r, const BallTrack& t, std::size_t k) {
+                return is_free_after(r, t, k) && t.segments[k].state != MotionState::kRolling;
+            },
+            [](Record&, const Place& p) {
+                const double c = std::cos(0.01745), s = std::sin(0.01745);
+                Segment& at = p.at();
+                for (auto* v : {&at.v, &at.w})
+                    *v = Vec3(c * v->x() - s * v->y(), s * v->x() + c * v->y(), v->z());
+                for (auto* v : {&at.a, &at.dw}) *v = Vec2(c * v->x() - s * v->y(), s * v->x() + c * v->y());
+            }));
+    add("an impact's velocity is mirrored", "U5 U7", motion(is_free_after, [](Record&, const Place& p) {
+            const Vec3 came = p.track->segments[p.k - 1].v;
+            Vec3& v = p.at().v;
+            v = came.norm() > 1e-3 && (came + v).norm() > 1e-3 ? Vec3(-v) : Vec3(-0.5 * v);
+        }));
+    add("the spin after an impact is 1 % larger", "U5 U7",
+        motion([](const Record& r, const BallTrack& t,
+                  std::size_t k) { return is_free_after(r, t, k) && t.segments[k].w.norm() > 1.0; },
+               [](Record&, const Place& p) { p.at().w *= 1.01; }));
+    add("the vertical spin is 0 from one motion on", "U5 U6 U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return !t.segments[k].held &&
+                       (k == 0 ||
+                        (!t.segments[k - 1].held && t.segments[k - 1].state != MotionState::kColliding &&
+                         t.segments[k - 1].start < t.segments[k].start)) &&
+                       t.segments[k].state != MotionState::kColliding &&
+                       std::abs(t.segments[k].w.z()) > 0.1 &&
+                       (k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start);
+            },
+            [](Record&, const Place& p) {
+                for (std::size_t k = p.k; k < p.track->segments.size(); ++k) {
+                    p.track->segments[k].w.z() = p.track->segments[k].spin_decay = 0.0;
+                }
+            }));
+    add("a ball stops dead", "U5 U6 U7",
+        motion([](const Record& r, const BallTrack& t, std::size_t k) { return is_free_after(r, t, k); },
+               stop_dead));
+    add("a rolling ball stops dead in the middle", "U6",
+        motion(lasting(MotionState::kRolling), [](Record& r, const Place& p) {
+            const double until =
+                p.k + 1 < p.track->segments.size() ? p.track->segments[p.k + 1].start : r.duration;
+            const double t = 0.5 * (p.at().start + until);
+            Segment half = p.at();
+            half.start = t;
+            half.r = r.state_at(static_cast<int>(p.track - r.tracks.data()), t).position;
+            p.track->segments.insert(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k) + 1, half);
+            stop_dead(r, {p.track, p.k + 1});
+        }));
+    add("a ball that was hit never moves", "U6",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k == 0 && t.segments.size() > 2 && t.segments[0].state == MotionState::kStationary &&
+                       t.segments[1].start > 0.0;
+            },
+            [](Record&, const Place& p) { p.track->segments.resize(1); }));
+    add("a ball rolls with half the deceleration", "U7",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return is(MotionState::kRolling)(t, k) && t.segments[k].a.norm() > 0.0; },
+               [](Record&, const Place& p) { p.at().a *= 0.5, p.at().dw *= 0.5, p.at().duration *= 2.0; }));
+    add("a ball slides with less friction", "U7",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return is(MotionState::kSliding)(t, k) && t.segments[k].a.norm() > 0.0; },
+               [](Record&, const Place& p) { p.at().a *= 0.99; }));
+    add("the friction of a sliding ball has another direction", "U7",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return is(MotionState::kSliding)(t, k) && t.segments[k].a.norm() > 0.0; },
+               [](Record&, const Place& p) { p.at().a = Vec2(-p.at().a.y(), p.at().a.x()); }));
+    add("the spin of a sliding ball does not change", "U7",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return is(MotionState::kSliding)(t, k) && t.segments[k].dw.norm() > 0.0; },
+               [](Record&, const Place& p) { p.at().dw = Vec2::Zero(); }));
+    add("the vertical spin decays at half the rate", "U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) { return t.segments[k].spin_decay > 0.0; },
+            [](Record&, const Place& p) { p.at().spin_decay *= 0.5; }));
+    add("a motion lasts 1 % longer", "U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return !t.segments[k].held && std::isfinite(t.segments[k].duration) &&
+                       t.segments[k].duration > 1e-4 && t.segments[k].state != MotionState::kColliding;
+            },
+            [](Record&, const Place& p) { p.at().duration *= 1.01; }));
+    add("a sliding ball is called rolling", "U7",
+        motion(lasting(MotionState::kSliding),
+               [](Record&, const Place& p) { p.at().state = MotionState::kRolling; }));
+    add("a rolling ball is called sliding", "U7",
+        motion(lasting(MotionState::kRolling),
+               [](Record&, const Place& p) { p.at().state = MotionState::kSliding; }));
+    add("a rolling ball slips", "U7",
+        motion(lasting(MotionState::kRolling), [](Record&, const Place& p) { p.at().w.x() += 1.0; }));
+    add("a flying ball is called sliding", "U6 U7",
+        motion(lasting(MotionState::kAirborne),
+               [](Record&, const Place& p) { p.at().state = MotionState::kSliding; }));
+    add("a flying ball rises faster", "U5 U7",
+        motion(lasting(MotionState::kAirborne), [](Record&, const Place& p) { p.at().v.z() += 0.01; }));
+    add("a falling ball falls faster", "U6 U7",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return t.segments[k].state == MotionState::kFalling; },
+               [](Record&, const Place& p) { p.at().v.z() -= 0.01; }));
+    add("a ball rises above the cloth", "U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return is(MotionState::kRolling)(t, k) || is(MotionState::kStationary)(t, k);
+            },
+            [](Record&, const Place& p) { p.at().r.z() += 1e-4; }));
+    add("the last motion of a ball is 0.2 m away", "U6",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k + 1 == t.segments.size() && t.segments[k].state != MotionState::kPocketed;
+            },
+            [](Record&, const Place& p) { p.at().r.x() += 0.2; }));
+    add("a motion is 0.01 mm away", "U6",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start;
+            },
+            [](Record&, const Place& p) { p.at().r.y() += 1e-5; }));
+    add("a ball begins elsewhere", "U6",
+        motion([](const Record&, const BallTrack&, std::size_t k) { return k == 0; },
+               [](Record&, const Place& p) {
+                   for (Segment& s : p.track->segments) s.r.x() += 1e-3;
+               }));
+    add("a motion begins 1 ms later", "U6 U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k > 0 && k + 1 < t.segments.size() &&
+                       t.segments[k + 1].start > t.segments[k].start + 0.002;
+            },
+            [](Record&, const Place& p) { p.at().start += 1e-3; }));
+    add("a motion begins before the one before it", "U2",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return k > 0 && t.segments[k - 1].start > 1e-3; },
+               [](Record&, const Place& p) { p.at().start = p.track->segments[p.k - 1].start - 1e-4; }));
+    add("a motion is left out", "U6 U7 U8",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k > 0 && t.segments[k].start > t.segments[k - 1].start &&
+                       (k + 1 == t.segments.size() || t.segments[k + 1].start > t.segments[k].start) &&
+                       !t.segments[k].held && !t.segments[k - 1].held &&
+                       t.segments[k].state != MotionState::kColliding;
+            },
+            [](Record&, const Place& p) {
+                p.track->segments.erase(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k));
+            }));
+    add("a motion is cut in two, with another velocity", "U6 U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return !t.segments[k].held && translates(t.segments[k].state) &&
+                       t.segments[k].state != MotionState::kColliding && k + 1 < t.segments.size() &&
+                       t.segments[k + 1].start > t.segments[k].start + 1e-3;
+            },
+            [](Record& r, const Place& p) {
+                const double t = 0.5 * (p.at().start + p.track->segments[p.k + 1].start);
+                const BallState s = r.state_at(static_cast<int>(p.track - r.tracks.data()), t);
+                Segment half = p.at();
+                half.start = t, half.r = s.position, half.v = 0.9 * s.velocity, half.w = s.spin;
+                p.track->segments.insert(p.track->segments.begin() + static_cast<std::ptrdiff_t>(p.k) + 1,
+                                         half);
+            }));
+    add("two balls exchange their motions", "U6", [](Record& r, Generator& random) {
+        if (r.tracks.size() < 2) return false;
+        const int a = draw(random, r.tracks.size() - 1);
+        std::swap(r.tracks[static_cast<std::size_t>(a)].segments,
+                  r.tracks[static_cast<std::size_t>(a) + 1].segments);
+        return true;
+    });
+    add("all times are 1 % longer", "U6 U7", [](Record& r, Generator&) {
+        for (BallTrack& t : r.tracks)
+            for (Segment& s : t.segments) s.start *= 1.01;
+        for (Event& e : r.events) e.time *= 1.01;
+        r.duration *= 1.01;
+        return r.duration > 0.0 && r.events.size() > 1;
+    });
+    add("the strike is 0.1 % faster", "U5 U7", [](Record& r, Generator&) {
+        if (r.events.empty() || r.events[0].type != EventType::kCueStrike) return false;
+        std::vector<Segment>& s = r.tracks[static_cast<std::size_t>(r.events[0].a)].segments;
+        if (s.size() < 2 || s[1].start > 0.0) return false;
+        s[1].v *= 1.001;
+        return true;
+    });
+    add("a cluster lasts longer for one ball", "U6 U7",
+        motion(lasting(MotionState::kColliding), [](Record&, const Place& p) { p.at().duration *= 1.1; }));
+    add("a ball in a cluster follows another path", "U6",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return t.segments[k].state == MotionState::kColliding; },
+               [](Record&, const Place& p) { p.at().v += Vec3(0.1, -0.1, 0.0); }));
+    add("the spin after a cluster differs from that in it", "U6",
+        motion([](const Record&, const BallTrack& t,
+                  std::size_t k) { return t.segments[k].state == MotionState::kColliding; },
+               [](Record&, const Place& p) { p.at().w.z() += 1.0; }));
+    add("a cluster makes a ball twice as fast", "U4 U5 U7",
+        motion(
+            [](const Record&, const BallTrack& t, std::size_t k) {
+                return k > 0 && t.segments[k - 1].state == MotionState::kColliding &&
+                       t.segments[k].v.norm() > 0.5;
+            },
+            [](Record&, const Place& p) { p.at().v *= 2.0; }));
+    add("the record ends twice as late", "U7 U8", [](Record& r, Generator&) {
+        r.duration *= 2.0;
+        return r.duration > 0.0;
+    });
+    add("the record ends before its last change", "U8", [](Record& r, Generator&) {
+        if (r.stopped == StopReason::kTime) return false;
+        r.duration *= 0.9;
+        return r.duration > 0.0;
+    });
+    add("the record stopped for another reason", "U8", [](Record& r, Generator&) {
+        r.stopped = r.stopped == StopReason::kAtRest ? StopReason::kTime : StopReason::kAtRest;
+        return true;
+    });
+    add("a ball in the end does not rest", "U6 U7 U8",
+        motion(
+            [](const Record& r, const BallTrack& t, std::size_t k) {
+                return r.stopped == StopReason::kAtRest && k > 0 && k + 1 == t.segments.size() &&
+                       t.segments[k].start > t.segments[k - 1].start &&
+                       t.segments[k].state == MotionState::kStationary && !t.segments[k].held &&
+                       !t.segments[k - 1].held;
+            },
+            [](Record&, const Place& p) { p.track->segments.pop_back(); }));
+
     for (int type = 0; type < kEventTypes; ++type) {
         const EventKind& of = kEventKinds[type];
         static std::vector<std::string> names;

@@ -32,7 +32,7 @@ constexpr double kHeldJump = 1e-3, kHeldShare = 1e-2;
 constexpr double kUnlike = 0x1p-40;
 
 /// A model of the impact of two balls: the law of `mathavan`, for alike balls too by the solver for unlike
-/// ones (Gauss collocation), which shares no code with that of the loop.
+/// ones (Gauss collocation), which shares no code with the solver of the loop.
 void as_unlike(const BallBallSettings& settings, const kernel::Ball& ball1, const kernel::Ball& ball2,
                const kernel::ImpactParams& params, kernel::ImpactResult& result) {
     kernel::ImpactParams unlike = params;
@@ -478,9 +478,9 @@ class Events {
         step(b, event_ + 1);
     }
 
-    // Computes the impact of two balls on the cloth again, with the normal of collide(); the only place that
-    // does. Where the two solvers disagree (that for unlike balls erred by up to six tolerances, in 8 of 20
-    // 000 random scenes), that of the loop decides, with a tenth of the tolerance.
+    // Computes the impact of two balls on the cloth again, with the normal of collide(); no other place does.
+    // Where the two solvers disagree (the one for unlike balls erred by up to six tolerances, in 8 of 20 000
+    // random scenes), the solver of the loop decides, with a tenth of the tolerance.
     void hit_again(std::size_t a, std::size_t b, double error, Velocities& m1, Velocities& m2) const {
         BallBallSettings settings = plan_.impact;
         settings.tolerance = std::max(kernel::kTightestTolerance, 0.1 * settings.tolerance);
@@ -603,7 +603,7 @@ class Events {
         c.at.position.z() = R(ball);
     }
 
-    // Contacts conserve the momentum of a cluster, and friction with the cloth takes a part.
+    // Contacts conserve the momentum of a cluster, and friction with the cloth absorbs a part.
     void cluster(const Event& e) {
         const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)];
         const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
@@ -646,7 +646,7 @@ class Events {
                    length(change), most);
     }
 
-    // [of the momentum] The most that the cloth takes from a cluster: its friction is mu_s times the vertical
+    // [of the momentum] The most that the cloth absorbs: its friction is mu_s times the vertical
     // friction of contacts, of which each passes on the whole momentum at most twice. A record that lists the
     // contacts has their impulses instead.
     double cloth_share(std::size_t balls) const {

@@ -171,7 +171,7 @@ class Motions {
             for (const Event& e : record_.events)
                 if (e.type == EventType::kBallPocket && static_cast<std::size_t>(e.a) == ball) pocket = e.b;
             if (of.pocket != pocket || (pocket >= 0) != (of.segments.back().state == MotionState::kPocketed))
-                report("U8", "the pocket of ball {} is not that of its events", of.id);
+                report("U8", "the pocket of ball {} differs from its events", of.id);
         }
         const auto& stop = plan_.scene.stop.time;
         if (record_.stopped != StopReason::kTime && std::abs(record_.duration - last) > same_time(last))

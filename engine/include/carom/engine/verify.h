@@ -38,14 +38,14 @@ struct Violation {
 ///   E  no effect that the plan skipped was needed
 /// U4 is not checked for the published sign of the cloth slip, nor below 100 substeps: both gain energy by
 /// construction. In a resting contact only its places, its touch and its continuity are checked.
-/// docs/design/hard_cases.md lists what these laws cannot know.
+/// docs/design/hard_cases.md lists the limits of these laws.
 std::optional<Violation> verify(const Record& record, const Plan& plan);
 
 /// One sentence for people, with the event. @param record  that was checked
 std::string describe(const Violation& violation, const Record& record);
 
 /// Before verify() of a record from a file. @throws SceneError with the first difference, for the file
-/// `name`, if the record repeats another table, other balls or another gravity than those of the plan
+/// `name`, if the record repeats a table, balls or a gravity that differ from the plan
 void require_scene(const Record& record, const Plan& plan, const std::string& name);
 
 }  // namespace carom

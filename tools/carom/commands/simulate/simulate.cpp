@@ -313,8 +313,9 @@ void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
         "simulate", "Simulate a scene: print what happened, write events, record or samples", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    command.argument("RECORD", args.checked,
-                     "With --verify: check this record of the scene, a .json file, and simulate nothing");
+    command.argument(
+        "RECORD", args.checked,
+        "With --verify, check this record of the scene (.json) instead of a run (default: the run)");
     command
         .option("-o,--output", &args.record, "FILE.json",
                 "Write the record, which carom render reads (default: not written)")
