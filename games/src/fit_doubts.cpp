@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 namespace carom::games {
 namespace {
@@ -33,22 +35,92 @@ struct Unit {
 constexpr std::array<Unit, 4> kUnits = {
     {{"mm", 1000.0}, {"cm", 100.0}, {"inches", 39.3701}, {"feet", 3.28084}}};
 
+// [R] A fit that is no better than straight lines is reported only if it is farther off than this: on a short
+// or straight path, noise alone is as good.
+constexpr double kVisible = 0.25;
+
+/// A mistake in tracks. The scene's time is t / per_second.
+struct Mistake {
+    double per_second = 1.0;
+    bool swapped = false, flipped_x = false, flipped_y = false;
+    const char* what = "";
+    std::string text() const {
+        return per_second == 1.0 ? what
+               : per_second == 1000.0
+                   ? "the times look like milliseconds; write seconds"
+                   : fmt::format("the times look like frames at {} a second; write seconds", per_second);
+    }
+};
+constexpr Mistake kMistakes[] = {
+    {1000.0},
+    {24.0},
+    {25.0},
+    {30.0},
+    {50.0},
+    {60.0},
+    {120.0},
+    {240.0},
+    {1.0, true, false, false, "x and y look swapped; x is across the table, y along it"},
+    {1.0, false, true, false, "x looks measured from the right; measure it from the left rail"},
+    {1.0, false, false, true, "y looks measured from the foot; measure it from the head rail"},
+    {1.0, false, true, true,
+     "the origin looks like the far corner; measure from the left and the head rail"}};
+// [-] A mistake is named if undoing it leaves at most this share of the distance.
+constexpr double kUndone = 0.5;
+
 /// The residuals that these columns cannot explain.
 VectorXd rest_of(const MatrixXd& columns, const VectorXd& residuals) {
     return residuals - columns * columns.completeOrthogonalDecomposition().solve(residuals);
 }
 
+/// [m] Median distance of the tracks from the record if this mistake is undone, over the balls that move.
+double distance_without(const Mistake& mistake, const Record& record, const std::vector<TrackPoint>& points) {
+    std::vector<double> distances;
+    for (const TrackPoint& point : points) {
+        if (record.tracks[static_cast<std::size_t>(point.ball)].segments.size() < 2) continue;
+        Vec2 place = point.place;
+        if (mistake.swapped) place = Vec2(place.y(), place.x());
+        if (mistake.flipped_x) place.x() = record.table.width - place.x();
+        if (mistake.flipped_y) place.y() = record.table.length - place.y();
+        const BallState state = record.state_at(point.ball, point.time / mistake.per_second);
+        distances.push_back(length(planar(state.position) - place));
+    }
+    return median(std::move(distances));
+}
+
+/// [m] Median residual of straight lines through the tracks of each ball.
+double distance_from_lines(const std::vector<Coordinate>& moved) {
+    std::map<std::pair<int, int>, std::vector<const Coordinate*>> groups;
+    for (const Coordinate& c : moved) groups[{c.ball, c.axis}].push_back(&c);
+    std::vector<double> sizes;
+    for (const auto& [key, list] : groups) {
+        MatrixXd columns(static_cast<Eigen::Index>(list.size()), 2);
+        VectorXd seen(columns.rows());
+        for (Eigen::Index i = 0; i < seen.size(); ++i) {
+            const Coordinate& c = *list[static_cast<std::size_t>(i)];
+            columns.row(i) << 1.0, c.time;
+            seen[i] = c.seen;
+        }
+        for (const double size : rest_of(columns, seen)) sizes.push_back(std::abs(size));
+    }
+    return median(std::move(sizes));
+}
+
 }  // namespace
+
+double median(std::vector<double> list) {
+    if (list.empty()) return 0.0;
+    const auto half = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+    std::nth_element(list.begin(), half, list.end());
+    return *half;
+}
 
 double scale_of(const std::vector<Coordinate>& coordinates) {
     const auto middle = [&coordinates](double Coordinate::*of) {
         std::vector<double> sizes;
         sizes.reserve(coordinates.size());
         for (const Coordinate& c : coordinates) sizes.push_back(std::abs(c.*of));
-        if (sizes.empty()) return 0.0;
-        const auto half = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), half, sizes.end());
-        return *half;
+        return median(std::move(sizes));
     };
     const double simulated = middle(&Coordinate::place);
     return simulated > 0.0 ? middle(&Coordinate::seen) / simulated : 1.0;
@@ -97,6 +169,26 @@ std::string doubt_of(const std::vector<Coordinate>& moved, const MatrixXd& slope
             "this shot, or vary other numbers",
             outliers, n);
     return "";
+}
+
+std::string doubt_of_distance(const std::vector<Coordinate>& moved, double noise, const Record& record,
+                              const std::vector<TrackPoint>& points) {
+    const double R = record.balls.R;
+    const bool far = noise > R;
+    if (!far && !(noise > kVisible * R && noise >= kMedian * distance_from_lines(moved))) return "";
+    const std::string typical =
+        fmt::format("the positions are typically {:.3g} mm off, {}; ", 1e3 * noise,
+                    far ? "more than a ball's radius" : "no better than straight lines through the tracks");
+    double best = kUndone * distance_without({}, record, points);
+    std::string reason =
+        "check that they are of this shot, on this table, in seconds and metres from the corner of the noses";
+    for (const Mistake& mistake : kMistakes) {
+        const double distance = distance_without(mistake, record, points);
+        if (distance >= best) continue;
+        best = distance;
+        reason = mistake.text();
+    }
+    return typical + reason;
 }
 
 double correlation_factor(std::vector<Coordinate> moved) {
