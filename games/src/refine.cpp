@@ -16,6 +16,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
+#include "carom/engine/strike.h"
 #include "carom/engine/tangents.h"
 
 namespace carom::games {
@@ -165,6 +166,12 @@ Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const S
     for (Choice& choice : result.choices) {
         const double aim = found.scene.cue->aim_deg;
         if (choice.key.starts_with("hit.")) choice = {"cue.aim_deg", aim - kTurn, aim + kTurn};
+        if (choice.key != kBallSpeed) continue;
+        const Scene& scene = found.scene;
+        const int struck = index_of(scene.ball, scene.cue->ball);
+        const double gain =
+            ball_speed_gain(*scene.cue, scene.size_of(scene.ball.at(static_cast<std::size_t>(struck))));
+        choice = {"cue.speed", choice.low / gain, choice.high / gain};
     }
     result.refined = refine(found.scene, result.choices, places, isa,
                             [&want](const Record& record) { return want.holds(record); });
