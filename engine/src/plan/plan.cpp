@@ -143,10 +143,12 @@ void warn_of_clusters(Plan& plan) {
                                             e_b, kLeastInCluster));
 }
 
-// Limits beyond which a value is probably in the wrong unit. [m], [m/s]
+// Limits beyond which a value is probably in the wrong unit. [m], [m/s], [kg], [m/s^2]
 constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
 constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
+constexpr double kLightestBall = 0.01, kHeaviestBall = 2.0, kLightestCue = 0.1, kHeaviestCue = 3.0;
+constexpr double kMostGravity = 30.0;
 
 /// Warns of valid numbers that look as if they were in a different unit.
 void warn_of_units(Plan& plan) {
@@ -181,11 +183,41 @@ void warn_of_units(Plan& plan) {
                         size.R));
         break;
     }
+    for (const BallSize& size : plan.sizes) {
+        if (size.m >= kLightestBall && size.m <= kHeaviestBall) continue;
+        say(fmt::format("a ball has a mass of {:.4g} kg, while a pool ball has 0.17; masses are in kg",
+                        size.m));
+        break;
+    }
+    if (scene.cue && !(scene.cue->mass >= kLightestCue && scene.cue->mass <= kHeaviestCue))
+        say(fmt::format("the cue has a mass of {:.4g} kg, while a usual one has 0.54; masses are in kg",
+                        scene.cue->mass));
+    if (scene.physics.gravity > kMostGravity)
+        say(fmt::format("physics.gravity is {:.4g}, while the earth has 9.81; it is in m/s^2",
+                        scene.physics.gravity));
+}
+
+/// Warns of a game's balls on another game's table.
+void warn_of_rack(Plan& plan) {
+    const Scene& scene = plan.scene;
+    const std::string& table = scene.table.preset;
+    const auto has = [&scene](auto... ids) { return ((index_of(scene.ball, ids) >= 0) && ...); };
+    const bool snooker = has("black", "pink", "blue", "1"), carom = has("white", "yellow", "red"),
+               pool = has("cue", "1", "2", "3", "7", "8") && !snooker, pockets = !scene.table.pockets.empty();
+    const char* const other = snooker && !table.starts_with("snooker") ? "snooker"
+                              : carom && pockets                       ? "carom"
+                              : pool && !pockets                       ? "nine_foot"
+                                                                       : nullptr;
+    if (table.empty() || other == nullptr) return;
+    plan.warnings.push_back(
+        fmt::format("the {} balls are on the table {}; did you mean preset = \"{}\" in [table]?",
+                    pool ? "pool" : other, table, other));
 }
 
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     warn_of_units(plan);
+    warn_of_rack(plan);
     warn_of_clusters(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;

@@ -158,6 +158,34 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
     return words;
 }
 
+/// The command that the first word names, or nullptr.
+const Options* command_in(const Options& program, int argc, char** argv) {
+    for (const Options& command : program.commands)
+        if (argc > 1 && command.name == argv[1]) return &command;
+    return nullptr;
+}
+
+/// The program's message about a bad command line, from CLI11's.
+std::string explained(const CLI::ParseError& error, const Options* named, int argc, char** argv) {
+    std::string what = error.what();
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+        const std::size_t colon = what.find(": "), equals = what.find(" = ");
+        if (colon != what.npos && equals != what.npos)
+            what = fmt::format("{} {}: expected a number, without a unit",
+                               what.substr(colon + 2, equals - colon - 2), what.substr(equals + 3));
+    }
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || named == nullptr) return what;
+    std::vector<std::string_view> names;
+    for (const Option& row : named->rows) names.insert(names.end(), row.names.begin(), row.names.end());
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word =
+            std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+        if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+            return fmt::format("unknown option {}{}", printable(word), did_you_mean(word, names));
+    }
+    return what;
+}
+
 /// Rejects empty file names, and a file that is named twice: the last write would replace the others.
 void check_files(const Options& command, const CLI::App& app) {
     struct Used {
@@ -173,10 +201,11 @@ void check_files(const Options& command, const CLI::App& app) {
         if (path == nullptr || !(written || row.by_place())) continue;
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
             throw UsageError(row.names.front() + ": empty file name; name a file");
-        if (written && **path == "-" && !row.to_stdout)
-            throw UsageError(
-                row.names.front() +
-                " -: expected a file name; /dev/stdout writes to standard output, together with the summary");
+        // The summary would be in the way of a file on standard output.
+        if (**path == "-" && row.value != "PATTERN") {
+            if (written) quiet() = true;
+            **path = written ? "/dev/stdout" : "/dev/stdin";
+        }
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {
@@ -238,6 +267,7 @@ Option& Option::one_of(std::vector<std::string> values) {
 Options::Options(std::string command_name, std::string description)
     : name(std::move(command_name)), text(std::move(description)) {
     option("-h,--help", {}, "", "Print this help message and exit");
+    flag("-q,--quiet", quiet(), "Print nothing but errors (default: off)");
 }
 
 Options& Options::command(std::string command_name, std::string description) {
@@ -279,15 +309,15 @@ int run_command_line(Options& program, int argc, char** argv) {
         print(std::string(version.what()) + "\n");
         return kOk;
     } catch (const CLI::ParseError& error) {
-        const std::string what = error.what();
+        const std::string what = explained(error, command_in(program, argc, argv), argc, argv);
         throw UsageError(what + (what.ends_with('?') ? " See " : "; see ") + path_of(app) + " --help");
     }
     if (named->run) {
         check_files(*named, app);
         return named->run();
     }
-    throw UsageError(
-        fmt::format("no command given: expected {}; see {} --help", listed(named->commands), path_of(app)));
+    print(app.help());
+    throw UsageError(fmt::format("no command given: expected {}", listed(named->commands)));
 }
 
 }  // namespace carom::tools

@@ -364,6 +364,8 @@ struct DescribeArgs {
 int run(const DescribeArgs& args, const Options& program) {
     for (const auto& format : kFormats)
         if (args.format == format.name) print(format.text(program));
+    if (args.format.empty())
+        for (const auto& format : kFormats) print(fmt::format("carom describe {}\n", format.name));
     return kOk;
 }
 
@@ -373,8 +375,8 @@ void add_describe(Options& program) {
     auto args = std::make_shared<DescribeArgs>();
     Options& command =
         program.command("describe", "Print a description of this program or of its file formats");
-    Option& format = command.argument("FORMAT", args->format, "Description to print");
-    format.required = true;
+    Option& format =
+        command.argument("FORMAT", args->format, "Description to print (default: the list of these)");
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);
     command.run = [args, &program] { return run(*args, program); };
 }

@@ -245,15 +245,10 @@ int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions opti
     return kOk;
 }
 
-bool is_stdout(const std::string& path) {
-    return path == "-";
-}
-
 void write_files(const SimulateArgs& args, const Record& record) {
-    const auto file = [](const std::string& path) { return is_stdout(path) ? "/dev/stdout" : path; };
-    if (!args.record.empty()) write_record(record, file(args.record));
-    if (!args.events.empty()) write_events_csv(record, file(args.events));
-    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
+    if (!args.record.empty()) write_record(record, args.record);
+    if (!args.events.empty()) write_events_csv(record, args.events);
+    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, args.samples);
 }
 
 /// Reports the first law that the run broke, if any.
@@ -286,12 +281,8 @@ int run(const SimulateArgs& args) {
         print(result_json(record, measures));
         return status;
     }
-    const bool taken = is_stdout(args.record) || is_stdout(args.events) || is_stdout(args.samples);
-    if (args.hash)
-        print(record.hash() + "\n");
-    else if (!taken)
-        print(summary(record, args.scene, args, measures));
-    if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
+    print(args.hash ? record.hash() + "\n" : summary(record, args.scene, args, measures));
+    if (args.list && args.hash) print(all_events(record, units_of(args.units)));
     if (args.profile) print(profile_report(record));
     return status;
 }
@@ -302,18 +293,12 @@ void add_simulate(Options& program) {
     auto [command, args] = program.command<SimulateArgs>(
         "simulate", "Simulate a scene: print what happened, write events, record or samples", run);
     command.argument("SCENE", args.scene, "Scene file (TOML)").required = true;
-    command
-        .option("-o,--output", &args.record, "FILE.json",
-                "Write the record, which carom render reads (default: not written)")
-        .to_stdout = true;
-    command
-        .option("--events", &args.events, "FILE.csv",
-                "Write the events; - prints them instead of the summary (default: not written)")
-        .to_stdout = true;
-    command
-        .option("--samples", &args.samples, "FILE.csv",
-                "Write sampled states; needs --sample-dt (default: not written)")
-        .to_stdout = true;
+    command.option("-o,--output", &args.record, "FILE.json",
+                   "Write the record, which carom render reads (default: not written)");
+    command.option("--events", &args.events, "FILE.csv",
+                   "Write the events; - prints them instead of the summary (default: not written)");
+    command.option("--samples", &args.samples, "FILE.csv",
+                   "Write sampled states; needs --sample-dt (default: not written)");
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");

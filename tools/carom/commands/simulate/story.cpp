@@ -27,6 +27,14 @@ std::string contact(const EventDetails& d, Units units) {
     return fmt::format(", cut {:.0f} deg, {}", cut, speed_text(d.closing / std::cos(d.cut), units));
 }
 
+/// Whether two balls meet more slowly than the summary shows.
+bool is_gentle(const Record& record, std::size_t index) {
+    constexpr double kShown = 0.05;  // [m/s]
+    if (record.events[index].type != EventType::kBallBall) return false;
+    const EventDetails d = details_of(record, index);
+    return d.closing / std::cos(d.cut) < kShown;
+}
+
 /// "cue meets 1, cut 31 deg, 2.1 m/s"
 std::string sentence(const Record& record, std::size_t index, Units units) {
     const Event& event = record.events[index];
@@ -137,7 +145,7 @@ std::string story(const Record& record, Units units) {
         const bool landmark =
             is_end(event) || (of_ball(event, struck) && kind(event.type).partner != Partner::kNone &&
                               contacts++ < kStruckContacts);
-        if (whole || landmark)
+        if (landmark || (whole && !is_gentle(record, i)))
             text += crowd.told() + line(record, i, units);
         else
             crowd.add(event);
