@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class SceneError(ValueError):
     """A mistake in a scene or a record file.
@@ -29,3 +34,25 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         place = "" if self.line is None else f":{self.line}:{self.column}"
         return f"{self.file}{place}: {self.message}"
+
+
+class SceneNotFoundError(SceneError, FileNotFoundError):
+    """The file of a scene or a record does not exist: a SceneError, and a FileNotFoundError as of `open`."""
+
+    def __init__(self, message: str, file: str) -> None:
+        super().__init__(message, file)
+        self.errno, self.strerror, self.filename = errno.ENOENT, os.strerror(errno.ENOENT), file
+
+    def __reduce__(self) -> tuple[type[SceneNotFoundError], tuple[str, str]]:
+        return type(self), (self.message, self.file)
+
+
+@contextmanager
+def reading(path: str) -> Iterator[None]:
+    """Raises SceneNotFoundError instead of SceneError if the file does not exist."""
+    try:
+        yield
+    except SceneError as error:
+        if os.path.lexists(path):
+            raise
+        raise SceneNotFoundError(error.message, error.file) from None

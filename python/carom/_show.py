@@ -5,8 +5,13 @@ from __future__ import annotations
 import html
 import io
 
+import numpy as np
+
 from carom import plot
+from carom._errors import SceneError
 from carom._record import Record
+from carom._scene import Scene
+from carom._simulate import simulate
 
 
 def picture(record: Record) -> bytes | None:
@@ -31,3 +36,32 @@ def shown(record: Record) -> str:
     style = "width:100%;height:620px;border:0"
     page = html.escape(record.page())
     return f'<iframe title="{text}" style="{style}" sandbox="allow-scripts" srcdoc="{page}"></iframe>'
+
+
+def drawing(scene: Scene) -> str:
+    """The table from above with the balls at the start and the line of aim, as SVG."""
+    try:
+        record = simulate(scene, until=0.0)
+    except SceneError:
+        return f"<pre>{html.escape(repr(scene))}</pre>"
+    table, (x, y) = record.table, scene.positions.T
+    edge = 0.1
+    # The long side lies across; without a table, the balls' box.
+    left, low = (table.corner[1], table.corner[0]) if table.width else (min(y, default=0), min(x, default=0))
+    wide, high = (table.length, table.width) if table.width else (np.ptp(y, initial=0), np.ptp(x, initial=0))
+    parts = [f'<rect x="{left}" y="{low}" width="{wide}" height="{high}" fill="#2f7d5b"/>'] if wide else []
+    for name, cx, cy, radius in table.pockets:
+        parts.append(f'<circle cx="{cy}" cy="{cx}" r="{radius}"><title>{html.escape(name)}</title></circle>')
+    for _, x1, y1, x2, y2 in table.cushions:
+        parts.append(f'<path d="M{y1} {x1}L{y2} {x2}" stroke="#14503a" stroke-width="0.02"/>')
+    for ball, px, py, radius, color in zip(scene.ids, x, y, record.radii, record.colors):
+        fill = "".join(f"{round(255 * part):02x}" for part in color)
+        title = f"<title>{html.escape(ball)}</title>"
+        parts.append(f'<circle cx="{py}" cy="{px}" r="{radius}" fill="#{fill}">{title}</circle>')
+    if len(record.events):  # a strike
+        ball, aim = scene.ids.index(scene["cue.ball"]), np.radians(scene["cue.aim_deg"])
+        step = f"l{np.sin(aim)} {np.cos(aim)}"
+        parts.append(f'<path d="M{y[ball]} {x[ball]}{step}" stroke="#fff" stroke-width="0.008" opacity="0.7"/>')
+    box = f"{left - edge} {low - edge} {wide + 2 * edge} {high + 2 * edge}"
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" style="width:100%;max-width:640px">'
+            f"{''.join(parts)}</svg>")

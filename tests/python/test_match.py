@@ -9,7 +9,7 @@ import carom
 import numpy as np
 import pytest
 
-pytest.importorskip("pettingzoo", reason="pettingzoo is not installed: pip install 'carom-billiards[gym]'")
+pytest.importorskip("pettingzoo", reason="pettingzoo is not installed: pip install pettingzoo")
 from carom.gym import match  # noqa: E402
 from pettingzoo.test import api_test, seed_test  # noqa: E402
 
