@@ -48,7 +48,7 @@ def drawing(scene: Scene) -> str:
     edge = 0.1
     # The long side lies across; without a table, the balls' box.
     left, low = (table.corner[1], table.corner[0]) if table.width else (min(y, default=0), min(x, default=0))
-    wide, high = (table.length, table.width) if table.width else (np.ptp(y, initial=0), np.ptp(x, initial=0))
+    wide, high = (table.length, table.width) if table.width else (float(np.ptp(y)), float(np.ptp(x)))
     parts = [f'<rect x="{left}" y="{low}" width="{wide}" height="{high}" fill="#2f7d5b"/>'] if wide else []
     for name, cx, cy, radius in table.pockets:
         parts.append(f'<circle cx="{cy}" cy="{cx}" r="{radius}"><title>{html.escape(name)}</title></circle>')

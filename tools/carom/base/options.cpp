@@ -267,7 +267,7 @@ Option& Option::one_of(std::vector<std::string> values) {
 Options::Options(std::string command_name, std::string description)
     : name(std::move(command_name)), text(std::move(description)) {
     option("-h,--help", {}, "", "Print this help message and exit");
-    flag("-q,--quiet", quiet(), "Print nothing but errors (default: off)");
+    flag("-q,--quiet", quiet(), "Print no summary, warnings or notes (default: off)");
 }
 
 Options& Options::command(std::string command_name, std::string description) {

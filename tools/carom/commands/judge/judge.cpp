@@ -76,7 +76,6 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
                                          harmless(args.state), carom::name(before.game)));
     } else {
         before = games::new_game(game_of(args.game));
-        message("note: judged as the first shot of a game; for a later one, give --state");
     }
     for (const std::string& option : args.rules) {
         try {
@@ -85,6 +84,8 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
             throw UsageError(fmt::format("--rules {}", refused.what()));
         }
     }
+    if (args.state.empty())
+        message("note: judged as the first shot of a game; for a later one, give --state");
     const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
     if (call.safety && before.game != games::Game::kEightBall && before.game != games::Game::kTenBall &&
         before.game != games::Game::kStraightPool)

@@ -17,6 +17,7 @@
 #include "base/setup.h"
 #include "base/shown_units.h"
 #include "base/verdict.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
@@ -281,9 +282,14 @@ int run(const SimulateArgs& args) {
         print(result_json(record, measures));
         return status;
     }
-    print(args.hash ? record.hash() + "\n" : summary(record, args.scene, args, measures));
-    if (args.list && args.hash) print(all_events(record, units_of(args.units)));
-    if (args.profile) print(profile_report(record));
+    // Also with --quiet, and beside a file on standard output: it was asked for.
+    const auto asked = [](bool option, const auto& text) {
+        if (option) print_bytes(harmless(text()));
+    };
+    if (!args.hash) print(summary(record, args.scene, args, measures));
+    asked(args.hash, [&] { return record.hash() + "\n"; });
+    asked(args.list && (args.hash || quiet()), [&] { return all_events(record, units_of(args.units)); });
+    asked(args.profile, [&] { return profile_report(record); });
     return status;
 }
 
