@@ -72,10 +72,10 @@ TEST_F(Mistakes, LikelyUnitsAndTablesAreWarnedOf) {
         contains(warned("rack.game = \"snooker\"\n" + cue), "the snooker balls are on the table nine_foot"));
     EXPECT_TRUE(contains(warned("table.preset = \"carom\"\nrack.game = \"eight_ball\"\n" + cue),
                          "the pool balls are on the table carom"));
-    EXPECT_EQ(
-        warned("table.preset = \"snooker\"\nballs.preset = \"snooker\"\nrack.game = \"snooker\"\n" + cue),
-        "");
-    EXPECT_EQ(warned("rack.game = \"eight_ball\"\n" + cue), "");
+    const std::string right =
+        "table.preset = \"snooker\"\nballs.preset = \"snooker\"\nrack.game = \"snooker\"\n";
+    EXPECT_FALSE(contains(warned(right + cue), "warning:"));
+    EXPECT_FALSE(contains(warned("rack.game = \"eight_ball\"\n" + cue), "warning:"));
 }
 
 TEST_F(Mistakes, StandardStreamsQuietAndClosedPipes) {

@@ -132,7 +132,7 @@ Vec with_neighbours(Vec seen, const BallInstance& ball, const Vec& n, const Vec&
             choose(along > 0.0F, clamp((R - sqrt(miss2)) * (6.0F / R) + 0.5F, 0.0F, 1.0F), all(0.0F));
         if (!any(cover > 0.0F)) continue;
         const Floats up = (r.z * (along - sqrt(max(R * R - miss2, 0.0F))) - to.z) * (1.0F / R);
-        const Floats light = 0.2F + 0.9F * max(up, 0.0F);
+        const Floats light = 0.1F + 0.4F * max(up, 0.0F);
         const float* color = ball.near_color[i];
         seen = mix(seen, Vec{color[0] * light, color[1] * light, color[2] * light}, cover * ball.near[i][3]);
     }

@@ -46,8 +46,8 @@ vec3 cloth_albedo(vec2 p) {
     vec2 thread = sin(vec2(p.x + p.y, p.x - p.y) * (6.2831853 / 0.0026));
     float weave = thread.x * (0.6 + 0.4 * thread.y) * 0.10 + (detail(p * vec2(1500.0, 420.0)) - 0.5) * 0.22;
     // From farther away, the ribs of the twill.
-    float ribs = sin((p.x + 0.35 * p.y) * (6.2831853 / 0.006)) * 0.022 *
-                 (1.0 - smoothstep(0.0010, 0.0022, pixel));
+    float ribs = sin((p.x + 0.35 * p.y) * (6.2831853 / 0.006)) * 0.04 *
+                 (1.0 - smoothstep(0.0004, 0.00064, pixel));
     // The nap lies along the table and is brushed in strokes.
     float nap = (noise(p * vec2(14.0, 5.0)) - 0.5) * 0.045 + (detail(p * vec2(75.0, 9.0)) - 0.5) * 0.04;
     return base * (1.0 + mix(ribs, weave, fine) + nap);
