@@ -136,7 +136,7 @@ def _check(name: str, kind: _Kind, value: Any) -> None:
 def check_fields(of: tuple[Any, ...]) -> None:
     """Raises ArgumentError for a field of a NamedTuple that does not match its annotation."""
     for (name, annotation), value in zip(type(of).__annotations__.items(), of):
-        text = getattr(annotation, "__forward_arg__", annotation)
+        text = str(getattr(annotation, "__forward_arg__", annotation))
         _check(name, _kind(ast.parse(text, mode="eval").body), value)
 
 

@@ -59,9 +59,9 @@ def drawing(scene: Scene) -> str:
         title = f"<title>{html.escape(ball)}</title>"
         parts.append(f'<circle cx="{py}" cy="{px}" r="{radius}" fill="#{fill}">{title}</circle>')
     if len(record.events):  # a strike
-        ball, aim = scene.ids.index(scene["cue.ball"]), np.radians(scene["cue.aim_deg"])
-        step = f"l{np.sin(aim)} {np.cos(aim)}"
-        parts.append(f'<path d="M{y[ball]} {x[ball]}{step}" stroke="#fff" stroke-width="0.008" opacity="0.7"/>')
+        struck, aim = scene.ids.index(scene["cue.ball"]), np.radians(scene["cue.aim_deg"])
+        line = f"M{y[struck]} {x[struck]}l{np.sin(aim)} {np.cos(aim)}"
+        parts.append(f'<path d="{line}" stroke="#fff" stroke-width="0.008" opacity="0.7"/>')
     box = f"{left - edge} {low - edge} {wide + 2 * edge} {high + 2 * edge}"
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" style="width:100%;max-width:640px">'
             f"{''.join(parts)}</svg>")

@@ -124,7 +124,8 @@ class Shots(NamedTuple):
 
         The columns are status (by name), duration [s], events, first_hit (an id or null), contacts,
         approach_cushions, for every ball ID.x, ID.y [m], ID.pocket (an id, "out" or "", as in a sweep),
-        ID.fell and ID.cushions, hash if there is one, and message ("" for a shot with a result). `paths` is left out.
+        ID.fell and ID.cushions, hash if there is one, and message ("" for a shot with a result). `paths` is
+        left out.
         """
         return _optional("pyarrow").table(self._columns())
 

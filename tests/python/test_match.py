@@ -144,3 +144,8 @@ def test_the_picture_shows_the_table():
     with pytest.raises(RuntimeError, match="no shot"):
         env.record()
     assert env.render().shape == (36, 64, 3)
+
+
+def test_an_unknown_option_is_named():
+    with pytest.raises(TypeError, match="observation: unknown option; expected one of aim, speed"):
+        match.env("EightBall", observation="dict")

@@ -202,16 +202,12 @@ void warn_of_rack(Plan& plan) {
     const Scene& scene = plan.scene;
     const std::string& table = scene.table.preset;
     const auto has = [&scene](auto... ids) { return ((index_of(scene.ball, ids) >= 0) && ...); };
-    const bool snooker = has("black", "pink", "blue", "1"), carom = has("white", "yellow", "red"),
-               pool = has("cue", "1", "2", "3", "7", "8") && !snooker, pockets = !scene.table.pockets.empty();
-    const char* const other = snooker && !table.starts_with("snooker") ? "snooker"
-                              : carom && pockets                       ? "carom"
-                              : pool && !pockets                       ? "nine_foot"
-                                                                       : nullptr;
-    if (table.empty() || other == nullptr) return;
+    const bool snooker = has("black", "pink", "blue", "1") && !table.starts_with("snooker"),
+               pool = has("cue", "1", "2", "3", "7", "8") && scene.table.pockets.empty();
+    if (table.empty() || !(snooker || pool)) return;
     plan.warnings.push_back(
         fmt::format("the {} balls are on the table {}; did you mean preset = \"{}\" in [table]?",
-                    pool ? "pool" : other, table, other));
+                    snooker ? "snooker" : "pool", table, snooker ? "snooker" : "nine_foot"));
 }
 
 void warn(Plan& plan) {
