@@ -39,32 +39,9 @@ constexpr std::array<Unit, 4> kUnits = {
 // or straight path, noise alone is as good.
 constexpr double kVisible = 0.25;
 
-/// A mistake in tracks. The scene's time is t / per_second.
-struct Mistake {
-    double per_second = 1.0;
-    bool swapped = false, flipped_x = false, flipped_y = false;
-    const char* what = "";
-    std::string text() const {
-        return per_second == 1.0 ? what
-               : per_second == 1000.0
-                   ? "the times look like milliseconds; write seconds"
-                   : fmt::format("the times look like frames at {} a second; write seconds", per_second);
-    }
-};
-constexpr Mistake kMistakes[] = {
-    {1000.0},
-    {24.0},
-    {25.0},
-    {30.0},
-    {50.0},
-    {60.0},
-    {120.0},
-    {240.0},
-    {1.0, true, false, false, "x and y look swapped; x is across the table, y along it"},
-    {1.0, false, true, false, "x looks measured from the right; measure it from the left rail"},
-    {1.0, false, false, true, "y looks measured from the foot; measure it from the head rail"},
-    {1.0, false, true, true,
-     "the origin looks like the far corner; measure from the left and the head rail"}};
+// [1/s] Units of time that tracks may have by mistake: frames, and milliseconds.
+constexpr double kMilliseconds = 1000.0;
+constexpr double kUnitsOfTime[] = {24.0, 25.0, 30.0, 50.0, 60.0, 120.0, 240.0, kMilliseconds};
 // [-] A mistake is named if undoing it leaves at most this share of the distance.
 constexpr double kUndone = 0.5;
 
@@ -73,18 +50,15 @@ VectorXd rest_of(const MatrixXd& columns, const VectorXd& residuals) {
     return residuals - columns * columns.completeOrthogonalDecomposition().solve(residuals);
 }
 
-/// [m] Median distance of the tracks from the record if this mistake is undone, over the balls that move.
-double distance_without(const Mistake& mistake, const Record& record, const std::vector<TrackPoint>& points) {
+/// [m] Median distance of the tracks from the record, over the balls that move.
+/// @param right  the place on the table for a place in the tracks
+template <class Right>
+double distance(const Record& record, const std::vector<TrackPoint>& points, double per_second, Right right) {
     std::vector<double> distances;
-    for (const TrackPoint& point : points) {
-        if (record.tracks[static_cast<std::size_t>(point.ball)].segments.size() < 2) continue;
-        Vec2 place = point.place;
-        if (mistake.swapped) place = Vec2(place.y(), place.x());
-        if (mistake.flipped_x) place.x() = record.table.width - place.x();
-        if (mistake.flipped_y) place.y() = record.table.length - place.y();
-        const BallState state = record.state_at(point.ball, point.time / mistake.per_second);
-        distances.push_back(length(planar(state.position) - place));
-    }
+    for (const TrackPoint& point : points)
+        if (record.tracks[static_cast<std::size_t>(point.ball)].segments.size() > 1)
+            distances.push_back(length(planar(record.state_at(point.ball, point.time / per_second).position) -
+                                       right(point.place)));
     return median(std::move(distances));
 }
 
@@ -179,15 +153,28 @@ std::string doubt_of_distance(const std::vector<Coordinate>& moved, double noise
     const std::string typical =
         fmt::format("the positions are typically {:.3g} mm off, {}; ", 1e3 * noise,
                     far ? "more than a ball's radius" : "no better than straight lines through the tracks");
-    double best = kUndone * distance_without({}, record, points);
+    const auto same = [](const Vec2& place) { return place; };
+    double best = kUndone * distance(record, points, 1.0, same);
     std::string reason =
         "check that they are of this shot, on this table, in seconds and metres from the corner of the noses";
-    for (const Mistake& mistake : kMistakes) {
-        const double distance = distance_without(mistake, record, points);
-        if (distance >= best) continue;
-        best = distance;
-        reason = mistake.text();
-    }
+    const auto consider = [&](double without, std::string mistake) {
+        if (without < best) best = without, reason = std::move(mistake);
+    };
+    for (const double unit : kUnitsOfTime)
+        consider(
+            distance(record, points, unit, same),
+            fmt::format("the times look like {}; write seconds",
+                        unit == kMilliseconds ? "milliseconds" : fmt::format("frames at {} a second", unit)));
+    const double w = record.table.width, l = record.table.length;
+    const auto turned = [&](auto right, const char* mistake) {
+        consider(distance(record, points, 1.0, right), mistake);
+    };
+    turned([](const Vec2& p) { return Vec2(p.y(), p.x()); },
+           "x and y look swapped; x is across the table, y along it");
+    turned([w](const Vec2& p) { return Vec2(w - p.x(), p.y()); },
+           "x looks measured from the right; measure it from the left rail");
+    turned([l](const Vec2& p) { return Vec2(p.x(), l - p.y()); },
+           "y looks measured from the foot; measure it from the head rail");
     return typical + reason;
 }
 

@@ -42,8 +42,7 @@ std::string doubt_of_scale(double scale);
 std::string doubt_of(const std::vector<Coordinate>& moved, const Eigen::MatrixXd& slopes, double noise,
                      bool clock);
 
-/// Why the final positions are no fit, or "": they are typically more than a ball's radius off, or no better
-/// than straight lines through the tracks.
+/// Why positions more than a ball's radius off, or no better than straight lines, are no fit, or "".
 /// @param moved  as in doubt_of()  @param record  the shot at the start of the fit
 std::string doubt_of_distance(const std::vector<Coordinate>& moved, double noise, const Record& record,
                               const std::vector<TrackPoint>& points);

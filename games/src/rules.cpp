@@ -77,15 +77,14 @@ void check(const State& state) {
 
 /// A call names balls and pockets that are there, and the game has a push out if one is called.
 void check(const State& state, const Record& record, const Call& call) {
-    const auto& pockets = record.table.pockets;
-    if (!call.ball.empty() && index_of(record, call.ball) < 0)
-        throw std::invalid_argument(fmt::format("the called ball {} is not on the table; it has {}",
-                                                in_quotes(call.ball),
-                                                fmt::join(ids_of(record.tracks), ", ")));
-    if (!call.pocket.empty() && carom::index_of(pockets, call.pocket) < 0)
-        throw std::invalid_argument(fmt::format(
-            "the table has no pocket {}; {}", in_quotes(call.pocket),
-            pockets.empty() ? "call none" : fmt::format("it has {}", fmt::join(ids_of(pockets), ", "))));
+    const auto there = [](const char* what, const std::string& id, const std::vector<std::string>& ids) {
+        if (id.empty() || detail::is_in(id, ids)) return;
+        throw std::invalid_argument(
+            fmt::format("the table has no {} {}; it has {}", what, in_quotes(id),
+                        ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, ", "))));
+    };
+    there("ball", call.ball, ids_of(record.tracks));
+    there("pocket", call.pocket, ids_of(record.table.pockets));
     if (call.push_out && state.game != Game::kNineBall && state.game != Game::kTenBall)
         throw std::invalid_argument(std::string(name(state.game)) + " has no push out; leave it out");
 }

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 
 class SceneError(ValueError):
@@ -39,20 +37,11 @@ class SceneError(ValueError):
 class SceneNotFoundError(SceneError, FileNotFoundError):
     """The file of a scene or a record does not exist: a SceneError, and a FileNotFoundError as of `open`."""
 
-    def __init__(self, message: str, file: str) -> None:
-        super().__init__(message, file)
+    def __init__(self, message: str, file: str, line: int = 0, column: int = 0) -> None:
+        super().__init__(message, file, line, column)
         self.errno, self.strerror, self.filename = errno.ENOENT, os.strerror(errno.ENOENT), file
 
-    def __reduce__(self) -> tuple[type[SceneNotFoundError], tuple[str, str]]:
-        return type(self), (self.message, self.file)
 
-
-@contextmanager
-def reading(path: str) -> Iterator[None]:
-    """Raises SceneNotFoundError instead of SceneError if the file does not exist."""
-    try:
-        yield
-    except SceneError as error:
-        if os.path.lexists(path):
-            raise
-        raise SceneNotFoundError(error.message, error.file) from None
+def check_exists(path: str) -> None:
+    if not os.path.lexists(path):
+        raise SceneNotFoundError("cannot be read: there is no such file; check the path", path)

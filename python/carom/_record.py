@@ -10,7 +10,7 @@ import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
-from carom._errors import reading
+from carom._errors import check_exists
 from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
@@ -335,8 +335,8 @@ class Record:
         """Loads a record that `save` or `carom simulate -o` wrote. Raises SceneError if the file is not one;
         it is a FileNotFoundError, too, if there is no such file."""
         name = os.fspath(path)
-        with reading(name):
-            return cls._of(_carom.load_record(name))
+        check_exists(name)
+        return cls._of(_carom.load_record(name))
 
     def __eq__(self, other: object) -> bool:
         """Whether all data that `save` writes are equal."""

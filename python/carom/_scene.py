@@ -12,7 +12,7 @@ import numpy as np
 
 from carom import _carom, _toml
 from carom._arguments import ArgumentError, checked, may_be
-from carom._errors import SceneError, reading
+from carom._errors import SceneError, check_exists
 
 if TYPE_CHECKING:
     from typing import Self
@@ -84,8 +84,8 @@ class Scene:
         """The scene in a TOML file. Raises SceneError, with the place of the mistake, also if it cannot be
         read; it is a FileNotFoundError, too, if there is no such file."""
         name = os.fspath(path)
-        with reading(name):
-            return cls._of(_carom.parse_scene(_carom.read_scene_text(name), name))
+        check_exists(name)
+        return cls._of(_carom.parse_scene(_carom.read_scene_text(name), name))
 
     @classmethod
     def loads(cls, text: str, name: str = "scene") -> Self:
@@ -132,11 +132,8 @@ class Scene:
         return self._of(native)
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a key as `replace` names it, also if the file leaves it out: `scene["cue.speed"]`,
-        `scene["ball.cue.position.x"]`, `scene["table.preset"]`, or a section as a dict.
-
-        Raises KeyError if the scene has no such value.
-        """
+        """The value of a key as `replace` names it, also if the file leaves it out: `scene["cue.speed"]`, or
+        a section as a dict. Raises KeyError if the scene has no such value."""
         import tomllib
 
         if not isinstance(key, str):

@@ -45,11 +45,12 @@ def drawing(scene: Scene) -> str:
     except SceneError:
         return f"<pre>{html.escape(repr(scene))}</pre>"
     table, (x, y) = record.table, scene.positions.T
-    edge = 0.1
     # The long side lies across; without a table, the balls' box.
-    left, low = (table.corner[1], table.corner[0]) if table.width else (min(y, default=0), min(x, default=0))
-    wide, high = (table.length, table.width) if table.width else (float(np.ptp(y)), float(np.ptp(x)))
-    parts = [f'<rect x="{left}" y="{low}" width="{wide}" height="{high}" fill="#2f7d5b"/>'] if wide else []
+    if table.width:
+        left, low, wide, high = table.corner[1], table.corner[0], table.length, table.width
+    else:
+        left, low, wide, high = float(y.min()), float(x.min()), float(np.ptp(y)), float(np.ptp(x))
+    parts = [f'<rect x="{left}" y="{low}" width="{wide}" height="{high}" fill="#2f7d5b"/>']
     for name, cx, cy, radius in table.pockets:
         parts.append(f'<circle cx="{cy}" cy="{cx}" r="{radius}"><title>{html.escape(name)}</title></circle>')
     for _, x1, y1, x2, y2 in table.cushions:
@@ -62,6 +63,6 @@ def drawing(scene: Scene) -> str:
         struck, aim = scene.ids.index(scene["cue.ball"]), np.radians(scene["cue.aim_deg"])
         line = f"M{y[struck]} {x[struck]}l{np.sin(aim)} {np.cos(aim)}"
         parts.append(f'<path d="{line}" stroke="#fff" stroke-width="0.008" opacity="0.7"/>')
-    box = f"{left - edge} {low - edge} {wide + 2 * edge} {high + 2 * edge}"
+    box = f"{left - 0.1} {low - 0.1} {wide + 0.2} {high + 0.2}"
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" style="width:100%;max-width:640px">'
             f"{''.join(parts)}</svg>")

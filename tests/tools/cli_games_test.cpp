@@ -148,8 +148,7 @@ TEST_F(CliGames, ACallThatTheTableOrTheGameDoesNotHaveIsRefused) {
         return result.err;
     };
     const std::string eight = R"({"game": "eight_ball", "opening": false})";
-    EXPECT_TRUE(
-        contains(message({"--ball", "99"}, eight), "the called ball \"99\" is not on the table; it has"));
+    EXPECT_TRUE(contains(message({"--ball", "99"}, eight), "the table has no ball \"99\"; it has cue, "));
     EXPECT_TRUE(
         contains(message({"--pocket", "zzz"}, eight), "no pocket \"zzz\"; it has p1, p2, p3, p4, p5, p6"));
     EXPECT_TRUE(contains(message({"--push-out"}, eight), "eight_ball has no push out; leave it out"));

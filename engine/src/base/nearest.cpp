@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <numeric>
 #include <string>
-#include <utility>
 
 namespace carom {
 namespace {
@@ -41,8 +40,8 @@ std::size_t edits_between(std::string_view from, std::string_view to) {
 
 /// A word in small letters, with its number spelled out: "8-Ball" and "eight_ball" are "eightball".
 std::string spelled(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kNumbers = {
-        {{"10", "ten"}, {"8", "eight"}, {"9", "nine"}, {"3", "three"}, {"4", "four"}, {"1", "one"}}};
+    constexpr std::string_view kNumbers[][2] = {{"10", "ten"},  {"8", "eight"}, {"9", "nine"},
+                                                {"3", "three"}, {"4", "four"},  {"1", "one"}};
     std::string text;
     for (const auto& [digits, number] : kNumbers)
         if (text.empty() && word.starts_with(digits)) text = number, word.remove_prefix(digits.size());

@@ -177,18 +177,16 @@ void warn_of_units(Plan& plan) {
         say(fmt::format("ball {} starts at {:.4g} m/s; speeds are in m/s", in_quotes(ball.id), speed));
         break;
     }
-    for (const BallSize& size : plan.sizes) {
-        if (size.R >= kSmallestBall && size.R <= kLargestBall) continue;
+    const auto first = [&plan](double BallSize::*of, double least, double most) {
+        return std::find_if(plan.sizes.begin(), plan.sizes.end(),
+                            [&](const BallSize& size) { return size.*of < least || size.*of > most; });
+    };
+    if (const auto ball = first(&BallSize::R, kSmallestBall, kLargestBall); ball != plan.sizes.end())
         say(fmt::format("a ball has a radius of {:.4g} m, while a pool ball has 0.0286; radii are in m",
-                        size.R));
-        break;
-    }
-    for (const BallSize& size : plan.sizes) {
-        if (size.m >= kLightestBall && size.m <= kHeaviestBall) continue;
+                        ball->R));
+    if (const auto ball = first(&BallSize::m, kLightestBall, kHeaviestBall); ball != plan.sizes.end())
         say(fmt::format("a ball has a mass of {:.4g} kg, while a pool ball has 0.17; masses are in kg",
-                        size.m));
-        break;
-    }
+                        ball->m));
     if (scene.cue && !(scene.cue->mass >= kLightestCue && scene.cue->mass <= kHeaviestCue))
         say(fmt::format("the cue has a mass of {:.4g} kg, while a usual one has 0.54; masses are in kg",
                         scene.cue->mass));

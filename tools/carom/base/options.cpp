@@ -158,15 +158,8 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
     return words;
 }
 
-/// The command that the first word names, or nullptr.
-const Options* command_in(const Options& program, int argc, char** argv) {
-    for (const Options& command : program.commands)
-        if (argc > 1 && command.name == argv[1]) return &command;
-    return nullptr;
-}
-
 /// The program's message about a bad command line, from CLI11's.
-std::string explained(const CLI::ParseError& error, const Options* named, int argc, char** argv) {
+std::string explained(const CLI::ParseError& error, const Options& program, int argc, char** argv) {
     std::string what = error.what();
     if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
         const std::size_t colon = what.find(": "), equals = what.find(" = ");
@@ -174,7 +167,11 @@ std::string explained(const CLI::ParseError& error, const Options* named, int ar
             what = fmt::format("{} {}: expected a number, without a unit",
                                what.substr(colon + 2, equals - colon - 2), what.substr(equals + 3));
     }
-    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || named == nullptr) return what;
+    const auto named =
+        std::find_if(program.commands.begin(), program.commands.end(),
+                     [&](const Options& command) { return argc > 1 && command.name == argv[1]; });
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || named == program.commands.end())
+        return what;
     std::vector<std::string_view> names;
     for (const Option& row : named->rows) names.insert(names.end(), row.names.begin(), row.names.end());
     for (int i = 1; i < argc; ++i) {
@@ -309,7 +306,7 @@ int run_command_line(Options& program, int argc, char** argv) {
         print(std::string(version.what()) + "\n");
         return kOk;
     } catch (const CLI::ParseError& error) {
-        const std::string what = explained(error, command_in(program, argc, argv), argc, argv);
+        const std::string what = explained(error, program, argc, argv);
         throw UsageError(what + (what.ends_with('?') ? " See " : "; see ") + path_of(app) + " --help");
     }
     if (named->run) {

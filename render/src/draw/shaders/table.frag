@@ -45,7 +45,6 @@ vec3 cloth_albedo(vec2 p) {
     float fine = 1.0 - smoothstep(0.0004, 0.0009, pixel);
     vec2 thread = sin(vec2(p.x + p.y, p.x - p.y) * (6.2831853 / 0.0026));
     float weave = thread.x * (0.6 + 0.4 * thread.y) * 0.10 + (detail(p * vec2(1500.0, 420.0)) - 0.5) * 0.22;
-    // From farther away, the ribs of the twill.
     float ribs = sin((p.x + 0.35 * p.y) * (6.2831853 / 0.006)) * 0.04 *
                  (1.0 - smoothstep(0.0004, 0.00064, pixel));
     // The nap lies along the table and is brushed in strokes.

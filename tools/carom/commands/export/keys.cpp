@@ -128,9 +128,8 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
         // If the rate changes by a per second, a constant rate between two keys h apart is off by at most a
         // h^2 / 8.
         const double change = (piece.last.spin - piece.first.spin).norm();
-        const double count =
-            std::ceil(std::max({fastest * lasts / kLargestTurn,
-                                std::sqrt(change * lasts / (8.0 * kLargestError)), 1.0}));
+        const double count = std::ceil(std::max(
+            {fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError)), 1.0}));
         if (!(count <= kMostKeys))
             throw UsageError(fmt::format(
                 "ball {} turns {:.3g} rad between {:.3f} and {:.4g} s, more than an animation can hold; end "

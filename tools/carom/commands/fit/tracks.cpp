@@ -43,17 +43,6 @@ std::vector<Word> words_of(std::string_view line, char separator) {
     return words;
 }
 
-/// The separator of a header: a comma, else a semicolon or tab if the line has one.
-char separator_of(std::string_view header) {
-    const std::size_t at = header.find_first_of(header.find(',') == header.npos ? ";\t" : ",");
-    return at == header.npos ? ',' : header[at];
-}
-
-bool same_letters(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
 std::string text_of(const std::string& path) {
     std::error_code error;
     std::ifstream in(path, std::ios::binary);
@@ -87,13 +76,16 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         ++line_number;
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.empty() || line.front() == '#') continue;
-        if (!places) separator = separator_of(line);
-        const std::vector<Word> words = words_of(line, separator);
+        if (const std::size_t at = line.find_first_of(",;\t"); !places && at != line.npos)
+            separator = line[at];
+        std::string small(places ? "" : line);
+        for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        const std::vector<Word> words = words_of(places ? line : small, separator);
         if (!places) {
             places.emplace();
             for (std::size_t k = 0; k < kNames.size(); ++k) {
                 const auto found = std::find_if(words.begin(), words.end(), [&](const Word& word) {
-                    return same_letters(word.text, kNames[k]) || (k == 0 && same_letters(word.text, "time"));
+                    return word.text == kNames[k] || (k == 0 && word.text == "time");
                 });
                 if (found == words.end())
                     fail(1,

@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kMostLines = 24;
 // [-] Contacts of the struck ball that the summary of a long shot includes.
 constexpr int kStruckContacts = 3;
+// [m/s] Slower contacts of two balls are only counted.
+constexpr double kShown = 0.05;
 
 /// ", cut 31 deg, 2.1 m/s"
 std::string contact(const EventDetails& d, Units units) {
@@ -25,14 +27,6 @@ std::string contact(const EventDetails& d, Units units) {
     const double cut = d.cut * kDegrees;
     if (cut < 0.5) return fmt::format(", full, {}", speed_text(d.closing, units));
     return fmt::format(", cut {:.0f} deg, {}", cut, speed_text(d.closing / std::cos(d.cut), units));
-}
-
-/// Whether two balls meet more slowly than the summary shows.
-bool is_gentle(const Record& record, std::size_t index) {
-    constexpr double kShown = 0.05;  // [m/s]
-    if (record.events[index].type != EventType::kBallBall) return false;
-    const EventDetails d = details_of(record, index);
-    return d.closing / std::cos(d.cut) < kShown;
 }
 
 /// "cue meets 1, cut 31 deg, 2.1 m/s"
@@ -145,7 +139,8 @@ std::string story(const Record& record, Units units) {
         const bool landmark =
             is_end(event) || (of_ball(event, struck) && kind(event.type).partner != Partner::kNone &&
                               contacts++ < kStruckContacts);
-        if (landmark || (whole && !is_gentle(record, i)))
+        const bool gentle = event.type == EventType::kBallBall && details_of(record, i).closing < kShown;
+        if (landmark || (whole && !gentle))
             text += crowd.told() + line(record, i, units);
         else
             crowd.add(event);
