@@ -90,14 +90,13 @@ std::vector<std::string> touching(const Facts& facts, int shooter) {
 /// Whether the cue ball touches a ball and is driven into it.
 bool plays_into_touching(const Facts& facts) {
     const int cue = facts.shot.struck;
-    const auto place = [&](int ball) { return planar(facts.record.state_at(ball, 0.0).position); };
     const std::vector<Segment>& segments = facts.record.tracks[static_cast<std::size_t>(cue)].segments;
     const auto struck = std::find_if(segments.begin(), segments.end(),
                                      [](const Segment& segment) { return segment.v != Vec3::Zero(); });
     const std::vector<std::string> list = facts.touching(cue, 0.0);
     return struck != segments.end() && std::any_of(list.begin(), list.end(), [&](const std::string& ball) {
-               const Vec2 way = place(index_of(facts.record, ball)) - place(cue);
-               return dot(way, planar(struck->v)) > kTouchTolerance;
+               const Vec3 place = facts.record.state_at(index_of(facts.record, ball), 0.0).position;
+               return dot(planar(place - struck->r), planar(struck->v)) > kTouchTolerance;
            });
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import re
@@ -138,12 +139,9 @@ class Scene:
 
         if not isinstance(key, str):
             raise ArgumentError(f"key: expected a string, such as 'cue.speed', not {key!r}")
-        try:
-            number = self._native.number(key)
-        except ValueError:
-            number = math.nan
-        if not math.isnan(number):
-            return number
+        with contextlib.suppress(ValueError):
+            if not math.isnan(number := self._native.number(key)):
+                return number
         at: Any = tomllib.loads(self.text())
         for name in key.split("."):
             if isinstance(at, list):

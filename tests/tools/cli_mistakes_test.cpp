@@ -66,7 +66,6 @@ TEST_F(Mistakes, LikelyUnitsAndTablesAreWarnedOf) {
     EXPECT_TRUE(contains(warned("balls.mass = 170\n[[ball]]"), "warning: a ball has a mass of 170 kg"));
     EXPECT_TRUE(contains(carom({"check", folder_.write("c.toml", "[[ball]]\n[cue]\nmass = 540\n")}).err,
                          "the cue has a mass of 540 kg"));
-    EXPECT_TRUE(contains(warned("physics.gravity = 981\n[[ball]]"), "physics.gravity is 981"));
     const std::string cue = "[[ball]]\nposition = [0.9, 0.2]\n";
     EXPECT_TRUE(
         contains(warned("rack.game = \"snooker\"\n" + cue), "the snooker balls are on the table nine_foot"));

@@ -143,12 +143,11 @@ void warn_of_clusters(Plan& plan) {
                                             e_b, kLeastInCluster));
 }
 
-// Limits beyond which a value is probably in the wrong unit. [m], [m/s], [kg], [m/s^2]
+// Limits beyond which a value is probably in the wrong unit. [m], [m/s], [kg]
 constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
 constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
 constexpr double kLightestBall = 0.01, kHeaviestBall = 2.0, kLightestCue = 0.1, kHeaviestCue = 3.0;
-constexpr double kMostGravity = 30.0;
 
 /// Warns of valid numbers that look as if they were in a different unit.
 void warn_of_units(Plan& plan) {
@@ -190,9 +189,6 @@ void warn_of_units(Plan& plan) {
     if (scene.cue && !(scene.cue->mass >= kLightestCue && scene.cue->mass <= kHeaviestCue))
         say(fmt::format("the cue has a mass of {:.4g} kg, while a usual one has 0.54; masses are in kg",
                         scene.cue->mass));
-    if (scene.physics.gravity > kMostGravity)
-        say(fmt::format("physics.gravity is {:.4g}, while the earth has 9.81; it is in m/s^2",
-                        scene.physics.gravity));
 }
 
 /// Warns of a game's balls on another game's table.

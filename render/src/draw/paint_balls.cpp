@@ -133,8 +133,10 @@ Vec with_neighbours(Vec seen, const BallInstance& ball, const Vec& n, const Vec&
         if (!any(cover > 0.0F)) continue;
         const Floats up = (r.z * (along - sqrt(max(R * R - miss2, 0.0F))) - to.z) * (1.0F / R);
         const Floats light = 0.1F + 0.4F * max(up, 0.0F);
-        const float* color = ball.near_color[i];
-        seen = mix(seen, Vec{color[0] * light, color[1] * light, color[2] * light}, cover * ball.near[i][3]);
+        seen = mix(
+            seen,
+            Vec{ball.near_color[i][0] * light, ball.near_color[i][1] * light, ball.near_color[i][2] * light},
+            cover * ball.near[i][3]);
     }
     return seen;
 }

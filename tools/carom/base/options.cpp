@@ -192,6 +192,7 @@ void check_files(const Options& command, const CLI::App& app) {
     const CLI::App* asked = &app;
     while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
     std::vector<Used> files;
+    std::vector<std::string*> outputs;  // that are -
     for (const Option& row : command.rows) {
         auto* const* const path = std::get_if<std::string*>(&row.target);
         const bool written = row.value.starts_with("FILE") || row.value == "PATTERN";
@@ -199,10 +200,9 @@ void check_files(const Options& command, const CLI::App& app) {
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
             throw UsageError(row.names.front() + ": empty file name; name a file");
         // The summary would be in the way of a file on standard output.
-        if (**path == "-" && row.value != "PATTERN") {
-            if (written) quiet() = true;
-            **path = written ? "/dev/stdout" : "/dev/stdin";
-        }
+        const bool dash = **path == "-" && row.value != "PATTERN";
+        if (dash && written) quiet() = true, outputs.push_back(*path);
+        if (dash && !written) **path = "/dev/stdin";
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {
@@ -230,6 +230,7 @@ void check_files(const Options& command, const CLI::App& app) {
                                          in_quotes(out.path)));
         }
     }
+    for (std::string* output : outputs) *output = "/dev/stdout";
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ std::string meaning(const Option& row) {
     return initial.empty() ? row.text : row.text + " (default: " + initial + ")";
 }
 
+/// Whether every command has it.
+bool is_common(const Option& row) {
+    return row.names.back() == "--help" || row.names.back() == "--quiet";
+}
+
 bool takes_file(const Option& row) {
     // A positional argument is a scene or a record.
     if (row.by_place()) return row.choices.empty();
@@ -87,7 +92,7 @@ void man_command(std::string& out, const Options& command, const std::string& pa
     out += ".SS \"" + roff(synopsis_of(command, name)) + " [options]\"\n" + roff(command.text) + ".\n";
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
-            if (row.names.back() == "--help") continue;
+            if (is_common(row)) continue;
             out += fmt::format(".TP\n\\fB{}\\fR", roff(joined(row.names, ", ")));
             if (!row.value.empty()) out += fmt::format(" \\fI{}\\fR", roff(row.value));
             out += fmt::format("\n{}\n", roff(meaning(row)));
@@ -159,7 +164,7 @@ void page_command(std::string& out, const Options& command, const std::string& p
     std::vector<std::string> again;
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
-            if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
+            if (is_common(row) || row.text == "Scene file (TOML)") continue;
             const std::string item = page_item(row, out);
             if (out.find(item) == out.npos)
                 out += item;
@@ -203,7 +208,9 @@ std::string command_line_page(const Options& program) {
     return wrapped(
         "# The command line\n\n"
         "Every command and option, as in `carom COMMAND --help`; `carom describe command-line` prints this "
-        "page. SCENE is a scene file (TOML). Flags are off and no file is written unless named.\n\n"
+        "page. SCENE is a scene file (TOML). Flags are off and no file is written unless named. `-q` or "
+        "`--quiet` "
+        "leaves out summaries, warnings and notes.\n\n"
         "* Exit status: " +
         statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands);
 }

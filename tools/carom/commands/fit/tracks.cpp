@@ -107,9 +107,9 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
             const auto value = as_number<double>(at.text);
             if (!value || (k < 2 && !(*value >= 0.0)))
                 fail(at.column,
-                     fmt::format("{} is not a {}; write a number in {}, with a decimal point",
-                                 in_quotes(std::string(at.text)),
-                                 k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m"));
+                     fmt::format("{} is not a {}; write a number in {}{}", in_quotes(std::string(at.text)),
+                                 k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m",
+                                 at.text.find(',') == at.text.npos ? "" : ", with a decimal point"));
             if (std::isinf(*value))
                 fail(at.column, "a position must be finite; leave it empty if the ball was not seen");
             return *value;

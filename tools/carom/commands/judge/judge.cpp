@@ -84,8 +84,6 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
             throw UsageError(fmt::format("--rules {}", refused.what()));
         }
     }
-    if (args.state.empty())
-        message("note: judged as the first shot of a game; for a later one, give --state");
     const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
     if (call.safety && before.game != games::Game::kEightBall && before.game != games::Game::kTenBall &&
         before.game != games::Game::kStraightPool)
@@ -96,6 +94,8 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
         throw UsageError(fmt::format("--option {}: there {} {}", args.option, options == 1 ? "is" : "are",
                                      counted(verdict.options.size(), "option")));
     games::Option option = verdict.options[static_cast<std::size_t>(args.option) - 1];
+    if (args.state.empty())
+        message("note: judged as the first shot of a game; for a later one, give --state");
     return {std::move(verdict), std::move(option)};
 }
 
