@@ -6,7 +6,6 @@ import {isatty} from "node:tty";
 import {brotliDecompressSync} from "node:zlib";
 
 const SIGNALS = {SIGINT: 2, SIGTERM: 15};
-
 try {
   process.cwd();
 } catch {

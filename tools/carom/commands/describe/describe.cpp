@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/console.h"
@@ -385,7 +386,7 @@ void add_describe(Options& program) {
     Option& format =
         command.argument("FORMAT", args->format, "Description to print (default: the list of these)");
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);
-    command.run = [args, &program] { return run(*args, program); };
+    command.run = [args, &program] { return run(std::exchange(*args, {}), program); };
 }
 
 }  // namespace carom::tools
