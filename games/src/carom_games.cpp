@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/tolerances.h"
 #include "facts.h"
 
 namespace carom::games::detail {
@@ -86,6 +87,19 @@ std::vector<std::string> touching(const Facts& facts, int shooter) {
     return list;
 }
 
+/// Whether the cue ball touches a ball and is driven into it.
+bool plays_into_touching(const Facts& facts) {
+    const int cue = facts.shot.struck;
+    const std::vector<Segment>& segments = facts.record.tracks[static_cast<std::size_t>(cue)].segments;
+    const auto struck = std::find_if(segments.begin(), segments.end(),
+                                     [](const Segment& segment) { return segment.v != Vec3::Zero(); });
+    const std::vector<std::string> list = facts.touching(cue, 0.0);
+    return struck != segments.end() && std::any_of(list.begin(), list.end(), [&](const std::string& ball) {
+               const Vec3 place = facts.record.state_at(index_of(facts.record, ball), 0.0).position;
+               return dot(planar(place - struck->r), planar(struck->v)) > kTouchTolerance;
+           });
+}
+
 /// Whether the other player's ball counts as a red.
 bool opponents_counts(const State& state) {
     return state.game != Game::kFourBall || rule(state, "opponents_ball") == "counts";
@@ -125,6 +139,7 @@ std::vector<Foul> carom_fouls(const Facts& facts) {
     const bool first_is_red = std::any_of(facts.shot.first_hits.begin(), facts.shot.first_hits.end(),
                                           [&](int ball) { return is_red(facts.id(ball)); });
     if (state.opening && hits && !first_is_red) fouls.push_back(Foul::kOpeningNotRed);
+    if (state.game != Game::kFourBall && plays_into_touching(facts)) fouls.push_back(Foul::kIntoTouchingBall);
     if (state.game != Game::kFourBall) return fouls;
     if (!hits) fouls.push_back(Foul::kNoBallHit);
     const bool opponents =

@@ -24,8 +24,8 @@ namespace {
 using Eigen::MatrixXd, Eigen::VectorXd;
 
 // [noise] Larger residuals count linearly: 95 % as efficient as least squares if there are no outliers
-// (Huber, 1964). The noise is kMedian times the median residual, as for a normal distribution.
-constexpr double kHuber = 1.345, kMedian = 1.4826;
+// (Huber, 1964).
+constexpr double kHuber = 1.345;
 // [m] Better than any camera; keeps the loss defined if the model fits exactly.
 constexpr double kLeastNoise = 1e-9;
 // [m] A number that moves the balls by less over its whole size affects only rounding.
@@ -41,13 +41,6 @@ constexpr double kAlike = 0.99, kNothing = 1e-12;
 // A number outside the scene, and its largest absolute value [s].
 constexpr const char* kClock = "clock";
 constexpr double kClockRange = 60.0;
-
-double median(std::vector<double> list) {
-    if (list.empty()) return 0.0;
-    const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
-    std::nth_element(list.begin(), middle, list.end());
-    return *middle;
-}
 
 /// A shot, and its differences from the tracks.
 struct Trial {
@@ -129,11 +122,16 @@ class Fitter {
                                  ? fmt::format("no convergence after {} shots", shots_)
                                  : "no step reduces the error; the tracks may have another order of events";
         finish(now, slopes, result);
-        if (result.converged) {
-            const auto [moved, columns] = moved_of(now, slopes);
+        const auto [moved, columns] = moved_of(now, slopes);
+        if (const std::string far = refused
+                                        ? ""
+                                        : doubt_of_distance(moved, result.noise,
+                                                            simulate_at(result.start, true)->record, points_);
+            !far.empty())
+            result.trouble = far;
+        else if (result.converged)
             result.trouble = doubt_of(moved, columns, result.noise, clock_.has_value());
-            result.converged = result.trouble.empty();
-        }
+        result.converged = result.converged && result.trouble.empty();
         if (!result.converged) result.covariance.setConstant(std::numeric_limits<double>::infinity());
         return result;
     }

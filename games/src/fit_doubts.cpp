@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 namespace carom::games {
 namespace {
@@ -33,22 +35,66 @@ struct Unit {
 constexpr std::array<Unit, 4> kUnits = {
     {{"mm", 1000.0}, {"cm", 100.0}, {"inches", 39.3701}, {"feet", 3.28084}}};
 
+// [R] A fit that is no better than straight lines is reported only if it is farther off than this: on a short
+// or straight path, noise alone is as good.
+constexpr double kVisible = 0.25;
+
+// [1/s] Units of time that tracks may have by mistake: frames, and milliseconds.
+constexpr double kMilliseconds = 1000.0;
+constexpr double kUnitsOfTime[] = {24.0, 25.0, 30.0, 50.0, 60.0, 120.0, 240.0, kMilliseconds};
+// [-] A mistake is named if undoing it leaves at most this share of the distance.
+constexpr double kUndone = 0.5;
+
 /// The residuals that these columns cannot explain.
 VectorXd rest_of(const MatrixXd& columns, const VectorXd& residuals) {
     return residuals - columns * columns.completeOrthogonalDecomposition().solve(residuals);
 }
 
+/// [m] Median distance of the tracks from the record, over the balls that move.
+/// @param right  the place on the table for a place in the tracks
+template <class Right>
+double distance(const Record& record, const std::vector<TrackPoint>& points, double per_second, Right right) {
+    std::vector<double> distances;
+    for (const TrackPoint& point : points)
+        if (record.tracks[static_cast<std::size_t>(point.ball)].segments.size() > 1)
+            distances.push_back(length(planar(record.state_at(point.ball, point.time / per_second).position) -
+                                       right(point.place)));
+    return median(std::move(distances));
+}
+
+/// [m] Median residual of straight lines through the tracks of each ball.
+double distance_from_lines(const std::vector<Coordinate>& moved) {
+    std::map<std::pair<int, int>, std::vector<const Coordinate*>> groups;
+    for (const Coordinate& c : moved) groups[{c.ball, c.axis}].push_back(&c);
+    std::vector<double> sizes;
+    for (const auto& [key, list] : groups) {
+        MatrixXd columns(static_cast<Eigen::Index>(list.size()), 2);
+        VectorXd seen(columns.rows());
+        for (Eigen::Index i = 0; i < seen.size(); ++i) {
+            const Coordinate& c = *list[static_cast<std::size_t>(i)];
+            columns.row(i) << 1.0, c.time;
+            seen[i] = c.seen;
+        }
+        for (const double size : rest_of(columns, seen)) sizes.push_back(std::abs(size));
+    }
+    return median(std::move(sizes));
+}
+
 }  // namespace
+
+double median(std::vector<double> list) {
+    if (list.empty()) return 0.0;
+    const auto half = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+    std::nth_element(list.begin(), half, list.end());
+    return *half;
+}
 
 double scale_of(const std::vector<Coordinate>& coordinates) {
     const auto middle = [&coordinates](double Coordinate::*of) {
         std::vector<double> sizes;
         sizes.reserve(coordinates.size());
         for (const Coordinate& c : coordinates) sizes.push_back(std::abs(c.*of));
-        if (sizes.empty()) return 0.0;
-        const auto half = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), half, sizes.end());
-        return *half;
+        return median(std::move(sizes));
     };
     const double simulated = middle(&Coordinate::place);
     return simulated > 0.0 ? middle(&Coordinate::seen) / simulated : 1.0;
@@ -97,6 +143,39 @@ std::string doubt_of(const std::vector<Coordinate>& moved, const MatrixXd& slope
             "this shot, or vary other numbers",
             outliers, n);
     return "";
+}
+
+std::string doubt_of_distance(const std::vector<Coordinate>& moved, double noise, const Record& record,
+                              const std::vector<TrackPoint>& points) {
+    const double R = record.balls.R;
+    const bool far = noise > R;
+    if (!far && !(noise > kVisible * R && noise >= kMedian * distance_from_lines(moved))) return "";
+    const std::string typical =
+        fmt::format("the positions are typically {:.3g} mm off, {}; ", 1e3 * noise,
+                    far ? "more than a ball's radius" : "no better than straight lines through the tracks");
+    const auto same = [](const Vec2& place) { return place; };
+    double best = kUndone * distance(record, points, 1.0, same);
+    std::string reason =
+        "check that they are of this shot, on this table, in seconds and metres from the corner of the noses";
+    const auto consider = [&](double without, std::string mistake) {
+        if (without < best) best = without, reason = std::move(mistake);
+    };
+    for (const double unit : kUnitsOfTime)
+        consider(
+            distance(record, points, unit, same),
+            fmt::format("the times look like {}; write seconds",
+                        unit == kMilliseconds ? "milliseconds" : fmt::format("frames at {} a second", unit)));
+    const double w = record.table.width, l = record.table.length;
+    const auto turned = [&](auto right, const char* mistake) {
+        consider(distance(record, points, 1.0, right), mistake);
+    };
+    turned([](const Vec2& p) { return Vec2(p.y(), p.x()); },
+           "x and y look swapped; x is across the table, y along it");
+    turned([w](const Vec2& p) { return Vec2(w - p.x(), p.y()); },
+           "x looks measured from the right; measure it from the left rail");
+    turned([l](const Vec2& p) { return Vec2(p.x(), l - p.y()); },
+           "y looks measured from the foot; measure it from the head rail");
+    return typical + reason;
 }
 
 double correlation_factor(std::vector<Coordinate> moved) {

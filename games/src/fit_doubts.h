@@ -6,10 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/record.h"
+#include "carom/games/fit.h"
+
 namespace carom::games {
 
 /// [of the noise] A residual above this is an outlier.
 inline constexpr double kOutlier = 3.0;
+/// [-] The noise is this many times the median residual, as for a normal distribution.
+inline constexpr double kMedian = 1.4826;
+
+/// 0 for an empty list.
+double median(std::vector<double> list);
 
 /// A coordinate that counts.
 struct Coordinate {
@@ -33,6 +41,11 @@ std::string doubt_of_scale(double scale);
 /// @param clock  whether the clock was varied
 std::string doubt_of(const std::vector<Coordinate>& moved, const Eigen::MatrixXd& slopes, double noise,
                      bool clock);
+
+/// Why positions more than a ball's radius off, or no better than straight lines, are no fit, or "".
+/// @param moved  as in doubt_of()  @param record  the shot at the start of the fit
+std::string doubt_of_distance(const std::vector<Coordinate>& moved, double noise, const Record& record,
+                              const std::vector<TrackPoint>& points);
 
 /// The factor by which correlated errors of neighbours in time increase the variance.
 double correlation_factor(std::vector<Coordinate> moved);

@@ -162,9 +162,11 @@ Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const S
     if (places.empty())
         throw std::invalid_argument("the goal has no place; add one, as in cue near (0.6, 1.2, 0.05)");
     Exact result{{}, options.choices, {}};
-    for (Choice& choice : result.choices) {
-        const double aim = found.scene.cue->aim_deg;
+    for (std::size_t k = 0; k < result.choices.size(); ++k) {
+        Choice& choice = result.choices[k];
+        const double aim = found.scene.cue->aim_deg, per = found.scene.cue->speed / found.values[k];
         if (choice.key.starts_with("hit.")) choice = {"cue.aim_deg", aim - kTurn, aim + kTurn};
+        if (choice.key == kBallSpeed) choice = {"cue.speed", choice.low * per, choice.high * per};
     }
     result.refined = refine(found.scene, result.choices, places, isa,
                             [&want](const Record& record) { return want.holds(record); });

@@ -1,5 +1,7 @@
 #include "carom/games/rules.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -11,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/printable.h"
 #include "facts.h"
 
 namespace carom::games {
@@ -43,6 +46,7 @@ constexpr FoulRules kFoulRules[] = {
     {Foul::kBehindTheFreeBall, {"", "", "WPBSA 3, free ball", "", ""}},
     {Foul::kMiss, {"", "", "WPBSA 3.14", "", ""}},
     {Foul::kOpponentsBall, {"", "", "", "", "four-ball, opponent's ball"}},
+    {Foul::kIntoTouchingBall, {"", "UMB, fouls", "", "", ""}},
 };
 
 void check(const State& state) {
@@ -60,10 +64,29 @@ void check(const State& state) {
                                         " is out of range; it must be " + std::to_string(least) + " to " +
                                         std::to_string(kMostPoints));
     }
+    if ((state.group[0] == Group::kOpen) != (state.group[1] == Group::kOpen) ||
+        (state.group[0] != Group::kOpen && state.group[0] == state.group[1]))
+        throw std::invalid_argument(std::string("the groups are ") + name(state.group[0]) + " and " +
+                                    name(state.group[1]) +
+                                    "; one player has solids and the other stripes, or both are open");
     if (!detail::has_its_rules(state))
         throw std::invalid_argument(std::string("the state has rule options of another game, not of ") +
                                     name(state.game) + "; begin a new game and set them");
     if (state.over) throw std::invalid_argument("the game is over; begin a new one");
+}
+
+/// A call names balls and pockets that are there, and the game has a push out if one is called.
+void check(const State& state, const Record& record, const Call& call) {
+    const auto there = [](const char* what, const std::string& id, const std::vector<std::string>& ids) {
+        if (id.empty() || detail::is_in(id, ids)) return;
+        throw std::invalid_argument(
+            fmt::format("the table has no {} {}; it has {}", what, in_quotes(id),
+                        ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, ", "))));
+    };
+    there("ball", call.ball, ids_of(record.tracks));
+    there("pocket", call.pocket, ids_of(record.table.pockets));
+    if (call.push_out && state.game != Game::kNineBall && state.game != Game::kTenBall)
+        throw std::invalid_argument(std::string(name(state.game)) + " has no push out; leave it out");
 }
 
 }  // namespace
@@ -159,6 +182,7 @@ Legal legal(const State& state, std::span<const std::string> balls) {
 
 Verdict judge(const State& state, const Record& record, const Call& call) {
     check(state);
+    check(state, record, call);
     const GameRules& rules = detail::rules_of(state.game);
     for (const std::string_view ball : rules.balls)
         if (index_of(record, ball) < 0)

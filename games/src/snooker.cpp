@@ -17,6 +17,8 @@ namespace carom::games::detail {
 namespace {
 
 constexpr int kLeastPenalty = 4, kRedPoints = 1, kMissesThatLose = 3;
+// A foul after a red before a colour is nominated, and reds in successive strokes (3.10).
+constexpr int kMostPenalty = 7;
 
 int points_of(std::string_view ball) {
     if (number_of(ball) > 0) return kRedPoints;
@@ -115,8 +117,8 @@ Stroke::Stroke(const Facts& facts) : facts_(facts) {
         on_.push_back(free_);
     }
     if (state.on != BallOn::kColour) penalty_ = std::max(penalty_, static_cast<int>(state.on));
-    if (state.on == BallOn::kColour && !facts.call.ball.empty())
-        penalty_ = std::max(penalty_, points_of(nominated));
+    if (state.on == BallOn::kColour)
+        penalty_ = std::max(penalty_, is_colour(nominated) ? points_of(nominated) : kMostPenalty);
     if (facts.shot.fell(facts.shot.struck)) add(Foul::kCueBallPocketed, 0);
     if (facts.shot.left(facts.shot.struck)) add(Foul::kCueBallOff, 0);
     add_first_fouls();
@@ -128,7 +130,7 @@ Stroke::Stroke(const Facts& facts) : facts_(facts) {
     const Vec2 start = planar(facts.record.state_at(facts.shot.struck, 0.0).position);
     if (state.in_hand == InHand::kD && !in_area(facts.record.table, InHand::kD, start))
         add(Foul::kPlacedOutside, 0);
-    if (facts.jumps() && !touches_on()) add(Foul::kJumpShot, 0);
+    if (facts.jumps()) add(Foul::kJumpShot, 0);
     if (fouls.empty() && snookers_behind_free_ball()) add(Foul::kBehindTheFreeBall, 0);
 }
 
@@ -172,12 +174,14 @@ void Stroke::add_first_fouls() {
         return;
     }
     int most = 0;
-    bool all_on = true;
+    bool all_on = true, free_hit = free_.empty();
     for (const int ball : hits) {
         most = std::max(most, points_of(facts_.id(ball)));
         all_on = all_on && is_in(facts_.id(ball), on_);
+        free_hit = free_hit || facts_.id(ball) == free_;
     }
-    if (all_on) return;
+    // 3.12: the free ball is hit first, alone or at once with a ball on.
+    if (all_on && free_hit) return;
     add(hits.size() > 1 ? Foul::kTwoBallsAtOnce : Foul::kWrongBallFirst, most);
 }
 

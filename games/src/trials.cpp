@@ -30,13 +30,13 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
             throw std::invalid_argument(choice.key + ": expected a range from a to b with a <= b");
         if (choice.key.rfind("hit.", 0) == 0)
             hit_ = ball_of(choice.key.substr(4));
-        else
+        else if (choice.key != kBallSpeed)
             check_varies(scene, choice.key);
     }
     // Every shot sets these, chosen or not.
     keys_ = {"cue.aim_deg", "cue.speed", "cue.offset.side", "cue.offset.height", "cue.elevation_deg"};
     for (const Choice& choice : options.choices)
-        if (choice.key.rfind("hit.", 0) != 0 &&
+        if (choice.key.rfind("hit.", 0) != 0 && choice.key != kBallSpeed &&
             std::find(keys_.begin(), keys_.end(), choice.key) == keys_.end())
             keys_.push_back(choice.key);
     chosen_ = keys_.size();
@@ -81,6 +81,13 @@ Trials::Draw Trials::draw(std::uint64_t index) const {
     return d;
 }
 
+/// The cue speed that gives the struck ball this speed, with the other values of the row.
+double Trials::speed_of(std::vector<double> row, double ball_speed) const {
+    Scene scene = scene_;
+    for (std::size_t k = 0; k < chosen_; ++k) SceneNumber(scene_, keys_[k]).put(scene, row[k]);
+    return ball_speed / ball_speed_gain(*scene.cue, scene.size_of(scene.ball[struck_]));
+}
+
 /// The shot without errors: a value for each of the chosen keys.
 std::vector<double> Trials::meant(const std::vector<double>& values) const {
     const Cue& cue = *scene_.cue;
@@ -88,17 +95,22 @@ std::vector<double> Trials::meant(const std::vector<double>& values) const {
     const std::array<double, 5> base = {cue.aim_deg, cue.speed, cue.side, cue.height, cue.elevation_deg};
     std::copy(base.begin(), base.end(), row.begin());
     Vec2 place = planar(scene_.ball[struck_].position);
-    double hit = std::numeric_limits<double>::quiet_NaN();
+    double hit = std::numeric_limits<double>::quiet_NaN(), ball_speed = hit;
     for (std::size_t k = 0; k < values.size(); ++k) {
         const std::string& key = options_.choices[k].key;
         if (key.rfind("hit.", 0) == 0) {
             hit = values[k];
             continue;
         }
+        if (key == kBallSpeed) {
+            ball_speed = values[k];
+            continue;
+        }
         row[static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin())] = values[k];
         if (key == "ball." + cue.ball + ".position.x") place.x() = values[k];
         if (key == "ball." + cue.ball + ".position.y") place.y() = values[k];
     }
+    if (!std::isnan(ball_speed)) row[1] = speed_of(row, ball_speed);
     if (std::isnan(hit)) return row;
     const auto radius = [this](std::size_t ball) {
         return scene_.ball[ball].own.value_or(scene_.balls.size()).R;

@@ -42,6 +42,7 @@ class Trials {
         std::size_t layout;
     };
     int ball_of(const std::string& id) const;
+    double speed_of(std::vector<double> row, double ball_speed) const;
     Draw draw(std::uint64_t index) const;
     std::vector<double> meant(const std::vector<double>& values) const;
     void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,

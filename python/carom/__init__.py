@@ -9,21 +9,37 @@ Long calls release the GIL, and Ctrl-C ends them. Results have the same bits on 
 number of threads.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
-from carom._errors import SceneError
+from carom._errors import SceneError, SceneNotFoundError
 from carom._fit import FitResult, fit
 from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin, sensitivity
 from carom._record import Event, EventColumn, Record, TablePlan, event_columns
 from carom._scene import Scene, tables
 from carom._render import render
-from carom._show import picture, shown
+from carom._show import drawing, picture, shown
 from carom._simulate import Shots, ShotStatus, SimulationError, simulate, simulate_many
 
-# Notebooks display a record through these methods; the record itself does not depend on plots.
+if TYPE_CHECKING:
+    from carom import gym as gym
+
+
+def __getattr__(name: str) -> Any:
+    # Imported on first use, because it needs gymnasium.
+    if name == "gym":
+        import importlib
+
+        return importlib.import_module("carom.gym")
+    raise AttributeError(f"module 'carom' has no attribute {name!r}")
+
+
+# Notebooks display a record or a scene through these methods, which depend on more than these classes do.
 setattr(Record, "_repr_html_", shown)
 setattr(Record, "_repr_png_", picture)
+setattr(Scene, "_repr_html_", drawing)
 
 __all__ = [
     "Cost",
@@ -36,6 +52,7 @@ __all__ = [
     "Record",
     "Scene",
     "SceneError",
+    "SceneNotFoundError",
     "ShotStatus",
     "Shots",
     "SimulationError",

@@ -113,7 +113,8 @@ def _kind(annotation: ast.expr) -> _Kind:
         case ast.Subscript(value=ast.Name(id="Sequence" | "Iterable" as name), slice=inner):
             return _with_items(_KINDS[name], _kind(inner), None)
         case ast.Subscript(value=ast.Name(id="tuple"), slice=ast.Tuple(elts=[inner, *_] as items)):
-            return _with_items(_KINDS["tuple"], _kind(inner), len(items))
+            endless = isinstance(items[-1], ast.Constant)  # tuple[str, ...]
+            return _with_items(_KINDS["tuple"], _kind(inner), None if endless else len(items))
         case ast.Subscript(value=whole):
             return _kind(whole)
         case ast.Attribute(attr=name) | ast.Name(id=name):
@@ -124,6 +125,19 @@ def _kind(annotation: ast.expr) -> _Kind:
 def may_be(alias: str, annotation: str) -> None:
     """Defines `alias` as another annotation."""
     _KINDS[alias] = _kind(ast.parse(annotation, mode="eval").body)
+
+
+def _check(name: str, kind: _Kind, value: Any) -> None:
+    if not kind.takes(value):
+        words = kind.words.replace(" or ", ", ", kind.words.count(" or ") - 1)
+        raise ArgumentError(f"{name}: expected {words}, not {reprlib.repr(value)} ({type(value).__name__})")
+
+
+def check_fields(of: tuple[Any, ...]) -> None:
+    """Raises ArgumentError for a field of a NamedTuple that does not match its annotation."""
+    for (name, annotation), value in zip(type(of).__annotations__.items(), of):
+        text = str(getattr(annotation, "__forward_arg__", annotation))
+        _check(name, _kind(ast.parse(text, mode="eval").body), value)
 
 
 def _checked(function: Any) -> Callable[..., Any]:
@@ -144,11 +158,7 @@ def _checked(function: Any) -> Callable[..., Any]:
         if not kinds:
             read()
         for name, value in (*zip(names, arguments), *named.items()):
-            kind = kinds.get(name, _ANY if name == "self" else others)
-            if not kind.takes(value):
-                words = kind.words.replace(" or ", ", ", kind.words.count(" or ") - 1)
-                got = f"{reprlib.repr(value)} ({type(value).__name__})"
-                raise ArgumentError(f"{name}: expected {words}, not {got}")
+            _check(name, kinds.get(name, _ANY if name == "self" else others), value)
         return function(*arguments, **named)
 
     return call

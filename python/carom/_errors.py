@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 
 class SceneError(ValueError):
     """A mistake in a scene or a record file.
@@ -29,3 +32,16 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         place = "" if self.line is None else f":{self.line}:{self.column}"
         return f"{self.file}{place}: {self.message}"
+
+
+class SceneNotFoundError(SceneError, FileNotFoundError):
+    """The file of a scene or a record does not exist: a SceneError, and a FileNotFoundError as of `open`."""
+
+    def __init__(self, message: str, file: str, line: int = 0, column: int = 0) -> None:
+        super().__init__(message, file, line, column)
+        self.errno, self.strerror, self.filename = errno.ENOENT, os.strerror(errno.ENOENT), file
+
+
+def check_exists(path: str) -> None:
+    if not os.path.lexists(path):
+        raise SceneNotFoundError("cannot be read: there is no such file; check the path", path)

@@ -174,10 +174,11 @@ def solve(
     rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
                         shots, best, seed, threads, exact)
     found = _solutions([key for key, _, _ in choices], rows)
-    # An exact shot has an aim instead of a hit.
+    # An exact shot has an aim instead of a hit, and a speed of the cue instead of the ball's.
     return [
         s if not exact or s.trouble else s._replace(
-            values={"cue.aim_deg" if key.startswith("hit.") else key: x for key, x in s.values.items()})
+            values={"cue.aim_deg" if key.startswith("hit.") else
+                    "cue.speed" if key == "cue.ball_speed" else key: x for key, x in s.values.items()})
         for s in found]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import _carom
 from carom._arguments import checked
+from carom._errors import check_exists
 from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
 
@@ -71,7 +72,8 @@ class Record:
     """A simulated shot: motion segments in closed form, and events. Immutable.
 
     Arrays described as views share the record's memory, are read-only, and keep it alive. Balls are in the
-    order of `ids`. A pickled record contains the data that `save` writes, and its scene.
+    order of `ids`. A pickled record contains the data that `save` writes, and its scene. Records with equal
+    data are equal.
     """
 
     __slots__ = ("_native", "__weakref__")
@@ -278,7 +280,7 @@ class Record:
         try:
             import pandas
         except ImportError as error:
-            raise ImportError("to_pandas needs pandas: pip install 'carom-billiards[notebook]'") from error
+            raise ImportError("to_pandas needs pandas: pip install pandas") from error
 
         def named(numbers: NDArray[Any], names: tuple[str, ...]) -> pandas.Categorical:
             return pandas.Categorical.from_codes(numbers.astype(np.int16), list(names))
@@ -340,9 +342,20 @@ class Record:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Loads a record that `save` or `carom simulate -o` wrote. Raises SceneError if the file is not
-        one."""
-        return cls._of(_carom.load_record(os.fspath(path)))
+        """Loads a record that `save` or `carom simulate -o` wrote. Raises SceneError if the file is not one;
+        it is a FileNotFoundError, too, if there is no such file."""
+        name = os.fspath(path)
+        check_exists(name)
+        return cls._of(_carom.load_record(name))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all data that `save` writes are equal."""
+        if not isinstance(other, Record):
+            return NotImplemented
+        return self.hash() == other.hash() and self._native.text() == other._native.text()
+
+    def __hash__(self) -> int:
+        return hash(self.hash())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self._native.text(), self._scene())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -10,8 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from carom import _carom, _toml
-from carom._arguments import checked, may_be
-from carom._errors import SceneError
+from carom._arguments import ArgumentError, checked, may_be
+from carom._errors import SceneError, check_exists
 
 if TYPE_CHECKING:
     from typing import Self
@@ -81,8 +83,9 @@ class Scene:
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """The scene in a TOML file. Raises SceneError, with the place of the mistake, also if it cannot be
-        read."""
+        read; it is a FileNotFoundError, too, if there is no such file."""
         name = os.fspath(path)
+        check_exists(name)
         return cls._of(_carom.parse_scene(_carom.read_scene_text(name), name))
 
     @classmethod
@@ -128,6 +131,25 @@ class Scene:
             except SceneError as error:
                 raise _placeless(error) from None
         return self._of(native)
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of a key as `replace` names it, also if the file leaves it out: `scene["cue.speed"]`, or
+        a section as a dict. Raises KeyError if the scene has no such value."""
+        import tomllib
+
+        if not isinstance(key, str):
+            raise ArgumentError(f"key: expected a string, such as 'cue.speed', not {key!r}")
+        with contextlib.suppress(ValueError):
+            if not math.isnan(number := self._native.number(key)):
+                return number
+        at: Any = tomllib.loads(self.text())
+        for name in key.split("."):
+            if isinstance(at, list):
+                at = {part["id"]: part for part in at if isinstance(part, dict) and "id" in part}
+            at = at.get(name) if isinstance(at, dict) else None
+        if at is None:
+            raise KeyError(f"{key}: the scene has no such value; print(scene.text()) shows them")
+        return at
 
     def text(self) -> str:
         """The scene as a TOML file with every value written out, a rack as its balls.

@@ -109,6 +109,7 @@ class Shots(NamedTuple):
     messages: dict[int, str]  # by shot: why it has no result
     ids: tuple[str, ...] = ()  # the balls
     paths: NDArray[np.float64] | None = None  # (n, times, b, 3) [m], if times were given
+    pockets: tuple[str, ...] = ()  # the pockets
 
     @property
     def places(self) -> NDArray[np.float64]:
@@ -122,30 +123,33 @@ class Shots(NamedTuple):
         """The shots as a pyarrow Table with one row per shot; a copy. Needs pyarrow (extra [sweep]).
 
         The columns are status (by name), duration [s], events, first_hit (an id or null), contacts,
-        approach_cushions, for every ball ID.x, ID.y [m], ID.pocket, ID.fell and ID.cushions, hash if there is
-        one, and message ("" for a shot with a result). `paths` is left out.
+        approach_cushions, for every ball ID.x, ID.y [m], ID.pocket (an id, "out" or "", as in a sweep),
+        ID.fell and ID.cushions, hash if there is one, and message ("" for a shot with a result). `paths` is
+        left out.
         """
-        return _optional("pyarrow", "sweep").table(self._columns())
+        return _optional("pyarrow").table(self._columns())
 
     def to_pandas(self) -> pandas.DataFrame:
         """The columns of `to_arrow` as a DataFrame. Needs pandas (extra [notebook])."""
-        return _optional("pandas", "notebook").DataFrame(self._columns())
+        return _optional("pandas").DataFrame(self._columns())
 
     def to_polars(self) -> polars.DataFrame:
         """The columns of `to_arrow` as a polars DataFrame. Needs polars."""
-        return _optional("polars", "").DataFrame(self._columns())
+        return _optional("polars").DataFrame(self._columns())
 
     def _columns(self) -> dict[str, Any]:
         n, balls = self.pocket.shape
         ids = self.ids or tuple(map(str, range(balls)))
         names = [*ids, None]  # the index -1 is the last one
+        pockets = [*(self.pockets or map(str, range(self.pocket.max(initial=-1) + 1))), "out", ""]
         columns: dict[str, Any] = {"status": [_STATUS[status] for status in self.status.tolist()]}
         columns |= {"duration": self.duration, "events": self.events}
         columns |= {"first_hit": [names[ball] for ball in self.first_hit.tolist()]}
         columns |= {"contacts": self.contacts, "approach_cushions": self.approach_cushions}
         for ball, name in enumerate(ids):
             columns |= {f"{name}.{axis}": self.xy[:, ball, k].copy() for k, axis in enumerate("xy")}
-            for key in ("pocket", "fell", "cushions"):
+            columns[f"{name}.pocket"] = [pockets[pocket] for pocket in self.pocket[:, ball].tolist()]
+            for key in ("fell", "cushions"):
                 columns[f"{name}.{key}"] = getattr(self, key)[:, ball].copy()
         if self.hash is not None:
             columns["hash"] = self.hash
@@ -248,7 +252,7 @@ def simulate_many(
     paths.fill(np.nan)
     failures = _carom.simulate_many(scene._native, n, columns, absent, until, max_events, threads,
                                     into._native(), moments, paths.reshape(-1))
-    return into._replace(messages=dict(failures), ids=ids)
+    return into._replace(messages=dict(failures), ids=ids, pockets=tuple(scene._native.pockets))
 
 
 def _columns_of(
@@ -289,10 +293,9 @@ def _checked(out: Shots, like: Shots, n: int, hashes: bool) -> Shots:
     return out._replace(hash=out.hash if hashes else None, paths=None if like.paths is None else out.paths)
 
 
-def _optional(module: str, extra: str) -> Any:
+def _optional(module: str) -> Any:
     """A package that need not be installed. Raises ImportError with the way to install it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        what = f"'carom-billiards[{extra}]'" if extra else module
-        raise ImportError(f"{module} is missing ({error}): pip install {what}", name=module) from None
+        raise ImportError(f"{module} is missing ({error}): pip install {module}", name=module) from None

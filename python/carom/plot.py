@@ -97,7 +97,7 @@ def _axes(ax: Axes | None, size: tuple[float, float]) -> Any:
     try:
         from matplotlib import pyplot
     except ImportError as error:
-        raise ImportError("carom.plot needs matplotlib: pip install 'carom-billiards[plot]'") from error
+        raise ImportError("carom.plot needs matplotlib: pip install matplotlib") from error
     return pyplot.subplots(figsize=size, layout="constrained")[1]
 
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "carom/engine/scene_number.h"
 #include "carom/engine/variation.h"
 #include "native.h"
 
@@ -79,6 +80,9 @@ void add_scenes(nb::module_& m) {
                          const Table& table = s.scene->table;
                          return std::tuple(table.preset, table.width, table.length);
                      })
+        .def_prop_ro("pockets", [](const NativeScene& s) { return ids_of(s.scene->table.pockets); })
+        .def("number", [](const NativeScene& s,
+                          const std::string& key) { return SceneNumber(*s.scene, key).value(*s.scene); })
         .def("positions", positions, nb::arg("out").noconvert())
         .def("changed", changed);
     m.def("read_scene_text", read_scene_text);

@@ -206,6 +206,21 @@ TEST(Effects, RefusingWhatTheSceneNeedsIsAnErrorAtItsLine) {
     }
 }
 
+TEST(Effects, AFlightIsNotForcedIntoThePlanarModel) {
+    const std::string text =
+        "[[ball]]\n[cue]\nelevation_deg = 30\n[physics]\nvertical = \"drop\"\n[effects]\n";
+    try {
+        plan_of(parse_scene(text + "airborne = true\n", "planar.toml"));
+        ADD_FAILURE() << "nothing was refused";
+    } catch (const SceneError& error) {
+        EXPECT_EQ(
+            std::string(error.what()),
+            "planar.toml:7:12: effects.airborne = true contradicts vertical = \"drop\"; remove one of them");
+    }
+    EXPECT_FALSE(
+        plan_of(parse_scene(text + "airborne = false\n", "planar.toml")).in_force(Effect::kAirborne));
+}
+
 TEST(Effects, ListsContainTheNeededParts) {
     const Plan full = plan_of_text(kBreak);
     EXPECT_EQ(full.geometry.cushions.size(), 18u);

@@ -34,6 +34,14 @@ TEST(DidYouMean, SuggestsNearNames) {
     for (const auto& c : kCases) EXPECT_EQ(did_you_mean(c.word, kCueKeys), c.says) << c.word;
 }
 
+TEST(DidYouMean, SpellsNumbersOut) {
+    const std::vector<std::string_view> games = {"eight_ball", "nine_ball", "ten_ball", "three_cushion"};
+    EXPECT_EQ(did_you_mean("8ball", games), "; did you mean eight_ball?");
+    EXPECT_EQ(did_you_mean("9-Ball", games), "; did you mean nine_ball?");
+    EXPECT_EQ(did_you_mean("10 ball", games), "; did you mean ten_ball?");
+    EXPECT_EQ(did_you_mean("3cushion", games), "; did you mean three_cushion?");
+}
+
 TEST(DidYouMean, SuggestsNothingForDistantWords) {
     // "bats" shares two of four letters with ball, "a" begins no key, and "mass" exists: the word is wrong
     // for another reason.

@@ -57,6 +57,7 @@ TEST(Tangents, SlideAndRoll) {
 Scene nimble(double aside, double e_b) {
     Scene scene = frictionless();
     scene.physics.ball_ball = ball_ball_model("inelastic");
+    scene.physics.clusters = ClusterModel::kSequential;
     scene.balls.R = 0.1;
     scene.balls.e_b = e_b;
     add_ball(scene, "1", {0.0, 0.0, 0.1}, {1.0, 0.0, 0.0});

@@ -40,6 +40,19 @@ class VariationTest : public testing::Test {
     std::string text_ = kSmallScene;
 };
 
+TEST_F(VariationTest, TheBallsSpeedVariesBesideTheAim) {
+    const std::string ball = "[[ball]]\nposition = [0.6, 1.0]\n[cue]\naim_deg = 90\noffset = [0, 0]\n";
+    for (const char* said : {"ball_speed = 1.0\n", "speed = 1.0\n", ""}) {
+        text_ = ball + said;
+        const Variation both = vary({"cue.aim_deg=uniform(80,100)", "cue.ball_speed=grid(1,2,2)"});
+        const std::optional<Scene> slow = both.shot(0).scene, fast = both.shot(1).scene;
+        ASSERT_TRUE(slow && fast) << said << both.shot(0).error;
+        EXPECT_NEAR(fast->cue->speed, 2.0 * slow->cue->speed, 1e-12);
+        EXPECT_NE(slow->cue->aim_deg, fast->cue->aim_deg);
+        EXPECT_FALSE(vary({"cue.ball_speed=uniform(1,2)"}).shot(0).scene->cue->speed == 1.0);
+    }
+}
+
 TEST_F(VariationTest, OfATextEqualsThatOfAFile) {
     const std::vector<std::string> rules = {"cue.speed=uniform(1,5)"};
     const Variation file = vary(rules), text = Variation::from_text(kSmallScene, "a text", rules, 1);

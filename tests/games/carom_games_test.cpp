@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/games/rules.h"
 #include "made_record.h"
+#include "support/engine_cases.h"
 
 namespace carom::test {
 namespace {
@@ -181,6 +183,30 @@ TEST(ThreeCushion, TheTargetEndsTheGame) {
     const Verdict v = judge(state, point);
     EXPECT_TRUE(v.next().over);
     EXPECT_EQ(v.next().winner, 0);
+}
+
+TEST(ThreeCushion, ATouchingBallMustNotBePlayedInto) {
+    for (const Game game : {Game::kThreeCushion, Game::kOneCushion, Game::kStraightRail}) {
+        State state = games::new_game(game);
+        state.opening = false;
+        // The red touches at 68.755 degrees.
+        for (const auto& [aim, foul] : {std::pair(5.0, true),
+                                        {68.0, true},
+                                        {158.0, true},
+                                        {160.0, false},
+                                        {250.0, false},
+                                        {338.0, false}}) {
+            const Scene scene = parse_scene(
+                "table.preset = \"carom\"\nball = [{id = \"white\", position = [0.5, 0.7]}, {id = \"red\", "
+                "position = [0.5222850019003155, 0.7573204037869844]}, {id = \"yellow\", position = [0.95, "
+                "0.71]}]\ncue = {ball = \"white\", speed = 2, offset = [0, 0], aim_deg = " +
+                    std::to_string(aim) + "}",
+                "touching");
+            const Verdict v = judge(state, simulate(plan_of(scene)));
+            EXPECT_EQ(v.fouls, foul ? Fouls{Foul::kIntoTouchingBall} : Fouls()) << aim;
+            EXPECT_TRUE(!foul || v.points == 0);
+        }
+    }
 }
 
 TEST(SumToThree, ThreeCushionsOfBothBallsWithAHitScore) {

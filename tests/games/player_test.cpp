@@ -74,6 +74,15 @@ TEST(Player, StraightIn) {
     EXPECT_GT(best.makes.low, 0.8);
 }
 
+TEST(Player, RefusesToAdviseNothing) {
+    AdviceOptions none;
+    none.best = 0;
+    EXPECT_THROW(games::advise(games::new_game(Game::kEightBall),
+                               table({{"cue", {0.4, 0.4}}, {"1", {0.6, 1.2}}, {"8", {0.6, 2.0}}}),
+                               games::skill_by_name("club", kPoolRadius), kernel::best_isa(), none),
+                 std::invalid_argument);
+}
+
 TEST(Player, PlaysACombinationIfThatIsAll) {
     // The 9 hangs in the corner behind the 1, the only ball that may be hit first: the 1 drives it in.
     const Advice best =

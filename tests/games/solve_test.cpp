@@ -1,6 +1,7 @@
 // The search for a shot: it finds existing shots, its figures are unbiased, and threads change nothing.
 #include "carom/games/solve.h"
 #include "carom/games/break.h"
+#include "carom/games/refine.h"
 
 #include <gtest/gtest.h>
 
@@ -42,6 +43,20 @@ TEST(Solve, FindsAPotFromAnyDirection) {
         // Without execution errors the shot achieves its goal.
         EXPECT_TRUE(want.holds(simulate(plan_of(found[0].scene))));
     }
+}
+
+TEST(Solve, SearchesTheSpeedOfTheBall) {
+    const Scene scene = shipped("draw");
+    const Measure want("\"1\" in pocketed and cue near (0.35, 2.19, 0.1)", scene);
+    SolveOptions options = small();
+    options.shots = 3000;
+    options.choices = {{"cue.aim_deg", 134.0, 136.0}, {games::kBallSpeed, 1.0, 3.0}};
+    const Solution found = games::solve(scene, want, kernel::best_isa(), options).at(0);
+    const Record record = simulate(plan_of(found.scene));
+    EXPECT_NEAR(length3(record.tracks[0].segments[1].v), found.values[1], 1e-9);
+    const games::Exact exact = games::exact(found, want, kernel::best_isa(), options);
+    EXPECT_EQ(exact.refined.trouble, "");
+    EXPECT_EQ(exact.choices[1].key, "cue.speed");
 }
 
 TEST(Solve, FindsAThreeCushionPointAndAKickByItsRoute) {

@@ -229,8 +229,13 @@ def test_whole_games_of_random_strikes(game):
         scene = scene.replace(
             cue={"ball": struck, "speed": float(random.uniform(1.0, 7.0)), "aim_deg": aim})
         record = carom.simulate(scene)
-        verdict = games.judge(state, record, games.Call(
-            str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}"))
+        called = games.Call(
+            str(random.choice(legal.callable)) if legal.callable else "", f"p{random.integers(1, 7)}")
+        if not record.table.pockets:
+            with pytest.raises(ValueError, match="the table has no pocket"):
+                games.judge(state, record, called)
+            called = games.Call()
+        verdict = games.judge(state, record, called)
         option = verdict.options[random.integers(len(verdict.options))]
         state = option.state
         if state.over:
@@ -314,3 +319,14 @@ def test_an_impossible_aim_says_why():
     ):
         with pytest.raises(ValueError):
             bad()
+
+
+def test_fields_of_the_wrong_type_are_named():
+    state, scene = games.new_game("nine_ball"), carom.Scene(rack="nine_ball", ball=[{"position": [0.6, 0.5]}])
+    for wrong, message in (({"turn": "x"}, "turn: expected a whole number"),
+                           ({"points": (1, "a")}, "points: expected"), ({"rules": (1,)}, "rules: expected")):
+        with pytest.raises(TypeError, match=message):
+            games.legal(state._replace(**wrong), scene)
+    record = carom.simulate(scene.replace(cue={"speed": 1, "aim_deg": 90, "offset": [0, 0]}))
+    with pytest.raises(TypeError, match="ball: expected a string"):
+        games.judge(state, record, games.Call(ball=3))  # type: ignore[arg-type]

@@ -41,7 +41,7 @@ def test_blocks_print_the_output_on_the_page(page, tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     pyplot = pytest.importorskip("matplotlib.pyplot")
     for package in ("gymnasium", "pettingzoo") if "carom.gym" in page.read_text() else ():
-        pytest.importorskip(package, reason=f"{package} is not installed: pip install 'carom-billiards[gym]'")
+        pytest.importorskip(package, reason=f"{package} is not installed: pip install {package}")
     for name in ("scenes", "tests", "examples"):
         (tmp_path / name).symlink_to(SOURCE / name)
     monkeypatch.chdir(tmp_path)

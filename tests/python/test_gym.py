@@ -13,7 +13,7 @@ import pytest
 from conftest import SOURCE, refused
 
 gymnasium = pytest.importorskip(
-    "gymnasium", reason="gymnasium is not installed: pip install 'carom-billiards[gym]'")
+    "gymnasium", reason="gymnasium is not installed: pip install gymnasium")
 import carom.gym  # noqa: E402
 from gymnasium.utils.env_checker import check_env, data_equivalence  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402

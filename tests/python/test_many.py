@@ -178,3 +178,12 @@ def test_shots_beyond_the_arrays_are_refused(draw_scene):
         wanted = "is out of range; it must be at most 2147483648"
         with pytest.raises(ValueError, match=f"^shots = {shots} {wanted}$"):
             carom.simulate_many(draw_scene, shots=shots)
+
+
+def test_tables_of_shots_name_pockets_as_sweeps_do():
+    pytest.importorskip("pandas", reason="pandas is not installed")
+    table = carom.simulate_many("scenes/draw.toml", params={"cue.speed": [0.1, 2.25]}).to_pandas()
+    assert list(table["1.pocket"]) == ["", "p3"]
+    assert list(table["cue.pocket"]) == ["", ""]
+    swept = carom.sweep.columns("scenes/draw.toml", {"cue.speed": "list(0.1, 2.25)"}, 4)
+    assert set(swept["1.pocket"]) <= {"", "p3"}

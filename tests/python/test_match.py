@@ -9,7 +9,7 @@ import carom
 import numpy as np
 import pytest
 
-pytest.importorskip("pettingzoo", reason="pettingzoo is not installed: pip install 'carom-billiards[gym]'")
+pytest.importorskip("pettingzoo", reason="pettingzoo is not installed: pip install pettingzoo")
 from carom.gym import match  # noqa: E402
 from pettingzoo.test import api_test, seed_test  # noqa: E402
 
@@ -144,3 +144,8 @@ def test_the_picture_shows_the_table():
     with pytest.raises(RuntimeError, match="no shot"):
         env.record()
     assert env.render().shape == (36, 64, 3)
+
+
+def test_an_unknown_option_is_named():
+    with pytest.raises(TypeError, match="observation: unknown option; expected one of aim, speed"):
+        match.env("EightBall", observation="dict")

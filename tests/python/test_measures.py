@@ -202,7 +202,7 @@ def test_shots_are_tables(draw_scene):
             assert "pip install" in str(error)
             continue
         one, two = table.to_dict("records") if rows == "to_dict" else getattr(table, rows)()
-        assert one["status"] == "at_rest" and one["first_hit"] == "1" and one["1.pocket"] == 2
+        assert one["status"] == "at_rest" and one["first_hit"] == "1" and one["1.pocket"] == "p3"
         assert one["cue.x"] == shots.xy[0, 0, 0] and one["hash"] == shots.hash[0] and one["message"] == ""
         assert two["status"] == "invalid" and "cue.speed" in two["message"] and two["first_hit"] != "1"
 

@@ -142,6 +142,8 @@ def test_a_record_saves_and_loads(break_scene, tmp_path):
 def test_a_record_pickles_with_its_scene(break_scene, tmp_path):
     record = carom.simulate(break_scene)
     again = pickle.loads(pickle.dumps(record))
+    assert again == record and hash(again) == hash(record) and record != "another"
+    assert carom.simulate(break_scene, until=0.1) != record
     assert again.hash() == record.hash() and again.event_list() == record.event_list()
     assert again.stopped == record.stopped
     assert again.final_scene() == record.final_scene()

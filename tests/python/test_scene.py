@@ -134,3 +134,44 @@ def test_replace_explains_errors(draw_scene):
 def test_an_unreadable_file_is_a_scene_error(tmp_path):
     with pytest.raises(carom.SceneError, match="there is no such file"):
         carom.Scene.load(tmp_path / "none.toml")
+
+
+def test_a_key_of_a_scene_is_read_by_its_name():
+    balls = [{"id": "cue"}, {"id": "1", "position": [0.3, 2.0]}]
+    scene = carom.Scene(ball=balls, cue={"offset": [0.1, -0.4]})
+    assert scene["cue.offset.height"] == -0.4
+    assert scene["cue.speed"] == carom.Scene.loads(scene.text())["cue.speed"] > 0  # a default
+    assert scene["ball.1.position.y"] == 2.0 and scene["ball.1.position"] == [0.3, 2.0]
+    assert scene["table.preset"] == "nine_foot"
+    assert scene["cue"]["ball"] == "cue"
+    assert scene.replace(**{"balls.mu_s": 0.18})["balls.mu_s"] == 0.18
+    for key in ("cue.sped", "ball.9.position.x", "tabel"):
+        with pytest.raises(KeyError, match="the scene has no such value"):
+            scene[key]
+    with pytest.raises(TypeError, match="key: expected a string"):
+        scene[3]  # type: ignore[index]
+
+
+def test_a_missing_file_is_a_file_not_found_error(tmp_path):
+    for load, name in ((carom.Scene.load, "none.toml"), (carom.Record.load, "none.json"),
+                       (carom.simulate, "none.toml")):
+        path = str(tmp_path / name)
+        with pytest.raises(FileNotFoundError) as caught:
+            load(path)
+        assert isinstance(caught.value, carom.SceneError)
+        assert (caught.value.filename, caught.value.file) == (path, path)
+        again = pickle.loads(pickle.dumps(caught.value))
+        assert (str(again), again.errno) == (str(caught.value), caught.value.errno)
+    folder = tmp_path / "folder.toml"
+    folder.mkdir()
+    with pytest.raises(carom.SceneError) as caught:
+        carom.Scene.load(folder)
+    assert not isinstance(caught.value, FileNotFoundError)
+
+
+def test_a_notebook_shows_a_drawing_of_a_scene():
+    scene = carom.Scene(rack="nine_ball", ball=[{"id": "cue", "position": [0.6, 0.5]}], cue={"aim_deg": 90})
+    text = scene._repr_html_()
+    assert text.startswith("<svg") and text.count("<title>") == 6 + len(scene.ids)
+    assert len(text) < 10_000
+    assert "<svg" in carom.Scene(table={"cushion": []}, ball=[{}])._repr_html_()

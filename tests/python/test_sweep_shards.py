@@ -262,4 +262,4 @@ except ImportError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "pip install 'carom-billiards[sweep]'" in done.stdout
+    assert "pip install pyarrow" in done.stdout

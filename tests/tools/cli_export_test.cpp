@@ -157,6 +157,17 @@ TEST(Export, PlacesAreExactAndOrientationsClose) {
     std::printf("largest difference: %.2g m, %.2g rad\n", largest.place, largest.turn);
 }
 
+TEST(Export, ABallThatTurnsTooOftenIsRefused) {
+    const TemporaryFolder folder;
+    const std::string scene = folder.write(
+        "spins.toml",
+        "[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[[ball]]\nspin = [0, 0, 100]\n[stop]\ntime = 1e6\n");
+    const ProcessResult result = carom({"export", scene, "-o", folder.file("spins.glb")});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_TRUE(contains(result.err, "turns 1e+08 rad between 0.000 and 1e+06 s")) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("spins.glb")));
+}
+
 TEST(Export, StraightLinesStayClose) {
     const TemporaryFolder folder;
     const std::string scene = CAROM_SOURCE_DIR "/scenes/jump_pot.toml", file = folder.file("shot.glb");

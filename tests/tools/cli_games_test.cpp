@@ -128,12 +128,36 @@ TEST_F(CliGames, FourteenBallsAreRackedAroundTheBreakBall) {
     judge.insert(judge.end(), called.begin(), called.end());
     next.insert(next.end(), called.begin(), called.end());
     const ProcessResult judged = carom(judge);
-    EXPECT_EQ(judged.out, "fair\n1 point scored\nplayer 1 shoots\n14 balls are put on the table\n");
+    EXPECT_TRUE(contains(judged.out, "fair\n1 point scored\nplayer 1 shoots\n1 is respotted at "))
+        << judged.out;
+    EXPECT_EQ(lines_of(judged.out).size(), 17u) << judged.out;
     ASSERT_EQ(carom(next).status, 0);
     const Scene racked = read_scene(file("n.toml"));
     ASSERT_EQ(racked.ball.size(), 16u);
     EXPECT_EQ(planar(racked.ball[index_of(racked.ball, "9")].position), Vec2(0.9, 1.6));
     EXPECT_EQ(carom({"check", file("n.toml")}).status, 0);
+}
+
+TEST_F(CliGames, ACallThatTheTableOrTheGameDoesNotHaveIsRefused) {
+    const auto message = [&](const std::vector<std::string>& call, const std::string& state) {
+        std::vector<std::string> words = {"judge", CAROM_SOURCE_DIR "/scenes/eight_ball_break.toml",
+                                          "--state", folder_.write("s.json", state)};
+        words.insert(words.end(), call.begin(), call.end());
+        const ProcessResult result = carom(words);
+        EXPECT_EQ(result.status, 2) << result.out;
+        return result.err;
+    };
+    const std::string eight = R"({"game": "eight_ball", "opening": false})";
+    EXPECT_TRUE(contains(message({"--ball", "99"}, eight), "the table has no ball \"99\"; it has cue, "));
+    EXPECT_TRUE(
+        contains(message({"--pocket", "zzz"}, eight), "no pocket \"zzz\"; it has p1, p2, p3, p4, p5, p6"));
+    EXPECT_TRUE(contains(message({"--push-out"}, eight), "eight_ball has no push out; leave it out"));
+    EXPECT_TRUE(
+        contains(message({"--safety"}, R"({"game": "nine_ball"})"), "nine_ball has no called safety"));
+    EXPECT_TRUE(contains(message({}, R"({"game": "eight_ball", "group": ["solids", "solids"]})"),
+                         "the groups are solids and solids"));
+    EXPECT_TRUE(contains(message({}, R"({"game": "eight_ball", "group": ["solids", "open"]})"),
+                         "the groups are solids and open"));
 }
 
 TEST_F(CliGames, AMissMayBeReplayed) {
@@ -144,6 +168,11 @@ TEST_F(CliGames, AMissMayBeReplayed) {
                                            "[[ball]]\nid = \"black\"\nposition = [0.5, 3.0]\n"
                                            "[cue]\nspeed = 0.5\naim_deg = 0\noffset = [0, 0]\n");
     std::ofstream(file("state.json")) << R"({"game": "snooker", "opening": false, "in_hand": "no"})";
+    const ProcessResult judged =
+        carom({"judge", miss, "--state", file("state.json"), "--rules", "miss=true"});
+    EXPECT_TRUE(contains(judged.out, "play on: player 2 shoots, red on\n")) << judged.out;
+    EXPECT_TRUE(contains(judged.out, "replace the balls: player 1 shoots, red on\n     every ball returns"))
+        << judged.out;
     const std::vector<std::string> all = {"next",    miss,           "--state",     file("state.json"),
                                           "--rules", "miss=true",    "--option",    "3",
                                           "-o",      file("n.toml"), "--state-out", file("after.json")};

@@ -44,6 +44,60 @@ TEST_F(Mistakes, HelpAndVersionAreAlsoCommands) {
     for (const char* version : {"version", "-V"}) EXPECT_EQ(carom({version}).out, carom({"--version"}).out);
 }
 
+TEST_F(Mistakes, MistypedOptionsAndValuesAreExplained) {
+    refused("unknown option --verfy; did you mean --verify? See carom simulate --help",
+            {"simulate", scene_, "--verfy"});
+    refused("8ball: expected one of", {"judge", scene_, "--game", "8ball"});
+    refused("did you mean eight_ball?", {"judge", scene_, "--game", "8ball"});
+    refused("--target 1mm: expected a number, without a unit", {"accuracy", scene_, "--target", "1mm"});
+    refused("frames need a number in their names", {"render", scene_, "-o", folder_.file("a.png")});
+    const ProcessResult alone = carom({});
+    EXPECT_EQ(alone.status, 2);
+    EXPECT_EQ(alone.out, carom({"--help"}).out);
+    const ProcessResult formats = carom({"describe"});
+    EXPECT_EQ(formats.status, 0);
+    EXPECT_TRUE(contains(formats.out, "carom describe scene-schema\n"));
+}
+
+TEST_F(Mistakes, LikelyUnitsAndTablesAreWarnedOf) {
+    const auto warned = [this](const std::string& text) {
+        return carom({"check", folder_.write("w.toml", text + "\n[cue]\noffset = [0, 0]\n")}).err;
+    };
+    EXPECT_TRUE(contains(warned("balls.mass = 170\n[[ball]]"), "warning: a ball has a mass of 170 kg"));
+    EXPECT_TRUE(contains(carom({"check", folder_.write("c.toml", "[[ball]]\n[cue]\nmass = 540\n")}).err,
+                         "the cue has a mass of 540 kg"));
+    const std::string cue = "[[ball]]\nposition = [0.9, 0.2]\n";
+    EXPECT_TRUE(
+        contains(warned("rack.game = \"snooker\"\n" + cue), "the snooker balls are on the table nine_foot"));
+    EXPECT_TRUE(contains(warned("table.preset = \"carom\"\nrack.game = \"eight_ball\"\n" + cue),
+                         "the pool balls are on the table carom"));
+    const std::string right =
+        "table.preset = \"snooker\"\nballs.preset = \"snooker\"\nrack.game = \"snooker\"\n";
+    EXPECT_FALSE(contains(warned(right + cue), "warning:"));
+    EXPECT_FALSE(contains(warned("rack.game = \"eight_ball\"\n" + cue), "warning:"));
+}
+
+TEST_F(Mistakes, StandardStreamsQuietAndClosedPipes) {
+    const std::string scene = read_file(scene_);
+    ProcessOptions input;
+    input.input = scene;
+    const ProcessResult read = carom({"simulate", "-", "--hash"}, input);
+    EXPECT_EQ(read.out, carom({"simulate", scene_, "--hash"}).out) << read.err;
+    const ProcessResult record = carom({"simulate", scene_, "-o", "-"});
+    EXPECT_EQ(record.out, read_file([&] {
+                  carom({"simulate", scene_, "-o", folder_.file("r.json")});
+                  return folder_.file("r.json");
+              }()));
+    const ProcessResult quiet =
+        carom({"check", folder_.write("w.toml", "balls.mass = 170\n[[ball]]\n"), "--quiet"});
+    EXPECT_EQ(quiet.out + quiet.err, "");
+    EXPECT_EQ(quiet.status, 0);
+    EXPECT_TRUE(contains(carom({"check", "missing.toml", "--quiet"}).err, "missing.toml"));
+    ProcessOptions closed;
+    closed.close_output = true;
+    EXPECT_EQ(carom({"simulate", scene_, "--events", "-"}, closed).err, "");
+}
+
 TEST_F(Mistakes, NoFileIsReadAndWrittenOrWrittenTwice) {
     const std::string before = read_file(scene_), same = folder_.file("same");
     const std::string link = folder_.file("link.toml");

@@ -68,6 +68,11 @@ TEST_F(CliSnooker, AJumpOverABallBeforeOneIsHitIsAFoul) {
     const std::string blue = judged("cue 0.889 0.6\npink 0.889 0.96\nblue 0.889 1.9\nblack 0.889 3.245\n",
                                     jump, R"("points": [0, 0], "on": "blue")");
     EXPECT_TRUE(contains(blue, "5 points for the other player")) << blue;
+    // A touching ball that is on counts as hit, and the jump is still a jump over others.
+    const std::string touching =
+        judged("cue 0.889 1.2\n1 0.889 1.1475\npink 0.86225 1.5\nblack 0.91575 1.5\n2 0.889 2.9\n",
+               "speed = 3.5\naim_deg = 90\nelevation_deg = 30\n", kRed);
+    EXPECT_TRUE(contains(touching, "foul: jump shot")) << touching;
     // A jump past a ball, or after a hit, is fair.
     const std::string beside =
         judged("cue 0.889 0.6\nbrown 0.8 0.96\n1 0.889 1.9\nblack 0.889 3.245\n", jump, kRed);

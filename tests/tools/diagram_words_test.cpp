@@ -23,11 +23,11 @@ TEST(DiagramWords, OmitZeros) {
     cue.side = cue.height = 0.0;
     EXPECT_EQ(stroke_words(cue, Units::kMetric), "cue 2.0 m/s, aim 90.00 deg, tip in the middle");
     cue.height = -0.3;
-    EXPECT_EQ(stroke_words(cue, Units::kMetric), "cue 2.0 m/s, aim 90.00 deg, tip 0.30 low radii");
+    EXPECT_EQ(stroke_words(cue, Units::kMetric), "cue 2.0 m/s, aim 90.00 deg, tip 0.3 R low");
     cue.side = 0.2;
     cue.elevation_deg = 20.0;
     EXPECT_EQ(stroke_words(cue, Units::kInch),
-              "cue 4.5 mph, aim 90.00 deg, elevation 20 deg, tip 0.20 left, 0.30 low radii");
+              "cue 4.5 mph, aim 90.00 deg, elevation 20 deg, tip 0.2 R left, 0.3 R low");
 }
 
 TEST(DiagramWords, StateCaromPointsAndFallsOnlyWithPockets) {

@@ -39,7 +39,8 @@ int run(int argc, char** argv) {
     program.footer =
         "Scene files are TOML: see docs/reference/scene_format.md and the folder scenes.\n  carom simulate "
         "scenes/draw.toml            print what happens\n  carom view scenes/draw.toml -o shot.html   make a "
-        "page that plays it\nCAROM_ISA=scalar|v3|v4 in the environment forces the instruction set (default: "
+        "page that plays it\nA file named - is standard input or output.\nCAROM_ISA=scalar|v3|v4 in the "
+        "environment forces the instruction set (default: "
         "the fastest one for each kernel).\nExit status: 0 success, 1 failed while running, 2 bad usage or "
         "bad scene, 130 or 143 interrupted.";
     const auto add = [&program](const char* group, std::initializer_list<void (*)(Options&)> commands) {

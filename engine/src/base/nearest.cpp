@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
+#include <string>
 
 namespace carom {
 namespace {
@@ -37,8 +38,21 @@ std::size_t edits_between(std::string_view from, std::string_view to) {
     return last[to.size()];
 }
 
+/// A word in small letters, with its number spelled out: "8-Ball" and "eight_ball" are "eightball".
+std::string spelled(std::string_view word) {
+    constexpr std::string_view kNumbers[][2] = {{"10", "ten"},  {"8", "eight"}, {"9", "nine"},
+                                                {"3", "three"}, {"4", "four"},  {"1", "one"}};
+    std::string text;
+    for (const auto& [digits, number] : kNumbers)
+        if (text.empty() && word.starts_with(digits)) text = number, word.remove_prefix(digits.size());
+    for (const char c : word)
+        if (c != '_' && c != '-' && c != ' ') text += small(c);
+    return text;
+}
+
 std::size_t steps_to(std::string_view word, std::string_view name) {
     constexpr std::size_t kMostEdits = 2, kLeastStem = 3;
+    if (word != name && word.size() <= kLongestWord && spelled(word) == spelled(name)) return 0;
     if (word == name || word.size() > kLongestWord || name.size() > kLongestWord) return kTooFar;
     const std::size_t stem = std::min(word.size(), name.size());
     if (stem >= kLeastStem && edits_between(word.substr(0, stem), name.substr(0, stem)) == 0)

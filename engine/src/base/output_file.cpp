@@ -136,6 +136,7 @@ OutputFile::~OutputFile() {
 
 void OutputFile::fail(const char* what) {
     const int reason = errno;
+    if (reason == EPIPE) throw BrokenPipe(path_ + ": the reader has closed the pipe");
     throw std::runtime_error(path_ + ": " + what + ": " + std::strerror(reason));
 }
 

@@ -2,10 +2,18 @@
 #pragma once
 
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace carom {
+
+/// The reader of an output has gone away (`carom ... | head -1`). The program ends with exit status 1, and
+/// prints no message.
+class BrokenPipe : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
 
 /// A new stream for the process's own stream that /dev/stdout, /dev/stderr or /dev/fd/N names, continuing at
 /// its position. Null for every other path, and with errno set if the process has no such stream. Opening the

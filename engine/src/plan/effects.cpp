@@ -248,6 +248,9 @@ void decide(const EffectInfo& info, const Facts& facts, EffectDecision& decision
             throw SceneError(facts.scene.file, o.where,
                              fmt::format("effects.{} = false, but the scene needs it: {}; remove the line",
                                          info.keyword, need.reason));
+        if (info.need == airborne && facts.scene.physics.vertical == Vertical::kDrop)
+            throw SceneError(facts.scene.file, o.where,
+                             "effects.airborne = true contradicts vertical = \"drop\"; remove one of them");
         decision.in_force = true;
         need.reason = facts.say("forced on; not needed: {}", need.reason);
     }

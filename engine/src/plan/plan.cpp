@@ -145,10 +145,11 @@ void warn_of_clusters(Plan& plan) {
                                             e_b, kLeastInCluster));
 }
 
-// Limits beyond which a value is probably in the wrong unit. [m], [m/s]
+// Limits beyond which a value is probably in the wrong unit. [m], [m/s], [kg]
 constexpr double kBesideTable = 0.25;
 constexpr double kFastestStroke = 25.0;  // breaks are struck at 9 to 13
 constexpr double kSmallestBall = 0.005, kLargestBall = 0.5;
+constexpr double kLightestBall = 0.01, kHeaviestBall = 2.0, kLightestCue = 0.1, kHeaviestCue = 3.0;
 
 /// Warns of valid numbers that look as if they were in a different unit.
 void warn_of_units(Plan& plan) {
@@ -177,17 +178,38 @@ void warn_of_units(Plan& plan) {
         say(fmt::format("ball {} starts at {:.4g} m/s; speeds are in m/s", in_quotes(ball.id), speed));
         break;
     }
-    for (const BallSize& size : plan.sizes) {
-        if (size.R >= kSmallestBall && size.R <= kLargestBall) continue;
+    const auto first = [&plan](double BallSize::*of, double least, double most) {
+        return std::find_if(plan.sizes.begin(), plan.sizes.end(),
+                            [&](const BallSize& size) { return size.*of < least || size.*of > most; });
+    };
+    if (const auto ball = first(&BallSize::R, kSmallestBall, kLargestBall); ball != plan.sizes.end())
         say(fmt::format("a ball has a radius of {:.4g} m, while a pool ball has 0.0286; radii are in m",
-                        size.R));
-        break;
-    }
+                        ball->R));
+    if (const auto ball = first(&BallSize::m, kLightestBall, kHeaviestBall); ball != plan.sizes.end())
+        say(fmt::format("a ball has a mass of {:.4g} kg, while a pool ball has 0.17; masses are in kg",
+                        ball->m));
+    if (scene.cue && !(scene.cue->mass >= kLightestCue && scene.cue->mass <= kHeaviestCue))
+        say(fmt::format("the cue has a mass of {:.4g} kg, while a usual one has 0.54; masses are in kg",
+                        scene.cue->mass));
+}
+
+/// Warns of a game's balls on another game's table.
+void warn_of_rack(Plan& plan) {
+    const Scene& scene = plan.scene;
+    const std::string& table = scene.table.preset;
+    const auto has = [&scene](auto... ids) { return ((index_of(scene.ball, ids) >= 0) && ...); };
+    const bool snooker = has("black", "pink", "blue", "1") && !table.starts_with("snooker"),
+               pool = has("cue", "1", "2", "3", "7", "8") && scene.table.pockets.empty();
+    if (table.empty() || !(snooker || pool)) return;
+    plan.warnings.push_back(
+        fmt::format("the {} balls are on the table {}; did you mean preset = \"{}\" in [table]?",
+                    snooker ? "snooker" : "pool", table, snooker ? "snooker" : "nine_foot"));
 }
 
 void warn(Plan& plan) {
     const Scene& scene = plan.scene;
     warn_of_units(plan);
+    warn_of_rack(plan);
     warn_of_clusters(plan);
     for (const BallStart& ball : scene.ball) {
         if (!scene.cue || scene.cue->ball != ball.id) continue;

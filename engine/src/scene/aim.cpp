@@ -147,13 +147,13 @@ void read_aim(const Section& s, const Scene& scene, Cue& cue) {
     cue.speed = Aim(s, scene, cue).speed();
 }
 
-void write_aim(toml::table& file, const Cue& cue) {
+void write_aim(toml::table& file, const Cue& cue, bool keep_ball_speed) {
     toml::table* section = file["cue"].as_table();
     if (!section) return;
     if (section->contains("elevation_deg") && section->at("elevation_deg").is_string())
         section->insert_or_assign("elevation_deg", cue.elevation_deg);
     for (const std::string_view key : kAimKeys) {
-        if (section->erase(key) == 0) continue;
+        if ((keep_ball_speed && key == "ball_speed") || section->erase(key) == 0) continue;
         if (key == "ball_speed")
             section->insert_or_assign("speed", cue.speed);
         else

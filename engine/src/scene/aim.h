@@ -17,7 +17,7 @@ inline const std::vector<std::string_view> kAimKeys = {"aim_at", "aim_hit", "aim
 /// @throws SceneError for two aims, two speeds, or an impossible one
 void read_aim(const Section& s, const Scene& scene, Cue& cue);
 
-/// Replaces these keys by the resulting aim_deg and speed.
-void write_aim(toml::table& file, const Cue& cue);
+/// Replaces these keys by the resulting aim_deg and speed; keeps ball_speed if it is to be varied.
+void write_aim(toml::table& file, const Cue& cue, bool keep_ball_speed);
 
 }  // namespace carom::detail

@@ -262,11 +262,13 @@ Variation::Variation(const std::shared_ptr<Parts>& parts, const std::vector<std:
         return std::any_of(rules.begin(), rules.end(),
                            [key](const std::string& rule) { return rule.starts_with(key); });
     };
-    const toml::table* cue = parts->file["cue"].as_table();
+    toml::table* cue = parts->file["cue"].as_table();
+    const bool ball_speed = sets("cue.ball_speed=");
+    if (cue != nullptr && ball_speed) cue->erase("speed");
     const bool words = cue != nullptr && std::any_of(detail::kAimKeys.begin(), detail::kAimKeys.end(),
                                                      [cue](auto key) { return cue->contains(key); });
     if (words && (sets("cue.aim_deg=") || sets("cue.speed=")))
-        detail::write_aim(parts->file, *parts->base.cue);
+        detail::write_aim(parts->file, *parts->base.cue, ball_speed);
     else if (words)
         parts->quick = false;
     Fnv print;

@@ -212,6 +212,7 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
                            const AdviceOptions& options) {
     check_game(state.game);
     if (state.over) throw std::invalid_argument("the game is over; there is no next shot");
+    if (options.best == 0) throw std::invalid_argument("best is 0; ask for at least one shot");
     check_balls(state, given);
     const Scene scene = completed(state, given);
     Search search(state, scene, skill, isa, options);

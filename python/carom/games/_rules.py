@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 import numpy as np
 
 from carom import _carom
-from carom._arguments import checked
+from carom._arguments import check_fields, checked
 from carom._names import GameName
 from carom._record import Record
 from carom._scene import Scene, SceneLike, as_scene, scene_with_cue
@@ -186,6 +186,7 @@ def judge(state: State, record: Record, call: Call = Call()) -> Verdict:
     Raises ValueError if the game is over, or the record does not end at rest, has no cue strike, or lacks the
     game's balls.
     """
+    check_fields(call)
     fouls, points, penalty, options, chooser = _carom.judge(_fitting(state), record._native, call)
     listed = [_option(record.hash(), *option) for option in options]
     return Verdict([Foul(*foul) for foul in fouls], points, penalty, listed, chooser)
@@ -209,6 +210,7 @@ def _check_whole(name: str, value: int) -> None:
 
 
 def _fitting(state: State) -> State:
+    check_fields(state)
     for name in ("turn", "points", "target", "winner", "fouls"):
         value = getattr(state, name)
         for number in value if isinstance(value, tuple) else (value,):

@@ -12,7 +12,7 @@ from typing import Any
 try:
     import gymnasium
 except ImportError as error:
-    raise ImportError("carom.gym needs Gymnasium: pip install 'carom-billiards[gym]'") from error
+    raise ImportError("carom.gym needs Gymnasium: pip install gymnasium") from error
 
 from carom._arguments import checked
 from carom.gym._env import FeaturePlanes, TableEnv

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from carom._arguments import checked
+from carom._arguments import ArgumentError, checked
 from carom._record import Record
 from carom._render import render
 from carom.games import Noise
@@ -18,7 +18,8 @@ from carom.gym._strikes import Strikes
 from carom.gym._tables import Rollout, Rules, Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+    from typing import Self
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -36,6 +37,15 @@ class Options:
     noise: str | Sequence[float] = "none"
     render_mode: str | None = None
     size: tuple[int, int] = (640, 360)
+
+    @classmethod
+    def of(cls, options: Mapping[str, Any]) -> Self:
+        """Raises ArgumentError for an unknown option."""
+        known = [field.name for field in dataclasses.fields(cls)]
+        for name in options:
+            if name not in known:
+                raise ArgumentError(f"{name}: unknown option; expected one of {', '.join(known)}")
+        return cls(**options)
 
     def __post_init__(self) -> None:
         if self.render_mode not in (None, "rgb_array"):
@@ -87,7 +97,7 @@ class TablesEnv:
         self, game: Game, tables: int, threads: int, options: dict[str, Any]
     ) -> tuple[spaces.Space[Any], spaces.Box]:
         """The observation and action spaces of one table."""
-        self._options = own = TableOptions(**options)
+        self._options = own = TableOptions.of(options)
         if threads < 0:
             raise ValueError(f"threads={threads}: expected at least 0")
         self._rules = Rules(game, own.strikes(), own.noise_in(game), threads=threads, hashes=own.hashes)

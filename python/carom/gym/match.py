@@ -14,7 +14,7 @@ from gymnasium.utils import seeding
 try:
     from pettingzoo import AECEnv
 except ImportError as error:
-    raise ImportError("carom.gym.match needs PettingZoo: pip install 'carom-billiards[gym]'") from error
+    raise ImportError("carom.gym.match needs PettingZoo: pip install pettingzoo") from error
 
 from carom import _carom, games
 from carom._arguments import checked
@@ -95,7 +95,7 @@ class MatchEnv(AECEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]  # P
             raise ValueError("opponent: carom does not play snooker; leave it out")
         self._player = None if opponent is None else games.Player(opponent)
         self._rules, self._table, self._break_from = _GAMES[game]
-        self._options = Options(**{"speed": (0.3, 8.0)} | options)
+        self._options = Options.of({"speed": (0.3, 8.0)} | options)
         self._strikes = self._options.strikes()
         self._called, self._most_shots = called, most_shots
         self.render_mode = self._options.render_mode

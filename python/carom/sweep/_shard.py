@@ -35,7 +35,7 @@ def need(name: str) -> None:
     try:
         importlib.import_module(name)
     except ImportError as error:
-        what = f"{name} is missing ({error}): pip install 'carom-billiards[sweep]'"
+        what = f"{name} is missing ({error}): pip install {name}"
         raise ImportError(what, name=name) from None
 
 

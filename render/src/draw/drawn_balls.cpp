@@ -55,23 +55,26 @@ BallInstance make_instance(const DrawBall& ball, BallPlace place, const TableMes
              static_cast<float>(style.number)},
             {static_cast<float>(style.pattern), static_cast<float>(place), f(distance)},
             lamp_slopes(ball, table.lamp),
+            {},
             {}};
 }
 
 // The nearest balls, which block light from this one. The weight falls to 0 before a ball is dropped.
 void add_neighbours(BallInstance& instance, const DrawBall& ball, const std::vector<DrawBall>& all) {
     constexpr double kNear = 2.1, kFar = 2.5;  // [radii]
-    std::vector<std::pair<double, Vec3>> near;
+    std::vector<std::pair<double, const DrawBall*>> near;
     for (const DrawBall& other : all) {
-        const Vec3 offset = other.center - ball.center;
-        const double distance = offset.norm();
-        if (&other != &ball && distance < kFar * ball.radius) near.emplace_back(distance, offset);
+        const double distance = (other.center - ball.center).norm();
+        if (&other != &ball && distance < kFar * ball.radius) near.emplace_back(distance, &other);
     }
     const std::size_t count = std::min<std::size_t>(near.size(), shaders::kMaxNear);
     std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < count; ++i) {
         const double weight = std::min(1.0, (kFar - near[i].first / ball.radius) / (kFar - kNear));
-        for (int k = 0; k < 3; ++k) instance.near[i][k] = static_cast<float>(near[i].second[k]);
+        for (int k = 0; k < 3; ++k) {
+            instance.near[i][k] = static_cast<float>((near[i].second->center - ball.center)[k]);
+            instance.near_color[i][k] = linear(near[i].second->style.color[static_cast<std::size_t>(k)]);
+        }
         instance.near[i][3] = static_cast<float>(weight);
     }
 }

@@ -37,6 +37,7 @@ struct BallInstance {
     float pattern[3];  ///< pattern, place (BallPlace), distance from the eye
     LampSlopes lamp;
     float near[shaders::kMaxNear][4];  ///< the nearest other balls: offset of the centre [m], weight 0..1
+    float near_color[shaders::kMaxNear][3];  ///< their reflectances
 
     bool operator==(const BallInstance&) const = default;
 };

@@ -122,6 +122,25 @@ Floats past_neighbours(const BallInstance& ball, const Vec& n) {
     return open;
 }
 
+// The mirror image with the neighbours in it: spheres of one colour, lit from above.
+Vec with_neighbours(Vec seen, const BallInstance& ball, const Vec& n, const Vec& r) {
+    const float R = ball.center_radius[3];
+    for (std::size_t i = 0; i < std::size(ball.near) && ball.near[i][3] > 0.0F; ++i) {
+        const Vec to{ball.near[i][0] - R * n.x, ball.near[i][1] - R * n.y, ball.near[i][2] - R * n.z};
+        const Floats along = dot(to, r), miss2 = max(dot(to, to) - along * along, 0.0F);
+        const Floats cover =
+            choose(along > 0.0F, clamp((R - sqrt(miss2)) * (6.0F / R) + 0.5F, 0.0F, 1.0F), all(0.0F));
+        if (!any(cover > 0.0F)) continue;
+        const Floats up = (r.z * (along - sqrt(max(R * R - miss2, 0.0F))) - to.z) * (1.0F / R);
+        const Floats light = 0.1F + 0.4F * max(up, 0.0F);
+        seen = mix(
+            seen,
+            Vec{ball.near_color[i][0] * light, ball.near_color[i][1] * light, ball.near_color[i][2] * light},
+            cover * ball.near[i][3]);
+    }
+    return seen;
+}
+
 // Below the cloth, light comes only through the mouth of the pocket, as on its wall.
 Floats light_in_pocket(Floats z) {
     Floats fade{};
@@ -223,7 +242,8 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         const Vec perpendicular = dir * along - oc;
         const Floats miss2 = dot(perpendicular, perpendicular), miss = sqrt(miss2);
         const Floats pixel = pixel_size * along * per_depth;
-        Floats cover = clamp(0.5F + (R - miss) / pixel, 0.0F, 1.0F);
+        // Over one and a half pixels: an edge of one pixel still shows its steps.
+        Floats cover = smoothstep(-0.75F, 0.75F, (R - miss) / pixel);
         if (!any(cover > 0.0F)) return;
         const Floats rise = sqrt(max(R * R - miss2, 0.0F));
         // inside: length R; outside: the distance of the ray from the centre
@@ -242,8 +262,9 @@ void paint_ball(const Canvas& canvas, const DrawnBall& ball, const std::vector<s
         // Polish mirrors more at grazing angles.
         const Floats grazing = 1.0F - max(toward, 0.0F), grazing2 = grazing * grazing;
         const Floats fresnel = 0.05F + 0.95F * grazing2 * grazing2 * grazing;
-        shade = shade +
-                around.mirrored(p, dir + n * (2.0F * toward), shine, R) * (fresnel * (0.4F + 0.6F * open));
+        const Vec mirrored = dir + n * (2.0F * toward);
+        shade = shade + with_neighbours(around.mirrored(p, mirrored, shine, R), instance, n, mirrored) *
+                            (fresnel * (0.4F + 0.6F * open));
         if (sunk) shade = shade * light_in_pocket(p.z);
         brush.blend(first, count, {to_screen(shade.x), to_screen(shade.y), to_screen(shade.z)}, cover);
     });

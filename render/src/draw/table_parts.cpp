@@ -72,9 +72,8 @@ class PartSorter {
     static std::pair<Part, Part> parts_of(Material material) {
         switch (material) {
             case Material::kCloth:
+            case Material::kCushion:
                 return {Part::kCloth, Part::kCutCloth};
-            case Material::kCushion:  // cushions extend over the rims of the holes
-                return {Part::kCloth, Part::kCloth};
             case Material::kWood:
                 return {Part::kWood, Part::kCutWood};
             case Material::kFloor:

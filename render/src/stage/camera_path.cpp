@@ -66,8 +66,8 @@ Camera rail_camera(const Record& record, const TableMesh& table, FrameSize size)
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    // At least half of the table, and a little around the balls.
-    const Vec2 least = 0.25 * (all.high - all.low), middle = 0.5 * (low + high);
+    // At least a third of the table, and a little around the balls.
+    const Vec2 least = (all.high - all.low) / 6.0, middle = 0.5 * (low + high);
     low = low.cwiseMin(middle - least).cwiseMax(all.low) - Vec2(0.1, 0.1);
     high = high.cwiseMax(middle + least).cwiseMin(all.high) + Vec2(0.1, 0.1);
     return fitting_camera(
@@ -76,7 +76,7 @@ Camera rail_camera(const Record& record, const TableMesh& table, FrameSize size)
 }
 
 Camera player_camera(const Record& record, FrameSize size) {
-    constexpr double kNearest = 0.85, kFarthest = 2.4;  // [m] behind the ball
+    constexpr double kNearest = 0.7, kFarthest = 1.4;  // [m] behind the ball
     const int ball = first_ball(record);
     const Vec3 place = record.tracks.empty() ? Vec3::Zero() : Vec3(record.state_at(ball, 0.0).position);
     const Vec2 aim = aim_of(record, ball), at = place.head<2>();
@@ -84,8 +84,8 @@ Camera player_camera(const Record& record, FrameSize size) {
     std::vector<Vec2> places{at - 0.12 * aim, at + 0.5 * aim};
     for (const Vec2& p : visited_places(record, true))
         if ((p - at).dot(aim) > 0.0) places.push_back(p);
-    const double fov = size.width >= size.height ? 40.0 : 62.0;
-    Camera camera = fitting_camera(ends_of_balls(places, record.balls.R), downwards(aim, 23.0), fov, size);
+    const double fov = size.width >= size.height ? 34.0 : 58.0;
+    Camera camera = fitting_camera(ends_of_balls(places, record.balls.R), downwards(aim, 20.0), fov, size);
     const double behind = (at - camera.eye.head<2>()).dot(aim),
                  back = behind - std::clamp(behind, kNearest, kFarthest);
     camera.eye += back * camera.forward();

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kLength = 1.47;  // [m]
 // [s] The ends of aiming, of the draw back and of the follow-through; then the cue is removed.
-constexpr double kAims = -1.1, kBack = -0.3, kFollows = 0.22, kFades = 0.62, kGone = 0.7;
-constexpr double kAway = 14.0;                      // [m/s^2]
+constexpr double kAims = -1.1, kBack = -0.3, kFollows = 0.06, kFades = 0.14, kGone = 0.2;
+constexpr double kAway = 60.0;                      // [m/s^2]
 constexpr double kDrawnBack = 0.16, kNear = 0.015;  // [m] of the tip from the ball
 constexpr double kLowest = 0.055, kHighest = 1.3;   // [rad] elevation
 

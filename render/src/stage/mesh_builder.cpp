@@ -59,20 +59,12 @@ void MeshBuilder::quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
     triangle(va, vc, vd);
 }
 
-void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material material, double slope) {
+void MeshBuilder::polygon(const std::vector<Vec2>& outline, double z, Material material) {
     const std::vector<int> corners = triangulate(outline);
-    // The longest side is the lower edge of a slope.
-    std::size_t low = 0;
-    const auto side = [&](std::size_t i) { return Vec2(outline[(i + 1) % outline.size()] - outline[i]); };
-    for (std::size_t i = 0; i + 1 < outline.size(); ++i)
-        if (side(i).norm() > side(low).norm()) low = i;
-    const Vec2 along = side(low).normalized(), up(-along.y(), along.x());
-    const Vec3 normal = lift(-slope * up, 1.0).normalized();
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         const auto at = [&](std::size_t k) {
             const Vec2& p = outline[corners[i + k]];
-            return vertex(lift(p, z + slope * std::max(0.0, (p - outline[low]).dot(up))), normal, p.x(),
-                          p.y(), material);
+            return vertex(lift(p, z), Vec3::UnitZ(), p.x(), p.y(), material);
         };
         triangle(at(0), at(1), at(2));
     }

@@ -23,8 +23,8 @@ class MeshBuilder {
 
     void quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, Material material, double u = 0.0);
 
-    /// A polygon at height z [m], visible from above; with a slope [-], it rises from its longest side.
-    void polygon(const std::vector<Vec2>& outline, double z, Material material, double slope = 0.0);
+    /// A polygon at height z [m], visible from above.
+    void polygon(const std::vector<Vec2>& outline, double z, Material material);
 
     /// Sweeps a profile along an outline. If `smooth`, the normals are averaged between neighbouring strips.
     void sweep(const Chain& outline, const std::vector<ProfileRow>& rows, Material material, bool smooth);

@@ -197,7 +197,7 @@ void add_overlay(DrawList& list, const Record& record, const Overlay& overlay, d
             const BallTrack& track = record.tracks[i];
             const BallStyle style = ball_style(track.id, record.table.preset, static_cast<int>(i));
             const Rgba color{style.color[0], style.color[1], style.color[2], 1.0F};
-            add_trail(list, track, t, line_width(list, 2.0), overlay.ball_trails ? &color : nullptr);
+            add_trail(list, track, t, line_width(list, 3.0), overlay.ball_trails ? &color : nullptr);
         }
     }
     if (overlay.events) add_events(list, record, t);

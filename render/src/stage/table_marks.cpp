@@ -57,14 +57,14 @@ void add_diamonds(const Table& table, const TableMesh& mesh, MeshBuilder& builde
 void add_snooker_marks(const Table& table, MeshBuilder& builder) {
     const Vec2 brown = snooker_spot(table, "brown");
     const double d = radius_of_d(table);
-    line(builder, {{0.0, brown.y()}, {table.width, brown.y()}}, 0.003, 0.6);
+    line(builder, {{0.0, brown.y()}, {table.width, brown.y()}}, 0.002, 0.45);
     constexpr int kPieces = 48;  // [-] straight pieces of the D
     std::vector<Vec2> arc;
     for (int i = 0; i <= kPieces; ++i) {
         const double angle = 3.14159265358979323846 * i / kPieces;
         arc.emplace_back(brown - d * Vec2(std::cos(angle), std::sin(angle)));
     }
-    line(builder, arc, 0.003, 0.6);
+    line(builder, arc, 0.002, 0.45);
     for (const std::string_view colour : kColours) spot(builder, snooker_spot(table, colour), 0.005);
 }
 
@@ -82,8 +82,8 @@ void add_table_marks(const Table& table, TableMesh& mesh, MeshBuilder& builder, 
         for (double y : {0.25 * l, 0.5 * l, 0.75 * l}) spot(builder, {0.5 * w, y}, 0.006);
         return;
     }
-    line(builder, {{0.0, 0.25 * l}, {w, 0.25 * l}}, 0.003, 0.30);
-    spot(builder, foot_spot(table), 0.007);
+    line(builder, {{0.0, 0.25 * l}, {w, 0.25 * l}}, 0.0016, 0.25);
+    spot(builder, foot_spot(table), 0.0045);
 }
 
 std::vector<DiamondNumber> diamond_numbers(const Table& t, const TableMesh& mesh) {

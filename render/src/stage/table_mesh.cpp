@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "carom/engine/event_details.h"
 #include "stage/mesh_builder.h"
@@ -192,12 +193,13 @@ class TableMaker {
     // visible.
     void add_body(const Chain& chain, Material top = Material::kCushion) {
         const double inset = std::min(0.006, largest_inset());
+        if (top == Material::kCushion) bodies_.push_back(chain);
         add_nose(chain, inset);
         if (sharp_)
             builder_.polygon(chain.points, chain.heights.front(), top);
         else
             builder_.polygon(offset_left(chain.points, chain.closed, inset), chain.heights.front() + 0.003,
-                             top, chain.closed ? 0.0 : kSlope);
+                             top);
     }
 
     void add_strip(const Chain& chain, double width, bool wall) {
@@ -336,6 +338,23 @@ class TableMaker {
         builder_.ring(pocket.center, pocket.radius, pocket.radius + kLeather, rim, Material::kTrim, 0.0,
                       &inner);
         builder_.ring(pocket.center, pocket.radius, pocket.radius + 0.008, 0.0006, Material::kShade, 0.55);
+        for (const Chain& body : bodies_) add_cut_end(pocket, body);
+    }
+
+    // Where the hole cuts off the end of a cushion: leather from the cloth to its top.
+    void add_cut_end(const Pocket& pocket, const Chain& body) {
+        constexpr int kPieces = 96;
+        const double top = body.heights.front() + (sharp_ ? 0.0 : 0.003);
+        const auto at = [&](double piece) {
+            const double angle = 2.0 * std::numbers::pi * piece / kPieces;
+            return Vec2(pocket.center + pocket.radius * Vec2(std::cos(angle), std::sin(angle)));
+        };
+        for (int i = 0; i < kPieces; ++i) {
+            if (!contains(body.points, at(i + 0.5))) continue;
+            const Vec2 a = at(i), b = at(i + 1.0);
+            builder_.quad({a.x(), a.y(), 0.0}, {b.x(), b.y(), 0.0}, {b.x(), b.y(), top}, {a.x(), a.y(), top},
+                          Material::kPocket);
+        }
     }
 
     const Table& table_;
@@ -344,6 +363,7 @@ class TableMaker {
     bool sharp_;
     TableMesh mesh_;
     MeshBuilder builder_;
+    std::vector<Chain> bodies_;  // cushions whose back is known
     Box outline_, played_;
     double nose_ = 0.0;
     bool framed_ = false;

@@ -1,6 +1,7 @@
 // Output, progress and interruption; see console.h.
 #include "base/console.h"
 
+#include "base/output_file.h"
 #include "carom/engine/printable.h"
 
 #include <fcntl.h>
@@ -80,7 +81,7 @@ std::string& kept_version() {
 
 [[noreturn]] void output_failed() {
     const int reason = errno;
-    if (reason == EPIPE) throw OutputClosed();
+    if (reason == EPIPE) throw BrokenPipe("standard output: the reader has closed the pipe");
     throw std::runtime_error(std::string("standard output: ") + std::strerror(reason));
 }
 
@@ -131,8 +132,13 @@ std::string counted(std::size_t count, std::string_view what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+bool& quiet() {
+    static bool value = false;
+    return value;
+}
+
 void print(std::string_view text) {
-    print_bytes(harmless(text));
+    if (!quiet()) print_bytes(harmless(text));
 }
 
 void print_bytes(std::string_view bytes) {
@@ -148,6 +154,7 @@ void flush_output() {
 }
 
 void message(std::string_view text) {
+    if (quiet() && (text.starts_with("warning: ") || text.starts_with("note: "))) return;
     const std::string line = fmt::format("{}: {}\n", kept_program(), harmless(text));
     wipe_line();
     std::fwrite(line.data(), 1, line.size(), stderr);

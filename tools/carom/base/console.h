@@ -24,10 +24,6 @@ class UsageError : public std::runtime_error {
 /// SIGINT or SIGTERM was received. The exit status is 130 or 143.
 class Interrupted : public std::exception {};
 
-/// The reader of standard output has gone away (`carom ... | head -1`). The exit status is 1, and no message
-/// is printed.
-class OutputClosed : public std::exception {};
-
 /// Sets up signals and the three standard streams, and keeps the command line. Call it once, before anything
 /// else. Every message begins with `program`.
 void prepare_process(int argc, char** argv, const char* version, const char* program = "carom");
@@ -42,9 +38,13 @@ std::string shell_word(const std::string& argument);
 /// "1 frame", "2 frames".
 std::string counted(std::size_t count, std::string_view what);
 
+/// Whether print() prints nothing, and message() no warnings and notes: --quiet, or a file on standard
+/// output.
+bool& quiet();
+
 /// Writes results to standard output, as harmless() makes them: names of files may contain anything. Removes
 /// a progress line from the terminal first.
-/// @throws OutputClosed, std::runtime_error if writing fails
+/// @throws BrokenPipe, std::runtime_error if writing fails
 void print(std::string_view text);
 /// As above for bytes that are not text.
 void print_bytes(std::string_view bytes);

@@ -43,4 +43,10 @@ games::Hand read_hand(const std::string& text) {
     return hand;
 }
 
+std::string hand_words(const games::Hand& hand) {
+    std::string words =
+        fmt::format("aim {:g} deg, speed {:g} %, tip {:g} R", hand.aim_deg, 100.0 * hand.speed, hand.tip);
+    return hand.elevation_deg > 0.0 ? words + fmt::format(", elevation {:g} deg", hand.elevation_deg) : words;
+}
+
 }  // namespace carom::tools

@@ -13,4 +13,7 @@ inline constexpr const char* kHand = "aim=0.2,speed=3%,tip=0.02";
 /// "aim=0.2,speed=3%,tip=0.02". @throws UsageError
 games::Hand read_hand(const std::string& text);
 
+/// "aim 0.2 deg, speed 3 %, tip 0.02 R"
+std::string hand_words(const games::Hand& hand);
+
 }  // namespace carom::tools

@@ -158,6 +158,31 @@ std::vector<std::string> with_spelled_help(const Options& program, int argc, cha
     return words;
 }
 
+/// The program's message about a bad command line, from CLI11's.
+std::string explained(const CLI::ParseError& error, const Options& program, int argc, char** argv) {
+    std::string what = error.what();
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+        const std::size_t colon = what.find(": "), equals = what.find(" = ");
+        if (colon != what.npos && equals != what.npos)
+            what = fmt::format("{} {}: expected a number, without a unit",
+                               what.substr(colon + 2, equals - colon - 2), what.substr(equals + 3));
+    }
+    const auto named =
+        std::find_if(program.commands.begin(), program.commands.end(),
+                     [&](const Options& command) { return argc > 1 && command.name == argv[1]; });
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || named == program.commands.end())
+        return what;
+    std::vector<std::string_view> names;
+    for (const Option& row : named->rows) names.insert(names.end(), row.names.begin(), row.names.end());
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word =
+            std::string_view(argv[i]).substr(0, std::string_view(argv[i]).find('='));
+        if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+            return fmt::format("unknown option {}{}", printable(word), did_you_mean(word, names));
+    }
+    return what;
+}
+
 /// Rejects empty file names, and a file that is named twice: the last write would replace the others.
 void check_files(const Options& command, const CLI::App& app) {
     struct Used {
@@ -167,16 +192,17 @@ void check_files(const Options& command, const CLI::App& app) {
     const CLI::App* asked = &app;
     while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
     std::vector<Used> files;
+    std::vector<std::string*> outputs;  // that are -
     for (const Option& row : command.rows) {
         auto* const* const path = std::get_if<std::string*>(&row.target);
         const bool written = row.value.starts_with("FILE") || row.value == "PATTERN";
         if (path == nullptr || !(written || row.by_place())) continue;
         if (written && (*path)->empty() && asked->get_option(row.names.back())->count() > 0)
             throw UsageError(row.names.front() + ": empty file name; name a file");
-        if (written && **path == "-" && !row.to_stdout)
-            throw UsageError(
-                row.names.front() +
-                " -: expected a file name; /dev/stdout writes to standard output, together with the summary");
+        // The summary would be in the way of a file on standard output.
+        const bool dash = **path == "-" && row.value != "PATTERN";
+        if (dash && written) quiet() = true, outputs.push_back(*path);
+        if (dash && !written) **path = "/dev/stdin";
         if (!(*path)->empty()) files.push_back({row.names.front(), **path, written});
     }
     const auto same = [](const std::string& a, const std::string& b) {
@@ -204,6 +230,7 @@ void check_files(const Options& command, const CLI::App& app) {
                                          in_quotes(out.path)));
         }
     }
+    for (std::string* output : outputs) *output = "/dev/stdout";
 }
 
 }  // namespace
@@ -238,6 +265,7 @@ Option& Option::one_of(std::vector<std::string> values) {
 Options::Options(std::string command_name, std::string description)
     : name(std::move(command_name)), text(std::move(description)) {
     option("-h,--help", {}, "", "Print this help message and exit");
+    flag("-q,--quiet", quiet(), "Print no summary, warnings or notes (default: off)");
 }
 
 Options& Options::command(std::string command_name, std::string description) {
@@ -279,15 +307,15 @@ int run_command_line(Options& program, int argc, char** argv) {
         print(std::string(version.what()) + "\n");
         return kOk;
     } catch (const CLI::ParseError& error) {
-        const std::string what = error.what();
+        const std::string what = explained(error, program, argc, argv);
         throw UsageError(what + (what.ends_with('?') ? " See " : "; see ") + path_of(app) + " --help");
     }
     if (named->run) {
         check_files(*named, app);
         return named->run();
     }
-    throw UsageError(
-        fmt::format("no command given: expected {}; see {} --help", listed(named->commands), path_of(app)));
+    print(app.help());
+    throw UsageError(fmt::format("no command given: expected {}", listed(named->commands)));
 }
 
 }  // namespace carom::tools

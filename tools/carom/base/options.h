@@ -31,7 +31,6 @@ struct Option {
     std::vector<std::string> choices;                ///< all allowed values; empty: any
     std::optional<std::pair<double, double>> range;  ///< allowed values, both ends included
     bool required = false;
-    bool to_stdout = false;       ///< FILE may be -, standard output
     std::string needs, excludes;  ///< names of other options, whose rows come before this one
 
     Option& in(double least, double most);

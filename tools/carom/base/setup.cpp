@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/console.h"
+#include "base/output_file.h"
 #include "carom/engine/strike.h"
 #include "carom/engine/tolerances.h"
 
@@ -62,7 +63,7 @@ int guarded(int (*run)(int argc, char** argv), int argc, char** argv) {
         return status;
     } catch (const Interrupted&) {
         return interrupted_status();
-    } catch (const OutputClosed&) {
+    } catch (const BrokenPipe&) {
         return kFailed;
     } catch (const UsageError& error) {
         message(error.what());
@@ -80,7 +81,7 @@ int guarded(int (*run)(int argc, char** argv), int argc, char** argv) {
 }
 
 void check_page_path(const std::string& option, const std::string& path) {
-    if (!path.empty() && !path.ends_with(".html") && !path.ends_with(".htm"))
+    if (!path.empty() && path != "/dev/stdout" && !path.ends_with(".html") && !path.ends_with(".htm"))
         throw UsageError(option + " " + path + ": pages are HTML; give a name that ends in .html");
 }
 

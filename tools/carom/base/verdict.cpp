@@ -32,7 +32,9 @@ std::string next_text(const State& state) {
     if (state.in_hand == InHand::kAnywhere) text += ", cue ball in hand anywhere";
     if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
     if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
-    return text;
+    if (state.game != games::Game::kSnooker) return text;
+    text += state.on == games::BallOn::kColour ? ", any colour on" : fmt::format(", {} on", name(state.on));
+    return text + (state.free_ball ? ", free ball" : "");
 }
 
 Json verdict_json(const Verdict& verdict, games::Game game) {

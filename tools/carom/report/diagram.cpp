@@ -13,6 +13,7 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "base/console.h"
@@ -71,9 +72,10 @@ class Drawing {
         cairo_save(cr_);
         cairo_translate(cr_, 0.0, kTitleHeight);
         draw_table();
+        // Below the paths: a ball may come back along the cue.
+        draw_cue();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_path(static_cast<int>(i));
         draw_ghost();
-        draw_cue();
         draw_spreads();
         for (std::size_t i = 0; i < record_.tracks.size(); ++i) draw_ball(static_cast<int>(i));
         if (style_.speeds) draw_speeds();
@@ -116,8 +118,9 @@ class Drawing {
             cairo_close_path(cr_);
         }
         color(fill);
-        edge ? cairo_fill_preserve(cr_) : cairo_fill(cr_);
-        if (edge) stroke(kBlack, 0.6);
+        cairo_fill_preserve(cr_);
+        // Neighbours of one colour would show a seam.
+        edge ? stroke(kBlack, 0.6) : stroke(fill, 0.4);
     }
     /// The edge of the table: the box around its boards.
     void frame(const Json& boards) {
@@ -193,6 +196,10 @@ class Drawing {
     }
     /// Dark enough to be visible on the cloth.
     Color path_color(int ball) const { return style_.color ? mixed(ball_color(ball), kBlack, 0.25) : kBlack; }
+    /// As dark as ink: dots and ellipses are small, and half of the balls are as pale as the cloth.
+    Color spread_color(int ball) const {
+        return mixed(path_color(ball), kBlack, ball == struck_ ? 0.9 : 0.45);
+    }
     /// The struck ball's path is white between black edges, unlike any other ball's path.
     void stroke_path(int ball) {
         if (ball != struck_) return stroke(path_color(ball), 1.1);
@@ -293,7 +300,7 @@ class Drawing {
         for (const DiagramSpread& spread : shot_.spreads) {
             for (const Vec2& end : spread.ends) {
                 circle(end, kDot);
-                color(path_color(spread.ball), 0.35);
+                color(spread_color(spread.ball), 0.5);
                 cairo_fill(cr_);
             }
             for (const double deviations : {1.0, 2.0}) {
@@ -304,7 +311,7 @@ class Drawing {
                     (i == 0 ? cairo_move_to : cairo_line_to)(cr_, px(p), py(p));
                 }
                 cairo_close_path(cr_);
-                stroke(path_color(spread.ball), 1.0);
+                stroke(spread_color(spread.ball), 1.2);
             }
         }
         cairo_restore(cr_);
@@ -353,18 +360,27 @@ class Drawing {
         const double R = record_.size(struck_).R;
         const Vec2 tip =
             planar(record_.state_at(struck_, 0.0).position) + shot_.cue->side * R * left - 1.3 * R * along;
-        const Vec2 butt = tip - 0.62 * along;
         cairo_save(cr_);
         cairo_rectangle(cr_, 0.0, 0.0, kDrawingWidth, scale_ * (high_.x() - low_.x()));
         cairo_clip(cr_);
-        cairo_set_line_cap(cr_, CAIRO_LINE_CAP_ROUND);
-        for (const auto& [width, c] :
-             {std::pair(3.4, kBlack), std::pair(2.2, style_.color ? look::kInlay : kWhite)}) {
-            cairo_move_to(cr_, px(tip), py(tip));
-            cairo_line_to(cr_, px(butt), py(butt));
-            stroke(c, width);
+        // To scale: leather, ferrule, shaft and butt.
+        constexpr double kLength = 1.47, kTipHalf = 0.0065, kButtHalf = 0.0145;
+        const Color shaft = mixed(look::kInlay, kWhite, 0.2);
+        const std::tuple<double, double, Color> parts[] = {{0.0, 0.006, {0.13, 0.35, 0.62}},
+                                                           {0.006, 0.03, kWhite},
+                                                           {0.03, 0.75, shaft},
+                                                           {0.75, kLength, mixed(shaft, kBlack, 0.55)}};
+        for (const auto& [from, to, c] : parts) {
+            for (const auto& [at, side] : {std::pair(from, 1.0), {to, 1.0}, {to, -1.0}, {from, -1.0}}) {
+                const double half = kTipHalf + (kButtHalf - kTipHalf) * at / kLength;
+                const Vec2 p = tip - at * along + side * half * left;
+                cairo_line_to(cr_, px(p), py(p));
+            }
+            cairo_close_path(cr_);
+            color(style_.color ? c : kWhite);
+            cairo_fill_preserve(cr_);
+            stroke(kBlack, 0.5);
         }
-        cairo_set_line_cap(cr_, CAIRO_LINE_CAP_BUTT);
         cairo_restore(cr_);
     }
 

@@ -25,7 +25,8 @@ class SweepDrawing {
     SweepDrawing(cairo_t* cr, const SweepPlot& plot) : cr_(cr), plot_(plot) {}
 
     std::pair<double, double> draw() {
-        text(kLeft, kTop - 16.0, printable(plot_.measure), kHeading, 0.0);
+        text(kLeft, kTop - 22.0, plot_.heading, kHeading, 0.0);
+        text(kLeft, kTop - 8.0, printable(plot_.measure), kLabel, 0.0);
         plot_.axes.empty() ? histogram() : map();
         cairo_rectangle(cr_, kLeft, kTop, kWidth, kHeight);
         ink(0.0);

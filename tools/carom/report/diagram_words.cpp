@@ -45,11 +45,12 @@ std::string stroke_words(const Cue& cue, Units units) {
     std::string tip;
     const auto add = [&tip](double part, const char* less, const char* more) {
         if (std::abs(part) < 0.005) return;
-        tip += fmt::format("{}{:.2f} {}", tip.empty() ? "" : ", ", std::abs(part), part < 0.0 ? less : more);
+        tip +=
+            fmt::format("{}{:.2g} R {}", tip.empty() ? "" : ", ", std::abs(part), part < 0.0 ? less : more);
     };
     add(cue.side, "right", "left");
     add(cue.height, "low", "high");
-    words += tip.empty() ? "tip in the middle" : "tip " + tip + " radii";
+    words += tip.empty() ? "tip in the middle" : "tip " + tip;
     return words;
 }
 

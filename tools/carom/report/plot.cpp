@@ -78,9 +78,11 @@ class AxisScale {
                 return list;
             }
             const int step = std::max(1, (last - first + 8) / 9);
+            // All with digits, or all as powers.
+            const bool digits = first >= -4 && last <= 5;
             for (int p = first; p <= last; p += step)
-                list.emplace_back(std::pow(10.0, p), p >= 0 && p <= 3 ? fmt::format("{:.0f}", std::pow(10, p))
-                                                                      : fmt::format("1e{}", p));
+                list.emplace_back(std::pow(10.0, p),
+                                  digits ? fmt::format("{:g}", std::pow(10.0, p)) : fmt::format("1e{}", p));
             return list;
         }
         const double rough = (high_ - low_) / 7.0, decade = std::pow(10.0, std::floor(std::log10(rough)));

@@ -18,7 +18,7 @@ struct PlotShot {
 };
 
 struct SweepPlot {
-    std::string measure;
+    std::string heading, measure;   ///< "Mean of", and an expression
     std::vector<std::string> axes;  ///< two for a map, none for a histogram
     std::vector<PlotShot> shots;
 };

@@ -6,6 +6,12 @@ import {isatty} from "node:tty";
 import {brotliDecompressSync} from "node:zlib";
 
 const SIGNALS = {SIGINT: 2, SIGTERM: 15};
+try {
+  process.cwd();
+} catch {
+  process.stderr.write("carom: the current folder no longer exists; change to another one\n");
+  process.exit(2);
+}
 
 if (isatty(2)) process.env.COLUMNS = process.stderr.columns;
 // Unless main() returns another status.

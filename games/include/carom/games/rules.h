@@ -141,6 +141,7 @@ enum class Foul : std::uint8_t {
     kBehindTheFreeBall,  ///< the nominated free ball snookers the other player
     kMiss,               ///< snooker: no ball on was hit first, although a straight path to one was clear
     kOpponentsBall,      ///< four-ball: the cue ball hit the other player's
+    kIntoTouchingBall,   ///< carom games: the cue ball was driven into a ball that it touched
 };
 constexpr auto names_of(Foul) {
     return std::array{"cue ball pocketed",
@@ -160,7 +161,8 @@ constexpr auto names_of(Foul) {
                       "jump shot",
                       "snooker behind the free ball",
                       "miss",
-                      "opponent's cue ball hit"};
+                      "opponent's cue ball hit",
+                      "touching ball played into"};
 }
 /// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
 const char* rule_of(Game game, Foul foul);
@@ -212,7 +214,8 @@ struct Verdict {
 
 /// The outcome of a shot. @param state before it
 /// @throws std::invalid_argument for a record that does not end at rest, has no cue strike or lacks the
-/// game's balls, and for a game that is over
+/// game's balls, for a call of a ball or pocket that is not there or of a push out in another game, and for
+/// a game that is over
 Verdict judge(const State& state, const Record& record, const Call& call = {});
 
 /// The ball that the player to shoot strikes: "cue", or in carom games "white" or "yellow". In free pyramid

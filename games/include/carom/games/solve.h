@@ -33,10 +33,13 @@ struct Hand {
     bool operator==(const Hand&) const = default;
 };
 
+/// The key of a choice that sets the speed of the struck ball instead of the cue's [m/s].
+inline constexpr const char* kBallSpeed = "cue.ball_speed";
+
 /// An input that the search chooses.
 struct Choice {
     /// As SceneNumber accepts it; or hit.BALL, which aims at that ball: 0 is full, 1 and -1 pass its left and
-    /// right edge, without allowance for squirt.
+    /// right edge, without allowance for squirt; or kBallSpeed.
     std::string key;
     double low = 0.0, high = 0.0;
 };

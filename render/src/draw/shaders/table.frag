@@ -45,9 +45,11 @@ vec3 cloth_albedo(vec2 p) {
     float fine = 1.0 - smoothstep(0.0004, 0.0009, pixel);
     vec2 thread = sin(vec2(p.x + p.y, p.x - p.y) * (6.2831853 / 0.0026));
     float weave = thread.x * (0.6 + 0.4 * thread.y) * 0.10 + (detail(p * vec2(1500.0, 420.0)) - 0.5) * 0.22;
+    float ribs = sin((p.x + 0.35 * p.y) * (6.2831853 / 0.006)) * 0.04 *
+                 (1.0 - smoothstep(0.0004, 0.00064, pixel));
     // The nap lies along the table and is brushed in strokes.
     float nap = (noise(p * vec2(14.0, 5.0)) - 0.5) * 0.045 + (detail(p * vec2(75.0, 9.0)) - 0.5) * 0.04;
-    return base * (1.0 + weave * fine + nap);
+    return base * (1.0 + mix(ribs, weave, fine) + nap);
 }
 
 vec3 wood_albedo(vec2 uv) {
@@ -82,6 +84,12 @@ vec3 cloth(vec3 albedo, vec3 n) {
     return lit(albedo, n) * (1.0 + 0.30 * along * along * along);
 }
 
+// The top of a cushion is darker towards the rail, in whose shadow it lies.
+float beside_rail(vec2 p, vec3 n) {
+    vec2 away = min(p - u_inner.xy, u_inner.zw - p);
+    return mix(1.0, mix(0.66, 1.08, smoothstep(0.0, 0.045, min(away.x, away.y))), smoothstep(0.4, 0.8, n.z));
+}
+
 // Below the nose of a cushion, where its face turns away from the lamp and the cloth below is dark.
 float under_nose(vec3 n, float z) {
     return 1.0 - (1.0 - smoothstep(0.0, 0.5, n.z)) * (0.60 - 9.0 * clamp(z, 0.0, 0.04));
@@ -89,11 +97,17 @@ float under_nose(vec3 n, float z) {
 
 vec3 pocket_wall(vec3 p, vec3 n, vec2 uv) {
     // Leather that is lit only through the mouth of the pocket: the light decreases with depth.
-    float fade = exp(min(p.z, 0.0) / 0.045);
+    float fade = exp(min(p.z, 0.0) / 0.032);
     float grain = 0.9 + 0.2 * detail(vec2(uv.x > 0.5 ? p.x : atan(n.y, n.x) * 0.06, p.y + p.z) * 240.0);
-    float light = uv.x > 0.5 ? 0.17 * (1.0 - 0.75 * uv.y * uv.y) : mix(0.10, 0.9, fade) *
+    float light = uv.x > 0.5 ? 0.07 * (1.0 - 0.75 * uv.y * uv.y) : mix(0.06, 0.9, fade) *
                   (0.45 + 0.55 * lamp_light(p, n));
-    return from_screen(kLeather) * light * grain;
+    // Below a band of leather hangs a net of cords, 32 meshes around.
+    vec2 mesh = vec2(1.0, -1.0) * atan(n.y, n.x) * 5.0929582 + p.z / 0.012;
+    vec2 off = 0.5 - abs(fract(mesh) - 0.5);
+    float cord = 1.0 - smoothstep(0.06, 0.14, min(off.x, off.y));
+    cord = mix(cord, 0.25, smoothstep(0.001, 0.003, length(fwidth(p))));
+    float net = uv.x > 0.5 ? 0.0 : smoothstep(-0.012, -0.014, p.z);
+    return from_screen(kLeather) * light * mix(grain, 0.25 + 2.6 * cord, net);
 }
 
 // The boards of a dim room.
@@ -140,7 +154,8 @@ void main() {
 #endif
 #if defined(CLOTH)
     vec3 felt = cloth(cloth_albedo(p), n);
-    color = written(v_material == 0 ? felt : felt * kCushionGain * under_nose(n, v_position.z));
+    color = written(v_material == 0 ? felt : felt * kCushionGain * under_nose(n, v_position.z) *
+                                                  beside_rail(p, n));
 #elif defined(CHALK)
     // The share of this pixel's width that lies within the mark.
     float across = max(fwidth(v_uv.y), 1e-4);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/console.h"
@@ -29,6 +30,11 @@ std::vector<Option> rows_of(const Options& command, bool by_place) {
 std::string meaning(const Option& row) {
     const std::string initial = row.default_text();
     return initial.empty() ? row.text : row.text + " (default: " + initial + ")";
+}
+
+/// Whether every command has it.
+bool is_common(const Option& row) {
+    return row.names.back() == "--help" || row.names.back() == "--quiet";
 }
 
 bool takes_file(const Option& row) {
@@ -87,7 +93,7 @@ void man_command(std::string& out, const Options& command, const std::string& pa
     out += ".SS \"" + roff(synopsis_of(command, name)) + " [options]\"\n" + roff(command.text) + ".\n";
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
-            if (row.names.back() == "--help") continue;
+            if (is_common(row)) continue;
             out += fmt::format(".TP\n\\fB{}\\fR", roff(joined(row.names, ", ")));
             if (!row.value.empty()) out += fmt::format(" \\fI{}\\fR", roff(row.value));
             out += fmt::format("\n{}\n", roff(meaning(row)));
@@ -159,7 +165,7 @@ void page_command(std::string& out, const Options& command, const std::string& p
     std::vector<std::string> again;
     for (const bool by_place : {true, false}) {
         for (const Option& row : rows_of(command, by_place)) {
-            if (row.names.back() == "--help" || row.text == "Scene file (TOML)") continue;
+            if (is_common(row) || row.text == "Scene file (TOML)") continue;
             const std::string item = page_item(row, out);
             if (out.find(item) == out.npos)
                 out += item;
@@ -203,7 +209,9 @@ std::string command_line_page(const Options& program) {
     return wrapped(
         "# The command line\n\n"
         "Every command and option, as in `carom COMMAND --help`; `carom describe command-line` prints this "
-        "page. SCENE is a scene file (TOML). Flags are off and no file is written unless named.\n\n"
+        "page. SCENE is a scene file (TOML). Flags are off and no file is written unless named. `-q` or "
+        "`--quiet` "
+        "leaves out summaries, warnings and notes.\n\n"
         "* Exit status: " +
         statuses + ".\n* `CAROM_ISA` in the environment: " + kIsaText + "\n" + commands);
 }
@@ -364,6 +372,8 @@ struct DescribeArgs {
 int run(const DescribeArgs& args, const Options& program) {
     for (const auto& format : kFormats)
         if (args.format == format.name) print(format.text(program));
+    if (args.format.empty())
+        for (const auto& format : kFormats) print(fmt::format("carom describe {}\n", format.name));
     return kOk;
 }
 
@@ -373,10 +383,10 @@ void add_describe(Options& program) {
     auto args = std::make_shared<DescribeArgs>();
     Options& command =
         program.command("describe", "Print a description of this program or of its file formats");
-    Option& format = command.argument("FORMAT", args->format, "Description to print");
-    format.required = true;
+    Option& format =
+        command.argument("FORMAT", args->format, "Description to print (default: the list of these)");
     for (const auto& known : kFormats) format.choices.emplace_back(known.name);
-    command.run = [args, &program] { return run(*args, program); };
+    command.run = [args, &program] { return run(std::exchange(*args, {}), program); };
 }
 
 }  // namespace carom::tools

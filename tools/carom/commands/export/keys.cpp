@@ -1,5 +1,7 @@
 #include "commands/export/keys.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -126,9 +128,13 @@ std::vector<RotationKey> rotation_keys(const Record& record, int ball) {
         // If the rate changes by a per second, a constant rate between two keys h apart is off by at most a
         // h^2 / 8.
         const double change = (piece.last.spin - piece.first.spin).norm();
-        const double count = std::ceil(std::clamp(
-            std::max(fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError))), 1.0,
-            kMostKeys));
+        const double count = std::ceil(std::max(
+            {fastest * lasts / kLargestTurn, std::sqrt(change * lasts / (8.0 * kLargestError)), 1.0}));
+        if (!(count <= kMostKeys))
+            throw UsageError(fmt::format(
+                "ball {} turns {:.3g} rad between {:.3f} and {:.4g} s, more than an animation can hold; end "
+                "the shot earlier with [stop] time",
+                record.tracks[ball].id, fastest * lasts, piece.from, piece.to));
         add(piece.from);
         for (double k = 1.0; k <= count; ++k) {
             throw_if_interrupted();

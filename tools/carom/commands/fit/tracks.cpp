@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -29,10 +30,10 @@ struct Word {
     std::size_t column;
 };
 
-std::vector<Word> words_of(std::string_view line) {
+std::vector<Word> words_of(std::string_view line, char separator) {
     std::vector<Word> words;
     for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t end = std::min(line.find(',', begin), line.size());
+        const std::size_t end = std::min(line.find(separator, begin), line.size());
         std::size_t first = begin, last = end;
         while (first < last && (line[first] == ' ' || line[first] == '"')) ++first;
         while (last > first && (line[last - 1] == ' ' || line[last - 1] == '"')) --last;
@@ -60,6 +61,7 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
     std::vector<games::TrackPoint> points;
     std::optional<std::array<std::size_t, kNames.size()>> places;
     std::size_t line_number = 0;
+    char separator = ',';
     const auto fail = [&](std::size_t column, const std::string& what) {
         throw UsageError(fmt::format("{}:{}:{}: {}", harmless(path), line_number, column, what));
     };
@@ -74,7 +76,11 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
         ++line_number;
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.empty() || line.front() == '#') continue;
-        const std::vector<Word> words = words_of(line);
+        if (const std::size_t at = line.find_first_of(",;\t"); !places && at != line.npos)
+            separator = line[at];
+        std::string small(places ? "" : line);
+        for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        const std::vector<Word> words = words_of(places ? line : small, separator);
         if (!places) {
             places.emplace();
             for (std::size_t k = 0; k < kNames.size(); ++k) {
@@ -83,8 +89,9 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
                 });
                 if (found == words.end())
                     fail(1,
-                         fmt::format("there is no column {}; name the columns t,ball,x,y in the first line",
-                                     kNames[k]));
+                         fmt::format("there is no column {} in {}; name the columns t,ball,x,y in the first "
+                                     "line, and separate them by commas, semicolons or tabs",
+                                     kNames[k], in_quotes(line)));
                 (*places)[k] = static_cast<std::size_t>(found - words.begin());
             }
             continue;
@@ -100,8 +107,9 @@ std::vector<games::TrackPoint> read_tracks(const std::string& path, const Scene&
             const auto value = as_number<double>(at.text);
             if (!value || (k < 2 && !(*value >= 0.0)))
                 fail(at.column,
-                     fmt::format("{} is not a {}; write a number in {}", in_quotes(std::string(at.text)),
-                                 k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m"));
+                     fmt::format("{} is not a {}; write a number in {}{}", in_quotes(std::string(at.text)),
+                                 k < 2 ? "time since the stroke" : "coordinate", k < 2 ? "s" : "m",
+                                 at.text.find(',') == at.text.npos ? "" : ", with a decimal point"));
             if (std::isinf(*value))
                 fail(at.column, "a position must be finite; leave it empty if the ball was not seen");
             return *value;

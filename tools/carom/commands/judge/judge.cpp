@@ -85,12 +85,17 @@ Judged judged(const std::string& shot, const Record& record, const GameArgs& arg
         }
     }
     const games::Call call{args.ball, args.pocket, args.safety, args.push_out};
+    if (call.safety && before.game != games::Game::kEightBall && before.game != games::Game::kTenBall &&
+        before.game != games::Game::kStraightPool)
+        throw UsageError(fmt::format("--safety: {} has no called safety; leave it out", name(before.game)));
     Verdict verdict = asked(shot, [&] { return games::judge(before, record, call); });
     const auto options = static_cast<int>(verdict.options.size());
     if (args.option > options)
         throw UsageError(fmt::format("--option {}: there {} {}", args.option, options == 1 ? "is" : "are",
                                      counted(verdict.options.size(), "option")));
     games::Option option = verdict.options[static_cast<std::size_t>(args.option) - 1];
+    if (args.state.empty())
+        message("note: judged as the first shot of a game; for a later one, give --state");
     return {std::move(verdict), std::move(option)};
 }
 
@@ -101,7 +106,10 @@ std::string verdict_text(const Judged& judged) {
     for (std::size_t i = 0; i < verdict.fouls.size(); ++i)
         text += (i == 0 ? ": " : ", ") + foul_text(game, verdict.fouls[i]);
     text += "\n";
-    if (verdict.points != 0)
+    // Eight-ball, nine-ball and ten-ball are not scored: there a point says that the player continues.
+    const bool scored = verdict.points != 0 && game != games::Game::kEightBall &&
+                        game != games::Game::kNineBall && game != games::Game::kTenBall;
+    if (scored)
         text += counted(static_cast<std::size_t>(std::abs(verdict.points)), "point") +
                 (verdict.points > 0 ? " scored\n" : " lost\n");
     if (verdict.penalty != 0)
@@ -112,15 +120,14 @@ std::string verdict_text(const Judged& judged) {
         if (verdict.options.size() > 1)
             text += fmt::format("  {}  {}: ", i + 1, carom::name(option.decision));
         text += next_text(option.state) + "\n";
-        constexpr std::size_t kMany = 6;
-        if (option.respots.size() > kMany)
-            text += fmt::format("{}{} are put on the table\n", verdict.options.size() > 1 ? "     " : "",
-                                counted(option.respots.size(), "ball"));
-        else
-            for (const games::Respot& back : option.respots)
-                text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n",
-                                    verdict.options.size() > 1 ? "     " : "", back.ball, back.place.x(),
-                                    back.place.y());
+        const char* const indent = verdict.options.size() > 1 ? "     " : "";
+        if (option.decision == Decision::kReplace) {
+            text += fmt::format("{}every ball returns to its place before the shot\n", indent);
+            continue;
+        }
+        for (const games::Respot& back : option.respots)
+            text += fmt::format("{}{} is respotted at {:.4f}, {:.4f} m\n", indent, back.ball, back.place.x(),
+                                back.place.y());
     }
     return text;
 }

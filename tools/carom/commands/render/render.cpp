@@ -102,10 +102,11 @@ void check_args(const RenderArgs& args) {
         check_input(args, render::writes_over(args.pattern, args.input), args.pattern);
         const bool numbered = render::is_numbered(args.pattern);
         if (!one && !numbered)
-            throw UsageError(
-                fmt::format("bad frame pattern '{}'; give exactly one %d or %0Nd, as in frames/%05d.png, or "
-                            "the name of a film, as in shot.mp4 (.webm, .gif, .webp)",
-                            args.pattern));
+            throw UsageError(fmt::format(
+                "-o {}: frames need a number in their names; write one %d or %05d, as in "
+                "frames/%05d.png, name a film, as in shot.mp4 (.webm, .gif, .webp), or choose one "
+                "frame with --at S",
+                args.pattern));
         if (args.resume && !numbered)
             throw UsageError(
                 fmt::format("-o {}: one picture cannot be resumed; leave out --resume", args.pattern));
@@ -113,6 +114,11 @@ void check_args(const RenderArgs& args) {
         throw UsageError(error.what());
     }
     check_png_name(args.pattern);
+}
+
+/// The option that makes ffmpeg add a column or row to an odd size, which yuv420p does not have.
+std::string even_sides(const FrameSize& size) {
+    return size.width % 2 + size.height % 2 == 0 ? "" : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' ";
 }
 
 /// "x,y,z" in m.
@@ -182,7 +188,7 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     }
     options.backend = render::backend_from_name(args.gl);
     if (options.from > record.duration && !args.to) {
-        throw UsageError(fmt::format("{} {}: the shot ends at {} s", args.at ? "--at" : "--from",
+        throw UsageError(fmt::format("{} {}: the shot ends at {:.3f} s", args.at ? "--at" : "--from",
                                      options.from, record.duration));
     }
     const long frames = checked_frame_count(options.from, options.to.value_or(record.duration), options.fps);
@@ -279,10 +285,11 @@ int run(const RenderArgs& args) {
     if (args.raw || args.y4m) {
         flush_output();
         const std::string input =
-            args.y4m ? std::string(
-                           "-f yuv4mpegpipe -i - -colorspace bt709 -color_primaries bt709 -color_trc bt709")
-                     : fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} -i - -pix_fmt yuv420p",
-                                   options.size.width, options.size.height, options.fps);
+            args.y4m
+                ? std::string(
+                      "-f yuv4mpegpipe -i - -colorspace bt709 -color_primaries bt709 -color_trc bt709")
+                : fmt::format("-f rawvideo -pix_fmt rgb24 -s {}x{} -framerate {} -i - {}-pix_fmt yuv420p",
+                              options.size.width, options.size.height, options.fps, even_sides(options.size));
         message(fmt::format("{} of {}; to make a film of them, pipe them into: ffmpeg {} shot.mp4",
                             counted(timings.size(), "frame"), args.y4m ? "Y4M" : "RGB", input));
         return kOk;
@@ -295,8 +302,8 @@ int run(const RenderArgs& args) {
                       options.size.height, options.fps, options.pattern));
     // With the number of frames, so that older files with higher numbers stay out of the film.
     print(fmt::format(
-        "to make a film of them: ffmpeg -y -framerate {} -i {} -frames:v {} -pix_fmt yuv420p shot.mp4\n",
-        options.fps, shell_word(options.pattern), timings.back().frame + 1));
+        "to make a film of them: ffmpeg -y -framerate {} -i {} -frames:v {} {}-pix_fmt yuv420p shot.mp4\n",
+        options.fps, shell_word(options.pattern), timings.back().frame + 1, even_sides(options.size)));
     return kOk;
 }
 

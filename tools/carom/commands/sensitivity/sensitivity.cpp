@@ -302,7 +302,8 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
 /// The shot, with the ellipse and the played ends of each ball.
 DiagramShot drawing_of(const Sensitivity& s, const Plan& plan, const Record& record,
                        const std::string& hand) {
-    DiagramShot shot{"with the hand " + harmless(hand), record, plan.scene.cue, {}};
+    DiagramShot shot{
+        "Errors of one standard deviation: " + hand_words(read_hand(hand)), record, plan.scene.cue, {}};
     for (const BallResult& ball : s.balls) {
         const double time = ball.fall ? record.events[*ball.fall].time : record.duration;
         const double angle = ball.expected.direction_deg * std::numbers::pi / 180.0;

@@ -17,6 +17,7 @@
 #include "base/setup.h"
 #include "base/shown_units.h"
 #include "base/verdict.h"
+#include "carom/engine/printable.h"
 #include "carom/engine/simulate.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
@@ -248,15 +249,10 @@ int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions opti
     return kOk;
 }
 
-bool is_stdout(const std::string& path) {
-    return path == "-";
-}
-
 void write_files(const SimulateArgs& args, const Record& record) {
-    const auto file = [](const std::string& path) { return is_stdout(path) ? "/dev/stdout" : path; };
-    if (!args.record.empty()) write_record(record, file(args.record));
-    if (!args.events.empty()) write_events_csv(record, file(args.events));
-    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, file(args.samples));
+    if (!args.record.empty()) write_record(record, args.record);
+    if (!args.events.empty()) write_events_csv(record, args.events);
+    if (!args.samples.empty()) write_samples_csv(record, *args.sample_dt, args.samples);
 }
 
 /// Reports the first law that the record breaks, if any.
@@ -297,13 +293,14 @@ int run(const SimulateArgs& args) {
         print(result_json(record, measures));
         return status;
     }
-    const bool taken = is_stdout(args.record) || is_stdout(args.events) || is_stdout(args.samples);
-    if (args.hash)
-        print(record.hash() + "\n");
-    else if (!taken)
-        print(summary(record, args.scene, args, measures));
-    if (args.list && (args.hash || taken)) print(all_events(record, units_of(args.units)));
-    if (args.profile) print(profile_report(record));
+    // Also with --quiet, and beside a file on standard output: it was asked for.
+    const auto asked = [](bool option, const auto& text) {
+        if (option) print_bytes(harmless(text()));
+    };
+    if (!args.hash) print(summary(record, args.scene, args, measures));
+    asked(args.hash, [&] { return record.hash() + "\n"; });
+    asked(args.list && (args.hash || quiet()), [&] { return all_events(record, units_of(args.units)); });
+    asked(args.profile, [&] { return profile_report(record); });
     return status;
 }
 
@@ -316,18 +313,12 @@ void add_simulate(Options& program) {
     command.argument(
         "RECORD", args.checked,
         "With --verify, check this record of the scene (.json) instead of a run (default: the run)");
-    command
-        .option("-o,--output", &args.record, "FILE.json",
-                "Write the record, which carom render reads (default: not written)")
-        .to_stdout = true;
-    command
-        .option("--events", &args.events, "FILE.csv",
-                "Write the events; - prints them instead of the summary (default: not written)")
-        .to_stdout = true;
-    command
-        .option("--samples", &args.samples, "FILE.csv",
-                "Write sampled states; needs --sample-dt (default: not written)")
-        .to_stdout = true;
+    command.option("-o,--output", &args.record, "FILE.json",
+                   "Write the record, which carom render reads (default: not written)");
+    command.option("--events", &args.events, "FILE.csv",
+                   "Write the events; - prints them instead of the summary (default: not written)");
+    command.option("--samples", &args.samples, "FILE.csv",
+                   "Write sampled states; needs --sample-dt (default: not written)");
     command.option("--sample-dt", &args.sample_dt, "S", "Time between samples in s (default: none)");
     command.option("--until", &args.until, "S",
                    "Stop at this time in s at the latest (default: the scene's end)");

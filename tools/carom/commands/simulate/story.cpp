@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMostLines = 24;
 // [-] Contacts of the struck ball that the summary of a long shot includes.
 constexpr int kStruckContacts = 3;
+constexpr double kShown = 0.05;  // [m/s] Slower contacts of balls are only counted.
 
 /// ", cut 31 deg, 2.1 m/s"
 std::string contact(const EventDetails& d, Units units) {
@@ -137,7 +138,9 @@ std::string story(const Record& record, Units units) {
         const bool landmark =
             is_end(event) || (of_ball(event, struck) && kind(event.type).partner != Partner::kNone &&
                               contacts++ < kStruckContacts);
-        if (whole || landmark)
+        const bool gentle = event.type == EventType::kBallBall &&
+                            details_of(record, i).closing < kShown * std::cos(details_of(record, i).cut);
+        if (landmark || (whole && !gentle))
             text += crowd.told() + line(record, i, units);
         else
             crowd.add(event);

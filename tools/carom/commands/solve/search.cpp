@@ -125,7 +125,8 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
             return games::success_map(what.scene, want, chosen_isa(), options, best);
         });
     SweepPlot plot;
-    plot.measure = "success: " + what.want;
+    plot.heading = "Success rate around the shot";
+    plot.measure = "wanted: " + what.want;
     for (const std::size_t choice : map.choices) plot.axes.push_back(what.choices[choice].key);
     for (const games::SuccessMap::Cell& cell : map.cells) plot.shots.push_back({cell.place, cell.success});
     DiagramStyle style;

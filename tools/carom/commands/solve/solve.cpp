@@ -56,9 +56,10 @@ std::string joined(const std::vector<std::string>& parts) {
     return parts.size() == 1 ? parts.front() : whole;
 }
 
-std::string told(const Solution& solution, const std::vector<Choice>& choices, int rank) {
+/// @param rank  "1. ", or "   " below the solution of that rank
+std::string told(const Solution& solution, const std::vector<Choice>& choices, const std::string& rank) {
     std::string text =
-        fmt::format("{}. {}  of {}\n", rank, share_text(share_of(solution.successes, solution.shots)),
+        fmt::format("{}{}  of {}\n", rank, share_text(share_of(solution.successes, solution.shots)),
                     counted(solution.shots, "shot"));
     for (std::size_t k = 0; k < choices.size(); ++k)
         text += fmt::format("     {:<24}{:.6g}\n", choices[k].key, solution.values[k]);
@@ -118,7 +119,7 @@ int run(const SolveArgs& args) {
     }
     std::string text = fmt::format("wanted: {}\n", harmless(want));
     for (std::size_t i = 0; i < found.size(); ++i) {
-        text += told(found[i], choices, static_cast<int>(i) + 1);
+        text += told(found[i], choices, fmt::format("{}. ", i + 1));
         if (exact.empty()) continue;
         const games::Refined& refined = exact[i].refined;
         if (const auto first = same_before(exact, i))
@@ -126,7 +127,7 @@ int run(const SolveArgs& args) {
         else if (exact[i].solution)
             text += fmt::format("   exactly there, within {:.1g} mm after {}:\n", 1e3 * refined.miss,
                                 counted(static_cast<std::size_t>(refined.shots), "shot")) +
-                    told(*exact[i].solution, exact[i].choices, static_cast<int>(i) + 1);
+                    told(*exact[i].solution, exact[i].choices, "   ");
         else
             text += fmt::format("   no exact shot near it: {}\n", refined.trouble);
     }

@@ -45,6 +45,9 @@ PlottedSweep::PlottedSweep(const games::Sweep& sweep, const std::string& file)
         plot_.axes.push_back(column.name + (column.unit.empty() ? "" : " [" + column.unit + "]"));
         keys_.push_back(column.which);
     }
+    plot_.heading = plot_.axes.size() < 2                 ? "Shots by"
+                    : sweep.measures().front().is_truth() ? "Share of the shots in which this holds:"
+                                                          : "Mean of";
     if (plot_.axes.size() == 2) return;
     plot_.axes.clear();
     keys_.clear();
