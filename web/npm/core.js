@@ -218,6 +218,12 @@ export class Scene extends Held {
   get cue() { return this.describe().cue; }
   get table() { return this.describe().table; }
   look() { return JSON.parse(call("carom_scene_look", this.handle)); }
+  mesh() {
+    const bytes = callFor(() => lastBytes().slice(), "carom_scene_mesh", this.handle), ATLAS = 192 * 288;
+    const numbers = new Float32Array(bytes.buffer, 0, (bytes.length - ATLAS) / 4);
+    return {origin: [...numbers.subarray(0, 2)], ends: [...numbers.subarray(2, 12)],
+      vertices: numbers.subarray(12), atlas: bytes.subarray(-ATLAS)};
+  }
 }
 
 /** The record's motion from its numbers: of the shot, then of each ball and its segments. */
@@ -260,6 +266,10 @@ export class Shot extends Held {
       this.scene.balls.map(({id}) => id));
   }
   get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }
+  story({inches = false} = {}) {
+    expectTruth("inches", inches);
+    return JSON.parse(call("carom_shot_story", this.handle, inches ? 1 : 0));
+  }
 
   states(times) {
     const list = typeof times === "number" ? numbersOf("times", [times]) : numbersOf("times", times);
@@ -387,6 +397,12 @@ export const games = {
     const options = JSON.stringify({skill, seed, best, shots});
     return JSON.parse(call("carom_game_advise", JSON.stringify(state), scene.handle, options)).map(
       ({call: {push_out: pushOut, ...announced}, ...advice}) => ({...advice, call: {...announced, pushOut}}));
+  },
+  strike(scene, {skill = "professional", seed = 1} = {}) {
+    expectOf(Scene, "scene", scene);
+    expectText("skill", skill);
+    expectWhole("seed", seed);
+    return JSON.parse(call("carom_game_strike", scene.handle, seed, skill));
   },
   judge(state, shot, announced = {}) {
     expectObject("state", state);

@@ -115,6 +115,17 @@ CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebSc
         give(nullptr, dumped(list));
     });
 }
+/// The strike of a player of a level who intends the scene's cue.
+CAROM_WEB int carom_game_strike(const WebScene* scene, double seed, const char* skill, std::size_t size) {
+    return guarded([&] {
+        if (!scene->scene.cue) throw BadArgument("the scene has no cue");
+        const Cue& cue = *scene->scene.cue;
+        const games::Skill by = games::skill_by_name(std::string(skill, size), scene->scene.balls.R);
+        const games::Noise noise = by.noise_at(cue.speed);
+        give(nullptr,
+             dumped(tools::cue_json(games::with_noise(cue, noise, static_cast<std::uint64_t>(seed), 0))));
+    });
+}
 CAROM_WEB int carom_game_choose(const WebShot* shot, const WebVerdict* verdict, const char* skill,
                                 std::size_t size) {
     return guarded([&] {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
@@ -14,6 +15,8 @@
 #include "carom/engine/scene_number.h"
 #include "carom/engine/strike.h"
 #include "carom/render/table_mesh.h"
+#include "draw/table_parts.h"
+#include "font/glyphs.h"
 #include "page/ball_styles.h"
 #include "page/table_shape.h"
 #include "web.h"
@@ -125,14 +128,31 @@ Json described(const Scene& scene) {
             {"material", material}};
 }
 
-/// Data to draw the scene: the shape of the table, and the look of each ball.
-Json look(const Scene& scene) {
+render::TableMesh mesh_of(const Scene& scene) {
     std::vector<Vec2> places;
     for (const BallStart& ball : scene.ball) places.push_back(ball.position.head<2>());
-    const render::TableMesh mesh =
-        render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
-    return {{"shape", tools::table_shape(scene.table, mesh)},
+    return render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
+}
+
+/// Data to draw the scene: the shape of the table, and the look of each ball.
+Json look(const Scene& scene) {
+    return {{"shape", tools::table_shape(scene.table, mesh_of(scene))},
             {"styles", tools::ball_styles(ids_of(scene.ball), scene.table.preset)}};
+}
+
+/// Numbers as bytes, and after them the atlas of digits.
+std::string mesh_bytes(const render::TableMesh& mesh) {
+    const render::TableParts parts = render::sort_parts(mesh, {});
+    std::vector<float> numbers;
+    const auto add = [&numbers](double x) { numbers.push_back(static_cast<float>(x)); };
+    for (const double x : {mesh.origin.x(), mesh.origin.y()}) add(x);
+    for (const std::size_t end : parts.ends) add(static_cast<double>(end));
+    static_assert(sizeof(render::PartVertex) == 10 * sizeof(float));
+    const std::vector<std::uint8_t>& atlas = render::glyph_atlas();
+    const auto* const vertices = reinterpret_cast<const char*>(parts.vertices.data());
+    std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+    bytes.append(vertices, parts.vertices.size() * sizeof(render::PartVertex));
+    return bytes.append(atlas.begin(), atlas.end());
 }
 
 }  // namespace
@@ -163,6 +183,11 @@ CAROM_WEB int carom_scene_text(const WebScene* scene) {
 }
 CAROM_WEB int carom_scene_describe(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(described(scene->scene))); });
+}
+/// The table's triangles for WebGL: floats, with the mesh's origin, the ends of its ten parts and ten numbers
+/// for each vertex; then the bytes of the atlas of digits.
+CAROM_WEB int carom_scene_mesh(const WebScene* scene) {
+    return guarded([&] { give(nullptr, mesh_bytes(mesh_of(scene->scene))); });
 }
 CAROM_WEB int carom_scene_look(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(look(scene->scene))); });

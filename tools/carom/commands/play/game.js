@@ -1,7 +1,7 @@
 // Games: the player's rights, the verdict on a shot, and its consequences.
 
 import {inHand} from "./place.js";
-import {begin, change, enter} from "./shots.js";
+import {begin, change, enter, mayLeave} from "./shots.js";
 import {CAROM, startOf, tableOf} from "./tables.js";
 
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
@@ -10,12 +10,14 @@ const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
- * in the state. */
-export function newGame(state, name, rules = {}, match = null) {
+ * in the state; `first`: the player who begins. */
+export function newGame(state, name, rules = {}, match = null, first = 0) {
+  if (!mayLeave(state)) return;
   const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
   const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
-  const game = name === "" ? null : {state: carom.games.start(name, {target, rules}), option: 0};
-  state.match = match;
+  const game = name === "" ? null : {state: carom.games.start(name, {first, target, rules}), option: 0};
+  Object.assign(state, {match, mode: match ? "play" : state.mode});
+  state.tell("mode");
   begin(state, startOf(carom, name, table, randomSeed()), {game});
 }
 
@@ -84,4 +86,27 @@ function advance(state, after, game) {
   if (enter(state, after, {game, set}) && !state.level && (game || state.raised !== raised))
     change(state, {"cue.elevation_deg": game ? 0 : raised}, {remember: false});
   if (said) state.say(said);
+}
+
+/** Another rack of the match, or after its last one another match; the other player breaks. */
+export function nextRack(state) {
+  const {match, game, verdict, inMatch} = state, {winner} = verdict.options[0].state;
+  const racks = match.racks.map((won, k) => inMatch ? won + Number(k === winner) : 0), first = 1 - match.first;
+  newGame(state, game.state.game, match.rules, {...match, racks, first}, first);
+}
+
+/** Shows the last shot of the game again. */
+export function replay(state) {
+  const {carom, game, scene, shot} = state;
+  if (!game?.from || !state.free) return;
+  Object.assign(state, {replayed: {scene, shot}, scene: carom.Scene.parse(game.from.toml), shot: game.shot,
+    rotations: null, hints: []});
+  state.tell("view");
+  state.clock.run(true);
+}
+export function endReplay(state) {
+  state.scene.free();
+  Object.assign(state, {...state.replayed, replayed: null, rotations: null});
+  state.tell("view");
+  state.clock.go(0);
 }

@@ -3,9 +3,9 @@
 import {button, make, optionsOf, select} from "../../page/dom.js";
 import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
 import {dialog} from "./extras.js";
-import {judge, legal, newGame, nextShot, sentence} from "./game.js";
+import {judge, legal, newGame, nextRack, nextShot, sentence} from "./game.js";
 import {LEVELS, PLAYED, take} from "./opponent.js";
-import {withNames} from "./players.js";
+import {endWords, withNames} from "./players.js";
 import {GAMES} from "./tables.js";
 import {verdictWords} from "./words.js";
 
@@ -63,16 +63,22 @@ function announcements(state) {
 }
 
 /** The verdict, and a button for each option of a person. */
-function verdictParts(state) {
+function verdictParts(state, opens) {
   const {verdict, clock, match, mode} = state;
   if (verdict === null || clock.now === 0) return [];
   const {chooser, options} = verdict, several = options.length > 1;
   const who = chooser >= 0 ? withNames(state, `Player ${chooser + 1} chooses:`) : "";
+  if (state.over) {
+    const next = !match ? [] : [button(state.inMatch ? "Next rack" : "Rematch", () => nextRack(state), {class: "shoot"}),
+      button("New game …", opens)];
+    return [make("p", {class: "over"}, endWords(state)), make("p", {}, verdictWords(verdict, state.game.state.game)),
+      make("div", {class: "bar"}, ...next)];
+  }
   const mine = (mode === "practise" || several) && !match?.players[chooser];
-  return [make("p", {}, verdictWords(verdict), " ", who), ...options.map((option, i) => {
+  return [make("p", {}, verdictWords(verdict, state.game.state.game), " ", who), ...options.map((option, i) => {
     const then = withNames(state, sentence(option.text));
     const label = several ? `${sentence(option.decision)}: ${then}` : then;
-    if (option.state.over || !mine) return make("p", {class: "over"}, `${label}.`);
+    if (!mine) return make("p", {class: "over"}, `${label}.`);
     return button(label, () => nextShot(state, i));
   })];
 }
@@ -94,8 +100,14 @@ export function gameDialog(state) {
   const row = make("div", {class: "bar"}), note = make("p", {class: "note"});
   const levels = [["", "a person"], ...LEVELS.map((level) => [level, `carom: ${level}`])];
   const players = [["First player", ""], ["Second player", "club"]].map(([name, level]) =>
-    select(name, levels, level, () => {}));
+    select(name, levels, level, () => follow()));
   const hints = make("input", {type: "checkbox", checked: ""});
+  const hand = select("Your hand", [["", "exact"], ...LEVELS.map((level) => [level, `errs: ${level}`])], "club",
+    () => {});
+  const race = select("Race to", [1, 2, 3, 5, 7, 9].map((n) => [String(n), n === 1 ? "1 rack" : `${n} racks`]),
+    "1", () => {});
+  // A person's hand errs as much as carom's.
+  const follow = () => { hand.value = players.map(({value}) => value).find((level) => level) ?? ""; };
   const choose = (name) => {
     rules = {};
     row.replaceChildren(...(name === "" ? [] : ruleChoices(state, name, rules)));
@@ -105,6 +117,7 @@ export function gameDialog(state) {
       if (!plays) box.value = "";
     });
     if (plays && players.every(({value}) => value === "")) players[1].value = "club";
+    follow();
     note.textContent = plays || name === "" ? ""
       : "carom judges this game but does not play it: two people play it on this page.";
   };
@@ -112,13 +125,12 @@ export function gameDialog(state) {
   const start = () => {
     const name = game.value, levelsOf = players.map(({value}) => value);
     element.close();
-    state.mode = name === "" ? state.mode : "play";
-    newGame(state, name, rules, name === "" ? null : {players: levelsOf, hints: hints.checked, rules});
-    state.tell("mode");
+    newGame(state, name, rules, name === "" ? null : {players: levelsOf, hints: hints.checked, rules,
+      errors: hand.value, race: Number(race.value), racks: [0, 0], first: 0});
   };
   const labelled = (text, input) => make("label", {class: "field"}, make("span", {}, text), input);
   const element = dialog("New game", [labelled("Game", game), row, note, labelled("First", players[0]),
-    labelled("Second", players[1]), make("label", {}, hints, " allow hints")],
+    labelled("Second", players[1]), labelled("Your hand", hand), labelled("Race to", race), make("label", {}, hints, " allow hints")],
   button("Start", start, {class: "shoot"}));
   return () => {
     choose(game.value);
@@ -139,7 +151,8 @@ function hintList(state) {
   return list;
 }
 
-export function gameCard(state) {
+/** `opens`: opens the dialog for a new game. */
+export function gameCard(state, opens) {
   const text = make("p", {class: "game-text", role: "status", "aria-live": "polite"});
   const {rows, show} = announcements(state), options = make("div", {class: "bar verdict"});
   const card = make("section", {class: "card game", "aria-label": "Game"}, text, ...rows, options,
@@ -161,7 +174,8 @@ export function gameCard(state) {
   });
   for (const what of ["lists", "busy", "mode", "label", "hints", "announced"]) state.on(what, tell);
   state.on("judged", () => {
-    options.replaceChildren(...verdictParts(state));
+    options.replaceChildren(...verdictParts(state, opens));
+    card.classList.toggle("end", options.querySelector(".over") !== null);
     hide();
   });
   return card;

@@ -9,7 +9,18 @@ export function nameOf({match}, player) {
 
 /** The rules' words with the names of the players. */
 export const withNames = (state, text) => !state.match ? text
-  : text.replace(/\b[Pp]layer ([12]) (\w+)/g, (_, player, does) => {
-    const name = nameOf(state, player - 1);
-    return name === "You" ? `${name} ${does.replace(/s$/, "")}` : `${name.replace(/,.*/, "")} ${does}`;
+  : text.replace(/(^|\W)player ([12]) (\w+)/gi, (_, before, player, does) => {
+    const name = nameOf(state, player - 1), begins = /^$|[.!] $/.test(before);
+    if (name !== "You") return `${before}${name.replace(/,.*/, "")} ${does}`;
+    return `${before}${begins ? "You" : "you"} ${does.replace(/s$/, "")}`;
   });
+
+/** The end of a game, and of its match. */
+export function endWords(state) {
+  const {match, verdict: {options: [{state: {winner}}]}} = state;
+  if (winner < 0) return "Nobody wins.";
+  const name = match ? nameOf(state, winner).replace(/,.*/, "") : `Player ${winner + 1}`;
+  const racks = match?.racks.map((won, k) => won + Number(k === winner)).join(" to ");
+  const what = !match || match.race === 1 ? "" : state.inMatch ? ` the rack: ${racks}` : ` the match, ${racks}`;
+  return `${name} ${name === "You" ? "win" : "wins"}${what}.`;
+}

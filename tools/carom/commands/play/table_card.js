@@ -1,26 +1,26 @@
 // The table on the page, the drawings on it, and the controls below it.
 
-import {ICONS, button, icon, make, select} from "../../page/dom.js";
+import {ICONS, button, icon, make} from "../../page/dom.js";
 import {orientations} from "../../page/motion.js";
 import {PlaybackBar} from "../../page/playback.js";
 import {TableView} from "../../page/stage.js";
 import {drawContact, drawCue, drawHints, firstContact} from "./aids.js";
-import {nextShot} from "./game.js";
+import {endReplay, nextShot, replay} from "./game.js";
 import {hint, mayHint, stopThinking, takeTurn} from "./opponent.js";
-import {followPointer} from "./pointer.js";
-import {takeBack} from "./shots.js";
+import {followPointer, lookAtAll} from "./pointer.js";
+import {strike, takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
 
 /** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
 function draw(state) {
-  const {view, shot, scene, paths, mode, clock: {now}} = state, record = shot.motion;
+  const {view, shot, scene, paths, mode, sight, clock: {now}} = state, record = shot.motion;
   view.record = record;
+  view.orientation = state.aiming ? () => [1, 0, 0, 0] : state.rotations ??= orientations(record);
+  if (sight?.draw(now)) return;
   if (!state.aiming) {
-    view.orientation = state.rotations ??= orientations(record);
     view.draw(now, {trails: mode === "play" ? "off" : "ball"});
     return;
   }
-  view.orientation = () => [1, 0, 0, 0];
   const from = state.struck(), only = scene.cue ? shot.balls.indexOf(scene.cue.ball) : -1;
   if (mode === "play") {
     const contact = from && !state.level ? firstContact(shot, scene.cue.ball) : null;
@@ -53,12 +53,12 @@ function helpOf(state) {
 /** The controls during playback. */
 function watchBar(state) {
   const {clock} = state, bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
-  const back = button("Back to aiming", () => clock.go(0)), next = button("Next shot", () => nextShot(state));
+  const back = button("Back to aiming", () => state.replayed ? endReplay(state) : clock.go(0)), next = button("Next shot", () => nextShot(state));
   bar.element.append(back, next, bar.speeds);
   const show = () => {
     bar.show();
     back.hidden = state.counts;
-    next.hidden = state.game !== null && state.mode === "play";
+    next.hidden = state.replayed !== null || state.game !== null && state.mode === "play";
     bar.scrub.disabled = state.counts && clock.playing;
   };
   state.on("label", () => bar.label(clock.playing ? "Pause" : "Play"));
@@ -70,31 +70,29 @@ function watchBar(state) {
 /** The controls while aiming: tip, power, and buttons. @returns {element, tip} */
 function aimBar(state) {
   const {tip, parts} = strokeParts(state), {clock} = state;
-  const shoot = button([icon(ICONS.play), "Shoot"], () => clock.run(true),
+  const shoot = button([icon(ICONS.play), "Shoot"], () => strike(state),
     {class: "shoot", title: "Shoot (space)"});
   const stop = button("Stop", () => stopThinking(state), {class: "shoot"});
   const lets = button("Let carom shoot", () => {
     state.yielded = false;
     takeTurn(state);
   });
+  const again = button("Replay", () => replay(state), {title: "Show the last shot again"});
   const asks = button("Hint", () => hint(state)), undo = button("Undo", () => takeBack(state));
-  const paths = select("Predicted paths",
-    [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths,
-    (x) => { state.paths = x; clock.refresh(); });
   const show = () => {
     shoot.hidden = state.busy !== null;
     shoot.disabled = !state.free || !state.scene?.cue;
     stop.hidden = state.busy === null;
     lets.hidden = !state.yielded;
+    again.hidden = !state.game?.from || state.busy !== null;
     asks.hidden = !mayHint(state);
     asks.disabled = state.busy !== null;
     undo.hidden = state.counts;
     undo.disabled = state.past.length === 0;
-    paths.hidden = state.mode === "play";
   };
   for (const what of ["stroke", "mode", "busy", "label"]) state.on(what, show);
-  const element = make("div", {class: "hands"}, ...parts,
-    make("div", {class: "doing"}, shoot, stop, lets, asks, undo, paths));
+  const element = make("div", {class: "hands"}, ...parts, make("div", {class: "tools"}, lets, asks, again, undo),
+    make("div", {class: "doing"}, shoot, stop));
   return {element, tip};
 }
 
@@ -108,17 +106,18 @@ export function tableCard(state) {
     says.textContent = text;
     says.classList.toggle("error", bad);
   });
+  const whole = button("Whole table", () => lookAtAll(state), {class: "whole", title: "Whole table (0)", hidden: ""});
   const lay = () => {
     if (!state.view) return;
     const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
     if (state.view.fit(...room)) state.clock.refresh();
   };
-  state.on("table", () => {
+  for (const what of ["table", "view"]) state.on(what, () => {
     const {shape, styles} = state.scene.look();
     state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);
-    box.replaceChildren(state.view.element);
+    box.replaceChildren(state.view.element, whole);
     lay();
   });
   const helps = () => { help.textContent = state.shot ? helpOf(state) : ""; };
@@ -131,6 +130,7 @@ export function tableCard(state) {
   for (const what of ["label", "mode", "busy", "stroke"]) state.on(what, now);
   state.on("time", () => {
     draw(state);
+    whole.hidden = !state.view.zoomed;
     if (state.aiming) state.tell("stroke");
     else if (document.body.classList.contains("aiming")) now();
   });

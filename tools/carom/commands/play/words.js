@@ -1,5 +1,10 @@
 // Numbers with units, and events in words.
 
+import {CAROM} from "./tables.js";
+
+/** The games whose score is points. */
+export const POINTS = [...CAROM, "snooker", "straight_pool", "free_pyramid"];
+
 export const UNITS = {
   metric: {speed: [1, "m/s", 2], length: [100, "cm", 1]},
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
@@ -77,9 +82,10 @@ function ballWords(e, units) {
 export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
   "ball_pocket", "ball_out"].includes(e.type);
 
-/** The verdict on a shot in a sentence. */
-export function verdictWords(verdict) {
-  const fouls = verdict.fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul));
-  const points = verdict.points > 0 ? `, ${verdict.points} point${verdict.points === 1 ? "" : "s"}` : "";
-  return fouls.length > 0 ? `Foul: ${fouls.join(", ")}.` : `Fair shot${points}.`;
+const counted = (n) => `${n} point${n === 1 ? "" : "s"}`;
+/** The verdict on a shot in a sentence. `game`: its name. */
+export function verdictWords({fouls, points, penalty}, game) {
+  const broken = fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul)).join(", ");
+  const other = penalty > 0 ? `; ${counted(penalty)} to the other player` : "";
+  return broken ? `Foul: ${broken}${other}.` : `Fair shot${POINTS.includes(game) && points > 0 ? `, ${counted(points)}` : ""}.`;
 }
