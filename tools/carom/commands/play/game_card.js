@@ -155,8 +155,8 @@ function hintList(state) {
 export function gameCard(state, opens) {
   const text = make("p", {class: "game-text", role: "status", "aria-live": "polite"});
   const {rows, show} = announcements(state), options = make("div", {class: "bar verdict"});
-  const card = make("section", {class: "card game", "aria-label": "Game"}, text, ...rows, options,
-    hintList(state));
+  const card = make("section", {class: "card game", "aria-label": "Game"}, text,
+    make("div", {class: "choices"}, ...rows, options, hintList(state)));
   const hide = () => {
     const told = text.textContent || options.hasChildNodes() || state.hints.length > 0;
     card.hidden = !told || Boolean(state.level) && state.aiming;

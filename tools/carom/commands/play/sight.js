@@ -129,7 +129,7 @@ export class Sight {
     return this.share < 1 ? between(above, behind, this.share) : behind;
   }
   /** Draws the table at time t. @returns whether this view is on */
-  draw(t, camera = null) {
+  draw(t, camera = null, [width, height] = [this.state.view.over.width, this.state.view.over.height]) {
     const {state, table} = this, {view, shot, scene} = state, {under, over} = view, canvas = this.gl?.canvas;
     const on = camera !== null || this.on && scene.cue !== null;
     if (canvas) canvas.hidden = !on;
@@ -137,7 +137,7 @@ export class Sight {
     under.style.opacity = over.style.opacity = on ? "0" : "";
     if (!on) return false;
     this.furnish();
-    const styleOf = (i) => view.styles[i % view.styles.length], {width, height} = over;
+    const styleOf = (i) => view.styles[i % view.styles.length];
     const balls = view.balls(shot.motion, t).map(({i, state: {state: how}, p, R}) => {
       const [w, ...turn] = view.orientation(i, t), {color, pattern, number} = styleOf(i);
       return {at: p, R, turn: [...turn, w], color, pattern: PATTERNS.indexOf(pattern), number, sunk: isGone(how)};

@@ -11,6 +11,8 @@ import {followPointer, lookAtAll} from "./pointer.js";
 import {strike, takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
 
+const RIM = 0.025;  // [m]
+
 /** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
 function draw(state) {
   const {view, shot, scene, paths, mode, sight, clock: {now}} = state, record = shot.motion;
@@ -113,7 +115,9 @@ export function tableCard(state) {
     if (state.view.fit(...room)) state.clock.refresh();
   };
   for (const what of ["table", "view"]) state.on(what, () => {
-    const {shape, styles} = state.scene.look();
+    const {shape, styles} = state.scene.look(), {bounds: {low, high}} = shape;
+    // Outside the diamonds, the frame would only make a phone's balls smaller.
+    if (shape.wood.length > 0) [0, 1].forEach((k) => { low[k] += RIM; high[k] -= RIM; });
     state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);

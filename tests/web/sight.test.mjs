@@ -1,0 +1,62 @@
+// The view behind the cue ball: the picture of the rendered frames, by WebGL2.
+import assert from "node:assert/strict";
+import {readFileSync, writeFileSync} from "node:fs";
+import * as path from "node:path";
+import {after, before, test} from "node:test";
+import {Player, folder, missing} from "./play_page.mjs";
+import {native, sceneText, withoutProgram} from "./support.mjs";
+
+const skip = {skip: missing("chromium")}, withProgram = {skip: skip.skip || withoutProgram};
+const player = new Player("chromium"), value = (expression) => player.value(expression);
+const SIZE = [640, 360], VIEW = "View behind the cue ball";
+
+before(async () => { if (!skip.skip) await player.start(); });
+after(() => skip.skip ? null : player.end());
+
+async function turned() {
+  await player.browser.until(`!document.querySelector("[aria-label='${VIEW}']").hidden`);
+  await player.press(VIEW);
+  await player.browser.until("[0, 1].includes(caromPlay.state.sight.share)");
+}
+
+/** The differences of all channels between the page's picture and a frame: their mean, and the share above 32. */
+const differences = (png, at, [eye, target]) => value(`(async () => {
+  const {sight} = caromPlay.state, camera = {eye: [${eye}], target: [${target}], up: [0, 0, 1], fov: 45};
+  const bytes = Uint8Array.from(atob("${png}"), (c) => c.charCodeAt(0));
+  const frame = await createImageBitmap(new Blob([bytes])), [width, height] = [${SIZE}];
+  const pixels = (draw) => {
+    const context = Object.assign(document.createElement("canvas"), {width, height}).getContext("2d");
+    draw(context);
+    return context.getImageData(0, 0, width, height).data;
+  };
+  caromPlay.show(${at});
+  const mine = pixels((context) => {
+    sight.draw(${at}, camera, ${JSON.stringify(SIZE)});
+    context.drawImage(sight.gl.canvas, 0, 0);
+  }), theirs = pixels((context) => context.drawImage(frame, 0, 0));
+  let sum = 0, far = 0;
+  mine.forEach((x, i) => {
+    const away = Math.abs(x - theirs[i]);
+    sum += away;
+    far += Number(away > 32);
+  });
+  return [sum / (0.75 * mine.length), far / (0.75 * mine.length)]; })()`);
+
+const CAMERAS = {rolling: [[0.3, -0.4, 0.7], [0.6, 1.3, 0]], low: [[1.6, 0.3, 0.25], [0.6, 1.0, 0.03]],
+  high: [[0.635, 0.2, 0.95], [0.64, 1.27, 0]]};
+for (const [scene, at] of [["eight_ball_break.toml", 1.5], ["snooker_break.toml", 1.5]])
+  test(`its pixels are those of carom render: ${scene}`, withProgram, async (t) => {
+    await player.open();
+    await value(`caromPlay.begin(${JSON.stringify(sceneText(scene))})`);
+    await turned();
+    const file = path.join(folder, scene);
+    writeFileSync(file, sceneText(scene));
+    for (const [name, places] of Object.entries(CAMERAS)) {
+      const png = path.join(folder, `${name}.png`), [eye, target] = places.map(String);
+      native(["render", file, "--at", String(at), "--eye", eye, "--target", target, "--size", SIZE.join("x"),
+        "-o", png]);
+      const [mean, far] = await differences(readFileSync(png).toString("base64"), at, places);
+      t.diagnostic(`${name}: mean ${mean.toFixed(3)} of 255, ${(100 * far).toFixed(3)} % above 32`);
+      assert.ok(mean < 0.3 && far < 0.002, `${name}: ${mean}, ${far}`);
+    }
+  });
