@@ -389,12 +389,13 @@ export const games = {
     expectOf(Scene, "scene", scene);
     return JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle));
   },
-  advise(state, scene, {skill = "professional", seed = 1, best = 3, shots = 400} = {}) {
+  advise(state, scene, {skill = "professional", seed = 1, best = 3, shots = 400, seconds = 1e9} = {}) {
     expectObject("state", state);
     expectOf(Scene, "scene", scene);
     expectText("skill", skill);
     for (const [key, value] of Object.entries({seed, best, shots})) expectWhole(key, value);
-    const options = JSON.stringify({skill, seed, best, shots});
+    expectNumber("seconds", seconds);
+    const options = JSON.stringify({skill, seed, best, shots, seconds});
     return JSON.parse(call("carom_game_advise", JSON.stringify(state), scene.handle, options)).map(
       ({call: {push_out: pushOut, ...announced}, ...advice}) => ({...advice, call: {...announced, pushOut}}));
   },

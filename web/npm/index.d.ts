@@ -88,6 +88,9 @@ export class Scene {
   readonly table: TableInfo;
   /** The table's outlines [m] and how the balls look, for drawing. */
   look(): {shape: object; styles: {color: [number, number, number]; pattern: string; number: number}[]};
+  /** The table's triangles for WebGL: ten parts, one after the other, whose last vertices are in `ends`; ten
+   * numbers for each vertex, relative to `origin` [m]; and an atlas of digits, a byte per pixel. */
+  mesh(): {origin: [number, number]; ends: number[]; vertices: Float32Array; atlas: Uint8Array};
   /** Frees its memory now; otherwise the garbage collector does. */
   free(): void;
 }
@@ -157,6 +160,8 @@ export class Shot {
   /** The record file (docs/reference/record_format.md), as text and parsed. */
   readonly recordJson: string;
   readonly record: object;
+  /** A sentence for each event: "cue meets 1, cut 31 deg, 2.1 m/s". `inches`: speeds in mph. */
+  story(options?: {inches?: boolean}): string[];
   /** Its duration, gravity and tracks alone, in the form of the record: much faster. */
   readonly motion: {duration: number; gravity: number; tracks: object[]};
   /** States of all balls at these times [s]. `numbers` contains nine for each time and ball, ball after ball:
@@ -316,9 +321,12 @@ export const games: {
   };
   /** The best shots of different kind, ball or pocket, the best first; at least one. `skill`: "beginner",
    * "club", "league", "professional" or "machine"; `shots`: fresh shots for each, 0 for none. It takes some
-   * tenths of a second: call it in a Worker. Eight-ball, nine-ball and ten-ball. @throws CaromError */
+   * tenths of a second: call it in a Worker. After 0.6 `seconds` it looks for pots alone. Eight-ball,
+   * nine-ball and ten-ball. @throws CaromError */
   advise(state: GameState, scene: Scene,
-    options?: {skill?: string; seed?: number; best?: number; shots?: number}): Advice[];
+    options?: {skill?: string; seed?: number; best?: number; shots?: number; seconds?: number}): Advice[];
+  /** The strike of a player of this level who intends the scene's cue. @throws CaromError */
+  strike(scene: Scene, options?: {skill?: string; seed?: number}): Strike;
   judge(state: GameState, shot: Shot,
     announced?: {ball?: string; pocket?: string; safety?: boolean; pushOut?: boolean}): Verdict;
 };

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "base/event_sentence.h"
 #include "base/game_state.h"
 #include "base/shown_units.h"
 #include "base/verdict.h"
@@ -17,6 +16,7 @@
 #include "carom/engine/event_details.h"
 #include "carom/engine/plan.h"
 #include "carom/games/measures.h"
+#include "page/event_sentence.h"
 #include "web.h"
 
 namespace carom::web {

@@ -1,13 +1,13 @@
 // Games: the player's rights, the verdict on a shot, and its consequences.
 
+import {sentence} from "../../page/event_words.js";
 import {inHand} from "./place.js";
 import {begin, change, enter, mayLeave} from "./shots.js";
 import {CAROM, startOf, tableOf} from "./tables.js";
+import {named} from "./words.js";
 
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
 const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
-
-export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
  * in the state; `first`: the player who begins. */
@@ -33,10 +33,34 @@ export function legal({carom, game, scene}) {
   }
   const score = now.points.some((x) => x !== 0) ? ` Points: ${now.points.join(" to ")}.` : "";
   const group = now.game === "eight_ball" && now.group[now.turn] !== "open"
-    ? ` Plays ${now.group[now.turn]}.` : "";
+    ? `, playing ${now.group[now.turn]}` : "";
   const few = may.first.length > 0 && may.first.length < 8;
-  const first = few ? ` Hit first: ${may.first.join(", ")}.` : "";
-  return {...may, text: `${sentence(may.text)}.${group}${first}${score}`};
+  const first = now.game === "snooker" ? ` ${ballOn(now)}` : few ? ` Hit first: ${may.first.join(", ")}.` : "";
+  const nominates = now.game === "snooker" && (now.free_ball || now.on === "colour");
+  return {...may, nominates, callable: nominates ? may.first : may.callable,
+    text: `${sentence(may.text)}${group}.${first}${score}`};
+}
+
+const VALUES = {red: 1, yellow: 2, green: 3, brown: 4, blue: 5, pink: 6, black: 7};
+/** Snooker: the ball on, and its value. */
+function ballOn({on, free_ball: free}) {
+  if (on === "colour") return "On: any colour; nominate it.";
+  const what = `${on === "red" ? "a red" : `the ${on}`} (${VALUES[on]})`;
+  return free ? `On: ${what}, or any ball as a free ball; nominate it.` : `On: ${what}.`;
+}
+
+/** Straight pool: where the balls go after the fourteenth. */
+function rackWords({decision, respots}, {outcome}, {corner, length}) {
+  if (decision !== "rack fourteen") return "";
+  const where = ({place: [, y]}) => ["head", "centre", "foot"].find((_, k) =>
+    Math.abs(y - corner[1] - (k + 1) * length / 4) < 0.01);
+  const left = outcome.balls.filter(({id, pocket, offTable}) => id !== "cue" && !pocket && !offTable);
+  const told = [...left.map(({id}) => id), "cue"].map((id) => {
+    const back = respots.find(({ball}) => ball === id), spot = back && where(back);
+    if (!back) return id === "cue" ? "" : ` ${sentence(named(id))} stays where it is.`;
+    return ` ${sentence(named(id))} goes to ${spot ? `the ${spot} spot` : "its place in the rack"}.`;
+  });
+  return `${left.length === 0 ? "All fifteen" : "The fourteen"} balls are racked.${told.join("")}`;
 }
 
 /** Judges the shot with the player's calls. */
@@ -66,6 +90,8 @@ export function nextShot(state, option = 0) {
   const from = {toml: scene.toml, state: game.state, announced: {...announced}, option};
   try {
     advance(state, verdict.next({option}), {state: then, judged: verdict, option, shot, from});
+    const racked = rackWords(verdict.options[option], shot, scene.table);
+    if (racked) state.say(racked);
   } catch (error) {
     state.refuse(error);
   }

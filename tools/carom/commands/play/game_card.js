@@ -1,13 +1,14 @@
 // The game on the page: the player's rights and calls, the verdict, and its options.
 
 import {button, make, optionsOf, select} from "../../page/dom.js";
+import {sentence} from "../../page/event_words.js";
 import {HINT_COLOURS, firstContact, obviousCall} from "./aids.js";
 import {dialog} from "./extras.js";
-import {judge, legal, newGame, nextRack, nextShot, sentence} from "./game.js";
+import {judge, legal, newGame, nextRack, nextShot} from "./game.js";
 import {LEVELS, PLAYED, take} from "./opponent.js";
 import {endWords, withNames} from "./players.js";
 import {GAMES} from "./tables.js";
-import {verdictWords} from "./words.js";
+import {named, verdictWords} from "./words.js";
 
 /** The calls before the shot. */
 function announcements(state) {
@@ -35,12 +36,13 @@ function announcements(state) {
     chosen = false;
     tell();
   });
-  let callable = [];
+  let callable = [], nominates = false;
   // An obvious call is automatic until the player makes a call.
   const obvious = () => {
     const {announced, scene, shot, clock} = state;
     if (chosen || callable.length === 0 || state.level || !scene.cue || clock.now > 0) return;
-    const call = obviousCall(firstContact(shot, scene.cue.ball), scene.table.pockets);
+    const contact = firstContact(shot, scene.cue.ball), call = !nominates
+      ? obviousCall(contact, scene.table.pockets) : contact?.met ? {ball: contact.met.id, pocket: ""} : null;
     const right = call && callable.includes(call.ball) ? call : {ball: "", pocket: ""};
     Object.assign(announced, right);
     ball.value = right.ball;
@@ -48,12 +50,14 @@ function announcements(state) {
   };
   state.on("starts", obvious);
   state.on("announced", () => { chosen = true; });
-  const show = ({callable: now, mayPushOut}) => {
-    const {announced} = state, person = !state.level && state.aiming;
+  const show = ({callable: now, mayPushOut, nominates: colour}) => {
+    const {announced} = state, person = !state.level && state.aiming, {preset} = state.scene.table;
     callable = now;
+    nominates = Boolean(colour);
+    pocket.hidden = safety.parentNode.hidden = nominates;
     callRow.hidden = callable.length === 0 || !person;
     pushRow.hidden = !mayPushOut || !person;
-    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, id])]));
+    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, nominates ? named(id, preset) : id])]));
     if (!callable.includes(announced.ball)) announced.ball = "";
     ball.value = announced.ball;
     tell();
@@ -83,11 +87,12 @@ function verdictParts(state, opens) {
   })];
 }
 
+const YES_NO = {true: "yes", false: "no"};
 /** A choice for each option of a game's rules, kept in `rules`. */
 function ruleChoices(state, game, rules) {
   return state.carom.games.options(game).map(({key, values, what}) => {
     const title = key.replaceAll("_", " ");
-    const named = values.map((value) => [value, `${title}: ${value.replaceAll("_", " ")}`]);
+    const named = values.map((value) => [value, `${title}: ${YES_NO[value] ?? value.replaceAll("_", " ")}`]);
     const box = select(title, named, values[0], (value) => { rules[key] = value; });
     box.title = what;
     return box;
@@ -142,9 +147,11 @@ export function gameDialog(state) {
 function hintList(state) {
   const list = make("ol", {class: "hint-list"});
   state.on("hints", () => list.replaceChildren(...state.hints.map((hint, i) => {
-    const share = (100 * hint.makes[0]).toFixed(0), mark = make("b", {}, String(i + 1));
+    // A safety is not there to win the turn; what counts is that it is fair.
+    const scores = hint.kind !== "safety" && hint.kind !== "push out", [share] = scores ? hint.makes : hint.fouls;
+    const rate = `${(100 * (scores ? share : 1 - share)).toFixed(0)} %${scores ? "" : " fair"}`, mark = make("b", {}, String(i + 1));
     mark.style.setProperty("--hint", HINT_COLOURS[i]);
-    return make("li", {}, button([mark, ` ${hint.words}: ${share} %`], () => take(state, hint)));
+    return make("li", {}, button([mark, ` ${hint.words}: ${rate}`], () => take(state, hint)));
   })));
   state.on("table", () => list.replaceChildren());
   state.on("starts", () => list.replaceChildren());

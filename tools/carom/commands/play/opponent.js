@@ -84,9 +84,12 @@ export async function goOn(state) {
     nextShot(state, option);
 }
 
-/** A game state for advice in practice: the middle of a turn with an open table. */
-const practice = (carom) => ({...carom.games.start("eight_ball"), opening: false,
-  in_hand: "no"});
+/** A game state for advice in practice: the break of a rack, or the middle of a turn with an open table. */
+function practice({carom, scene}) {
+  const [, racked] = /^\[rack\]\s*\ngame = "(\w+)"/m.exec(scene.toml) ?? [];
+  if (PLAYED.includes(racked)) return carom.games.start(racked);
+  return {...carom.games.start("eight_ball"), opening: false, in_hand: "no"};
+}
 
 /** Whether hints are allowed. */
 export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &&
@@ -94,9 +97,10 @@ export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &
 
 /** Shows the three best shots. */
 export async function hint(state) {
-  const {carom, scene, game} = state, busy = {hint: true};
+  const {carom, scene, game, match} = state, busy = {hint: true}, skill = match?.errors || "professional";
   if (!state.aiming || state.busy) return;
-  const advice = await think(state, busy, game?.state ?? practice(carom), {skill: "professional", best: 3});
+  const advice = await think(state, busy, game?.state ?? practice(state),
+    {skill, best: 3, shots: 100, seconds: 1.5});
   if (advice && state.scene === scene) state.hints = advice.map((one) => {
     const changed = scene.with(changesOf(state, one.cue, one.place)), shot = carom.simulate(changed, LIMITS);
     const {x, y} = changed.balls.find(({id}) => id === changed.cue.ball);
@@ -105,7 +109,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
-  if (advice) state.say("The success rates are for a professional.");
+  if (advice) state.say(`The success rates are for a hand with the errors of the level ${skill}.`);
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

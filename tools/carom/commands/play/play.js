@@ -23,7 +23,7 @@ import {strokeCard} from "./stroke.js";
 import {tableCard} from "./table_card.js";
 import {startOf} from "./tables.js";
 import {Thinker} from "./thinker.js";
-import {verdictWords} from "./words.js";
+import {named, verdictWords} from "./words.js";
 
 const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
   "Ctrl+Z undo, 0 the whole table, V behind the cue ball. The wheel or two fingers zoom; Shift and the wheel aim finely.";
@@ -49,7 +49,7 @@ async function load() {
 function conclude(state) {
   judge(state);
   const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
-  const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => b.id);
+  const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => named(b.id, state.scene.table.preset));
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
   if (state.game && !verdict) return;
   const judged = verdict ? ` ${verdictWords(verdict, state.game.state.game)}` : "";

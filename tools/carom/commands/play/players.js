@@ -9,10 +9,10 @@ export function nameOf({match}, player) {
 
 /** The rules' words with the names of the players. */
 export const withNames = (state, text) => !state.match ? text
-  : text.replace(/(^|\W)player ([12]) (\w+)/gi, (_, before, player, does) => {
-    const name = nameOf(state, player - 1), begins = /^$|[.!] $/.test(before);
-    if (name !== "You") return `${before}${name.replace(/,.*/, "")} ${does}`;
-    return `${before}${begins ? "You" : "you"} ${does.replace(/s$/, "")}`;
+  : text.replace(/\b([Pp])layer ([12]) (\w+)/g, (_, first, player, does) => {
+    const name = nameOf(state, player - 1);
+    if (name !== "You") return `${name.replace(/,.*/, "")} ${does}`;
+    return `${first === "P" ? "You" : "you"} ${does.replace(/s$/, "")}`;
   });
 
 /** The end of a game, and of its match. */

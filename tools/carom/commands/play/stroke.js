@@ -25,7 +25,11 @@ export function nudge(state, key, by) {
 function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, digits) {
   const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
   const write = (input) => {
-    if (state.free) change(state, {[`cue.${key}`]: Number(input.value) / unit()[0]});
+    if (!state.free) return;
+    const wanted = Number(input.value) / unit()[0], value = Math.min(Math.max(wanted, limits.min), limits.max);
+    const made = change(state, {[`cue.${key}`]: value});
+    if (made && value !== wanted)
+      state.say(`${label}: ${shown(value * unit()[0]).toFixed(digits)} ${unit()[1]}, the limit.`, true);
   };
   const slide = make("input", {type: "range", ...attributes, "aria-label": `${label}, ${unit()[1]}`,
     oninput: () => write(slide)});
@@ -100,7 +104,7 @@ export function strokeParts(state) {
     if (!cue) return;
     tip.show(cue.side, cue.height);
     const raised = cue.elevation_deg >= 0.5 ? [`cue raised ${cue.elevation_deg.toFixed(0)}°`] : [];
-    const aim = aimWords(firstContact(state.shot, cue.ball)?.met);
+    const aim = aimWords(firstContact(state.shot, cue.ball)?.met, state.scene.table.preset);
     words.textContent = [aim.charAt(0).toUpperCase() + aim.slice(1), tip.words, ...raised].join(" · ");
   });
   return {tip, parts};

@@ -37,17 +37,26 @@ function draw(state) {
   drawHints(state);
 }
 
+/** Why the shot that is aimed is doubtful: "" for a usual one. */
+function warningOf({aiming, scene: {cue}, shot, level}) {
+  if (!aiming || level) return "";
+  const reaches = cue?.in ? [`the cue reaches into ${cue.in.replace(/ c\d+$/, "").replace(/^ball/, "the")}; raise it`] : [];
+  return [...reaches, ...shot.warnings].map((text) => `Warning: ${text}.`).join(" ");
+}
+
 /** The effect of a drag on the table now. */
 function helpOf(state) {
   const {game, mode, scene, clock} = state;
   if (state.busy) return "";
+  const coarse = matchMedia("(pointer: coarse)").matches;
+  if (clock.playing && coarse) return "";
   if (clock.playing) return state.counts ? "Space stops the balls." : "Space stops the balls, Esc goes back.";
   if (!state.aiming) return mode === "play" ? "" : "← → one frame, ↑ ↓ one event, Esc back to aiming.";
   if (!scene.cue) return "Drag a ball to move it.";
   const placed = game ? game.state.in_hand !== "no" : true;
   const ball = mode === "practise" && !game ? "a ball: move it"
     : placed && !state.locked("ball") ? "the cue ball: move it" : "";
-  const fine = matchMedia("(pointer: coarse)").matches ? "a second finger" : "Shift";
+  const fine = coarse ? "a second finger" : "Shift";
   return [`Drag the cloth: aim (${fine}: finely)`, ball, "the cue: pull back and let go"]
     .filter((x) => x).join(" · ") + ".";
 }
@@ -124,7 +133,11 @@ export function tableCard(state) {
     box.replaceChildren(state.view.element, whole);
     lay();
   });
-  const helps = () => { help.textContent = state.shot ? helpOf(state) : ""; };
+  const helps = () => {
+    const warning = state.shot ? warningOf(state) : "";
+    help.textContent = warning || (state.shot ? helpOf(state) : "");
+    help.classList.toggle("warn", warning !== "");
+  };
   const now = () => {
     document.body.classList.toggle("aiming", state.aiming);
     document.body.classList.toggle("thinking", state.busy !== null);

@@ -14,7 +14,8 @@ const WALL = PARTS.indexOf("WALL"), LAMP = 36;  // vertices: the last ones of th
 const PAINTERS = {shadow: ["shadow", "shadow"], beside: ["ball", "beside", "REACH 2.1"],
   ball: ["ball", "ball", "REACH 1.0"], cue: ["ribbon", "cue"], cueShadow: ["cue_shadow", "cue_shadow"],
   lines: ["ribbon", "line", "LINES"]};
-export const PATTERNS = ["solid", "stripe", "dots", "halves"], GHOST = 9;
+export const PATTERNS = ["solid", "stripe", "dots", "halves"];
+export const GHOST = 9;
 
 const PREFIX = ["#version 300 es", "precision highp float;", "precision highp int;", "#define LOCATION(n)",
   `#define MAX_HOLES ${MOST_HOLES}`, `#define MAX_BALLS ${BATCH}`,

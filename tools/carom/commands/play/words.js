@@ -10,7 +10,10 @@ export const UNITS = {
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
 };
 
-const named = (id) => (id === "cue" ? "the cue ball" : /^\d/.test(id) ? `the ${id}` : id);
+const COLOURS = /^(white|yellow|red|green|brown|blue|pink|black)$/;
+/** A ball for people. `preset`: of the table; on one for snooker, numbers are reds. */
+export const named = (id, preset = "") => id === "cue" ? "the cue ball"
+  : /^\d+$/.test(id) ? (preset.startsWith("snooker") ? "a red" : `the ${id}`) : COLOURS.test(id) ? `the ${id}` : id;
 
 /** A number of SI units for people. `kind`: speed or length. */
 export function withUnit(units, kind, x) {
@@ -34,49 +37,18 @@ export function tipWords(side, height) {
 }
 
 /** The hit on the object ball: its fullness and the cut. */
-export function aimWords(met) {
+export function aimWords(met, preset) {
   if (!met) return "no ball";
   const quarters = Math.round(4 * (1 - Math.sin(Math.min(met.cut, Math.PI / 2))));
   const part = ["thin", "quarter ball", "half ball", "three-quarter ball", "full"][quarters];
   const cut = (met.cut * 180 / Math.PI).toFixed(0);
-  return `${named(met.id)} ${part}${cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`}`;
+  return `${named(met.id, preset)} ${part}${cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`}`;
 }
 
 /** The engine's words for a shot, with the names of pockets only. */
 export const adviceWords = (words) =>
   words.replace(/(\w+) into \w+ \(([^)]+)\)/, (_, ball, pocket) => `${named(ball)} into the ${pocket}`)
     .replace(/(\d) degrees/, "$1°");
-
-/** The text of an event in the list. */
-export function eventWords(e, units) {
-  const text = ballWords(e, units);
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-function ballWords(e, units) {
-  const ball = named(e.ball), other = named(e.other);
-  const speed = (x) => (x === null ? "" : withUnit(units, "speed", x));
-  const at = e.diamond === null ? "" : ` at diamond ${e.diamond.toFixed(1)}`;
-  const rail = `the ${e.otherName}`;
-  switch (e.type) {
-    case "cue_strike": return `the cue strikes ${ball}: ${speed(e.speed)}`;
-    case "ball_ball": {
-      const cut = e.cut === null ? "" : `, cut ${(e.cut * 180 / Math.PI).toFixed(0)}°`;
-      return `${ball} hits ${other} at ${speed(e.closing)}${cut}`;
-    }
-    case "ball_cluster": return `${e.balls.map(named).join(", ")} meet at once`;
-    case "ball_cushion": return `${ball} bounces off ${rail}${at}: ${speed(e.speed)}`;
-    case "ball_jaw": return `${ball} bounces off a jaw, ${e.otherName}: ${speed(e.speed)}`;
-    case "ball_pocket": return `${ball} is in the ${e.otherName}`;
-    case "ball_edge": return `${ball} crosses the edge of the ${e.otherName}`;
-    case "ball_cloth": return `${ball} lands on the cloth`;
-    case "ball_out": return `${ball} leaves the table`;
-    case "slide_roll": return `${ball} begins to roll: ${speed(e.speed)}`;
-    case "roll_stop": return `${ball} stops`;
-    case "roll_spin": return `${ball} stops and spins on the spot`;
-    case "spin_stop": return `${ball} stops spinning`;
-    default: return `${ball}: ${e.type.replaceAll("_", " ")}${e.other ? ` ${e.other}` : ""}`;
-  }
-}
 
 /** Events of interest to a player, without changes of motion. */
 export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",

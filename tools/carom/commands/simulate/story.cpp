@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/console.h"
-#include "base/event_sentence.h"
+#include "page/event_sentence.h"
 
 namespace carom::tools {
 namespace {

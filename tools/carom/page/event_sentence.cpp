@@ -1,4 +1,4 @@
-#include "base/event_sentence.h"
+#include "page/event_sentence.h"
 
 #include <fmt/format.h>
 
