@@ -177,6 +177,7 @@ export function gameCard(state, opens) {
   };
   state.on("table", () => {
     options.replaceChildren();
+    card.classList.remove("end");
     tell();
   });
   for (const what of ["lists", "busy", "mode", "label", "hints", "announced"]) state.on(what, tell);

@@ -49,7 +49,9 @@ export function resumeMatch(state) {
       game.shot = carom.simulate(carom.Scene.parse(from.toml), LIMITS);
       game.judged = carom.games.judge(from.state, game.shot, from.announced);
     }
-    Object.assign(state, {match: kept.match, mode: "play", resumes: Boolean(kept.struck)});
+    // Version 0.4 stored no races and no hands.
+    const match = {errors: "", race: 1, racks: [0, 0], first: 0, ...kept.match};
+    Object.assign(state, {match, mode: "play", resumes: Boolean(kept.struck)});
     if (!begin(state, kept.toml, {game, set: kept.set, remember: false})) return false;
     if (!kept.struck) return true;
     state.announced = kept.struck;

@@ -12,6 +12,7 @@ import {strike, takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
 
 const RIM = 0.025;  // [m]
+const USUAL = 5;    // [degrees] every cue is raised this much over a cushion
 
 /** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
 function draw(state) {
@@ -40,7 +41,8 @@ function draw(state) {
 /** Why the shot that is aimed is doubtful: "" for a usual one. */
 function warningOf({aiming, scene: {cue}, shot, level}) {
   if (!aiming || level) return "";
-  const reaches = cue?.in ? [`the cue reaches into ${cue.in.replace(/ c\d+$/, "").replace(/^ball/, "the")}; raise it`] : [];
+  const raise = cue?.in && (cue.clears_deg === null || cue.clears_deg > cue.elevation_deg + USUAL);
+  const reaches = raise ? [`the cue reaches into the ${cue.in.replace(/ c\d+$/, "").replace(/^ball /, "")}; raise it`] : [];
   return [...reaches, ...shot.warnings].map((text) => `Warning: ${text}.`).join(" ");
 }
 
