@@ -16,7 +16,7 @@ after(() => skip.skip ? null : player.end());
 async function turned() {
   await player.browser.until(`!document.querySelector("[aria-label='${VIEW}']").hidden`);
   await player.press(VIEW);
-  await player.browser.until("[0, 1].includes(caromPlay.state.sight.share)");
+  await player.browser.until("caromPlay.state.sight.share === 1");
 }
 
 /** The differences of all channels between the page's picture and a frame: their mean, and the share above 32. */
@@ -60,3 +60,55 @@ for (const [scene, at] of [["eight_ball_break.toml", 1.5], ["snooker_break.toml"
       assert.ok(mean < 0.3 && far < 0.002, `${name}: ${mean}, ${far}`);
     }
   });
+
+test("a drag turns the aim, a pull strikes, V returns, and a lost context is no end", skip, async () => {
+  await player.open();
+  await turned();
+  const [x, y, width, height] = await value("(({left, top, width, height}) => [left, top, width, height])" +
+    "(document.querySelector('.table').getBoundingClientRect())");
+  const aim = () => value("caromPlay.scene().cue.aim_deg"), first = await aim();
+  await player.browser.drag([[x + 0.2 * width, y + 0.3 * height], [x + 0.2 * width + 50, y + 0.3 * height]]);
+  assert.ok(Math.abs(await aim() - first + 3.5) < 0.01, `${await aim() - first}`);
+  const speed = await value("caromPlay.scene().cue.speed"), below = [x + width / 2, y + 0.9 * height];
+  await player.browser.drag([below, [below[0], below[1] + 30]]);
+  assert.ok(await value("caromPlay.scene().cue.speed") > speed);
+  await player.browser.until("!caromPlay.state.aiming");
+  await player.browser.key("Escape");
+  await player.browser.key("v");
+  await player.browser.until("caromPlay.state.sight.share === 0");
+  assert.equal(await value("caromPlay.state.sight.gl.canvas.hidden"), true);
+  await turned();
+  await value("void caromPlay.state.sight.gl.getExtension('WEBGL_lose_context').loseContext()");
+  await player.browser.until("caromPlay.state.sight.gl === null");
+  assert.match(await value("caromPlay.state.said"), /lost the view/);
+  await turned();
+  assert.equal(await value("caromPlay.state.sight.share"), 1);
+});
+
+test("without WebGL2 there is no button", skip, async () => {
+  const source = "HTMLCanvasElement.prototype.getContext = ((whole) => function(kind, ...more) " +
+    "{ return kind === 'webgl2' ? null : whole.call(this, kind, ...more); })(HTMLCanvasElement.prototype.getContext)";
+  const {identifier} = await player.browser.send("Page.addScriptToEvaluateOnNewDocument", {source});
+  await player.open();
+  await new Promise((done) => setTimeout(done, 600));
+  assert.equal(await value(`document.querySelector("[aria-label='${VIEW}']").hidden`), true);
+  await player.browser.send("Page.removeScriptToEvaluateOnNewDocument", {identifier});
+});
+
+test("timings are reported", skip, async (t) => {
+  await player.open();
+  await value(`caromPlay.begin(${JSON.stringify(sceneText("eight_ball_break.toml"))})`);
+  await turned();
+  const [rest, aims] = await value(`(async () => { const {state} = caromPlay, {sight} = state, {gl} = sight;
+    const median = async (act) => { const times = [];
+      for (let i = 0; i < 15; ++i) { const begin = performance.now(); act(i);
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        times.push(performance.now() - begin); await new Promise((done) => setTimeout(done, 1)); }
+      return times.sort((a, b) => a - b)[7].toFixed(1); };
+    const size = [1280, 720], camera = sight.camera(), turned = (i) => ({...camera, fov: camera.fov + 0.01 * i});
+    sight.coarse = false;
+    return [await median(() => sight.draw(0.5, camera, size)),
+      await median((i) => sight.draw(0, turned(i), size, true))]; })()`);
+  t.diagnostic(`1280x720, software: ${await value("caromPlay.state.sight.software")}: ${rest} ms a frame at rest, ` +
+    `${aims} ms with a moving camera`);
+});

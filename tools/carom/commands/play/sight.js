@@ -108,7 +108,7 @@ export class Sight {
     this.table = new TableGl(this.gl, this.state.page.shaders);
     this.gl.canvas.addEventListener("webglcontextlost", () => {
       this.gl.canvas.remove();
-      Object.assign(this, {gl: null, table: null, share: 0, wanted: 0});
+      Object.assign(this, {gl: null, table: null, key: "", share: 0, wanted: 0});
       this.state.say("The browser lost the view behind the cue ball; press its button again.", true);
       this.state.clock.refresh();
       this.state.tell("sight");
@@ -128,8 +128,9 @@ export class Sight {
     const above = topCamera(shape, width, height), behind = cueCamera(this.state.struck(), aim, width > height);
     return this.share < 1 ? between(above, behind, this.share) : behind;
   }
-  /** Draws the table at time t. @returns whether this view is on */
-  draw(t, camera = null, [width, height] = [this.state.view.over.width, this.state.view.over.height]) {
+  /** Draws the table at time t; with a camera, size and coarseness of a test. @returns whether this view is
+   * on */
+  draw(t, camera = null, size = null, coarse = false) {
     const {state, table} = this, {view, shot, scene} = state, {under, over} = view, canvas = this.gl?.canvas;
     const on = camera !== null || this.on && scene.cue !== null;
     if (canvas) canvas.hidden = !on;
@@ -137,7 +138,7 @@ export class Sight {
     under.style.opacity = over.style.opacity = on ? "0" : "";
     if (!on) return false;
     this.furnish();
-    const styleOf = (i) => view.styles[i % view.styles.length];
+    const styleOf = (i) => view.styles[i % view.styles.length], [width, height] = size ?? [over.width, over.height];
     const balls = view.balls(shot.motion, t).map(({i, state: {state: how}, p, R}) => {
       const [w, ...turn] = view.orientation(i, t), {color, pattern, number} = styleOf(i);
       return {at: p, R, turn: [...turn, w], color, pattern: PATTERNS.indexOf(pattern), number, sunk: isGone(how)};
@@ -146,7 +147,7 @@ export class Sight {
     const from = camera ?? this.camera(), key = JSON.stringify([from, width, height]);
     const moves = camera === null && this.software && key !== this.last;
     this.last = key;
-    table.draw(from, {balls, ...aids}, width, height, moves || this.coarse && camera === null);
+    table.draw(from, {balls, ...aids}, width, height, camera === null ? moves || this.coarse : coarse);
     if (moves) {
       this.coarse = true;
       clearTimeout(this.waits);

@@ -5,6 +5,7 @@
 import * as look from "../../../../render/include/carom/render/look.h";
 
 const BATCH = 64, MOST_NEAR = 6, BALL = 4 * (4 + MOST_NEAR), MOST_HOLES = 128;
+const CUSHION = 0.06;  // [m] from the frame to the nose
 const ROOM = Math.sqrt(0.004), ATLAS = [192, 288];
 /** In the order of the mesh's parts. */
 const PARTS = ["CLOTH", "WOOD", "REST", "FLOOR", "WALL", "CLOTH HOLES", "WOOD HOLES", "CHALK", "SHADE",
@@ -254,6 +255,11 @@ export class TableGl {
     }
   }
 
+  besideCushion(at, reach) {
+    const {low, high} = this.shape.inner;
+    return [0, 1].some((k) => at[k] < low[k] + reach || at[k] > high[k] - reach);
+  }
+
   /** Draws balls {at, R, turn, color, pattern, number, sunk}, ghosts of balls, a cue {tip, butt} and lines
    * {from, to, width [px], colour} in m. `quick`: coarsely, for a moving camera without a graphics card. */
   draw(camera, {balls, ghosts = [], cue = null, lines = []}, width, height, quick = false) {
@@ -275,7 +281,8 @@ export class TableGl {
     const away = (ball) => Math.hypot(...add(ball.at, camera.eye, -1));
     const sorted = [...balls].sort((a, b) => away(b) - away(a));
     const ends = cue && {u_from: add(cue.tip, shift, -1), u_to: add(cue.butt, shift, -1), u_opacity: 1};
-    this.paint(sorted, [], "shadow", "beside");
+    this.paint(sorted, [], "shadow");
+    this.paint(sorted.filter(({at, R}) => this.besideCushion(at, 3 * R + CUSHION)), [], "beside");
     if (cue) {
       this.use("cueShadow", ends);
       this.strips4();
