@@ -28,6 +28,9 @@ afterEach(() => skip.skip ? null
 
 const choose = (box, name) => value(`(() => { const s = document.querySelector("${box}");
   s.value = "${name}"; s.onchange(); })()`);
+/** The diameter of the struck ball [px]. */
+const ballSize = () => value("(({view: {projection, dense}}, {radius}) => " +
+  "2 * radius * projection.scale / dense)(caromPlay.state, caromPlay.state.struck())");
 async function sized(width, height) {
   await browser.size(width, height, Math.min(width, height) < 500);
   for (let i = 0; i < 3; ++i) await player.settled();
@@ -80,8 +83,7 @@ test("every screen: nothing is cut off, and fingers find their targets", skip, a
     const box = await value("(({width, height}) => [width, height])" +
       "(document.querySelector('.table').getBoundingClientRect())");
     if (width === 1920) assert.ok(box[0] > 1300, `the table is ${box[0]} px wide`);
-    const ball = await value("2 * caromPlay.state.struck().radius * caromPlay.state.view.projection.scale / " +
-      "caromPlay.state.view.dense"), pull = await value("(({width, height}) => 0.9 * Math.max(width, height))" +
+    const ball = await ballSize(), pull = await value("(({width, height}) => 0.9 * Math.max(width, height))" +
       "(document.querySelector('.pull').getBoundingClientRect())");
     if (width === 390) assert.ok(ball >= 14, `a ball has ${ball} px`);
     if (width === 820) assert.ok(box[1] > 1000, `the table is ${box[1]} px high`);
@@ -130,9 +132,7 @@ test("the strip aims by 0.02 degrees a pixel, and a snooker ball has 10 pixels",
   assert.ok(Math.abs(await aim() - first + 1) < 1e-6, `${await aim() - first}`);
   await value(`caromPlay.newGame("snooker")`);
   await player.settled();
-  const {radius, scale, dense} = await value("(({struck, view: {projection: {scale}, dense}}) => " +
-    "({radius: struck.call(caromPlay.state).radius, scale, dense}))(caromPlay.state)");
-  assert.ok(2 * radius * scale / dense >= 10, `${2 * radius * scale / dense}`);
+  assert.ok(await ballSize() >= 10, `${await ballSize()}`);
   await sized(1280, 800);
 });
 
@@ -141,10 +141,10 @@ test("snooker: the ball on, a nominated colour, the value of a foul", skip, asyn
   await value(`caromPlay.newGame("snooker", {players: ["", ""], hints: false, rules: {}})`);
   const text = () => value("document.querySelector('.game-text').textContent");
   assert.match(await text(), /On: a red \(1\)/);
-  await value("(() => { const {state} = caromPlay; Object.assign(state.game.state, {on: 'colour', opening: false}); " +
-    "state.tell('lists'); })()");
+  await value("void Object.assign(caromPlay.state.game.state, {on: 'colour', opening: false})");
+  await value("caromPlay.state.tell('lists')");
   assert.match(await text(), /On: any colour; nominate it/);
-  assert.deepEqual(await value("[...document.querySelector('[aria-label=\"Called ball\"]').options].slice(1)" +
+  assert.deepEqual(await value("[...document.querySelector('[aria-label=\"Called ball\"]')].slice(1)" +
     ".map((o) => o.textContent).sort()"),
   ["black", "blue", "brown", "green", "pink", "yellow"].map((x) => `the ${x}`));
   await choose("[aria-label='Called ball']", "pink");
@@ -155,7 +155,7 @@ test("snooker: the ball on, a nominated colour, the value of a foul", skip, asyn
   assert.match(await value("document.querySelector('.verdict').textContent"), /6 points to the other player/);
 });
 
-test("practice warns while aiming, hides events with the paths, and clamps what is typed", skip, async () => {
+test("practice warns while aiming, hides events with the paths, and clamps typed values", skip, async () => {
   await player.open();
   const help = () => value("document.querySelector('.help').textContent");
   await value(`caromPlay.begin(${JSON.stringify(sceneText("draw.toml"))})`);
@@ -178,7 +178,8 @@ test("a rack is known to be broken, and a safety has no share of wins", skip, as
   await value(`(() => { const {state} = caromPlay, [hint] = state.hints;
     state.hints = [{...hint, kind: "safety", words: "safety: soft", makes: [0, 0, 0], fouls: [0.1, 0, 0]}];
     state.tell("hints"); })()`);
-  assert.match(await value("document.querySelector('.hint-list button').textContent"), /safety: soft: 90 % fair/);
+  assert.match(await value("document.querySelector('.hint-list button').textContent"),
+    /safety: soft: 90 % fair/);
 });
 
 test("zoom, fine aim, and the cue pulled back", skip, async () => {

@@ -19,7 +19,7 @@ async function turned() {
   await player.browser.until("caromPlay.state.sight.share === 1");
 }
 
-/** The differences of all channels between the page's picture and a frame: their mean, and the share above 32. */
+/** The differences of all channels between the page's picture and a frame: the mean, the share above 32. */
 const differences = (png, at, [eye, target]) => value(`(async () => {
   const {sight} = caromPlay.state, camera = {eye: [${eye}], target: [${target}], up: [0, 0, 1], fov: 45};
   const bytes = Uint8Array.from(atob("${png}"), (c) => c.charCodeAt(0));
@@ -86,8 +86,10 @@ test("a drag turns the aim, a pull strikes, V returns, and a lost context is no 
 });
 
 test("without WebGL2 there is no button", skip, async () => {
-  const source = "HTMLCanvasElement.prototype.getContext = ((whole) => function(kind, ...more) " +
-    "{ return kind === 'webgl2' ? null : whole.call(this, kind, ...more); })(HTMLCanvasElement.prototype.getContext)";
+  const source = `(() => { const {prototype} = HTMLCanvasElement, whole = prototype.getContext;
+    prototype.getContext = function(kind, ...more) {
+      return kind === "webgl2" ? null : whole.call(this, kind, ...more);
+    }; })()`;
   const {identifier} = await player.browser.send("Page.addScriptToEvaluateOnNewDocument", {source});
   await player.open();
   await new Promise((done) => setTimeout(done, 600));
@@ -105,10 +107,11 @@ test("timings are reported", skip, async (t) => {
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
         times.push(performance.now() - begin); await new Promise((done) => setTimeout(done, 1)); }
       return times.sort((a, b) => a - b)[7].toFixed(1); };
-    const size = [1280, 720], camera = sight.camera(), turned = (i) => ({...camera, fov: camera.fov + 0.01 * i});
+    const size = [1280, 720], camera = sight.camera(), turned = (i) => ({...camera,
+      fov: camera.fov + 0.01 * i});
     sight.coarse = false;
     return [await median(() => sight.draw(0.5, camera, size)),
       await median((i) => sight.draw(0, turned(i), size, true))]; })()`);
-  t.diagnostic(`1280x720, software: ${await value("caromPlay.state.sight.software")}: ${rest} ms a frame at rest, ` +
-    `${aims} ms with a moving camera`);
+  const software = await value("caromPlay.state.sight.software");
+  t.diagnostic(`1280x720, software: ${software}: ${rest} ms at rest, ${aims} ms with a moving camera`);
 });

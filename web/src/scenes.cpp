@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
@@ -14,9 +13,8 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/strike.h"
+#include "carom/render/table_bytes.h"
 #include "carom/render/table_mesh.h"
-#include "draw/table_parts.h"
-#include "font/glyphs.h"
 #include "page/ball_styles.h"
 #include "page/table_shape.h"
 #include "web.h"
@@ -140,21 +138,6 @@ Json look(const Scene& scene) {
             {"styles", tools::ball_styles(ids_of(scene.ball), scene.table.preset)}};
 }
 
-/// Numbers as bytes, and after them the atlas of digits.
-std::string mesh_bytes(const render::TableMesh& mesh) {
-    const render::TableParts parts = render::sort_parts(mesh, {});
-    std::vector<float> numbers;
-    const auto add = [&numbers](double x) { numbers.push_back(static_cast<float>(x)); };
-    for (const double x : {mesh.origin.x(), mesh.origin.y()}) add(x);
-    for (const std::size_t end : parts.ends) add(static_cast<double>(end));
-    static_assert(sizeof(render::PartVertex) == 10 * sizeof(float));
-    const std::vector<std::uint8_t>& atlas = render::glyph_atlas();
-    const auto* const vertices = reinterpret_cast<const char*>(parts.vertices.data());
-    std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
-    bytes.append(vertices, parts.vertices.size() * sizeof(render::PartVertex));
-    return bytes.append(atlas.begin(), atlas.end());
-}
-
 }  // namespace
 
 CAROM_WEB int carom_scene_parse(const char* text, std::size_t size, const char* name, std::size_t name_size) {
@@ -184,10 +167,9 @@ CAROM_WEB int carom_scene_text(const WebScene* scene) {
 CAROM_WEB int carom_scene_describe(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(described(scene->scene))); });
 }
-/// The table's triangles for WebGL: floats, with the mesh's origin, the ends of its ten parts and ten numbers
-/// for each vertex; then the bytes of the atlas of digits.
+/// As table_bytes.h describes.
 CAROM_WEB int carom_scene_mesh(const WebScene* scene) {
-    return guarded([&] { give(nullptr, mesh_bytes(mesh_of(scene->scene))); });
+    return guarded([&] { give(nullptr, render::table_bytes(mesh_of(scene->scene))); });
 }
 CAROM_WEB int carom_scene_look(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(look(scene->scene))); });

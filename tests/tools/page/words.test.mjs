@@ -16,7 +16,8 @@ const KINDS = [...readFileSync(HEADER, "utf8")
 test("words and units", () => {
   assert.equal(sentence("cue meets 1, cut 31 deg, 2.1 m/s"), "Cue meets 1, cut 31°, 2.1 m/s");
   assert.equal(withUnit("inch", "length", 0.0254), "1.0 in");
-  assert.deepEqual(["cue", "7", "black", "Z"].map((id) => named(id)), ["the cue ball", "the 7", "the black", "Z"]);
+  assert.deepEqual(["cue", "7", "black", "Z"].map((id) => named(id)), ["the cue ball", "the 7", "the black",
+    "Z"]);
   assert.equal(named("12", "snooker_full"), "a red");
 });
 

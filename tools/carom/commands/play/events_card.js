@@ -12,7 +12,8 @@ export function eventsCard(state) {
   const mark = () => {
     const busy = clock.playing && performance.now() - clock.drawn > BUSY;
     if (busy || state.shot !== list.shot) return;
-    const at = clock.now > 0 ? eventBefore(shown, clock.now) : -1, all = state.mode === "practise" && state.paths !== "off";
+    const at = clock.now > 0 ? eventBefore(shown, clock.now) : -1,
+      all = state.mode === "practise" && state.paths !== "off";
     if (at === list.marked && list.all === all && !list.fresh) return;
     const open = all ? shown.length : at + 1;
     head.textContent = `Events${open > 0 ? ` (${open})` : ""}`;

@@ -35,7 +35,8 @@ export function legal({carom, game, scene}) {
   const group = now.game === "eight_ball" && now.group[now.turn] !== "open"
     ? `, playing ${now.group[now.turn]}` : "";
   const few = may.first.length > 0 && may.first.length < 8;
-  const first = now.game === "snooker" ? ` ${ballOn(now)}` : few ? ` Hit first: ${may.first.join(", ")}.` : "";
+  const first = now.game === "snooker" ? ` ${ballOn(now)}` : few ? ` Hit first: ${may.first.join(", ")}.`
+    : "";
   const nominates = now.game === "snooker" && (now.free_ball || now.on === "colour");
   return {...may, nominates, callable: nominates ? may.first : may.callable,
     text: `${sentence(may.text)}${group}.${first}${score}`};
@@ -45,8 +46,8 @@ const VALUES = {red: 1, yellow: 2, green: 3, brown: 4, blue: 5, pink: 6, black: 
 /** Snooker: the ball on, and its value. */
 function ballOn({on, free_ball: free}) {
   if (on === "colour") return "On: any colour; nominate it.";
-  const what = `${on === "red" ? "a red" : `the ${on}`} (${VALUES[on]})`;
-  return free ? `On: ${what}, or any ball as a free ball; nominate it.` : `On: ${what}.`;
+  const due = `${on === "red" ? "a red" : `the ${on}`} (${VALUES[on]})`;
+  return free ? `On: ${due}, or any ball as a free ball; nominate it.` : `On: ${due}.`;
 }
 
 /** Straight pool: where the balls go after the fourteenth. */
@@ -117,7 +118,8 @@ function advance(state, after, game) {
 /** Another rack of the match, or after its last one another match; the other player breaks. */
 export function nextRack(state) {
   const {match, game, verdict, inMatch} = state, {winner} = verdict.options[0].state;
-  const racks = match.racks.map((won, k) => inMatch ? won + Number(k === winner) : 0), first = 1 - match.first;
+  const racks = match.racks.map((won, k) => inMatch ? won + Number(k === winner) : 0),
+    first = 1 - match.first;
   newGame(state, game.state.game, match.rules, {...match, racks, first}, first);
 }
 

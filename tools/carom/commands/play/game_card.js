@@ -57,7 +57,8 @@ function announcements(state) {
     pocket.hidden = safety.parentNode.hidden = nominates;
     callRow.hidden = callable.length === 0 || !person;
     pushRow.hidden = !mayPushOut || !person;
-    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, nominates ? named(id, preset) : id])]));
+    ball.replaceChildren(...optionsOf([["", "ball …"], ...callable.map((id) => [id, nominates ? named(id,
+      preset) : id])]));
     if (!callable.includes(announced.ball)) announced.ball = "";
     ball.value = announced.ball;
     tell();
@@ -73,13 +74,16 @@ function verdictParts(state, opens) {
   const {chooser, options} = verdict, several = options.length > 1;
   const who = chooser >= 0 ? withNames(state, `Player ${chooser + 1} chooses:`) : "";
   if (state.over) {
-    const next = !match ? [] : [button(state.inMatch ? "Next rack" : "Rematch", () => nextRack(state), {class: "shoot"}),
+    const next = !match ? [] : [button(state.inMatch ? "Next rack" : "Rematch", () => nextRack(state),
+      {class: "shoot"}),
       button("New game …", opens)];
-    return [make("p", {class: "over"}, endWords(state)), make("p", {}, verdictWords(verdict, state.game.state.game)),
+    return [make("p", {class: "over"}, endWords(state)), make("p", {}, verdictWords(verdict,
+      state.game.state.game)),
       make("div", {class: "bar"}, ...next)];
   }
   const mine = (mode === "practise" || several) && !match?.players[chooser];
-  return [make("p", {}, verdictWords(verdict, state.game.state.game), " ", who), ...options.map((option, i) => {
+  return [make("p", {}, verdictWords(verdict, state.game.state.game), " ", who), ...options.map((option,
+    i) => {
     const then = withNames(state, sentence(option.text));
     const label = several ? `${sentence(option.decision)}: ${then}` : then;
     if (!mine) return make("p", {class: "over"}, `${label}.`);
@@ -107,9 +111,11 @@ export function gameDialog(state) {
   const players = [["First player", ""], ["Second player", "club"]].map(([name, level]) =>
     select(name, levels, level, () => follow()));
   const hints = make("input", {type: "checkbox", checked: ""});
-  const hand = select("Your hand", [["", "exact"], ...LEVELS.map((level) => [level, `errs: ${level}`])], "club",
+  const hand = select("Your hand", [["", "exact"], ...LEVELS.map((level) => [level, `errs: ${level}`])],
+    "club",
     () => {});
-  const race = select("Race to", [1, 2, 3, 5, 7, 9].map((n) => [String(n), n === 1 ? "1 rack" : `${n} racks`]),
+  const race = select("Race to", [1, 2, 3, 5, 7, 9].map((n) => [String(n),
+    n === 1 ? "1 rack" : `${n} racks`]),
     "1", () => {});
   // A person's hand errs as much as carom's.
   const follow = () => { hand.value = players.map(({value}) => value).find((level) => level) ?? ""; };
@@ -135,7 +141,8 @@ export function gameDialog(state) {
   };
   const labelled = (text, input) => make("label", {class: "field"}, make("span", {}, text), input);
   const element = dialog("New game", [labelled("Game", game), row, note, labelled("First", players[0]),
-    labelled("Second", players[1]), labelled("Your hand", hand), labelled("Race to", race), make("label", {}, hints, " allow hints")],
+    labelled("Second", players[1]), labelled("Your hand", hand), labelled("Race to", race), make("label",
+      {}, hints, " allow hints")],
   button("Start", start, {class: "shoot"}));
   return () => {
     choose(game.value);
@@ -147,9 +154,11 @@ export function gameDialog(state) {
 function hintList(state) {
   const list = make("ol", {class: "hint-list"});
   state.on("hints", () => list.replaceChildren(...state.hints.map((hint, i) => {
-    // A safety is not there to win the turn; what counts is that it is fair.
-    const scores = hint.kind !== "safety" && hint.kind !== "push out", [share] = scores ? hint.makes : hint.fouls;
-    const rate = `${(100 * (scores ? share : 1 - share)).toFixed(0)} %${scores ? "" : " fair"}`, mark = make("b", {}, String(i + 1));
+    // A safety does not aim to win the turn, only to be fair.
+    const scores = hint.kind !== "safety" && hint.kind !== "push out",
+      [share] = scores ? hint.makes : hint.fouls;
+    const rate = `${(100 * (scores ? share : 1 - share)).toFixed(0)} %${scores ? "" : " fair"}`,
+      mark = make("b", {}, String(i + 1));
     mark.style.setProperty("--hint", HINT_COLOURS[i]);
     return make("li", {}, button([mark, ` ${hint.words}: ${rate}`], () => take(state, hint)));
   })));

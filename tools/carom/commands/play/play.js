@@ -26,7 +26,8 @@ import {Thinker} from "./thinker.js";
 import {named, verdictWords} from "./words.js";
 
 const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
-  "Ctrl+Z undo, 0 the whole table, V behind the cue ball. The wheel or two fingers zoom; Shift and the wheel aim finely.";
+  "Ctrl+Z undo, 0 the whole table, V behind the cue ball. The wheel or two fingers " +
+  "zoom; Shift and the wheel aim finely.";
 /** The original page, to send it with another scene. */
 const WHOLE = location.protocol === "file:" ? document.documentElement.outerHTML : "";
 
@@ -80,7 +81,7 @@ function modes(state) {
     box.setAttribute("aria-pressed", String(names[k][0] === state.mode));
     box.disabled = state.fixed || state.inMatch;
   });
-  for (const what of ["mode", "table", "ended"]) state.on(what, show);
+  for (const event of ["mode", "table", "ended"]) state.on(event, show);
   show();
   return make("div", {class: "modes", role: "group", "aria-label": "Mode"}, ...boxes);
 }
@@ -101,11 +102,13 @@ function topBar(state, sound, opens) {
 
 /** Makes the parts of the page. @returns objects for its tests */
 function build(state) {
-  const opens = gameDialog(state), sound = followSounds(state), table = tableCard(state), shared = shareCard(state, WHOLE);
+  const opens = gameDialog(state), sound = followSounds(state), table = tableCard(state),
+    shared = shareCard(state, WHOLE);
   const made = ["Made by ", make("code", {}, state.page.command), `, carom ${carom.version()}`];
   const side = make("div", {class: "side"}, strokeCard(state), eventsCard(state), setupCard(state),
     shared.card, make("p", {class: "keys"}, KEYS), make("footer", {}, ...made));
-  document.body.prepend(make("main", {class: "play"}, topBar(state, sound, opens), scoreBar(state), ...table.parts,
+  document.body.prepend(make("main", {class: "play"}, topBar(state, sound, opens), scoreBar(state),
+    ...table.parts,
     make("div", {class: "right"}, gameCard(state, opens), side)));
   followKeys(state, table.tip);
   state.on("table", () => newTable(state));

@@ -20,7 +20,8 @@ export function endWords(state) {
   const {match, verdict: {options: [{state: {winner}}]}} = state;
   if (winner < 0) return "Nobody wins.";
   const name = match ? nameOf(state, winner).replace(/,.*/, "") : `Player ${winner + 1}`;
-  const racks = match?.racks.map((won, k) => won + Number(k === winner)).join(" to ");
-  const what = !match || match.race === 1 ? "" : state.inMatch ? ` the rack: ${racks}` : ` the match, ${racks}`;
-  return `${name} ${name === "You" ? "win" : "wins"}${what}.`;
+  const racks = match?.racks.map((n, k) => n + Number(k === winner)).join(" to ");
+  const won = !match || match.race === 1 ? "" : state.inMatch ? ` the rack: ${racks}`
+    : ` the match, ${racks}`;
+  return `${name} ${name === "You" ? "win" : "wins"}${won}.`;
 }

@@ -62,7 +62,8 @@ function followSight(state) {
   const by = (held.fine ? FINE : 1) * SIGHT_TURN * (x - held.x) / dense;
   const pull = held.pulled + PULL * (y - held.y) / (200 * dense);
   const made = held.cue ? setSpeed(state, speedOf(pull), how)
-    : !state.locked("cue.aim_deg") && change(state, {"cue.aim_deg": Math.round(1000 * wrapped(cue.aim_deg - by)) / 1000}, how);
+    : !state.locked("cue.aim_deg") && change(state,
+      {"cue.aim_deg": Math.round(1000 * wrapped(cue.aim_deg - by)) / 1000}, how);
   if (!held.cue) held.x = x;
   held.kept ||= made;
 }

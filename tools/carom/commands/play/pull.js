@@ -28,7 +28,7 @@ export function pullStrip(state) {
   let hold = null;
   const follow = (event) => {
     const box = element.getBoundingClientRect();
-    // On a phone that lies, the strip stands.
+    // In landscape on a phone, the strip is upright.
     const [at, size] = box.height > box.width ? [event.clientY - box.top, box.height]
       : [event.clientX - box.left, box.width];
     const way = PULL * (at - 0.06 * size) / (0.9 * size);

@@ -41,7 +41,8 @@ function use(state, candidate, fresh) {
   }
   // A game still needs the shot that it judged.
   if (state.shot && state.game?.shot !== state.shot) state.shot.free();
-  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: [], fired: false});
+  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: [],
+    fired: false});
   state.clock.now = 0;
   if (fresh) state.tell("table");
   state.clock.show(0);

@@ -7,7 +7,8 @@ import {HINT_COLOURS, firstContact, pulledBack} from "./aids.js";
 import {between, cueCamera, pixelOf, topCamera} from "./cameras.js";
 import {GHOST, PATTERNS, TableGl, add} from "./table_gl.js";
 
-const FLIGHT = 700, SETTLED = 120;  // [ms] of the camera; after its last move, until the picture is drawn finely
+const FLIGHT = 700;   // [ms] of the camera
+const SETTLED = 120;  // [ms] after its last move, until the picture is drawn finely
 const CLOTH = 0.002, CUE = 1.47;    // [m] height of lines; length
 const CURVED = 8;                   // straight pieces of a curved path
 const PREFERENCES = {alpha: false, antialias: false, depth: false, powerPreference: "high-performance"};
@@ -48,7 +49,8 @@ function aidsOf(state, styleOf) {
     width: 1.6 * dense, colour: [...colour, alpha]});
   const ghost = (at, R, color) => ghosts.push({at: [...at.slice(0, 2), R], R, turn: [0, 0, 0, 1], color,
     pattern: GHOST, number: 0, sunk: true});
-  const contact = state.level ? null : firstContact(shot, cue.ball), own = (a, b, i) => line(a, b, styleOf(i).color);
+  const contact = state.level ? null : firstContact(shot, cue.ball), own = (a, b, i) => line(a, b,
+    styleOf(i).color);
   let lines = [];
   if (mode === "play" && contact) {
     lines = pathsOf(record, contact.time, struck, own);
@@ -80,7 +82,7 @@ export class Sight {
   constructor(state) { Object.assign(this, {state, gl: null, table: null, share: 0, wanted: 0, last: ""}); }
   get on() { return this.share > 0; }
 
-  /** @returns whether the browser has WebGL2; keeps the context, because making one takes long */
+  /** @returns whether the browser has WebGL2; keeps the context, because making one is slow */
   possible() {
     this.gl ??= context();
     return this.gl !== null;
@@ -114,9 +116,10 @@ export class Sight {
       this.state.tell("sight");
     });
   }
-  /** Fits to the scene's table; this canvas lies between those of the view from above. */
+  /** Fits to the scene's table; this canvas lies between the two of the view from above. */
   furnish() {
-    const {state: {view, scene}, table} = this, {shape} = view, key = JSON.stringify([shape.cushion, shape.felt]);
+    const {state: {view, scene}, table} = this, {shape} = view, key = JSON.stringify([shape.cushion,
+      shape.felt]);
     if (!table) return;
     if (view.over.previousSibling !== this.gl.canvas) view.over.before(this.gl.canvas);
     if (this.key !== key) table.furnish(scene.mesh(), shape);
@@ -124,8 +127,10 @@ export class Sight {
   }
 
   camera() {
-    const {state: {scene, view: {over: {width, height}, shape}}} = this, aim = scene.cue.aim_deg * Math.PI / 180;
-    const above = topCamera(shape, width, height), behind = cueCamera(this.state.struck(), aim, width > height);
+    const {state: {scene, view: {over: {width, height}, shape}}} = this,
+      aim = scene.cue.aim_deg * Math.PI / 180;
+    const above = topCamera(shape, width, height), behind = cueCamera(this.state.struck(), aim,
+      width > height);
     return this.share < 1 ? between(above, behind, this.share) : behind;
   }
   /** Draws the table at time t; with a camera, size and coarseness of a test. @returns whether this view is
@@ -138,10 +143,12 @@ export class Sight {
     under.style.opacity = over.style.opacity = on ? "0" : "";
     if (!on) return false;
     this.furnish();
-    const styleOf = (i) => view.styles[i % view.styles.length], [width, height] = size ?? [over.width, over.height];
+    const styleOf = (i) => view.styles[i % view.styles.length], [width, height] = size ?? [over.width,
+      over.height];
     const balls = view.balls(shot.motion, t).map(({i, state: {state: how}, p, R}) => {
       const [w, ...turn] = view.orientation(i, t), {color, pattern, number} = styleOf(i);
-      return {at: p, R, turn: [...turn, w], color, pattern: PATTERNS.indexOf(pattern), number, sunk: isGone(how)};
+      return {at: p, R, turn: [...turn, w], color, pattern: PATTERNS.indexOf(pattern), number,
+        sunk: isGone(how)};
     });
     const aids = state.aiming && camera === null ? aidsOf(state, styleOf) : {};
     const from = camera ?? this.camera(), key = JSON.stringify([from, width, height]);
@@ -179,7 +186,7 @@ export function sightButton(state) {
     "aria-label": "View behind the cue ball", title: "View behind the cue ball (V)"});
   const show = () => element.setAttribute("aria-pressed", String(sight.wanted > 0));
   state.on("sight", show);
-  for (const what of ["table", "view"]) state.on(what, () => { if (sight.on) sight.furnish(); });
+  for (const change of ["table", "view"]) state.on(change, () => { if (sight.on) sight.furnish(); });
   setTimeout(() => { element.hidden = !sight.possible(); }, 300);
   state.switchSight = () => { if (!element.hidden) press(); };
   return element;

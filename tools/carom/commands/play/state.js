@@ -55,13 +55,15 @@ export class State {
   /** Whether a person may aim now. */
   get free() { return this.aiming && (this.busy === null || this.busy.hint) && !this.level; }
   /** Whether strokes count: in a played game, nothing can be undone. */
-  get counts() { return !this.replayed && this.game !== null && (this.mode === "play" || this.match !== null); }
+  get counts() { return !this.replayed && this.game !== null && (this.mode === "play"
+    || this.match !== null); }
   /** Whether this shot has ended the game. */
   get over() { return !this.aiming && Boolean(this.verdict?.options[0].state.over); }
   /** Whether a match is not decided yet. */
   get inMatch() {
     const {match, game, verdict} = this, winner = this.over ? verdict.options[0].state.winner : -1;
-    return match !== null && game !== null && !(this.over && (match.racks?.[winner] ?? 0) + 1 >= (match.race ?? 1));
+    return match !== null && game !== null && !(this.over && (match.racks?.[winner] ?? 0) +
+      1 >= (match.race ?? 1));
   }
   /** The level of the player whose turn it is, or "" for a person. */
   get level() {

@@ -26,7 +26,8 @@ function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, dig
   const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
   const write = (input) => {
     if (!state.free) return;
-    const wanted = Number(input.value) / unit()[0], value = Math.min(Math.max(wanted, limits.min), limits.max);
+    const wanted = Number(input.value) / unit()[0], value = Math.min(Math.max(wanted, limits.min),
+      limits.max);
     const made = change(state, {[`cue.${key}`]: value});
     if (made && value !== wanted)
       state.say(`${label}: ${shown(value * unit()[0]).toFixed(digits)} ${unit()[1]}, the limit.`, true);
@@ -97,7 +98,8 @@ export function strokeParts(state) {
     if (state.free && !state.locked("cue.offset"))
       change(state, {"cue.offset.side": side, "cue.offset.height": height});
   });
-  const words = make("p", {class: "stroke-words"}), parts = [tip.element, pullStrip(state), fineStrip(state, words)];
+  const words = make("p", {class: "stroke-words"}), parts = [tip.element, pullStrip(state), fineStrip(state,
+    words)];
   state.on("stroke", () => {
     const {cue} = state.scene;
     parts.forEach((part) => { part.hidden = cue === null; });

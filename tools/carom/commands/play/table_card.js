@@ -11,7 +11,6 @@ import {followPointer, lookAtAll} from "./pointer.js";
 import {strike, takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
 
-const RIM = 0.025;  // [m]
 const USUAL = 5;    // [degrees] every cue is raised this much over a cushion
 
 /** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
@@ -42,7 +41,8 @@ function draw(state) {
 function warningOf({aiming, scene: {cue}, shot, level}) {
   if (!aiming || level) return "";
   const raise = cue?.in && (cue.clears_deg === null || cue.clears_deg > cue.elevation_deg + USUAL);
-  const reaches = raise ? [`the cue reaches into the ${cue.in.replace(/ c\d+$/, "").replace(/^ball /, "")}; raise it`] : [];
+  const reaches = raise
+    ? [`the cue reaches into the ${cue.in.replace(/ c\d+$/, "").replace(/^ball /, "")}; raise it`] : [];
   return [...reaches, ...shot.warnings].map((text) => `Warning: ${text}.`).join(" ");
 }
 
@@ -66,7 +66,8 @@ function helpOf(state) {
 /** The controls during playback. */
 function watchBar(state) {
   const {clock} = state, bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
-  const back = button("Back to aiming", () => state.replayed ? endReplay(state) : clock.go(0)), next = button("Next shot", () => nextShot(state));
+  const back = button("Back to aiming", () => state.replayed ? endReplay(state) : clock.go(0)),
+    next = button("Next shot", () => nextShot(state));
   bar.element.append(back, next, bar.speeds);
   const show = () => {
     bar.show();
@@ -82,7 +83,7 @@ function watchBar(state) {
 
 /** The controls while aiming: tip, power, and buttons. @returns {element, tip} */
 function aimBar(state) {
-  const {tip, parts} = strokeParts(state), {clock} = state;
+  const {tip, parts} = strokeParts(state);
   const shoot = button([icon(ICONS.play), "Shoot"], () => strike(state),
     {class: "shoot", title: "Shoot (space)"});
   const stop = button("Stop", () => stopThinking(state), {class: "shoot"});
@@ -104,7 +105,8 @@ function aimBar(state) {
     undo.disabled = state.past.length === 0;
   };
   for (const what of ["stroke", "mode", "busy", "label"]) state.on(what, show);
-  const element = make("div", {class: "hands"}, ...parts, make("div", {class: "tools"}, lets, asks, again, undo),
+  const element = make("div", {class: "hands"}, ...parts, make("div", {class: "tools"}, lets, asks, again,
+    undo),
     make("div", {class: "doing"}, shoot, stop));
   return {element, tip};
 }
@@ -119,7 +121,8 @@ export function tableCard(state) {
     says.textContent = text;
     says.classList.toggle("error", bad);
   });
-  const whole = button("Whole table", () => lookAtAll(state), {class: "whole", title: "Whole table (0)", hidden: ""});
+  const whole = button("Whole table", () => lookAtAll(state), {class: "whole", title: "Whole table (0)",
+    hidden: ""});
   const lay = () => {
     if (!state.view) return;
     const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
@@ -127,8 +130,9 @@ export function tableCard(state) {
   };
   for (const what of ["table", "view"]) state.on(what, () => {
     const {shape, styles} = state.scene.look(), {bounds: {low, high}} = shape;
-    // Outside the diamonds, the frame would only make a phone's balls smaller.
-    if (shape.wood.length > 0) [0, 1].forEach((k) => { low[k] += RIM; high[k] -= RIM; });
+    // The frame outside the diamonds would only make a phone's balls smaller.
+    const rim = shape.wood.length === 0 ? 0 : shape.inlay.length > 0 ? 0.025 : 0.08;
+    [0, 1].forEach((k) => { low[k] += rim; high[k] -= rim; });
     state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);

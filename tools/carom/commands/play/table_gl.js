@@ -132,7 +132,8 @@ export class TableGl {
     const picture = vertex === "table" ? "" : sources["picture.glsl"];
     for (const [stage, name] of [["VERTEX", `${vertex}.vert`], ["FRAGMENT", `${fragment}.frag`]]) {
       const shader = gl.createShader(gl[`${stage}_SHADER`]);
-      gl.shaderSource(shader, [PREFIX, `#define ${stage}`, defines + LOOK, sources["common.glsl"], picture, balls,
+      gl.shaderSource(shader, [PREFIX, `#define ${stage}`, defines + LOOK, sources["common.glsl"], picture,
+        balls,
         sources[name]].join("\n"));
       gl.compileShader(shader);
       gl.attachShader(program, shader);
@@ -291,7 +292,8 @@ export class TableGl {
       gl.bindVertexArray(this.strips);
       gl.bindBuffer(gl.ARRAY_BUFFER, this.lines);
       gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(lines.flatMap(({from, to, width: wide, colour}) =>
-        [...add(from, shift, -1), ...add(to, shift, -1), wide / (quick ? 4 : 2), ...colour])), gl.STREAM_DRAW);
+        [...add(from, shift, -1), ...add(to, shift, -1), wide / (quick ? 4 : 2), ...colour])),
+          gl.STREAM_DRAW);
       this.use("lines");
       this.strips4(lines.length);
       gl.bindVertexArray(this.nothing);

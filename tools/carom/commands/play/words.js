@@ -13,7 +13,8 @@ export const UNITS = {
 const COLOURS = /^(white|yellow|red|green|brown|blue|pink|black)$/;
 /** A ball for people. `preset`: of the table; on one for snooker, numbers are reds. */
 export const named = (id, preset = "") => id === "cue" ? "the cue ball"
-  : /^\d+$/.test(id) ? (preset.startsWith("snooker") ? "a red" : `the ${id}`) : COLOURS.test(id) ? `the ${id}` : id;
+  : /^\d+$/.test(id) ? (preset.startsWith("snooker") ? "a red" : `the ${id}`) : COLOURS.test(id)
+    ? `the ${id}` : id;
 
 /** A number of SI units for people. `kind`: speed or length. */
 export function withUnit(units, kind, x) {
@@ -42,7 +43,8 @@ export function aimWords(met, preset) {
   const quarters = Math.round(4 * (1 - Math.sin(Math.min(met.cut, Math.PI / 2))));
   const part = ["thin", "quarter ball", "half ball", "three-quarter ball", "full"][quarters];
   const cut = (met.cut * 180 / Math.PI).toFixed(0);
-  return `${named(met.id, preset)} ${part}${cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`}`;
+  const side = cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`;
+  return `${named(met.id, preset)} ${part}${side}`;
 }
 
 /** The engine's words for a shot, with the names of pockets only. */
@@ -59,5 +61,6 @@ const counted = (n) => `${n} point${n === 1 ? "" : "s"}`;
 export function verdictWords({fouls, points, penalty}, game) {
   const broken = fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul)).join(", ");
   const other = penalty > 0 ? `; ${counted(penalty)} to the other player` : "";
-  return broken ? `Foul: ${broken}${other}.` : `Fair shot${POINTS.includes(game) && points > 0 ? `, ${counted(points)}` : ""}.`;
+  return broken ? `Foul: ${broken}${other}.`
+    : `Fair shot${POINTS.includes(game) && points > 0 ? `, ${counted(points)}` : ""}.`;
 }

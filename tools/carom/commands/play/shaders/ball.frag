@@ -71,7 +71,8 @@ vec3 mirrored(vec3 p, vec3 r, float shine, float R) {
     float to_cloth = p.z / max(-r.z, 0.02), away = to_cloth / R;
     vec2 off = (p.xy + r.xy * to_cloth - u_lamp.xy) / u_lamp.z;
     float square = 1.0 + dot(off, off);
-    float lit = (u_lamp_endless > 0.5 ? 1.0 : 1.0 / (square * sqrt(square))) * (away * away / (away * away + 1.3));
+    float lit = (u_lamp_endless > 0.5 ? 1.0 : 1.0 / (square * sqrt(square))) * (away * away / (away * away +
+        1.3));
     float dim = 0.035 + 0.05 * max(1.0 - r.z * 2.5, 0.0), bright = 15.0 * shine * panes(p, r);
     vec3 cloth = from_screen(u_cloth), room = dim * vec3(1.08, 1.0, 0.9) + bright * vec3(1.0, 1.0, 0.93);
     vec2 below = clamp(0.5 + (vec2(0.045, 0.0) - edge) / (2.0 * blur), 0.0, 1.0);
@@ -100,11 +101,14 @@ void main() {
     for (int i = 0; i < 6; ++i) {
         if (ball.near[i].w <= 0.0) break;
         vec3 to = ball.near[i].xyz - R * n;
-        float inverse = inversesqrt(dot(to, to)), hidden = R * R * inverse * inverse * max(dot(to, n) * inverse, 0.0);
+        float inverse = inversesqrt(dot(to, to)), hidden = R * R * inverse * inverse * max(dot(to,
+            n) * inverse, 0.0);
         open *= 1.0 - 0.75 * ball.near[i].w * min(hidden, 1.0);
     }
-    vec3 shade = base * (light_on_ball(p, n) + 0.20 * (1.0 - under) + from_screen(u_cloth) * (0.75 * under * under)) * open;
-    float grazing = 1.0 - max(toward, 0.0), fresnel = 0.05 + 0.95 * grazing * grazing * grazing * grazing * grazing;
+    vec3 shade = base * (light_on_ball(p,
+        n) + 0.20 * (1.0 - under) + from_screen(u_cloth) * (0.75 * under * under)) * open;
+    float grazing = 1.0 - max(toward, 0.0),
+        fresnel = 0.05 + 0.95 * grazing * grazing * grazing * grazing * grazing;
     shade += mirrored(p, dir + n * (2.0 * toward), shine, R) * (fresnel * (0.4 + 0.6 * open));
     if (ball.center.z < 0.999 * R) shade *= mix(0.06, 1.0, exp(min(p.z, 0.0) / 0.035));
     color = vec4(to_screen(shade), cover);

@@ -9,7 +9,8 @@ void main() {
     float d = length(to_eye), R = REACH * ball.w;
     float wide = R * d / sqrt(max(d * d - R * R, 0.01 * d * d)) + 2.0 * length(u_up_scaled) / u_size.y * d;
     vec3 right = normalize(cross(u_up_scaled, to_eye)), up = cross(to_eye, right) / d;
-    vec3 at = ball.xyz + wide * (((gl_VertexID & 1) != 0 ? right : -right) + ((gl_VertexID & 2) != 0 ? up : -up));
+    vec3 at = ball.xyz + wide * (((gl_VertexID & 1) != 0 ? right : -right) + ((gl_VertexID & 2) != 0 ? up
+        : -up));
     v_ray = at - u_eye;
     gl_Position = u_view_projection * vec4(at, 1.0);
 }
