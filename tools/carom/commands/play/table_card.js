@@ -128,7 +128,7 @@ export function tableCard(state) {
     const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
     if (state.view.fit(...room)) state.clock.refresh();
   };
-  for (const what of ["table", "view"]) state.on(what, () => {
+  for (const change of ["table", "view"]) state.on(change, () => {
     const {shape, styles} = state.scene.look(), {bounds: {low, high}} = shape;
     // The frame outside the diamonds would only make a phone's balls smaller.
     const rim = shape.wood.length === 0 ? 0 : shape.inlay.length > 0 ? 0.025 : 0.08;

@@ -278,7 +278,7 @@ export class TableGl {
     this.copy(this.frames[1], null, gl.COLOR_BUFFER_BIT);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.bindVertexArray(this.nothing);
-    // The farthest first, so that their edges blend over what is behind them.
+    // The farthest first, so that their edges blend over the balls behind them.
     const away = (ball) => Math.hypot(...add(ball.at, camera.eye, -1));
     const sorted = [...balls].sort((a, b) => away(b) - away(a));
     const ends = cue && {u_from: add(cue.tip, shift, -1), u_to: add(cue.butt, shift, -1), u_opacity: 1};
