@@ -150,9 +150,9 @@ function strictness(player) {
     await player.browser.until("caromPlay.state.aiming");
     assert.equal(await player.value("caromPlay.shot().hash"), next);
     // A match ends only after a question.
-    await player.value("void (globalThis.declines = true)");
+    await player.value("void (window.declines = true)");
     await player.press("Start again");
-    assert.deepEqual(await player.value("[asked.length, caromPlay.shot().hash]"), [1, next]);
+    assert.deepEqual(await player.value("[window.asked.length, caromPlay.shot().hash]"), [1, next]);
     await player.value("void (localStorage.clear(), caromPlay.state.match = null)");
   });
 
@@ -175,7 +175,7 @@ function races(player, name) {
         /^Player 1 wins the (rack|match)/);
       await player.browser.picture(`${name}_end_${racks[0]}`);
       await player.press(button);
-      const now = "(({match: {racks}, game: {state}}) => [racks, state.turn, asked.length])(caromPlay.state)";
+      const now = "(({match: {racks}, game: {state}}) => [racks, state.turn, window.asked.length])(caromPlay.state)";
       assert.deepEqual(await player.value(now), [after, 1, 0]);
       assert.equal(await player.value("caromPlay.scene().balls.length"), 10);
     }

@@ -46,8 +46,8 @@ export class Player {
     await this.browser.go(url);
     await this.browser.until(`document.body?.dataset.ready === "true"`);
     // A question would wait for a person.
-    await this.value("void (globalThis.asked = [], " +
-      "window.confirm = (text) => asked.push(text) && !globalThis.declines)");
+    await this.value("void (window.asked = [], " +
+      "window.confirm = (text) => window.asked.push(text) && !window.declines)");
   }
   value(expression) { return this.browser.value(expression); }
   settled() {

@@ -12,7 +12,10 @@ const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 /** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
  * in the state; `first`: the player who begins. */
 export function newGame(state, name, rules = {}, match = null, first = 0) {
-  if (!mayLeave(state)) return;
+  if (mayLeave(state)) rackUp(state, name, rules, match, first);
+}
+
+function rackUp(state, name, rules, match, first) {
   const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
   const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
   const game = name === "" ? null : {state: carom.games.start(name, {first, target, rules}), option: 0};
@@ -120,7 +123,7 @@ export function nextRack(state) {
   const {match, game, verdict, inMatch} = state, {winner} = verdict.options[0].state;
   const racks = match.racks.map((won, k) => inMatch ? won + Number(k === winner) : 0),
     first = 1 - match.first;
-  newGame(state, game.state.game, match.rules, {...match, racks, first}, first);
+  rackUp(state, game.state.game, match.rules, {...match, racks, first}, first);
 }
 
 /** Shows the last shot of the game again. */
