@@ -175,7 +175,7 @@ function races(player, name) {
         /^Player 1 wins the (rack|match)/);
       await player.browser.picture(`${name}_end_${racks[0]}`);
       await player.press(button);
-      const now = "(({match: {racks}, game: {state}}) => [racks, state.turn, window.asked.length])(caromPlay.state)";
+      const now = "(({match, game}) => [match.racks, game.state.turn, window.asked.length])(caromPlay.state)";
       assert.deepEqual(await player.value(now), [after, 1, 0]);
       assert.equal(await player.value("caromPlay.scene().balls.length"), 10);
     }
