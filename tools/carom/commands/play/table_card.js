@@ -131,8 +131,8 @@ export function tableCard(state) {
   for (const change of ["table", "view"]) state.on(change, () => {
     const {shape, styles} = state.scene.look(), {bounds: {low, high}} = shape;
     // The frame outside the diamonds would only make a phone's balls smaller.
-    const rim = shape.wood.length === 0 ? 0 : shape.inlay.length > 0 ? 0.025 : 0.08;
-    [0, 1].forEach((k) => { low[k] += rim; high[k] -= rim; });
+    const rim = shape.wood.length === 0 ? [0, 0] : shape.inlay.length > 0 ? [0.025, 0.025] : [0.05, 0.115];
+    rim.forEach((cut, k) => { low[k] += cut; high[k] -= cut; });
     state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);
