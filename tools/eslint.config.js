@@ -5,7 +5,7 @@ const globals = (names) => Object.fromEntries(names.split(/\s+/).map((name) => [
 const everywhere = globals(`Blob CompressionStream DecompressionStream FinalizationRegistry Response
   TextDecoder TextEncoder URL URLSearchParams WebAssembly atob btoa clearTimeout console fetch performance
   process setInterval setTimeout`);
-const page = globals(`AudioBufferSourceNode AudioContext OscillatorNode Path2D ResizeObserver Worker
+const page = globals(`AudioBufferSourceNode AudioContext OscillatorNode confirm Path2D ResizeObserver Worker
   WorkerGlobalScope document history localStorage location matchMedia modules navigator print
   requestAnimationFrame window`);
 const test = globals("Buffer WebSocket");

@@ -13,7 +13,7 @@ const value = (expression) => player.value(expression), aim = () => value("carom
 const says = () => value("document.querySelector('.says').textContent");
 const EIGHT = {cue: [0.6, 0.7], 1: [0.9, 1.7], 3: [0.3, 2.0], 8: [0.5, 1.2], 10: [1, 2.2], 11: [0.9, 0.4],
   14: [0.2, 0.9]};
-const SIZES = [[390, 844], [844, 390], [1280, 800], [1920, 1080]];
+const SIZES = [[360, 640], [390, 844], [844, 390], [820, 1180], [1280, 800], [1920, 1080]];
 let browser;
 
 before(async () => {
@@ -28,6 +28,9 @@ afterEach(() => skip.skip ? null
 
 const choose = (box, name) => value(`(() => { const s = document.querySelector("${box}");
   s.value = "${name}"; s.onchange(); })()`);
+/** The diameter of the struck ball [px]. */
+const ballSize = () => value("(({view: {projection, dense}}, {radius}) => " +
+  "2 * radius * projection.scale / dense)(caromPlay.state, caromPlay.state.struck())");
 async function sized(width, height) {
   await browser.size(width, height, Math.min(width, height) < 500);
   for (let i = 0; i < 3; ++i) await player.settled();
@@ -80,7 +83,12 @@ test("every screen: nothing is cut off, and fingers find their targets", skip, a
     const box = await value("(({width, height}) => [width, height])" +
       "(document.querySelector('.table').getBoundingClientRect())");
     if (width === 1920) assert.ok(box[0] > 1300, `the table is ${box[0]} px wide`);
-    if (width > 500) continue;
+    const ball = await ballSize(), pull = await value("(({width, height}) => 0.9 * Math.max(width, height))" +
+      "(document.querySelector('.pull').getBoundingClientRect())");
+    if (width === 390) assert.ok(ball >= 14, `a ball has ${ball} px`);
+    if (width === 820) assert.ok(box[1] > 1000, `the table is ${box[1]} px high`);
+    assert.ok(pull >= 200, `the power strip has ${pull} px`);
+    if (width > 900) continue;
     const small = await value(`[...document.querySelectorAll("button, select, [role=slider]")]
       .filter((e) => e.checkVisibility()).map((e) => [e.textContent, e.getBoundingClientRect()])
       .filter(([, b]) => b.width < 44 || b.height < 44 || b.bottom > innerHeight + 1 ||
@@ -99,7 +107,7 @@ test("a finger on the table aims and does not scroll; beside it, it does not aim
   assert.notEqual(await aim(), before);
   assert.equal(await value("scrollY"), 0);
   const aimed = await aim();
-  await browser.drag([await player.placeOf(".help"), [200, 500]], "touch");
+  await browser.drag([await player.placeOf(".tip-ball"), [200, 500]], "touch");
   assert.equal(await aim(), aimed);
   // The cue in the bar is pulled back; in Play, releasing it strikes.
   const [left, middle] = await value("(({left, top, height}) => [left, top + height / 2])" +
@@ -114,6 +122,64 @@ test("a finger on the table aims and does not scroll; beside it, it does not aim
   await player.press("More");
   assert.ok(await value("document.querySelector('.side').checkVisibility()"));
   await sized(1280, 800);
+});
+
+test("the strip aims by 0.02 degrees a pixel, and a snooker ball has 10 pixels", skip, async () => {
+  await sized(390, 844);
+  await player.open();
+  const [x, y] = await player.placeOf(".fine"), first = await aim();
+  await browser.drag([[x, y], [x + 50, y]], "touch");
+  assert.ok(Math.abs(await aim() - first + 1) < 1e-6, `${await aim() - first}`);
+  await value(`caromPlay.newGame("snooker")`);
+  await player.settled();
+  assert.ok(await ballSize() >= 10, `${await ballSize()}`);
+  await sized(1280, 800);
+});
+
+test("snooker: the ball on, a nominated colour, the value of a foul", skip, async () => {
+  await player.open();
+  await value(`caromPlay.newGame("snooker", {players: ["", ""], hints: false, rules: {}})`);
+  const text = () => value("document.querySelector('.game-text').textContent");
+  assert.match(await text(), /On: a red \(1\)/);
+  await value("void Object.assign(caromPlay.state.game.state, {on: 'colour', opening: false})");
+  await value("caromPlay.state.tell('lists')");
+  assert.match(await text(), /On: any colour; nominate it/);
+  assert.deepEqual(await value("[...document.querySelector('[aria-label=\"Called ball\"]')].slice(1)" +
+    ".map((o) => o.textContent).sort()"),
+  ["black", "blue", "brown", "green", "pink", "yellow"].map((x) => `the ${x}`));
+  await choose("[aria-label='Called ball']", "pink");
+  await value(`caromPlay.change({"cue.aim_deg": -90, "cue.speed": 1})`);
+  await player.press("Shoot");
+  await value("caromPlay.show(1e9)");
+  await browser.until("caromPlay.state.verdict?.fouls.length > 0 && !caromPlay.state.clock.playing");
+  assert.match(await value("document.querySelector('.verdict').textContent"), /6 points to the other player/);
+});
+
+test("practice warns while aiming, hides events with the paths, and clamps typed values", skip, async () => {
+  await player.open();
+  const help = () => value("document.querySelector('.help').textContent");
+  await value(`caromPlay.begin(${JSON.stringify(sceneText("draw.toml"))})`);
+  await value(`caromPlay.change({"ball.cue.position.x": 0.1, "cue.aim_deg": 0})`);
+  assert.match(await help(), /^Warning: the cue reaches into the cushion; raise it/);
+  await choose("[aria-label='Predicted paths']", "off");
+  await browser.until("[...document.querySelectorAll('.events li')].every((item) => item.hidden)");
+  await value("(() => { const i = document.querySelector('.stroke [aria-label=\"Speed\"]'); " +
+    "i.value = '50'; i.onchange(); })()");
+  assert.equal(await value("caromPlay.scene().cue.speed"), 12);
+  assert.match(await says(), /^Speed: 12.00 m\/s, the limit/);
+});
+
+test("a rack is known to be broken, and a safety has no share of wins", skip, async () => {
+  await player.open();
+  await choose("[aria-label='Rack']", "eight_ball");
+  await player.press("Hint");
+  await browser.until("caromPlay.state.hints.length > 0");
+  assert.equal(await value("caromPlay.state.hints[0].kind"), "break");
+  await value(`(() => { const {state} = caromPlay, [hint] = state.hints;
+    state.hints = [{...hint, kind: "safety", words: "safety: soft", makes: [0, 0, 0], fouls: [0.1, 0, 0]}];
+    state.tell("hints"); })()`);
+  assert.match(await value("document.querySelector('.hint-list button').textContent"),
+    /safety: soft: 90 % fair/);
 });
 
 test("zoom, fine aim, and the cue pulled back", skip, async () => {
@@ -188,7 +254,7 @@ test("the words of the game", skip, async () => {
   const words = await value("document.querySelector('.stroke-words').textContent");
   assert.match(words, /full draw, half left English/);
   assert.match(words, /^The 1 (thin|[\w-]+ ball|full), cut \d+° (left|right)/);
-  assert.match(await value("document.querySelector('.pull-words').textContent"), /^medium, 2.00 m\/s$/);
+  assert.match(await value("document.querySelector('.pull-words').textContent"), /^medium, cue 2.00 m\/s$/);
   assert.equal(await value("document.querySelector('[aria-label=\"Speed\"]').max"), "12");
 });
 
@@ -283,6 +349,7 @@ test("axe finds nothing serious", withAxe, async () => {
     await player.frame("eight_ball", EIGHT, {players: ["", "club"]});
     await player.settled();
     await check(`a game, ${scheme} ${width}`);
+    if (width < 500) await player.press("More");
     await player.press("New game");
     await check(`dialog, ${scheme} ${width}`);
     await value("document.querySelector('dialog[open]').close()");

@@ -121,6 +121,84 @@ function survivals(player) {
     await player.value("localStorage.clear()");
   });
 
+}
+
+function strictness(player) {
+  test("a shot counts from the moment it is struck", async () => {
+    await player.open();
+    await player.frame("nine_ball", BALLS, {players: ["", ""], match: {race: 2}});
+    await player.value(`caromPlay.change({"cue.aim_deg": -90, "cue.speed": 1})`);
+    const hash = await player.value("caromPlay.shot().hash");
+    await player.press("Shoot");
+    await player.browser.until("caromPlay.state.clock.now > 0.1");
+    await player.browser.key("Escape");
+    await player.press("[aria-label='Pause (space)']");
+    await player.value("caromPlay.state.clock.go(0)");
+    assert.equal(await player.value("caromPlay.state.aiming"), false,
+      "the start of the slider undoes it");
+    assert.equal(await player.value("[...document.querySelectorAll('.modes button')][0].disabled"), true);
+    await player.open();
+    await player.browser.until("!caromPlay.state.aiming");
+    assert.equal(await player.value("caromPlay.shot().hash"), hash, "a reload undoes it");
+    await player.value("void (caromPlay.state.quick = true, caromPlay.show(1e9))");
+    await player.browser.until("caromPlay.state.aiming && caromPlay.state.game.state.turn === 1", 1200);
+    // The last shot can be seen again, and the match continues after it.
+    const next = await player.value("caromPlay.shot().hash");
+    await player.press("Replay");
+    assert.equal(await player.value("caromPlay.shot().hash"), hash);
+    await player.value("caromPlay.show(1e9)");
+    await player.browser.until("caromPlay.state.aiming");
+    assert.equal(await player.value("caromPlay.shot().hash"), next);
+    // A match ends only after a question.
+    await player.value("void (window.declines = true)");
+    await player.press("Start again");
+    assert.deepEqual(await player.value("[window.asked.length, caromPlay.shot().hash]"), [1, next]);
+    await player.value("void (localStorage.clear(), caromPlay.state.match = null)");
+  });
+
+}
+
+function races(player, name) {
+  test("a race to two racks: the next rack, the end, and a rematch", async () => {
+    await player.open();
+    await player.value("void (caromPlay.state.quick = true)");
+    for (const [racks, button, after] of [[[0, 0], "Next rack", [1, 0]], [[1, 0], "Rematch", [0, 0]]]) {
+      await player.frame("nine_ball", {cue: [0.3, 0.3], 9: [0.15, 0.15]}, {players: ["", ""],
+        match: {race: 2, racks}});
+      await player.value("caromPlay.change({'cue.aim_deg': -135, 'cue.speed': 1, " +
+        "'cue.offset.height': -0.3})");
+      await player.press("Shoot");
+      await player.browser.until("!caromPlay.state.aiming");
+      await player.value("caromPlay.show(1e9)");
+      await player.browser.until("document.querySelector('.game.end .over') !== null");
+      assert.match(await player.value("document.querySelector('.over').textContent"),
+        /^Player 1 wins the (rack|match)/);
+      await player.browser.picture(`${name}_end_${racks[0]}`);
+      await player.press(button);
+      const now = "(({match, game}) => [match.racks, game.state.turn, window.asked.length])(caromPlay.state)";
+      assert.deepEqual(await player.value(now), [after, 1, 0]);
+      assert.equal(await player.value("caromPlay.scene().balls.length"), 10);
+    }
+    await player.value("void (localStorage.clear(), caromPlay.state.match = null)");
+  });
+
+  test("a person's hand errs as chosen, and the score names it", async () => {
+    for (const errors of ["beginner", ""]) {
+      await player.open();
+      await player.frame("nine_ball", BALLS, {match: {errors}});
+      await player.value(`caromPlay.change({"cue.aim_deg": -90, "cue.speed": 1})`);
+      assert.match(await player.value("document.querySelector('.score').textContent"),
+        errors ? /beginner hand/ : /exact hand/);
+      await player.press("Shoot");
+      const aim = await player.value("caromPlay.scene().cue.aim_deg");
+      assert.equal(aim === -90, errors === "", `the aim is ${aim}`);
+      await player.value("void (caromPlay.run(false), localStorage.clear(), caromPlay.state.match = null)");
+    }
+  });
+
+}
+
+function scratches(player) {
   test("after a scratch without rules the cue ball is in hand", async () => {
     await player.open();
     await player.frame("nine_ball", {cue: [1.0, 2.27], 9: [0.3, 0.4]});
@@ -145,4 +223,7 @@ for (const name of ["chromium", "firefox-esr"]) describe(name, {skip: missing(na
   after(() => player.end());
   matches(player, name);
   survivals(player);
+  strictness(player);
+  races(player, name);
+  scratches(player);
 });

@@ -45,6 +45,9 @@ export class Player {
   async open(url = pageUrl) {
     await this.browser.go(url);
     await this.browser.until(`document.body?.dataset.ready === "true"`);
+    // A question would wait for a person.
+    await this.value("void (window.asked = [], " +
+      "window.confirm = (text) => window.asked.push(text) && !window.declines)");
   }
   value(expression) { return this.browser.value(expression); }
   settled() {
@@ -75,11 +78,12 @@ export class Player {
     await this.settled();
   }
   /** Starts in the middle of a game, with these balls, {id: [x, y]}. */
-  async frame(game, balls, {players = ["", "machine"], more = {}} = {}) {
+  async frame(game, balls, {players = ["", "machine"], more = {}, match: how = {}} = {}) {
     const toml = Object.entries(balls).map(([id, at]) => `[[ball]]\nid = "${id}"\nposition = [${at}]\n`);
     const text = JSON.stringify(`[table]\npreset = "nine_foot"\n[balls]\npreset = "pool"\n${toml.join("")}` +
       '[cue]\nball = "cue"\nspeed = 2\naim_deg = 90\n');
-    const match = JSON.stringify({players, hints: true, rules: {}});
+    const match = JSON.stringify({players, hints: true, rules: {}, errors: "", race: 1, racks: [0, 0],
+      first: 0, ...how});
     await this.value(`(() => { const {state} = caromPlay;
       Object.assign(state, {mode: "play", match: ${match}});
       state.tell("mode");

@@ -222,6 +222,12 @@ export class Scene extends Held {
     expectText("recordJson", recordJson);
     return call("carom_verify", this.handle, recordJson) || null;
   }
+  mesh() {
+    const bytes = callFor(() => lastBytes().slice(), "carom_scene_mesh", this.handle), ATLAS = 192 * 288;
+    const numbers = new Float32Array(bytes.buffer, 0, (bytes.length - ATLAS) / 4);
+    return {origin: [...numbers.subarray(0, 2)], ends: [...numbers.subarray(2, 12)],
+      vertices: numbers.subarray(12), atlas: bytes.subarray(-ATLAS)};
+  }
 }
 
 /** The record's motion from its numbers: of the shot, then of each ball and its segments. */
@@ -264,6 +270,10 @@ export class Shot extends Held {
       this.scene.balls.map(({id}) => id));
   }
   get events() { return this.#events ??= JSON.parse(call("carom_shot_events", this.handle)); }
+  story({inches = false} = {}) {
+    expectTruth("inches", inches);
+    return JSON.parse(call("carom_shot_story", this.handle, inches ? 1 : 0));
+  }
 
   states(times) {
     const list = typeof times === "number" ? numbersOf("times", [times]) : numbersOf("times", times);
@@ -383,14 +393,21 @@ export const games = {
     expectOf(Scene, "scene", scene);
     return JSON.parse(call("carom_game_legal", JSON.stringify(state), scene.handle));
   },
-  advise(state, scene, {skill = "professional", seed = 1, best = 3, shots = 400} = {}) {
+  advise(state, scene, {skill = "professional", seed = 1, best = 3, shots = 400, seconds = 1e9} = {}) {
     expectObject("state", state);
     expectOf(Scene, "scene", scene);
     expectText("skill", skill);
     for (const [key, value] of Object.entries({seed, best, shots})) expectWhole(key, value);
-    const options = JSON.stringify({skill, seed, best, shots});
+    expectNumber("seconds", seconds);
+    const options = JSON.stringify({skill, seed, best, shots, seconds});
     return JSON.parse(call("carom_game_advise", JSON.stringify(state), scene.handle, options)).map(
       ({call: {push_out: pushOut, ...announced}, ...advice}) => ({...advice, call: {...announced, pushOut}}));
+  },
+  strike(scene, {skill = "professional", seed = 1} = {}) {
+    expectOf(Scene, "scene", scene);
+    expectText("skill", skill);
+    expectWhole("seed", seed);
+    return JSON.parse(call("carom_game_strike", scene.handle, seed, skill));
   },
   judge(state, shot, announced = {}) {
     expectObject("state", state);

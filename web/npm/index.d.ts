@@ -91,6 +91,9 @@ export class Scene {
   /** Checks a record of this scene, perhaps another program's: null, or the first law of mechanics that it
    * breaks, with the event and a residual. @throws CaromError if it is of another scene */
   verify(recordJson: string): string | null;
+  /** The table's triangles for WebGL: ten parts, one after the other, whose last vertices are in `ends`; ten
+   * numbers for each vertex, relative to `origin` [m]; and an atlas of digits, a byte per pixel. */
+  mesh(): {origin: [number, number]; ends: number[]; vertices: Float32Array; atlas: Uint8Array};
   /** Frees its memory now; otherwise the garbage collector does. */
   free(): void;
 }
@@ -160,6 +163,8 @@ export class Shot {
   /** The record file (docs/reference/record_format.md), as text and parsed. */
   readonly recordJson: string;
   readonly record: object;
+  /** A sentence for each event: "cue meets 1, cut 31 deg, 2.1 m/s". `inches`: speeds in mph. */
+  story(options?: {inches?: boolean}): string[];
   /** Its duration, gravity and tracks alone, in the form of the record: much faster. */
   readonly motion: {duration: number; gravity: number; tracks: object[]};
   /** States of all balls at these times [s]. `numbers` contains nine for each time and ball, ball after ball:
@@ -319,9 +324,12 @@ export const games: {
   };
   /** The best shots of different kind, ball or pocket, the best first; at least one. `skill`: "beginner",
    * "club", "league", "professional" or "machine"; `shots`: fresh shots for each, 0 for none. It takes some
-   * tenths of a second: call it in a Worker. Eight-ball, nine-ball and ten-ball. @throws CaromError */
+   * tenths of a second: call it in a Worker. After 0.6 `seconds` it looks for pots alone. Eight-ball,
+   * nine-ball and ten-ball. @throws CaromError */
   advise(state: GameState, scene: Scene,
-    options?: {skill?: string; seed?: number; best?: number; shots?: number}): Advice[];
+    options?: {skill?: string; seed?: number; best?: number; shots?: number; seconds?: number}): Advice[];
+  /** The strike of a player of this level who intends the scene's cue. @throws CaromError */
+  strike(scene: Scene, options?: {skill?: string; seed?: number}): Strike;
   judge(state: GameState, shot: Shot,
     announced?: {ball?: string; pocket?: string; safety?: boolean; pushOut?: boolean}): Verdict;
 };

@@ -20,10 +20,12 @@ async function load(given) {
   if (source instanceof WebAssembly.Module || ArrayBuffer.isView(source) || source instanceof ArrayBuffer)
     return source;
   if (typeof Response !== "undefined" && source instanceof Response) return source.arrayBuffer();
-  const url = new URL(source, import.meta.url);
+  const here = import.meta.url, url = new URL(source, here);
   // node's fetch does not read files.
   if (url.protocol === "file:" && typeof process !== "undefined") {
-    const {readFile} = await import("node:fs/promises");
+    // Bundlers for browsers have no such module, and must not look for it.
+    const files = "node:fs/promises";
+    const {readFile} = await import(/* webpackIgnore: true */ /* @vite-ignore */ files);
     return readFile(url);
   }
   const answer = await fetch(url);

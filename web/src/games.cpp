@@ -1,4 +1,5 @@
 // Games: legal choices, the verdict on a shot, the next scene.
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 
 #include "base/game_state.h"
 #include "base/verdict.h"
+#include "carom/engine/batch.h"
 #include "carom/games/noise.h"
 #include "carom/games/player.h"
 #include "carom/games/rules.h"
@@ -96,7 +98,7 @@ CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size
         give(verdict.release(), std::move(text));
     });
 }
-/// @param options {"skill", "seed", "best", "shots"}
+/// @param options {"skill", "seed", "best", "shots", "seconds"}
 CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebScene* scene,
                                 const char* options, std::size_t options_size) {
     return guarded([&] {
@@ -106,13 +108,36 @@ CAROM_WEB int carom_game_advise(const char* state, std::size_t size, const WebSc
         how.seed = asked.at("seed").get<std::uint64_t>();
         how.best = asked.at("best").get<std::size_t>();
         how.fresh = asked.at("shots").get<std::size_t>();
-        const games::Skill skill = games::skill_by_name(asked.at("skill").get<std::string>(), table.balls.R);
+        games::Skill skill = games::skill_by_name(asked.at("skill").get<std::string>(), table.balls.R);
         const games::State before = state_at(state, size);
-        const auto advice = games::advise(before, table, skill, kernel::best_isa(), how);
+        const auto start = std::chrono::steady_clock::now();
+        // A share of the time is left for a search of pots alone.
+        const std::chrono::duration<double> most(0.6 * asked.at("seconds").get<double>());
+        how.stop = [&] { return std::chrono::steady_clock::now() - start > most; };
+        std::vector<games::Advice> advice;
+        try {
+            advice = games::advise(before, table, skill, kernel::best_isa(), how);
+        } catch (const BatchStopped&) {
+            how.stop = {};
+            how.fresh = 0;
+            skill.look = games::Look::kPot;
+            advice = games::advise(before, table, skill, kernel::best_isa(), how);
+        }
         Json list = tools::advice_json(advice, table.table);
         for (std::size_t i = 0; i < advice.size(); ++i)
             list[i]["strike"] = tools::cue_json(games::with_noise(advice[i].cue, skill.noise, how.seed, i));
         give(nullptr, dumped(list));
+    });
+}
+/// The strike of a player of a level who intends the scene's cue.
+CAROM_WEB int carom_game_strike(const WebScene* scene, double seed, const char* skill, std::size_t size) {
+    return guarded([&] {
+        if (!scene->scene.cue) throw BadArgument("the scene has no cue");
+        const Cue& cue = *scene->scene.cue;
+        const games::Skill by = games::skill_by_name(std::string(skill, size), scene->scene.balls.R);
+        const games::Noise noise = by.noise_at(cue.speed);
+        give(nullptr,
+             dumped(tools::cue_json(games::with_noise(cue, noise, static_cast<std::uint64_t>(seed), 0))));
     });
 }
 CAROM_WEB int carom_game_choose(const WebShot* shot, const WebVerdict* verdict, const char* skill,

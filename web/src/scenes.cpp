@@ -13,6 +13,7 @@
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/strike.h"
+#include "carom/render/table_bytes.h"
 #include "carom/render/table_mesh.h"
 #include "page/ball_styles.h"
 #include "page/table_shape.h"
@@ -125,13 +126,15 @@ Json described(const Scene& scene) {
             {"material", material}};
 }
 
-/// Data to draw the scene: the shape of the table, and the look of each ball.
-Json look(const Scene& scene) {
+render::TableMesh mesh_of(const Scene& scene) {
     std::vector<Vec2> places;
     for (const BallStart& ball : scene.ball) places.push_back(ball.position.head<2>());
-    const render::TableMesh mesh =
-        render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
-    return {{"shape", tools::table_shape(scene.table, mesh)},
+    return render::make_table_mesh(scene.table, scene.balls.R, places, render::Edges::kRounded);
+}
+
+/// Data to draw the scene: the shape of the table, and the look of each ball.
+Json look(const Scene& scene) {
+    return {{"shape", tools::table_shape(scene.table, mesh_of(scene))},
             {"styles", tools::ball_styles(ids_of(scene.ball), scene.table.preset)}};
 }
 
@@ -163,6 +166,10 @@ CAROM_WEB int carom_scene_text(const WebScene* scene) {
 }
 CAROM_WEB int carom_scene_describe(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(described(scene->scene))); });
+}
+/// As table_bytes.h describes.
+CAROM_WEB int carom_scene_mesh(const WebScene* scene) {
+    return guarded([&] { give(nullptr, render::table_bytes(mesh_of(scene->scene))); });
 }
 CAROM_WEB int carom_scene_look(const WebScene* scene) {
     return guarded([&] { give(nullptr, dumped(look(scene->scene))); });

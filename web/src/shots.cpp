@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "base/game_state.h"
+#include "base/shown_units.h"
 #include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/verify.h"
 #include "carom/games/measures.h"
+#include "page/event_sentence.h"
 #include "web.h"
 
 namespace carom::web {
@@ -184,6 +186,16 @@ CAROM_WEB int carom_verify(const WebScene* scene, const char* text, std::size_t 
 }
 CAROM_WEB int carom_shot_events(const WebShot* shot) {
     return guarded([&] { give(nullptr, dumped(events_json(shot->record))); });
+}
+/// A sentence for each event: a list. @param inches  whether speeds are in mph
+CAROM_WEB int carom_shot_story(const WebShot* shot, int inches) {
+    return guarded([&] {
+        Json list = Json::array();
+        for (std::size_t i = 0; i < shot->record.events.size(); ++i)
+            list.push_back(tools::event_sentence(shot->record, i,
+                                                 inches != 0 ? tools::Units::kInch : tools::Units::kMetric));
+        give(nullptr, dumped(list));
+    });
 }
 /// States of all balls at `count` times: nine numbers for each ball, and its MotionState.
 CAROM_WEB int carom_shot_states(const WebShot* shot, std::size_t count, const double* times, double* numbers,

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "carom/render/kept_image.h"
-#include "draw/shaders.h"
+#include "draw/shader_numbers.h"
 
 namespace carom::render {
 

@@ -10,7 +10,7 @@
 #include "carom/render/draw_list.h"
 #include "carom/render/image.h"
 #include "draw/drawn_shapes.h"
-#include "draw/shaders.h"
+#include "draw/shader_numbers.h"
 #include "draw/table_edges.h"
 #include "draw/view.h"
 

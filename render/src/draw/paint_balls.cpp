@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "carom/render/look.h"
-#include "draw/shaders.h"
+#include "draw/shader_numbers.h"
 #include "draw/skin.h"
 
 namespace carom::render {

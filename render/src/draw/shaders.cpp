@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "draw/shader_numbers.h"
 #include "gl/objects.h"
 
 namespace carom::render::shaders {
@@ -11,8 +12,11 @@ namespace carom::render::shaders {
 extern const char* const kCommon;
 
 namespace {
-constexpr const char* kVersion = "#version 330 core\n#extension GL_ARB_separate_shader_objects : require\n";
-}
+// A browser's GLSL has neither locations of varyings nor gl_PerVertex, so the sources write LOCATION(n).
+constexpr const char* kVersion =
+    "#version 330 core\n#extension GL_ARB_separate_shader_objects : require\n"
+    "#define LOCATION(n) layout(location = n)\n";
+}  // namespace
 
 GLuint make_stage(const gl::Api& api, GLenum stage, const char* source, const std::string& defines) {
     const std::string numbers = fmt::format("#define MAX_HOLES {}\n", kMaxHoles);

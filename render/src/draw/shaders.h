@@ -10,10 +10,6 @@ namespace carom::render::shaders {
 extern const char* const kTableVertex;
 extern const char* const kTableFragment;
 
-inline constexpr double kShadowReach = 2.0;  ///< [radii] where the shading by the room ends
-inline constexpr int kMaxHoles = 128;  ///< [-] largest number of holes that a program accepts: MAX_HOLES
-inline constexpr int kMaxNear = 6;     ///< [-] neighbours that darken a ball: as many as fit around it
-
 // Each of these lines, put before kTableFragment, selects one kind of surface. A software renderer executes
 // both sides of every branch, so there is one program per kind. The floor has no discard, so hidden pixels
 // cost nothing.

@@ -8,6 +8,7 @@
 
 #include "draw/busy_tiles.h"
 #include "draw/mean_picture.h"
+#include "draw/shader_numbers.h"
 #include "draw/shaders.h"
 #include "gl/objects.h"
 

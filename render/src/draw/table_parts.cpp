@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "carom/render/mesh_cut.h"
-#include "draw/shaders.h"
+#include "draw/shader_numbers.h"
 
 namespace carom::render {
 

@@ -66,7 +66,7 @@ test("words state what a player may do", () => {
   assert.equal(legal(state).text, "Player 1 shoots. Hit first: 1.");
   Object.assign(state.game.state,
     {game: "eight_ball", turn: 1, group: ["solids", "stripes"], points: [2, 0]});
-  assert.equal(legal(state).text, "Player 1 shoots. Plays stripes. Hit first: 1. Points: 2 to 0.");
+  assert.equal(legal(state).text, "Player 1 shoots, playing stripes. Hit first: 1. Points: 2 to 0.");
   assert.deepEqual(legal(state).callable, ["1", "2"]);
 });
 

@@ -1,37 +1,24 @@
-// Every event of the engine has a sentence and meets the correct part of the table.
+// The words of the pages.
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
 import {nameOf, withNames} from "../../../tools/carom/commands/play/players.js";
-import {adviceWords, aimWords, eventWords, isContact, speedWord, tipWords, verdictWords, withUnit}
+import {adviceWords, aimWords, isContact, named, speedWord, tipWords, verdictWords, withUnit}
   from "../../../tools/carom/commands/play/words.js";
-import {partner} from "../../../tools/carom/page/event_words.js";
+import {sentence} from "../../../tools/carom/page/event_words.js";
 
 const HEADER = new URL("../../../engine/include/carom/engine/record.h", import.meta.url);
-/** The rows of kEventKinds: {type, partner}. */
+/** The rows of kEventKinds: {type}. */
 const KINDS = [...readFileSync(HEADER, "utf8")
   .matchAll(/\{EventType::k\w+, "(\w+)", EventPhase::k\w+(?:, Partner::k(\w+))?\}/g)]
   .map(([, type, meets = ""]) => ({type, meets}));
 
-const event = (type, more = {}) => ({type, ball: "cue", other: "1", otherName: "head rail", speed: 2,
-  closing: 1, cut: 0.5, diamond: 1.25, balls: ["cue", "1"], ...more});
-
-test("every type of event has its own words", () => {
-  assert.equal(KINDS.length, 19);
-  const told = KINDS.map(({type}) => eventWords(event(type), "metric"));
-  assert.equal(new Set(told).size, KINDS.length);
-  // Events of resting contacts appear only in the list of all events, by their names.
-  const named = KINDS.filter(({type}, i) => told[i] === `The cue ball: ${type.replaceAll("_", " ")} 1`);
-  assert.deepEqual(named, KINDS.filter(({type}) => /_(hold|release)$/.test(type)));
-});
-
 test("words and units", () => {
-  assert.equal(eventWords(event("ball_ball"), "metric"), "The cue ball hits the 1 at 1.00 m/s, cut 29°");
-  assert.equal(eventWords(event("ball_cushion"), "inch"),
-    "The cue ball bounces off the head rail at diamond 1.3: 4.5 mph");
-  assert.equal(eventWords(event("ball_cushion", {speed: null, diamond: null}), "metric"),
-    "The cue ball bounces off the head rail: ");
+  assert.equal(sentence("cue meets 1, cut 31 deg, 2.1 m/s"), "Cue meets 1, cut 31°, 2.1 m/s");
   assert.equal(withUnit("inch", "length", 0.0254), "1.0 in");
+  assert.deepEqual(["cue", "7", "black", "Z"].map((id) => named(id)), ["the cue ball", "the 7", "the black",
+    "Z"]);
+  assert.equal(named("12", "snooker_full"), "a red");
 });
 
 test("contacts are types of events", () => {
@@ -40,16 +27,11 @@ test("contacts are types of events", () => {
     "ball_pocket", "ball_out"]);
 });
 
-test("an event meets the part named by the engine", () => {
-  const record = {tracks: [{id: "Ball"}], table: {jaws: [{id: "Jaw"}], pockets: [{id: "Pocket"}],
-    cushions: [{id: "Cushion"}]}};
-  for (const {type, meets} of KINDS)
-    assert.equal(partner(record, {type, b: meets === "" ? -1 : 0}), meets, type);
-});
-
 test("verdicts in a sentence", () => {
-  assert.equal(verdictWords({fouls: [], points: 1}), "Fair shot, 1 point.");
-  assert.equal(verdictWords({fouls: [], points: 0}), "Fair shot.");
+  assert.equal(verdictWords({fouls: [], points: 1}, "snooker"), "Fair shot, 1 point.");
+  assert.equal(verdictWords({fouls: [], points: 1}, "nine_ball"), "Fair shot.");
+  assert.equal(verdictWords({fouls: [{foul: "miss"}], points: 0, penalty: 4}, "snooker"),
+    "Foul: miss; 4 points to the other player.");
   assert.equal(verdictWords({fouls: [{foul: "no rail", rule: "6.3"}, {foul: "scratch"}], points: 2}),
     "Foul: no rail (6.3), scratch.");
 });
@@ -74,7 +56,8 @@ test("players have names", () => {
   assert.deepEqual(told("", ""), ["Player 1", "Player 2"]);
   assert.deepEqual(told("club", "machine"), ["carom 1, club", "carom 2, machine"]);
   const names = (text, ...players) => withNames({match: {players}}, text);
-  assert.equal(names("player 2 shoots, or Player 1 wins", "", "club"), "carom shoots, or You win");
+  assert.equal(names("player 2 shoots, or player 1 wins", "", "club"), "carom shoots, or you win");
+  assert.equal(names("Foul. Player 1 shoots.", "", "club"), "Foul. You shoot.");
   assert.equal(names("player 2 shoots", "", ""), "Player 2 shoots");
   assert.equal(withNames({match: null}, "player 2 shoots"), "player 2 shoots");
 });

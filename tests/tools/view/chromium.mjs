@@ -14,7 +14,8 @@ export class Browser {
     this.pictures = pictures;
     const hosts = `MAP * ~NOTFOUND${server ? `, EXCLUDE ${server}` : ""}`;
     this.process = spawn(chromium, ["--headless=new", "--no-sandbox", "--disable-gpu",
-      "--hide-scrollbars", "--remote-debugging-pipe", `--host-resolver-rules=${hosts}`, "--no-proxy-server",
+      "--enable-unsafe-swiftshader", "--hide-scrollbars", "--remote-debugging-pipe",
+        `--host-resolver-rules=${hosts}`, "--no-proxy-server",
       "--no-first-run", "--disable-background-networking", `--user-data-dir=${profile}`,
       "about:blank"],
     {stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"]});

@@ -92,12 +92,12 @@ export class EventList {
   constructor(clock, digits) {
     Object.assign(this, {clock, digits, marked: -1, element: make("ol", {class: "events"})});
   }
-  /** `describe(event)`: {words, title}: the parts of its text, and its tooltip. */
+  /** `describe(event, index)`: {words, title}: the parts of its text, and its tooltip. */
   fill(events, describe) {
     this.marked = -1;
     this.element.scrollTop = 0;
     this.element.replaceChildren(...events.map((e, i) => {
-      const {words, title} = describe(e);
+      const {words, title} = describe(e, i);
       const text = [make("time", {}, e.time.toFixed(this.digits)), make("span", {}, ...words)];
       return make("li", {}, button(text, () => this.clock.go(e.time, i), {title}));
     }));

@@ -27,7 +27,7 @@ class ShotPage {
       still: prefers("reduced-motion: reduce") ? still : null});
     this.balls = new BallList(record, second, page.styles, (i) => this.mark(i === this.marked ? -1 : i));
     this.events = new EventList(this.clock, 4);
-    this.events.fill(record.events, (e) => described(record, e));
+    this.events.fill(record.events, (e, i) => described(record, e, page.story[i]));
     this.charts = shotCharts(record, page.styles, page.margin, (t) => this.clock.go(t));
     pageFrame(page, make("div", {class: "shot"}, this.stage(), make("div", {class: "side"},
       this.balls.element, make("section", {class: "card"},
@@ -85,7 +85,7 @@ class ShotPage {
     this.showTip(states);
     if (playing) return;
     const busy = states.filter((s) => size(s.v) > 0).length;
-    const latest = event >= 0 ? ` Last event: ${words(this.record.events[event].type)}.` : "";
+    const latest = event >= 0 ? ` Last event: ${this.page.story[event]}.` : "";
     const sentence = `${now.toFixed(3)} seconds. ${busy} of ${states.length} balls move.${latest}`;
     this.spoken.textContent = sentence;
     this.bar.scrub.setAttribute("aria-valuetext", sentence);

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "base/shown_units.h"
 #include "carom/render/draw_list.h"
 #include "page/ball_styles.h"
+#include "page/event_sentence.h"
 #include "page/page.h"
 #include "page/table_shape.h"
 
@@ -41,6 +43,8 @@ std::string shot_page(const Record& record, const Record* second, const nlohmann
     Json page = page_json(texts.title, shot_lead(record), texts.command, texts.version);
     page.update(shot_json(record));
     page["margin"] = margin;
+    for (std::size_t i = 0; i < record.events.size(); ++i)
+        page["story"].push_back(event_sentence(record, i, Units::kMetric));
     std::vector<PageData> data = {{"shot", record_json(record)}};
     if (second != nullptr) {
         page["second"] = shot_json(*second);

@@ -57,7 +57,8 @@ export class TableView {
     const paint = () => paintTable(under, this.projection, shape);
     const whole = new Projection(shape.bounds, width, height, 0);
     clearTimeout(this.painting);
-    if (times === 0 || this.projection.scale * times <= whole.scale) {
+    this.zoomed = times !== 0 && this.projection.scale * times > whole.scale;
+    if (!this.zoomed) {
       this.projection = whole;
       return paint();
     }

@@ -1,8 +1,8 @@
 // The events of the shot. In the mode "play", the list fills while the balls move.
 
 import {make} from "../../page/dom.js";
+import {sentence} from "../../page/event_words.js";
 import {EventList, eventBefore} from "../../page/playback.js";
-import {eventWords} from "./words.js";
 
 const BUSY = 50;  // [ms] If a picture takes longer, the list waits until the shot stops.
 
@@ -12,7 +12,8 @@ export function eventsCard(state) {
   const mark = () => {
     const busy = clock.playing && performance.now() - clock.drawn > BUSY;
     if (busy || state.shot !== list.shot) return;
-    const at = clock.now > 0 ? eventBefore(shown, clock.now) : -1, all = state.mode === "practise";
+    const at = clock.now > 0 ? eventBefore(shown, clock.now) : -1,
+      all = state.mode === "practise" && state.paths !== "off";
     if (at === list.marked && list.all === all && !list.fresh) return;
     const open = all ? shown.length : at + 1;
     head.textContent = `Events${open > 0 ? ` (${open})` : ""}`;
@@ -23,7 +24,8 @@ export function eventsCard(state) {
   const fill = () => {
     shown = state.events();
     Object.assign(list, {shot: state.shot, fresh: true});
-    list.fill(shown, (e) => ({words: [eventWords(e, state.units)]}));
+    const {shot} = state, story = shot.story({inches: state.units === "inch"});
+    list.fill(shown, (e) => ({words: [sentence(story[shot.events.indexOf(e)])]}));
     mark();
   };
   const all = make("input", {type: "checkbox", onchange: () => {

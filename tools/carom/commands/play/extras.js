@@ -74,7 +74,6 @@ function settingsDialog(state, keys) {
 
 /** Begins with a scene, and shows its "Look for". */
 export function openScene(state, toml, how) {
-  state.match = null;
   begin(state, toml, how);
   const look = lookFor(toml);
   if (look && !state.fixed) state.say(`Look for: ${look}`);

@@ -1,21 +1,26 @@
 // Games: the player's rights, the verdict on a shot, and its consequences.
 
+import {sentence} from "../../page/event_words.js";
 import {inHand} from "./place.js";
-import {begin, change, enter} from "./shots.js";
+import {begin, change, enter, mayLeave} from "./shots.js";
 import {CAROM, startOf, tableOf} from "./tables.js";
+import {named} from "./words.js";
 
 const NOTHING = {ball: "", pocket: "", safety: false, pushOut: false};
 const randomSeed = () => 1 + Math.floor(Math.random() * 1e6);
 
-export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
-
 /** Begins a game with these options of its rules, or continues without one if the name is "". `match`: as
- * in the state. */
-export function newGame(state, name, rules = {}, match = null) {
+ * in the state; `first`: the player who begins. */
+export function newGame(state, name, rules = {}, match = null, first = 0) {
+  if (mayLeave(state)) rackUp(state, name, rules, match, first);
+}
+
+function rackUp(state, name, rules, match, first) {
   const {carom} = state, table = tableOf(name, state.scene.table.preset || "nine_foot");
   const target = CAROM.includes(name) ? 15 : name === "straight_pool" ? 50 : 0;
-  const game = name === "" ? null : {state: carom.games.start(name, {target, rules}), option: 0};
-  state.match = match;
+  const game = name === "" ? null : {state: carom.games.start(name, {first, target, rules}), option: 0};
+  Object.assign(state, {match, mode: match ? "play" : state.mode});
+  state.tell("mode");
   begin(state, startOf(carom, name, table, randomSeed()), {game});
 }
 
@@ -31,10 +36,35 @@ export function legal({carom, game, scene}) {
   }
   const score = now.points.some((x) => x !== 0) ? ` Points: ${now.points.join(" to ")}.` : "";
   const group = now.game === "eight_ball" && now.group[now.turn] !== "open"
-    ? ` Plays ${now.group[now.turn]}.` : "";
+    ? `, playing ${now.group[now.turn]}` : "";
   const few = may.first.length > 0 && may.first.length < 8;
-  const first = few ? ` Hit first: ${may.first.join(", ")}.` : "";
-  return {...may, text: `${sentence(may.text)}.${group}${first}${score}`};
+  const first = now.game === "snooker" ? ` ${ballOn(now)}` : few ? ` Hit first: ${may.first.join(", ")}.`
+    : "";
+  const nominates = now.game === "snooker" && (now.free_ball || now.on === "colour");
+  return {...may, nominates, callable: nominates ? may.first : may.callable,
+    text: `${sentence(may.text)}${group}.${first}${score}`};
+}
+
+const VALUES = {red: 1, yellow: 2, green: 3, brown: 4, blue: 5, pink: 6, black: 7};
+/** Snooker: the ball on, and its value. */
+function ballOn({on, free_ball: free}) {
+  if (on === "colour") return "On: any colour; nominate it.";
+  const due = `${on === "red" ? "a red" : `the ${on}`} (${VALUES[on]})`;
+  return free ? `On: ${due}, or any ball as a free ball; nominate it.` : `On: ${due}.`;
+}
+
+/** Straight pool: where the balls go after the fourteenth. */
+function rackWords({decision, respots}, {outcome}, {corner, length}) {
+  if (decision !== "rack fourteen") return "";
+  const where = ({place: [, y]}) => ["head", "centre", "foot"].find((_, k) =>
+    Math.abs(y - corner[1] - (k + 1) * length / 4) < 0.01);
+  const left = outcome.balls.filter(({id, pocket, offTable}) => id !== "cue" && !pocket && !offTable);
+  const told = [...left.map(({id}) => id), "cue"].map((id) => {
+    const back = respots.find(({ball}) => ball === id), spot = back && where(back);
+    if (!back) return id === "cue" ? "" : ` ${sentence(named(id))} stays where it is.`;
+    return ` ${sentence(named(id))} goes to ${spot ? `the ${spot} spot` : "its place in the rack"}.`;
+  });
+  return `${left.length === 0 ? "All fifteen" : "The fourteen"} balls are racked.${told.join("")}`;
 }
 
 /** Judges the shot with the player's calls. */
@@ -64,6 +94,8 @@ export function nextShot(state, option = 0) {
   const from = {toml: scene.toml, state: game.state, announced: {...announced}, option};
   try {
     advance(state, verdict.next({option}), {state: then, judged: verdict, option, shot, from});
+    const racked = rackWords(verdict.options[option], shot, scene.table);
+    if (racked) state.say(racked);
   } catch (error) {
     state.refuse(error);
   }
@@ -84,4 +116,28 @@ function advance(state, after, game) {
   if (enter(state, after, {game, set}) && !state.level && (game || state.raised !== raised))
     change(state, {"cue.elevation_deg": game ? 0 : raised}, {remember: false});
   if (said) state.say(said);
+}
+
+/** Another rack of the match, or after its last one another match; the other player breaks. */
+export function nextRack(state) {
+  const {match, game, verdict, inMatch} = state, {winner} = verdict.options[0].state;
+  const racks = match.racks.map((won, k) => inMatch ? won + Number(k === winner) : 0),
+    first = 1 - match.first;
+  rackUp(state, game.state.game, match.rules, {...match, racks, first}, first);
+}
+
+/** Shows the last shot of the game again. */
+export function replay(state) {
+  const {carom, game, scene, shot} = state;
+  if (!game?.from || !state.free) return;
+  Object.assign(state, {replayed: {scene, shot}, scene: carom.Scene.parse(game.from.toml), shot: game.shot,
+    rotations: null, hints: []});
+  state.tell("view");
+  state.clock.run(true);
+}
+export function endReplay(state) {
+  state.scene.free();
+  Object.assign(state, {...state.replayed, replayed: null, rotations: null});
+  state.tell("view");
+  state.clock.go(0);
 }

@@ -4,7 +4,7 @@
 import {firstContact} from "./aids.js";
 import {nextShot} from "./game.js";
 import {withNames} from "./players.js";
-import {LIMITS, change} from "./shots.js";
+import {LIMITS, change, changesOf, strike} from "./shots.js";
 import {adviceWords} from "./words.js";
 
 export const LEVELS = ["beginner", "club", "league", "professional", "machine"];
@@ -14,14 +14,6 @@ const SEEN = 1400;  // [ms] from the announcement of a shot to its strike, and f
 const seedOf = () => 1 + Math.floor(Math.random() * 1e9);
 
 export const wait = (state, ms) => new Promise((done) => setTimeout(done, state.quick ? 0 : ms));
-
-/** The keys of a scene file for a strike, and the place of the ball in hand. */
-function changesOf(state, strike, place) {
-  const {speed, aim_deg, elevation_deg, offset: [side, height]} = strike, {ball} = state.scene.cue;
-  const put = place ? {[`ball.${ball}.position.x`]: place[0], [`ball.${ball}.position.y`]: place[1]} : {};
-  return {...put, "cue.speed": speed, "cue.aim_deg": aim_deg, "cue.elevation_deg": elevation_deg,
-    "cue.offset.side": side, "cue.offset.height": height};
-}
 
 /** Thinks, and says so. @returns the advice, or null if it is stopped or fails, with a message */
 async function think(state, busy, game, options) {
@@ -45,18 +37,18 @@ function done(state, busy) {
 /** The shot of carom, if it is its turn. */
 export async function takeTurn(state) {
   const {level} = state, busy = {level};
-  if (!level || !state.aiming || state.busy) return;
+  if (!level || !state.aiming || state.busy || state.resumes) return;
   const advice = await think(state, busy, state.game.state, {skill: level, best: 1, shots: 0});
   if (!advice || state.busy !== busy) return done(state, busy);
-  const [{words, call, strike, cue, place}] = advice;
+  const [{words, call, strike: hand, cue, place}] = advice;
   state.announced = {...call};
-  const made = change(state, changesOf(state, strike, place), {remember: false}) ||
+  const made = change(state, changesOf(state, hand, place), {remember: false}) ||
     change(state, changesOf(state, cue, place), {remember: false});
   state.say(`carom (${level}): ${adviceWords(words)}.`);
   if (made) await wait(state, SEEN);
   const goes = made && state.busy === busy && state.aiming;
   done(state, busy);
-  if (goes) state.clock.run(true);
+  if (goes) strike(state);
 }
 
 /** For another table: drops the search for the last one. */
@@ -92,9 +84,12 @@ export async function goOn(state) {
     nextShot(state, option);
 }
 
-/** A game state for advice in practice: the middle of a turn with an open table. */
-const practice = (carom) => ({...carom.games.start("eight_ball"), opening: false,
-  in_hand: "no"});
+/** A game state for advice in practice: the break of a rack, or the middle of a turn with an open table. */
+function practice({carom, scene}) {
+  const [, racked] = /^\[rack\]\s*\ngame = "(\w+)"/m.exec(scene.toml) ?? [];
+  if (PLAYED.includes(racked)) return carom.games.start(racked);
+  return {...carom.games.start("eight_ball"), opening: false, in_hand: "no"};
+}
 
 /** Whether hints are allowed. */
 export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &&
@@ -102,9 +97,10 @@ export const mayHint = ({fixed, game, match, mode, level}) => !fixed && !level &
 
 /** Shows the three best shots. */
 export async function hint(state) {
-  const {carom, scene, game} = state, busy = {hint: true};
+  const {carom, scene, game, match} = state, busy = {hint: true}, skill = match?.errors || "professional";
   if (!state.aiming || state.busy) return;
-  const advice = await think(state, busy, game?.state ?? practice(carom), {skill: "professional", best: 3});
+  const advice = await think(state, busy, game?.state ?? practice(state),
+    {skill, best: 3, shots: 100, seconds: 1.5});
   if (advice && state.scene === scene) state.hints = advice.map((one) => {
     const changed = scene.with(changesOf(state, one.cue, one.place)), shot = carom.simulate(changed, LIMITS);
     const {x, y} = changed.balls.find(({id}) => id === changed.cue.ball);
@@ -113,7 +109,7 @@ export async function hint(state) {
     changed.free();
     return {...one, contact, from: [x, y], words: adviceWords(one.words)};
   });
-  if (advice) state.say("The success rates are for a professional.");
+  if (advice) state.say(`The success rates are for a hand with the errors of the level ${skill}.`);
   done(state, busy);
   state.tell("hints");
   state.clock.refresh();

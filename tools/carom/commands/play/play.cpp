@@ -73,6 +73,17 @@ Json keys_to_set() {
     return keys;
 }
 
+/// The shaders of the view behind the cue ball, by file name.
+Json shaders() {
+    Json sources;
+    for (const PageFile& file : play_files()) {
+        const std::string_view name = file.name;
+        if (name.ends_with(".vert") || name.ends_with(".frag") || name.ends_with(".glsl"))
+            sources[file.name] = file.text;
+    }
+    return sources;
+}
+
 /// Data for the page's script: the scene, the locked keys, and the choices. @throws
 /// UsageError
 Json start_of(const PlayArgs& args) {
@@ -81,6 +92,7 @@ Json start_of(const PlayArgs& args) {
     page["scenes"] = shipped_scenes();
     page["tables"] = kTablePresets;
     page["keys"] = keys_to_set();
+    page["shaders"] = shaders();
     page["scene"] = "";
     if (!args.scene.empty()) {
         if (is_record(args.scene))

@@ -6,7 +6,7 @@ import * as carom from "../../../../web/npm/core.js";
 import {button, make, pageData, prefers} from "../../page/dom.js";
 import {eventsCard} from "./events_card.js";
 import {openScene} from "./extras.js";
-import {judge, newGame} from "./game.js";
+import {endReplay, judge, newGame} from "./game.js";
 import {gameCard, gameDialog} from "./game_card.js";
 import {keepMatch, resumeMatch} from "./match.js";
 import {goOn, hint, newTable} from "./opponent.js";
@@ -16,16 +16,18 @@ import {setupCard} from "./setup_card.js";
 import {wasmOfPage} from "./share.js";
 import {openAddress, share, shareCard} from "./share_card.js";
 import {begin, change, keep} from "./shots.js";
+import {sightButton} from "./sight.js";
 import {followSounds} from "./sound.js";
 import {State} from "./state.js";
 import {strokeCard} from "./stroke.js";
 import {tableCard} from "./table_card.js";
 import {startOf} from "./tables.js";
 import {Thinker} from "./thinker.js";
-import {verdictWords} from "./words.js";
+import {named, verdictWords} from "./words.js";
 
 const KEYS = "Keys: ← → aim (Shift: 1°, Alt: 0.01°), ↑ ↓ power, W A S D tip, Space shoot, Esc back, " +
-  "Ctrl+Z undo, 0 the whole table. The wheel or two fingers zoom; Shift and the wheel aim finely.";
+  "Ctrl+Z undo, 0 the whole table, V behind the cue ball. The wheel or two fingers " +
+  "zoom; Shift and the wheel aim finely.";
 /** The original page, to send it with another scene. */
 const WHOLE = location.protocol === "file:" ? document.documentElement.outerHTML : "";
 
@@ -48,10 +50,10 @@ async function load() {
 function conclude(state) {
   judge(state);
   const {shot, verdict} = state, fell = shot.outcome.balls.filter((b) => b.pocket);
-  const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => b.id);
+  const ids = fell.sort((a, b) => a.fell - b.fell).map((b) => named(b.id, state.scene.table.preset));
   const gone = ids.length > 0 ? ` In pockets: ${ids.join(", ")}.` : "";
   if (state.game && !verdict) return;
-  const judged = verdict ? ` ${verdictWords(verdict)}` : "";
+  const judged = verdict ? ` ${verdictWords(verdict, state.game.state.game)}` : "";
   const warned = shot.warnings.map((text) => ` Warning: ${text}.`).join("");
   state.say(`At rest after ${shot.duration.toFixed(2)} s.${gone}${judged}${warned}`);
 }
@@ -73,44 +75,52 @@ function modes(state) {
     state.mode = mode;
     state.tell("mode");
     state.clock.refresh();
-  }, {disabled: state.fixed ? "" : null}));
-  const show = () =>
-    boxes.forEach((box, k) => box.setAttribute("aria-pressed", String(names[k][0] === state.mode)));
-  state.on("mode", show);
+  }));
+  // In a match, every shot counts, and no path is shown before.
+  const show = () => boxes.forEach((box, k) => {
+    box.setAttribute("aria-pressed", String(names[k][0] === state.mode));
+    box.disabled = state.fixed || state.inMatch;
+  });
+  for (const event of ["mode", "table", "ended"]) state.on(event, show);
   show();
   return make("div", {class: "modes", role: "group", "aria-label": "Mode"}, ...boxes);
 }
 
-function topBar(state, sound) {
+function topBar(state, sound, opens) {
   const {page} = state, full = () => document.fullscreenElement ? document.exitFullscreen()
     : document.documentElement.requestFullscreen?.();
   const word = (text) => make("span", {class: "word"}, text);
   const held = state.fixed || state.locked("table") ? "" : null;
   const more = toggle("☰", "More", (on) => document.body.classList.toggle("more", on));
-  more.classList.add("more-button");
+  more.classList.add("more-button", "kept");
   return make("header", {class: "top"}, make("h1", {}, page.title), make("p", {class: "lead"}, page.lead),
     make("span", {class: "room"}), modes(state),
-    button(["New", word(" game …")], gameDialog(state), {disabled: held, "aria-label": "New game"}),
+    button(["New", word(" game …")], opens, {disabled: held, "aria-label": "New game"}),
     toggle(["♪", word(" Sound")], "Sound", (on) => sound.turn(on)),
-    button("Full screen", full, {class: "full"}), more);
+    button("Full screen", full, {class: "full"}), sightButton(state), more);
 }
 
 /** Makes the parts of the page. @returns objects for its tests */
 function build(state) {
-  const sound = followSounds(state), table = tableCard(state), shared = shareCard(state, WHOLE);
+  const opens = gameDialog(state), sound = followSounds(state), table = tableCard(state),
+    shared = shareCard(state, WHOLE);
   const made = ["Made by ", make("code", {}, state.page.command), `, carom ${carom.version()}`];
   const side = make("div", {class: "side"}, strokeCard(state), eventsCard(state), setupCard(state),
     shared.card, make("p", {class: "keys"}, KEYS), make("footer", {}, ...made));
-  document.body.prepend(make("main", {class: "play"}, topBar(state, sound), scoreBar(state), ...table.parts,
-    make("div", {class: "right"}, gameCard(state), side)));
+  document.body.prepend(make("main", {class: "play"}, topBar(state, sound, opens), scoreBar(state),
+    ...table.parts,
+    make("div", {class: "right"}, gameCard(state, opens), side)));
   followKeys(state, table.tip);
   state.on("table", () => newTable(state));
   state.on("starts", () => {
-    if (state.clock.now > 0) return;
+    if (state.clock.now > 0 || state.replayed || state.fired && state.counts) return;
     keep(state);
     judge(state);
+    Object.assign(state, {fired: true, resumes: false});
+    state.tell("struck");
   });
   state.on("ended", () => {
+    if (state.replayed) return endReplay(state);
     conclude(state);
     goOn(state);
   });

@@ -3,7 +3,7 @@
 
 import {make} from "../../page/dom.js";
 import {HARDEST, PULL, pulledBack, speedOf} from "./aids.js";
-import {change} from "./shots.js";
+import {change, strike} from "./shots.js";
 import {speedWord, withUnit} from "./words.js";
 
 const TAP = 10;  // [px] a pointer that moves less sets the power without a pull
@@ -16,7 +16,7 @@ export const setSpeed = (state, speed, how) => !state.locked("cue.speed") &&
 
 /** Strikes if the cue was pulled; otherwise restores the previous speed. */
 export function letGo(state, before) {
-  if (state.scene.cue.speed >= LEAST) state.clock.run(true);
+  if (state.scene.cue.speed >= LEAST) strike(state);
   else setSpeed(state, before, {remember: false});
 }
 
@@ -28,14 +28,18 @@ export function pullStrip(state) {
   let hold = null;
   const follow = (event) => {
     const box = element.getBoundingClientRect();
-    const way = PULL * (event.clientX - box.left - 0.06 * box.width) / (0.9 * box.width);
-    hold.moved ||= Math.abs(event.clientX - hold.x) > TAP;
+    // In landscape on a phone, the strip is upright.
+    const [at, size] = box.height > box.width ? [event.clientY - box.top, box.height]
+      : [event.clientX - box.left, box.width];
+    const way = PULL * (at - 0.06 * size) / (0.9 * size);
+    hold.from ??= at;
+    hold.moved ||= Math.abs(at - hold.from) > TAP;
     hold.kept = setSpeed(state, speedOf(way), {remember: !hold.kept}) || hold.kept;
   };
   element.onpointerdown = (event) => {
     if (!state.free || !state.scene.cue || event.button !== 0) return;
     element.setPointerCapture(event.pointerId);
-    hold = {x: event.clientX, moved: false, kept: false, before: state.scene.cue.speed};
+    hold = {moved: false, kept: false, before: state.scene.cue.speed};
     follow(event);
   };
   element.onpointermove = (event) => { if (hold) follow(event); };
@@ -53,8 +57,8 @@ export function pullStrip(state) {
   };
   state.on("stroke", () => {
     const speed = state.scene.cue?.speed ?? 0;
-    cue.style.left = `${6 + 90 * pulledBack(speed) / PULL}%`;
-    words.textContent = `${speedWord(speed)}, ${withUnit(state.units, "speed", speed)}`;
+    element.style.setProperty("--pull", `${6 + 90 * pulledBack(speed) / PULL}%`);
+    words.textContent = `${speedWord(speed)}, cue ${withUnit(state.units, "speed", speed)}`;
     element.setAttribute("aria-valuenow", String(speed));
     element.setAttribute("aria-valuetext", words.textContent);
   });

@@ -3,7 +3,7 @@
 import {brightness, button, cssColour, make} from "../../page/dom.js";
 import {newGame} from "./game.js";
 import {nameOf} from "./players.js";
-import {CAROM} from "./tables.js";
+import {POINTS} from "./words.js";
 
 const LEAVES = ["ball_pocket", "ball_out"];
 
@@ -18,17 +18,21 @@ function chip({id, style: {color, pattern, number}}) {
 const groupOf = (id) => (Number(id) < 8 ? "solids" : Number(id) > 8 ? "stripes" : "");
 
 /** The text beside a player's name. */
-function standing({game: {state: now}}, player) {
+function standing({game: {state: now}, match}, player) {
+  const hand = match && !match.players[player] ? [`${match.errors || "exact"} hand`] : [];
+  const racks = match?.race > 1 ? [`${match.racks[player]} of ${match.race}`] : [];
+  return [...racks, points(now, player), ...hand].filter((x) => x).join(" · ");
+}
+function points(now, player) {
   if (now.game === "eight_ball") return now.group[player] === "open" ? "" : now.group[player];
-  const counts = CAROM.includes(now.game) || ["snooker", "straight_pool", "free_pyramid"].includes(now.game);
-  return counts ? `${now.points[player]}${now.target ? ` of ${now.target}` : ""}` : "";
+  return POINTS.includes(now.game) ? `${now.points[player]}${now.target ? ` of ${now.target}` : ""}` : "";
 }
 
 export function scoreBar(state) {
   const element = make("section", {class: "score", "aria-label": "Score"});
   const again = button(["↺", make("span", {class: "word"}, " Start again")], () => {
     const {game: {state: now}, match} = state;
-    newGame(state, now.game, match?.rules ?? {}, match);
+    newGame(state, now.game, match?.rules ?? {}, match && {...match, racks: [0, 0]}, match?.first);
   }, {"aria-label": "Start again", title: "Start again"});
   const show = () => {
     if (!state.shot) return;
@@ -45,7 +49,7 @@ export function scoreBar(state) {
     const players = !now ? [] : [0, 1].map((player) => {
       const own = grouped ? tray(off.filter(({id}) => groupOf(id) === now.group[player])) : null;
       return make("span", {class: "player", "aria-current": now.turn === player && !now.over ? "true" : null},
-        make("b", {}, nameOf(state, player)), " ", standing(state, player), own);
+        make("b", {}, nameOf(state, player)), " ", make("small", {}, standing(state, player)), own);
     });
     const others = off.filter(({id}) => !grouped || groupOf(id) === "");
     const rest = others.length > 0 ? [tray(others)] : [];

@@ -42,6 +42,12 @@ export function setupCard(state) {
     state.tell("stroke");
     state.tell("lists");
   });
+  const paths = select("Predicted paths",
+    [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths, (x) => {
+      state.paths = x;
+      state.clock.refresh();
+      state.tell("lists");
+    });
   const numbers = make("input", {type: "checkbox", onchange: () => {
     state.numbered = state.view.numbered = numbers.checked;
     state.clock.refresh();
@@ -54,7 +60,7 @@ export function setupCard(state) {
   });
   return make("details", {class: "card setup"}, make("summary", {}, "Table, balls, units"),
     field("Table", table), field("Rack", rack), field("Cloth", cloth), field("Cushions", cushions),
-    field("Units", units),
+    field("Units", units), field("Predicted paths", paths),
     make("label", {}, numbers, " number the diamonds"), placeFields(state),
     make("fieldset", {class: "materials"}, make("legend", {}, "Balls"), ...materialFields(state)));
 }

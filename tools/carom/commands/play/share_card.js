@@ -39,7 +39,8 @@ export async function openAddress(state) {
   if (found === null) return null;
   if (state.fixed) return "This page shows only its own scene, not the one in the address.";
   try {
-    begin(state, found.toml, {remember: false});
+    if (!begin(state, found.toml, {remember: false}) && state.shot)
+      return "The scene in the address was not opened.";
   } catch (error) {
     return `The scene in the address is not valid: ${error.message}`;
   }

@@ -6,6 +6,28 @@ import {without} from "./scene_text.js";
 export const LIMITS = {seconds: 2, events: 20000};
 const UNDO_LIMIT = 200;
 
+/** Asks before a match ends without a winner. @returns whether it may end */
+export const mayLeave = (state) => !state.inMatch || state.fixed || confirm("This ends the match. End it?");
+
+/** The keys of a scene file for a strike, and the place of the ball in hand. */
+export function changesOf(state, strike, place) {
+  const {speed, aim_deg, elevation_deg, offset: [side, height]} = strike, {ball} = state.scene.cue;
+  const put = place ? {[`ball.${ball}.position.x`]: place[0], [`ball.${ball}.position.y`]: place[1]} : {};
+  return {...put, "cue.speed": speed, "cue.aim_deg": aim_deg, "cue.elevation_deg": elevation_deg,
+    "cue.offset.side": side, "cue.offset.height": height};
+}
+
+/** Strikes, in a match with the errors of the person's hand. From then on the shot counts. */
+export function strike(state) {
+  const {carom, scene, match, level, counts} = state, skill = level ? "" : match?.errors;
+  if (!state.aiming || !scene.cue) return;
+  if (counts && skill) {
+    const seed = 1 + Math.floor(Math.random() * 1e9), hand = carom.games.strike(scene, {skill, seed});
+    change(state, changesOf(state, hand, null), {remember: false});
+  }
+  state.clock.run(true);
+}
+
 /** Simulates a scene and shows it, or shows why it cannot. `fresh`: it has other balls or another table.
  * @returns whether it succeeded */
 function use(state, candidate, fresh) {
@@ -19,7 +41,8 @@ function use(state, candidate, fresh) {
   }
   // A game still needs the shot that it judged.
   if (state.shot && state.game?.shot !== state.shot) state.shot.free();
-  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: []});
+  Object.assign(state, {scene: candidate, shot: played, verdict: null, rotations: null, hints: [],
+    fired: false});
   state.clock.now = 0;
   if (fresh) state.tell("table");
   state.clock.show(0);
@@ -45,6 +68,11 @@ function joined(set, scene) {
 /** Puts other balls or another table on the page, in a game or without one. `set`: further balls that
  * belong to it. @returns whether it succeeded */
 export function enter(state, candidate, {game = null, remember = true, set = []} = {}) {
+  if (game === null && !mayLeave(state)) {
+    candidate.free();
+    return false;
+  }
+  if (game === null) state.match = null;
   const before = {game: state.game, set: state.set, raised: state.raised}, kept = state.past.length;
   if (remember && state.scene) keep(state);
   Object.assign(state, {game, set: joined(set, candidate), raised: candidate.cue?.elevation_deg ?? 0});

@@ -16,8 +16,12 @@ export class State {
       mode: fixed ? "play" : "practise",
       units: "metric", paths: "all", numbered: false, contactsOnly: true, placed: "", said: "",
       // A game is {state, option, judged, shot, from}: the state before this shot, and its origin. A match is
-      // {players, hints, rules}: a level for each player, "" for a person; whether hints are allowed.
-      game: null, match: null, verdict: null,
+      // {players, hints, rules, errors, race, racks}: a level for each player, "" for a person; whether hints
+      // are allowed; the level whose errors a person's hand has, "" for none; the racks that win, and those
+      // that each player has won. `fired`: whether this shot was struck. `resumes`: a stored one will be.
+      game: null, match: null, verdict: null, fired: false, resumes: false,
+      // While the last shot of a game is shown again: the scene and the shot to return to.
+      replayed: null,
       announced: {ball: "", pocket: "", safety: false, pushOut: false},
       // The thinking player: {level, hint}, or null; whether a person shoots for carom. Advice on the table.
       busy: null, yielded: false, hints: [],
@@ -46,12 +50,21 @@ export class State {
     this.waiting = setTimeout(() => this.tell("lists"), 120);
   }
 
-  /** Whether nothing has moved yet. */
-  get aiming() { return this.clock.now === 0 && !this.clock.playing; }
+  /** Whether nothing has moved yet; a shot that counts has none of that once it is struck. */
+  get aiming() { return this.clock.now === 0 && !this.clock.playing && !(this.fired && this.counts); }
   /** Whether a person may aim now. */
   get free() { return this.aiming && (this.busy === null || this.busy.hint) && !this.level; }
   /** Whether strokes count: in a played game, nothing can be undone. */
-  get counts() { return this.mode === "play" && this.game !== null; }
+  get counts() { return !this.replayed && this.game !== null && (this.mode === "play"
+    || this.match !== null); }
+  /** Whether this shot has ended the game. */
+  get over() { return !this.aiming && Boolean(this.verdict?.options[0].state.over); }
+  /** Whether a match is not decided yet. */
+  get inMatch() {
+    const {match, game, verdict} = this, winner = this.over ? verdict.options[0].state.winner : -1;
+    return match !== null && game !== null && !(this.over && (match.racks?.[winner] ?? 0) +
+      1 >= (match.race ?? 1));
+  }
   /** The level of the player whose turn it is, or "" for a person. */
   get level() {
     const now = this.game?.state;

@@ -25,7 +25,12 @@ export function nudge(state, key, by) {
 function numberField(state, label, key, {unit, shown = (x) => x, ...limits}, digits) {
   const attributes = {...limits, disabled: state.locked(`cue.${key}`) ? "" : null};
   const write = (input) => {
-    if (state.free) change(state, {[`cue.${key}`]: Number(input.value) / unit()[0]});
+    if (!state.free) return;
+    const wanted = Number(input.value) / unit()[0], value = Math.min(Math.max(wanted, limits.min),
+      limits.max);
+    const made = change(state, {[`cue.${key}`]: value});
+    if (made && value !== wanted)
+      state.say(`${label}: ${shown(value * unit()[0]).toFixed(digits)} ${unit()[1]}, the limit.`, true);
   };
   const slide = make("input", {type: "range", ...attributes, "aria-label": `${label}, ${unit()[1]}`,
     oninput: () => write(slide)});
@@ -53,22 +58,56 @@ export function strokeCard(state) {
   return card;
 }
 
-/** The player's tools: {tip, parts}: the cue ball for the tip, and the cue to pull. */
+const FINE = 0.02;  // [degrees] of aim per pixel
+
+/** A strip that turns the aim finely; `words` lie on it. */
+function fineStrip(state, words) {
+  const element = make("div", {class: "fine", role: "slider", tabindex: "0", "aria-label": "Fine aim",
+    "aria-valuemin": "-180", "aria-valuemax": "180"}, words);
+  let hold = null;
+  element.onpointerdown = (event) => {
+    if (!state.free || !state.scene.cue || state.locked("cue.aim_deg") || event.button !== 0) return;
+    element.setPointerCapture(event.pointerId);
+    hold = {x: event.clientX, aim: state.scene.cue.aim_deg, kept: false};
+  };
+  element.onpointermove = (event) => {
+    if (!hold || !state.free) return;
+    const aim = wrapped(hold.aim - FINE * (event.clientX - hold.x));
+    hold.kept = change(state, {"cue.aim_deg": rounded(aim)}, {remember: !hold.kept}) || hold.kept;
+  };
+  element.onpointerup = element.onpointercancel = () => { hold = null; };
+  element.onkeydown = (event) => {
+    const step = {ArrowLeft: FINE, ArrowRight: -FINE}[event.key];
+    if (!step || !state.free) return;
+    event.preventDefault();
+    event.stopPropagation();
+    nudge(state, "aim_deg", step);
+  };
+  state.on("stroke", () => {
+    const aim = state.scene.cue?.aim_deg ?? 0;
+    element.style.setProperty("--turned", `${-aim / FINE % 10}px`);
+    element.setAttribute("aria-valuenow", String(aim));
+    element.setAttribute("aria-valuetext", `${aim.toFixed(2)} degrees, ${words.textContent}`);
+  });
+  return element;
+}
+
+/** The player's tools: {tip, parts}: the cue ball for the tip, the cue to pull, and the fine aim. */
 export function strokeParts(state) {
   const tip = new TipPicture((side, height) => {
     if (state.free && !state.locked("cue.offset"))
       change(state, {"cue.offset.side": side, "cue.offset.height": height});
   });
-  const words = make("p", {class: "stroke-words"}), pull = pullStrip(state);
-  const hand = make("div", {class: "hand"}, pull, words);
+  const words = make("p", {class: "stroke-words"}), parts = [tip.element, pullStrip(state), fineStrip(state,
+    words)];
   state.on("stroke", () => {
     const {cue} = state.scene;
-    hand.hidden = tip.element.hidden = cue === null;
+    parts.forEach((part) => { part.hidden = cue === null; });
     if (!cue) return;
     tip.show(cue.side, cue.height);
     const raised = cue.elevation_deg >= 0.5 ? [`cue raised ${cue.elevation_deg.toFixed(0)}°`] : [];
-    const aim = aimWords(firstContact(state.shot, cue.ball)?.met);
+    const aim = aimWords(firstContact(state.shot, cue.ball)?.met, state.scene.table.preset);
     words.textContent = [aim.charAt(0).toUpperCase() + aim.slice(1), tip.words, ...raised].join(" · ");
   });
-  return {tip, parts: [tip.element, hand]};
+  return {tip, parts};
 }

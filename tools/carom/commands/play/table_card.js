@@ -1,26 +1,28 @@
 // The table on the page, the drawings on it, and the controls below it.
 
-import {ICONS, button, icon, make, select} from "../../page/dom.js";
+import {ICONS, button, icon, make} from "../../page/dom.js";
 import {orientations} from "../../page/motion.js";
 import {PlaybackBar} from "../../page/playback.js";
 import {TableView} from "../../page/stage.js";
 import {drawContact, drawCue, drawHints, firstContact} from "./aids.js";
-import {nextShot} from "./game.js";
+import {endReplay, nextShot, replay} from "./game.js";
 import {hint, mayHint, stopThinking, takeTurn} from "./opponent.js";
-import {followPointer} from "./pointer.js";
-import {takeBack} from "./shots.js";
+import {followPointer, lookAtAll} from "./pointer.js";
+import {strike, takeBack} from "./shots.js";
 import {strokeParts} from "./stroke.js";
+
+const USUAL = 5;    // [degrees] every cue is raised this much over a cushion
 
 /** The balls at this time; while aiming, the part of the shot that the mode shows, and the cue. */
 function draw(state) {
-  const {view, shot, scene, paths, mode, clock: {now}} = state, record = shot.motion;
+  const {view, shot, scene, paths, mode, sight, clock: {now}} = state, record = shot.motion;
   view.record = record;
+  view.orientation = state.aiming ? () => [1, 0, 0, 0] : state.rotations ??= orientations(record);
+  if (sight?.draw(now)) return;
   if (!state.aiming) {
-    view.orientation = state.rotations ??= orientations(record);
     view.draw(now, {trails: mode === "play" ? "off" : "ball"});
     return;
   }
-  view.orientation = () => [1, 0, 0, 0];
   const from = state.struck(), only = scene.cue ? shot.balls.indexOf(scene.cue.ball) : -1;
   if (mode === "play") {
     const contact = from && !state.level ? firstContact(shot, scene.cue.ball) : null;
@@ -35,17 +37,28 @@ function draw(state) {
   drawHints(state);
 }
 
+/** Why the shot that is aimed is doubtful: "" for a usual one. */
+function warningOf({aiming, scene: {cue}, shot, level}) {
+  if (!aiming || level) return "";
+  const raise = cue?.in && (cue.clears_deg === null || cue.clears_deg > cue.elevation_deg + USUAL);
+  const reaches = raise
+    ? [`the cue reaches into the ${cue.in.replace(/ c\d+$/, "").replace(/^ball /, "")}; raise it`] : [];
+  return [...reaches, ...shot.warnings].map((text) => `Warning: ${text}.`).join(" ");
+}
+
 /** The effect of a drag on the table now. */
 function helpOf(state) {
   const {game, mode, scene, clock} = state;
   if (state.busy) return "";
+  const coarse = matchMedia("(pointer: coarse)").matches;
+  if (clock.playing && coarse) return "";
   if (clock.playing) return state.counts ? "Space stops the balls." : "Space stops the balls, Esc goes back.";
   if (!state.aiming) return mode === "play" ? "" : "← → one frame, ↑ ↓ one event, Esc back to aiming.";
   if (!scene.cue) return "Drag a ball to move it.";
   const placed = game ? game.state.in_hand !== "no" : true;
   const ball = mode === "practise" && !game ? "a ball: move it"
     : placed && !state.locked("ball") ? "the cue ball: move it" : "";
-  const fine = matchMedia("(pointer: coarse)").matches ? "a second finger" : "Shift";
+  const fine = coarse ? "a second finger" : "Shift";
   return [`Drag the cloth: aim (${fine}: finely)`, ball, "the cue: pull back and let go"]
     .filter((x) => x).join(" · ") + ".";
 }
@@ -53,12 +66,13 @@ function helpOf(state) {
 /** The controls during playback. */
 function watchBar(state) {
   const {clock} = state, bar = new PlaybackBar(clock, 2, ["Previous event", "Next event"]);
-  const back = button("Back to aiming", () => clock.go(0)), next = button("Next shot", () => nextShot(state));
+  const back = button("Back to aiming", () => state.replayed ? endReplay(state) : clock.go(0)),
+    next = button("Next shot", () => nextShot(state));
   bar.element.append(back, next, bar.speeds);
   const show = () => {
     bar.show();
     back.hidden = state.counts;
-    next.hidden = state.game !== null && state.mode === "play";
+    next.hidden = state.replayed !== null || state.game !== null && state.mode === "play";
     bar.scrub.disabled = state.counts && clock.playing;
   };
   state.on("label", () => bar.label(clock.playing ? "Pause" : "Play"));
@@ -69,32 +83,31 @@ function watchBar(state) {
 
 /** The controls while aiming: tip, power, and buttons. @returns {element, tip} */
 function aimBar(state) {
-  const {tip, parts} = strokeParts(state), {clock} = state;
-  const shoot = button([icon(ICONS.play), "Shoot"], () => clock.run(true),
+  const {tip, parts} = strokeParts(state);
+  const shoot = button([icon(ICONS.play), "Shoot"], () => strike(state),
     {class: "shoot", title: "Shoot (space)"});
   const stop = button("Stop", () => stopThinking(state), {class: "shoot"});
   const lets = button("Let carom shoot", () => {
     state.yielded = false;
     takeTurn(state);
   });
+  const again = button("Replay", () => replay(state), {title: "Show the last shot again"});
   const asks = button("Hint", () => hint(state)), undo = button("Undo", () => takeBack(state));
-  const paths = select("Predicted paths",
-    [["all", "all paths"], ["cue", "cue ball's path"], ["off", "no paths"]], state.paths,
-    (x) => { state.paths = x; clock.refresh(); });
   const show = () => {
     shoot.hidden = state.busy !== null;
     shoot.disabled = !state.free || !state.scene?.cue;
     stop.hidden = state.busy === null;
     lets.hidden = !state.yielded;
+    again.hidden = !state.game?.from || state.busy !== null;
     asks.hidden = !mayHint(state);
     asks.disabled = state.busy !== null;
     undo.hidden = state.counts;
     undo.disabled = state.past.length === 0;
-    paths.hidden = state.mode === "play";
   };
   for (const what of ["stroke", "mode", "busy", "label"]) state.on(what, show);
-  const element = make("div", {class: "hands"}, ...parts,
-    make("div", {class: "doing"}, shoot, stop, lets, asks, undo, paths));
+  const element = make("div", {class: "hands"}, ...parts, make("div", {class: "tools"}, lets, asks, again,
+    undo),
+    make("div", {class: "doing"}, shoot, stop));
   return {element, tip};
 }
 
@@ -108,20 +121,29 @@ export function tableCard(state) {
     says.textContent = text;
     says.classList.toggle("error", bad);
   });
+  const whole = button("Whole table", () => lookAtAll(state), {class: "whole", title: "Whole table (0)",
+    hidden: ""});
   const lay = () => {
     if (!state.view) return;
     const room = [Math.max(box.clientWidth, 200), Math.max(box.clientHeight, 120)];
     if (state.view.fit(...room)) state.clock.refresh();
   };
-  state.on("table", () => {
-    const {shape, styles} = state.scene.look();
+  for (const change of ["table", "view"]) state.on(change, () => {
+    const {shape, styles} = state.scene.look(), {bounds: {low, high}} = shape;
+    // The frame outside the diamonds would only make a phone's balls smaller.
+    const rim = shape.wood.length === 0 ? [0, 0] : shape.inlay.length > 0 ? [0.025, 0.025] : [0.05, 0.115];
+    rim.forEach((cut, k) => { low[k] += cut; high[k] -= cut; });
     state.view = new TableView(state.shot.motion, shape, styles, "The table from above");
     state.view.numbered = state.numbered;
     followPointer(state);
-    box.replaceChildren(state.view.element);
+    box.replaceChildren(state.view.element, whole);
     lay();
   });
-  const helps = () => { help.textContent = state.shot ? helpOf(state) : ""; };
+  const helps = () => {
+    const warning = state.shot ? warningOf(state) : "";
+    help.textContent = warning || (state.shot ? helpOf(state) : "");
+    help.classList.toggle("warn", warning !== "");
+  };
   const now = () => {
     document.body.classList.toggle("aiming", state.aiming);
     document.body.classList.toggle("thinking", state.busy !== null);
@@ -131,6 +153,7 @@ export function tableCard(state) {
   for (const what of ["label", "mode", "busy", "stroke"]) state.on(what, now);
   state.on("time", () => {
     draw(state);
+    whole.hidden = !state.view.zoomed;
     if (state.aiming) state.tell("stroke");
     else if (document.body.classList.contains("aiming")) now();
   });

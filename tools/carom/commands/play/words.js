@@ -1,11 +1,20 @@
 // Numbers with units, and events in words.
 
+import {CAROM} from "./tables.js";
+
+/** The games whose score is points. */
+export const POINTS = [...CAROM, "snooker", "straight_pool", "free_pyramid"];
+
 export const UNITS = {
   metric: {speed: [1, "m/s", 2], length: [100, "cm", 1]},
   inch: {speed: [2.2369362921, "mph", 1], length: [39.37007874, "in", 1]},
 };
 
-const named = (id) => (id === "cue" ? "the cue ball" : /^\d/.test(id) ? `the ${id}` : id);
+const COLOURS = /^(white|yellow|red|green|brown|blue|pink|black)$/;
+/** A ball for people. `preset`: of the table; on one for snooker, numbers are reds. */
+export const named = (id, preset = "") => id === "cue" ? "the cue ball"
+  : /^\d+$/.test(id) ? (preset.startsWith("snooker") ? "a red" : `the ${id}`) : COLOURS.test(id)
+    ? `the ${id}` : id;
 
 /** A number of SI units for people. `kind`: speed or length. */
 export function withUnit(units, kind, x) {
@@ -29,12 +38,13 @@ export function tipWords(side, height) {
 }
 
 /** The hit on the object ball: its fullness and the cut. */
-export function aimWords(met) {
+export function aimWords(met, preset) {
   if (!met) return "no ball";
   const quarters = Math.round(4 * (1 - Math.sin(Math.min(met.cut, Math.PI / 2))));
   const part = ["thin", "quarter ball", "half ball", "three-quarter ball", "full"][quarters];
   const cut = (met.cut * 180 / Math.PI).toFixed(0);
-  return `${named(met.id)} ${part}${cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`}`;
+  const side = cut === "0" ? "" : `, cut ${cut}° ${met.left ? "left" : "right"}`;
+  return `${named(met.id, preset)} ${part}${side}`;
 }
 
 /** The engine's words for a shot, with the names of pockets only. */
@@ -42,44 +52,15 @@ export const adviceWords = (words) =>
   words.replace(/(\w+) into \w+ \(([^)]+)\)/, (_, ball, pocket) => `${named(ball)} into the ${pocket}`)
     .replace(/(\d) degrees/, "$1°");
 
-/** The text of an event in the list. */
-export function eventWords(e, units) {
-  const text = ballWords(e, units);
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-function ballWords(e, units) {
-  const ball = named(e.ball), other = named(e.other);
-  const speed = (x) => (x === null ? "" : withUnit(units, "speed", x));
-  const at = e.diamond === null ? "" : ` at diamond ${e.diamond.toFixed(1)}`;
-  const rail = `the ${e.otherName}`;
-  switch (e.type) {
-    case "cue_strike": return `the cue strikes ${ball}: ${speed(e.speed)}`;
-    case "ball_ball": {
-      const cut = e.cut === null ? "" : `, cut ${(e.cut * 180 / Math.PI).toFixed(0)}°`;
-      return `${ball} hits ${other} at ${speed(e.closing)}${cut}`;
-    }
-    case "ball_cluster": return `${e.balls.map(named).join(", ")} meet at once`;
-    case "ball_cushion": return `${ball} bounces off ${rail}${at}: ${speed(e.speed)}`;
-    case "ball_jaw": return `${ball} bounces off a jaw, ${e.otherName}: ${speed(e.speed)}`;
-    case "ball_pocket": return `${ball} is in the ${e.otherName}`;
-    case "ball_edge": return `${ball} crosses the edge of the ${e.otherName}`;
-    case "ball_cloth": return `${ball} lands on the cloth`;
-    case "ball_out": return `${ball} leaves the table`;
-    case "slide_roll": return `${ball} begins to roll: ${speed(e.speed)}`;
-    case "roll_stop": return `${ball} stops`;
-    case "roll_spin": return `${ball} stops and spins on the spot`;
-    case "spin_stop": return `${ball} stops spinning`;
-    default: return `${ball}: ${e.type.replaceAll("_", " ")}${e.other ? ` ${e.other}` : ""}`;
-  }
-}
-
 /** Events of interest to a player, without changes of motion. */
 export const isContact = (e) => ["cue_strike", "ball_ball", "ball_cluster", "ball_cushion", "ball_jaw",
   "ball_pocket", "ball_out"].includes(e.type);
 
-/** The verdict on a shot in a sentence. */
-export function verdictWords(verdict) {
-  const fouls = verdict.fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul));
-  const points = verdict.points > 0 ? `, ${verdict.points} point${verdict.points === 1 ? "" : "s"}` : "";
-  return fouls.length > 0 ? `Foul: ${fouls.join(", ")}.` : `Fair shot${points}.`;
+const counted = (n) => `${n} point${n === 1 ? "" : "s"}`;
+/** The verdict on a shot in a sentence. `game`: its name. */
+export function verdictWords({fouls, points, penalty}, game) {
+  const broken = fouls.map(({foul, rule}) => (rule ? `${foul} (${rule})` : foul)).join(", ");
+  const other = penalty > 0 ? `; ${counted(penalty)} to the other player` : "";
+  return broken ? `Foul: ${broken}${other}.`
+    : `Fair shot${POINTS.includes(game) && points > 0 ? `, ${counted(points)}` : ""}.`;
 }
