@@ -193,11 +193,13 @@ TEST_F(Faults, ResumeFinishesAKilledRenderOverOtherFrames) {
     }
 }
 
-// The rotations of a ball that spins at a million radians a second: minutes of work.
+// The rotations of five hundred balls, each with nearly as many keys as are allowed: seconds of work.
 TEST_F(Faults, ASignalEndsAnExport) {
-    const std::string spins = folder_.write(
-        "spins.toml",
-        "[[ball]]\nid = \"a\"\nposition = [0.6, 0.6]\nspin = [1e6, 1e5, 1e6]\n[stop]\nevents = 5000\n");
+    std::string text = "[table]\ncushion = []\n[balls]\nmu_s = 0\nmu_r = 0\nmu_sp = 0\n[stop]\ntime = 390\n";
+    for (int ball = 0; ball < 500; ++ball)
+        text += "[[ball]]\nid = \"" + std::to_string(ball) + "\"\nposition = [0, " +
+                std::to_string(0.2 * ball) + "]\nspin = [0, 0, 100]\n";
+    const std::string spins = folder_.write("spins.toml", text);
     Process process({CAROM_PROGRAM, "export", spins, "-o", folder_.file("spins.glb")}, ProcessOptions{});
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     process.send(SIGTERM);
