@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <vector>
 
 #include "base/console.h"
+#include "carom/engine/event_details.h"
 #include "page/event_sentence.h"
 
 namespace carom::tools {
