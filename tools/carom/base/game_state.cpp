@@ -111,7 +111,7 @@ Json state_json(const State& state) {
             {"group", {name(state.group[0]), name(state.group[1])}},
             {"may_push_out", state.may_push_out},
             {"fouls", state.fouls},
-            {"on", name(state.on)},
+            {"on", carom::name(state.on)},
             {"free_ball", state.free_ball},
             {"rules", games::chosen_rules(state)}};
 }
