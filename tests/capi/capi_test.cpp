@@ -149,7 +149,7 @@ TEST(CApi, ARecordIsVerified) {
     std::string late = text;
     late.replace(late.find("\"type\":\"ball_ball\""), 18, "\"type\":\"ball_ball_hold\"");
     EXPECT_GT(check(late), 0u);
-    EXPECT_EQ(std::string(broken).substr(0, 3), "U6 ") << broken;
+    EXPECT_EQ(std::string(broken).substr(0, 3), "U5 ") << broken;
     std::string other = text;
     other.replace(other.find("\"gravity\": 9.81"), 15, "\"gravity\": 9.80");
     EXPECT_EQ(check(other), static_cast<std::size_t>(-1));

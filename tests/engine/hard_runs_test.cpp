@@ -239,21 +239,12 @@ TEST(HardRuns, EndWhenPositionsRunOutOfDigits) {
         return std::string("[[table.cushion]]\nfrom = ") + from + "\nto = " + to + "\nheight = " + height +
                "\n";
     };
-    const char *corner = "[1.2824842797119858, 0.9884300685668194]", *low = "0.001", *high = "0.040005";
+    const char *corner = "[1.2824842797119858, 0.9884300685668194]", *low = "0.001";
     const std::string scenes[] = {
         // a fast ball with strong spin in a wedge, left with 1e-12 m/s
         cushion("[1.6, 1.4]", "[0.0, 1.9]", low) + cushion("[0.46, -0.35]", "[1.6, 1.4]", low) +
             "[balls]\nmu_s = 0.0\nf_c = 0.0\n[[ball]]\nvelocity = [197.9, 29.0, 0.0]\n"
             "spin = [-9872.7, -88722.9, 66775.8]\n",
-        // between cushions that absorb all normal speed
-        cushion("[0, 0]", "[0, 1.0]", high) + cushion("[0, 0.9884300685668194]", corner, high) +
-            cushion(corner, "[1.2824842797119858, 0]", high) + cushion("[1.3, 0]", "[0, 0]", high) +
-            "[balls]\npreset = \"carom\"\nmu_s = 0.0\nmu_sp = 1e-05\ne_b = 1.0\ne_c = 0.0\nf_c = 1.0\n"
-            "[physics]\ncushion_touch = \"nose\"\n[[ball]]\nid = \"b1\"\n"
-            "position = [0.2454020237721765, 0.7245632487257941]\n[[ball]]\n"
-            "position = [0.2454020237721765, 0.786055119107232]\nheight = 0.001\nvelocity = [11.4, 3.8]\n"
-            "[[ball]]\nid = \"b3\"\nposition = [0.27530022344626703, 0.83785]\n"
-            "height = 0.015375\n",
         // one creeps at less than the rounding of its surface and meets nothing, while another moves
         cushion("[0.2, 0.1]", "[0.2, 0.9]", low) + cushion("[0.0, 0.0]", "[1e6, 0.0]", low) +
             cushion("[0.0, 2.0]", "[1e6, 2.0]", low) +
@@ -265,7 +256,7 @@ TEST(HardRuns, EndWhenPositionsRunOutOfDigits) {
     for (const std::string& text : scenes) {
         try {
             run_verified(parse_scene(text + "[stop]\nevents = 1000\n", "s.toml"));
-            ADD_FAILURE() << "it ended";
+            ADD_FAILURE() << "it ended: " << text;
         } catch (const SimulationError& error) {
             EXPECT_NE(std::string(error.what()).find("is only known to"), std::string::npos) << error.what();
         }

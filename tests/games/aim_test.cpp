@@ -110,10 +110,11 @@ TEST(Aim, ABlockingBallIsNamed) {
     EXPECT_EQ(aim.shots, 0);
 }
 
-// Without friction between the balls and without squirt the ghost ball is exact.
+// If impacts take no time, without friction between the balls and without squirt, the ghost ball is exact.
 TEST(Aim, WithoutThrowTheGeometryIsTheAim) {
     Scene scene = pool_scene({0.5, 0.6}, {0.8, 1.2});
     scene.balls.mu_b = scene.balls.mu_b_more = 0.0;
+    scene.physics.clusters = ClusterModel::kSequential;
     Cue cue = center_ball(3.0);
     cue.end_mass = 0.0;
     const Aim aim = games::aim_pot(scene, cue, "1", "p4");

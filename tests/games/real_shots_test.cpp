@@ -173,8 +173,10 @@ class RandomPlayers {
         // Occasionally a jump, so that balls leave the table.
         if (random_.below(8) == 0) cue.elevation_deg = 25.0;
         scene_.cue = cue;
-        const games::Call call = {target, "p" + std::to_string(1 + random_.below(6)), random_.below(10) == 0,
-                                  random_.below(2) == 0};
+        games::Call call = {target, "p" + std::to_string(1 + random_.below(6)), random_.below(10) == 0,
+                            random_.below(2) == 0};
+        if (scene_.table.pockets.empty()) call.pocket.clear();
+        call.push_out &= game_ == Game::kNineBall || game_ == Game::kTenBall;
         const Record record = simulate(plan_of(scene_));
         const Verdict verdict = judge(state_, record, call);
         check(record, verdict);

@@ -39,8 +39,13 @@ std::optional<Vec2> measured_centre(Renderer& renderer, const DrawList& list, st
     renderer.read(b);
     double weight = 0.0;
     Vec2 sum(0.0, 0.0);
+    // The neighbours mirror the ball: count only its own disc.
+    const Vec3 at = list.balls[ball].center;
+    const Vec2 middle = *list.camera.project(at);
+    const double reach = (*list.camera.project(at + Vec3(list.balls[ball].radius, 0.0, 0.0)) - middle).norm() + 1.0;
     for (int y = 0; y < a.size.height; ++y) {
         for (int x = 0; x < a.size.width; ++x) {
+            if (!((Vec2(x + 0.5, y + 0.5) - middle).norm() < reach)) continue;
             const double w = std::clamp((a.pixel(x, y)[0] - b.pixel(x, y)[0]) / 60.0, 0.0, 1.0);
             weight += w;
             sum += w * Vec2(x + 0.5, y + 0.5);

@@ -90,7 +90,7 @@ TEST(CliDescribe, TheManPageHasEveryCommandAndIsCleanRoff) {
     const std::string page = described("man");
     EXPECT_EQ(page.rfind(".TH CAROM 1 ", 0), 0u);
     for (const char* text :
-         {".SS \"carom simulate SCENE [options]\"", ".SS \"carom accuracy SCENE [options]\"",
+         {".SS \"carom simulate SCENE [RECORD] [options]\"", ".SS \"carom accuracy SCENE [options]\"",
           "\\fB\\-o, \\-\\-output\\fR \\fIPATTERN\\fR", "\\-\\-vary KEY=DISTRIBUTION",
           "One of top, rail, player, follow."})
         EXPECT_NE(page.find(text), std::string::npos) << text;

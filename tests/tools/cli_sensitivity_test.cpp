@@ -62,7 +62,7 @@ TEST(CliSensitivity, DrawsWhereTheBallsEnd) {
     EXPECT_TRUE(svg.starts_with("<?xml")) << svg.substr(0, 80);
     // Depending on its version, cairo writes an attribute or a style.
     std::size_t dots = 0;
-    for (const std::string dot : {"fill-opacity=\"0.35\"", "fill-opacity:0.35;"})
+    for (const std::string dot : {"fill-opacity=\"0.5\"", "fill-opacity:0.5;"})
         for (std::size_t at = svg.find(dot); at != svg.npos; at = svg.find(dot, at + 1)) ++dots;
     const Json ball = Json::parse(result.out).at("balls").at(1);
     EXPECT_EQ(dots, 60u + 60u - ball.at("fell").get<std::size_t>());

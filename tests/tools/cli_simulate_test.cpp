@@ -182,7 +182,7 @@ TEST_F(CliSimulate, ALongShotIsSummarisedAndListIsComplete) {
     const std::string told = carom({"simulate", rack}).out, whole = carom({"simulate", rack, "--list"}).out;
     EXPECT_TRUE(contains(told, "balls at once")) << told;
     EXPECT_TRUE(contains(told, " s  then ")) << told;
-    EXPECT_LT(std::count(told.begin(), told.end(), '\n'), 40);
+    EXPECT_LE(std::count(told.begin(), told.end(), '\n'), 40);
     const std::size_t events = simulate(make_plan(read_scene(rack), kernel::best_isa())).events.size();
     EXPECT_GT(std::count(whole.begin(), whole.end(), '\n'), static_cast<std::ptrdiff_t>(events));
     EXPECT_FALSE(contains(told + whole, "nan"));

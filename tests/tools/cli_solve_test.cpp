@@ -66,7 +66,7 @@ TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
         return found;
     };
     EXPECT_EQ(count("exactly there, within "), 2u);
-    EXPECT_EQ(count("exactly there: as in 2."), 1u);
+    EXPECT_EQ(count("exactly there: as in 1."), 1u);
 }
 
 TEST_F(CliSolve, DrawsTheShotBesideItsMap) {

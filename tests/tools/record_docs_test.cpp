@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -208,28 +207,6 @@ TEST(RecordDocs, TheExampleIsARecord) {
     const std::string example = page.substr(begin, end - begin);
     EXPECT_EQ(SchemaCheck(schema()).fault(Json::parse(example)), "");
     EXPECT_EQ(parse_record(example, "page").tracks.size(), 2u);
-}
-
-// The pages' scripts have a sentence for every event, except where a resting contact begins or ends, and for
-// the part of the table that it names.
-TEST(RecordDocs, PageScriptsDescribeEveryEvent) {
-    std::string scripts;
-    for (const char* folder : {"tools/carom/page", "tools/carom/commands/play"})
-        for (const auto& entry :
-             std::filesystem::directory_iterator(std::string(CAROM_SOURCE_DIR "/") + folder))
-            if (entry.path().extension() == ".js") scripts += test::read_file(entry.path().string());
-    const auto has = [&scripts](const std::string& text) { return scripts.find(text) != scripts.npos; };
-    const std::map<Partner, std::string> lists = {
-        {Partner::kCushion, "cushions"}, {Partner::kJaw, "jaws"}, {Partner::kPocket, "pockets"}};
-    for (const EventKind& row : kEventKinds) {
-        const std::string name = row.name;
-        const bool rests = row.phase == EventPhase::kHold || row.phase == EventPhase::kRelease;
-        EXPECT_EQ(has("case \"" + name + "\":"), !rests) << name;
-        const auto list = lists.find(row.partner);
-        if (list == lists.end()) continue;
-        const std::string begins = rests ? name.substr(0, name.rfind('_')) : name;
-        EXPECT_TRUE(has(begins + ": " + list->second)) << name;
-    }
 }
 
 }  // namespace
