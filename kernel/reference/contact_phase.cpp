@@ -7,8 +7,8 @@
 namespace carom::reference {
 namespace {
 
-// [L/V] The longest step, in which no contact may open and close unseen; that of the method, in which friction is not
-// stiff; and the resolution of events.
+// [L/V] The longest step, in which no contact may open and close unseen; that of the method, in which
+// friction is not stiff; and the resolution of events.
 constexpr double kStep = 0.01, kShort = 1e-3, kEvent = 1e-13;
 // [slide L/V] As in the kernel: part of the model.
 constexpr double kWeightSlip = 0.1;
@@ -63,7 +63,8 @@ std::vector<double> ContactReference::part(std::size_t first, std::size_t count)
 
 ContactReference::Now ContactReference::look(const std::vector<double>& y, std::size_t number) const {
     const HertzContact& contact = c_.contacts[number];
-    const std::size_t i = 9 * static_cast<std::size_t>(contact.i), j = 9 * static_cast<std::size_t>(contact.j);
+    const std::size_t i = 9 * static_cast<std::size_t>(contact.i),
+                      j = 9 * static_cast<std::size_t>(contact.j);
     std::array<double, 3> z{};
     double square = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -142,8 +143,7 @@ std::vector<double> ContactReference::slope(const std::vector<double>& y) const 
         const Now now = look(y, number);
         if (contact.phase == Phase::kOpen || !(now.d > 0.0)) continue;
         double F = c_.contacts[number].stiffness * std::pow(now.d, 1.5);
-        if (contact.phase == Phase::kUnloading)
-            F *= law_.a + law_.b * std::pow(now.d / contact.most, law_.p);
+        if (contact.phase == Phase::kUnloading) F *= law_.a + law_.b * std::pow(now.d / contact.most, law_.p);
         const auto i = static_cast<std::size_t>(c_.contacts[number].i),
                    j = static_cast<std::size_t>(c_.contacts[number].j);
         std::array<double, 3> slip{}, w{}, f{};
@@ -151,8 +151,8 @@ std::vector<double> ContactReference::slope(const std::vector<double>& y) const 
         for (std::size_t k = 0; k < 3; ++k) w[k] = y[9 * i + 6 + k] + y[9 * j + 6 + k];
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-            slip[k] = y[9 * i + 3 + k] - y[9 * j + 3 + k] - now.rate * now.n[k] + w[l] * now.n[m] -
-                      w[m] * now.n[l];
+            slip[k] =
+                y[9 * i + 3 + k] - y[9 * j + 3 + k] - now.rate * now.n[k] + w[l] * now.n[m] - w[m] * now.n[l];
             square += slip[k] * slip[k];
         }
         const double size = std::sqrt(square),
@@ -192,8 +192,8 @@ std::vector<double> ContactReference::slope(const std::vector<double>& y) const 
     }
     return s;
 }
-// Friction is not stiff in such short steps. A ball that nothing touches slides with constant deceleration until it
-// rolls.
+// Friction is not stiff in such short steps. A ball that nothing touches slides with constant deceleration
+// until it rolls.
 std::vector<double> ContactReference::advance(double h) const {
     const int parts = std::max(1, static_cast<int>(std::ceil(h / kShort)));
     std::vector<double> y = y_;
@@ -239,9 +239,12 @@ std::vector<double> ContactReference::dormand_prince(const std::vector<double>& 
 
 std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double, double look_ahead,
                            double time_limit) noexcept {
-    const auto balls = static_cast<std::size_t>(phase.balls), contacts = static_cast<std::size_t>(phase.contacts);
-    Cluster cluster{{phase.motion, phase.motion + 6 * balls}, {phase.contact, phase.contact + contacts}, {}, phase.held};
-    if (phase.inverse_mass != nullptr) cluster.inverse_mass.assign(phase.inverse_mass, phase.inverse_mass + balls);
+    const auto balls = static_cast<std::size_t>(phase.balls),
+               contacts = static_cast<std::size_t>(phase.contacts);
+    Cluster cluster{
+        {phase.motion, phase.motion + 6 * balls}, {phase.contact, phase.contact + contacts}, {}, phase.held};
+    if (phase.inverse_mass != nullptr)
+        cluster.inverse_mass.assign(phase.inverse_mass, phase.inverse_mass + balls);
     ContactReference reference(cluster, law);
     const double time = reference.run_to_end(look_ahead, time_limit);
     if (time < 0.0) return -1;

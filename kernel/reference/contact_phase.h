@@ -1,6 +1,7 @@
 // The contact phase of a cluster by another method than the kernel's, for tests and `carom accuracy`:
-// Dormand-Prince's order 5 in short steps, which end at the events, located by bisection; the phases of contacts do
-// not change within a step. It shares no code with the kernel, computes one contact at a time, and is slow.
+// Dormand-Prince's order 5 in short steps, which end at the events, located by bisection; the phases of
+// contacts do not change within a step. It shares no code with the kernel, computes one contact at a time,
+// and is slow.
 #pragma once
 
 #include <array>
@@ -31,8 +32,8 @@ class ContactReference {
 
     /// Integrates for a time [L/V] in steps of at most kStep.
     void run(double time);
-    /// Integrates until all contacts are open and none would close within look_ahead. @return the time, or -1 if it
-    /// exceeds the limit
+    /// Integrates until all contacts are open and none would close within look_ahead. @return the time, or -1
+    /// if it exceeds the limit
     double run_to_end(double look_ahead, double time_limit);
 
     /// As ContactPhase::motion and moved.
@@ -70,7 +71,7 @@ class ContactReference {
 };
 
 /// A ContactPhaseFunction that calls it; the tolerance is ignored.
-std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance, double look_ahead,
-                           double time_limit) noexcept;
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance,
+                           double look_ahead, double time_limit) noexcept;
 
 }  // namespace carom::reference

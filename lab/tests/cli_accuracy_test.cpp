@@ -93,8 +93,7 @@ TEST(CliLabAccuracy, RefusesBadUsage) {
              {{"accuracy", "none.toml", "--html", "x.png"}, "a name that ends in .html"},
              {{"margin", "none.toml", "--sweep", "--fps", "60"}, "--sweep goes through the frame rates"},
              {{"margin", "none.toml", "--sweep", "--trace", "t.json"}, "--trace is of one setting"},
-             {{"bench"},
-              "no command given: expected discs, kernel, render or shot"}}) {
+             {{"bench"}, "no command given: expected discs, kernel, render or shot"}}) {
         const ProcessResult result = carom_lab(arguments);
         EXPECT_EQ(result.status, 2) << message;
         EXPECT_NE(result.err.find(message), std::string::npos) << result.err;

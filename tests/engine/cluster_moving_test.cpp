@@ -242,8 +242,9 @@ double largest_jump(Three from, const Three& to, int parts) {
     return most;
 }
 
-// A cluster becomes impacts of two balls where a third ball gets out of reach. These act along the right line, but
-// their balls do not move during the contact, and so meet the third ball up to 0.4 mm beside their true places.
+// A cluster becomes impacts of two balls where a third ball gets out of reach. These act along the right
+// line, but their balls do not move during the contact, and so meet the third ball up to 0.4 mm beside their
+// true places.
 TEST(MovingCluster, ResultsAreContinuousInGapAndAngle) {
     for (const double mu_b : {0.0, 0.05}) {
         double worst = 0.0;

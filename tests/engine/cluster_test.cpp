@@ -29,14 +29,7 @@ struct Result {
 
 ClusterSettings settings(double mu_b, double mu_s, double e, double epsilon = kClusterEpsilon,
                          double tolerance = 1e-6) {
-    return {kR,
-            mu_s,
-            mu_b,
-            e,
-            false,
-            epsilon,
-            tolerance,
-            kernel::contact_phase_function(kernel::best_isa())};
+    return {kR, mu_s, mu_b, e, false, epsilon, tolerance, kernel::contact_phase_function(kernel::best_isa())};
 }
 
 double energy_of(const std::vector<ClusterBall>& balls) {

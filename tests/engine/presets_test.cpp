@@ -90,8 +90,8 @@ TEST(Presets, PoolBallsThrowAsMeasured) {
     for (const double v : {0.447, 1.341, 3.129}) EXPECT_NEAR(throw_at("", v, 10.0), 1.5, 0.5) << v;
     EXPECT_NEAR(throw_at("", 0.447, 35.0), 5.5, 0.5);
     EXPECT_LT(throw_at("", 3.129, 30.0), 0.5 * throw_at("", 0.447, 30.0));
-    // A single friction halves the throw and makes it the same at every speed, but for the turning of the line of
-    // centres during the contact.
+    // A single friction halves the throw and makes it the same at every speed, except for the turning of the
+    // line of centres during the contact.
     EXPECT_LT(throw_at("preset = \"pool_classic\"", 0.447, 35.0), 3.0);
     EXPECT_NEAR(throw_at("preset = \"pool_classic\"", 3.129, 35.0),
                 throw_at("preset = \"pool_classic\"", 0.447, 35.0), 0.2);

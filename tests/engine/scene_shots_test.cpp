@@ -68,7 +68,9 @@ TEST(SceneShots, HalfBallThrow) {
     const std::string shot =
         "[[ball]]\nposition = [0.635, 0.8]\nvelocity = [0, 0.5]\n[[ball]]\nid = \"1\"\nposition = [0.663575, "
         "0.855]\n";
-    EXPECT_NEAR(object_ball_angle(run("[physics]\nclusters = \"sequential\"\n[balls]\nmu_b = 0\n" + shot, "no throw")), 60.0, 1e-6);
+    EXPECT_NEAR(object_ball_angle(
+                    run("[physics]\nclusters = \"sequential\"\n[balls]\nmu_b = 0\n" + shot, "no throw")),
+                60.0, 1e-6);
 }
 
 TEST(SceneShots, ThreeCushionScores) {

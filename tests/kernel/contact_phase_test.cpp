@@ -1,5 +1,5 @@
-// The contact phase of a cluster: every instruction set gives the same bits; the order of the method against a
-// reference with exact events; laws; the end of the phase.
+// The contact phase of a cluster: every instruction set gives the same bits; the order of the method against
+// a reference with exact events; laws; the end of the phase.
 #include "carom/kernel/contact_phase.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <vector>
 
@@ -71,7 +72,8 @@ Cluster random_cluster(Generator& rng) {
     for (int row = 0; row < 5; ++row) {
         for (int k = 0; k < 4; ++k) {
             if (rng.uniform() < density)
-                places.push_back({2.0 * k + row % 2, std::sqrt(3.0) * row, in_space ? rng.uniform(0.0, 0.3) : 0.0});
+                places.push_back(
+                    {2.0 * k + row % 2, std::sqrt(3.0) * row, in_space ? rng.uniform(0.0, 0.3) : 0.0});
         }
     }
     const double most = rng.uniform() < 0.3 ? 0.0 : rng.uniform(0.0, 0.5), touch = rng.uniform(30.0, 300.0);
@@ -82,8 +84,12 @@ Cluster random_cluster(Generator& rng) {
             const double distance = std::sqrt(square);
             if (!(distance < 2.1)) continue;
             for (double& x : n) x /= distance;
-            c.contacts.push_back({static_cast<int>(i), static_cast<int>(j), {n[0], n[1], n[2]},
-                                  -rng.uniform(0.0, most), touch, unlike ? rng.uniform(0.5, 2.0) : 1.0});
+            c.contacts.push_back({static_cast<int>(i),
+                                  static_cast<int>(j),
+                                  {n[0], n[1], n[2]},
+                                  -rng.uniform(0.0, most),
+                                  touch,
+                                  unlike ? rng.uniform(0.5, 2.0) : 1.0});
         }
     }
     for (std::size_t b = 0; b < places.size(); ++b) {
@@ -141,8 +147,9 @@ TEST(ContactPhase, EveryInstructionSetGivesTheSameBits) {
     EXPECT_GE(sizes.size(), 25u) << "all ways to fill the last register";
 }
 
-// Against an independent method: Runge-Kutta steps of order 4 in a thousandth of a contact with bisected events,
-// written for one contact at a time. In the plane and in space, alike and unlike, with all kinds of friction.
+// Against an independent method: Runge-Kutta steps of order 4 in a thousandth of a contact with bisected
+// events, written for one contact at a time. In the plane and in space, alike and unlike, with all kinds of
+// friction.
 TEST(ContactPhase, TheErrorFollowsTheTolerance) {
     Generator rng(31);
     for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
@@ -198,7 +205,7 @@ TEST(ContactPhase, AConstantFitIsOneFriction) {
     EXPECT_GT(difference(a.motion, small_rack().motion), 0.1);
 }
 
-// Momentum to rounding, whatever the tolerance; energy never above its start by more than the tolerance.
+// Momentum to rounding at any tolerance; energy never above its start by more than the tolerance.
 TEST(ContactPhase, KeepsMomentumAndGainsNoEnergy) {
     Generator rng(8);
     for (int k = 0; k < 200; ++k) {
@@ -255,7 +262,8 @@ TEST(ContactPhase, StopsWhenNoContactCloses) {
     const Outcome far = run(best_isa(), three(6.0), law, 1e-6), near = run(best_isa(), three(3.0), law, 1e-6);
     EXPECT_EQ(far.motion[13], 0.0) << "comes in 4.8 L/V";
     EXPECT_NEAR(near.motion[13], 0.950625, 1e-5) << "comes in 1.7 L/V";
-    EXPECT_LT(near.evaluations, 2.2 * static_cast<double>(far.evaluations)) << "none for the flight between them";
+    EXPECT_LT(near.evaluations, 2.2 * static_cast<double>(far.evaluations))
+        << "none for the flight between them";
 }
 
 // Two balls moving together close or open endlessly at the rounding of their speeds, and a contact with

@@ -42,7 +42,8 @@ std::optional<Vec2> measured_centre(Renderer& renderer, const DrawList& list, st
     // The neighbours mirror the ball: count only its own disc.
     const Vec3 at = list.balls[ball].center;
     const Vec2 middle = *list.camera.project(at);
-    const double reach = (*list.camera.project(at + Vec3(list.balls[ball].radius, 0.0, 0.0)) - middle).norm() + 1.0;
+    const double reach =
+        (*list.camera.project(at + Vec3(list.balls[ball].radius, 0.0, 0.0)) - middle).norm() + 1.0;
     for (int y = 0; y < a.size.height; ++y) {
         for (int x = 0; x < a.size.width; ++x) {
             if (!((Vec2(x + 0.5, y + 0.5) - middle).norm() < reach)) continue;

@@ -105,8 +105,8 @@ Scene seeded_break(reference::Generator& rng, int seed) {
     return parse_scene(text, "break.toml");
 }
 
-// The recommendation promises: played with it, a break ends within 1 mm of the other converged method, in at least 19
-// of 20 breaks.
+// The recommendation promises: played with it, a break ends within 1 mm of the other converged method, in at
+// least 19 of 20 breaks.
 TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
     reference::Generator rng(9);
     AccuracySceneArgs args;

@@ -109,7 +109,8 @@ double friction_interval(const Group& g, const Body& b, double h) {
     }
     const double turn = turn_of(m.start, m.end);
     if (turn <= kSame) return kNever;
-    if (turn > kTurnOfMiddle) return allowed_interval(h, 0.5 * m.strength * h * h, g.around.precision * kPlaceError, 2);
+    if (turn > kTurnOfMiddle)
+        return allowed_interval(h, 0.5 * m.strength * h * h, g.around.precision * kPlaceError, 2);
     return allowed_interval(h, m.strength * turn * h * h / 12.0, g.around.precision * kPlaceError, 3);
 }
 
@@ -147,15 +148,17 @@ double link_interval(const Group& g, const Link& link, double h) {
         // The friction between two balls changes with their slip, until that has ended.
         const double change = force * std::abs(friction_at_start(g, link) - link.friction_z);
         const double share = std::min(1.0, length(contact_slip(g, link, false)) / slip_ended(g, link));
-        interval = std::min(interval, allowed_interval(h, change * h * h * share / 8.0, g.around.precision * kFrictionError,
-                                                       slips_on(g, link) ? 3 : 2));
+        interval = std::min(
+            interval, allowed_interval(h, change * h * h * share / 8.0, g.around.precision * kFrictionError,
+                                       slips_on(g, link) ? 3 : 2));
     }
     if (link.distance == 0.0) return interval;
     const Vec2 v = relative(g, link, &Body::v), v_end = relative(g, link, &Body::v_end);
     // [rad] Largest possible turn of the normal.
     const double turn = 0.5 * h / std::abs(link.distance) *
                         (std::abs(cross(link.first, v)) + std::abs(cross(link.first, v_end)));
-    return std::min(interval, allowed_interval(h, force * turn * h * h / 12.0, g.around.precision * kPlaceError, 3));
+    return std::min(interval,
+                    allowed_interval(h, force * turn * h * h / 12.0, g.around.precision * kPlaceError, 3));
 }
 
 // First attempt: until friction alone would have stopped the first ball.

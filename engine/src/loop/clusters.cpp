@@ -98,7 +98,9 @@ Box Clusters::near_box(const ClusterBall& ball, double gap) const {
 }
 
 void Clusters::collect_at(int a, int b, double v_n) {
-    const double time = plan_.clusters == ClusterModel::kCompliant ? contact_time(v_n) * pair_softness(plan_.sizes[a], plan_.sizes[b], {plan_.balls.R, plan_.balls.m})
+    const double time = plan_.clusters == ClusterModel::kCompliant
+                            ? contact_time(v_n) * pair_softness(plan_.sizes[a], plan_.sizes[b],
+                                                                {plan_.balls.R, plan_.balls.m})
                             : 0.0;
     contact_time_ = time;
     const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
@@ -269,15 +271,12 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .slide = p.rolls() ? plan_.motion.front().slide : 0.0,
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
-    const auto run = [&] {
-        return map_.compliant(members_, contacts_, settings, v_n, !in_space_);
-    };
+    const auto run = [&] { return map_.compliant(members_, contacts_, settings, v_n, !in_space_); };
     // A falling ball, or one in space, would move up or down during the cluster, and resting contacts would
     // push other balls meanwhile.
-    may_last &= !in_space_ &&
-                std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
-                    return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
-                });
+    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
+        return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
+    });
     std::int64_t steps = run();
     if (steps >= 0 && may_last) {
         if (find_paths()) return steps;
@@ -286,7 +285,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         while (obstacle_ != kTable && joined_.size() < kMostJoin) {
             joined_.push_back(obstacle_);
             collect_at(first_, second_, v_n);
-                    const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
+            const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
             if (more < 0) break;
             steps += more;
             if (find_paths()) return steps;
@@ -294,7 +293,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         if (!joined_.empty()) {
             joined_.clear();
             collect_at(first_, second_, v_n);
-                    steps += run();
+            steps += run();
         }
     }
     if (steps >= 0 && closes_still(v_n)) {

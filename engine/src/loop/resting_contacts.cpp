@@ -277,8 +277,10 @@ void RestingContacts::solve(int ball, Transitions transitions) {
     log_.note_long_round();
     RestingGroup group = group_of(ball, transitions);
     bool any_released = release_past_ends(group);
-    solve_resting(group, {plan_.geometry, plan_.balls, plan_.gravity,
-                          std::clamp(plan_.impact.tolerance / kDefaultTolerance, 1e-4, 1.0)}, balls_.now());
+    solve_resting(group,
+                  {plan_.geometry, plan_.balls, plan_.gravity,
+                   std::clamp(plan_.impact.tolerance / kDefaultTolerance, 1e-4, 1.0)},
+                  balls_.now());
     if (transitions == Transitions::kDue) log_transitions(group);
     for (const RestingContact& c : group.contacts) {
         if (c.released) {

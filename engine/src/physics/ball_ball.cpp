@@ -169,14 +169,14 @@ namespace effects {
 // How the line of centres turns until the middle of a contact.
 struct ContactTurn {
     double tangent = 0.0;  // of the angle, against the balls' motion past each other
-    double spin = 0.0;     // [rad/s] vertical spin of both balls that has the effect of the turning on the slip
+    double spin = 0.0;  // [rad/s] vertical spin of both balls that has the effect of the turning on the slip
 };
 
-// A contact of two balls without friction and losses: x'' = -2 x^1.5 - v_t^2 / D in units of the approach. In half of
-// its time h the normal turns by h v_t / D, less for a graze, which its turning ends; 1 / (1 + s + ...) is the impulse
-// over that of a normal that stays, fitted to integrations from s = 0 to 12. Friction slows v_t. Because the normal
-// turns on, the slip at both ends of the contact differs from that in its middle by the angle times v_n, as if the
-// balls had more spin.
+// A contact of two balls without friction and losses: x'' = -2 x^1.5 - v_t^2 / D in units of the approach. In
+// half of its time h the normal turns by h v_t / D, less for a graze, which its turning ends; 1 / (1 + s +
+// ...) is the impulse over that of a normal that stays, fitted to integrations from s = 0 to 12. Friction
+// slows v_t. Because the normal turns on, the slip at both ends of the contact differs from that in its
+// middle by the angle times v_n, as if the balls had more spin.
 [[gnu::noinline]] ContactTurn contact_turn(const PairLaw& law, const BallSize& size1, const BallSize& size2,
                                            double mu_b, const Vec2& apart, const Velocities& ball1,
                                            const Velocities& ball2) {
@@ -192,7 +192,8 @@ struct ContactTurn {
     // Half of the friction's impulse acts before the middle.
     const double e_b = law.model.restitution(law.balls);
     if (slip > 0.0) v_t -= 0.5 * std::min(mu_b * (1.0 + e_b) * v_n, 2.0 / 7.0 * slip) * (along / slip);
-    const double h = kHalf * contact_length(v_n) / v_n * pair_softness(size1, size2, {law.balls.R, law.balls.m});
+    const double h =
+        kHalf * contact_length(v_n) / v_n * pair_softness(size1, size2, {law.balls.R, law.balls.m});
     const double s = v_t * v_t * h / (D * v_n), more = s * (0.7443 + 0.5208 * s);
     const double tangent = v_t * h / D * (1.0 + more) / (1.0 + s * (1.0 + more));
     return {tangent, -tangent * v_n / (size1.R + size2.R)};
@@ -232,8 +233,8 @@ PairImpact collide(const PairLaw& law, const BallSize& size1, const BallSize& si
     const Vec2 apart = planar(r2) - planar(r1);
     effects::ContactTurn turn;
     if (law.contact_time) turn = effects::contact_turn(law, size1, size2, mu_b, apart, ball1, ball2);
-    const Vec2 middle = (apart - turn.tangent * Vec2(-apart.y(), apart.x())) /
-                        std::sqrt(1.0 + turn.tangent * turn.tangent);
+    const Vec2 middle =
+        (apart - turn.tangent * Vec2(-apart.y(), apart.x())) / std::sqrt(1.0 + turn.tangent * turn.tangent);
     Ball one = kernel_ball(r1, ball1), two = kernel_ball(r2, ball2);
     if (turn.tangent != 0.0) {
         // From the origin, so that mirrored impacts round alike.

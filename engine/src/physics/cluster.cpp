@@ -127,7 +127,8 @@ double ClusterMap::energy() const {
     double e = 0.0;
     const double* m = mass_.data();
     for (const double* y = motion_.data(); y != motion_.data() + motion_.size(); y += 6, ++m) {
-        const double v2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2], w2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5];
+        const double v2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2],
+                     w2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5];
         e += *m * (0.5 * v2 + 0.2 * w2);
     }
     return e;
@@ -159,9 +160,10 @@ void ClusterMap::keep_energy(double before) {
 
 namespace {
 
-// [L] The distance at which balls touch. The stiffness is that of pool balls, so small balls at hundreds of m/s
-// would overlap by more than their radius and have no normal. They are treated as larger balls that touch at
-// the same points. Balls so large that normals do not turn replace them where the balls must stay in place.
+// [L] The distance at which balls touch. The stiffness is that of pool balls, so small balls at hundreds of
+// m/s would overlap by more than their radius and have no normal. They are treated as larger balls that touch
+// at the same points. Balls so large that normals do not turn replace them where the balls must stay in
+// place.
 double touching(double L, double distance, bool turns) {
     constexpr double kLeast = 8.0, kNoTurn = 1e9;
     return turns ? std::max(kLeast, distance / L) : kNoTurn;
@@ -174,8 +176,9 @@ double fastest(const std::vector<ClusterBall>& balls, const std::vector<ClusterC
     return V;
 }
 
-// [m/s] The unit of speed of a cluster whose fastest approach is V. Below about 1 mm/s the weight's friction is
-// stronger than the contacts, and in units of V it would need a million steps: with this unit it is at most 1.
+// [m/s] The unit of speed of a cluster whose fastest approach is V. Below about 1 mm/s the weight's friction
+// is stronger than the contacts, and in units of V it would need a million steps: with this unit it is at
+// most 1.
 double unit_of_speed(double V, double slide) {
     constexpr double kFast = 1e-3;
     constexpr int kRounds = 8;
@@ -204,8 +207,12 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
         const double Ri = radius(balls[c.i], settings), Rj = radius(balls[c.j], settings);
         // Hertz: the stiffness is proportional to the root of the effective radius.
         const double stiffness = settings.unlike ? std::sqrt(2.0 * Ri * Rj / ((Ri + Rj) * settings.R)) : 1.0;
-        contacts_.push_back({c.i, c.j, {c.n.x(), c.n.y(), c.n.z()}, -c.gap / L,
-                             touching(L, Ri + Rj, settings.turns), stiffness});
+        contacts_.push_back({c.i,
+                             c.j,
+                             {c.n.x(), c.n.y(), c.n.z()},
+                             -c.gap / L,
+                             touching(L, Ri + Rj, settings.turns),
+                             stiffness});
     }
     const int m = static_cast<int>(balls.size()), n = static_cast<int>(contacts.size());
     numbers_.resize(
@@ -223,8 +230,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                      .moved = moved_.data(),
                                      .time = &duration_};
     // Heavy balls compress each other for longer.
-    const double longest =
-        kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
+    const double longest = kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
     kernel::HertzLaw law = law_of(settings, V);
     law.epsilon *= share;
     // A slow contact lasts longer in this unit of time.

@@ -20,8 +20,8 @@ inline constexpr double kClusterFaster = 1.05;
 /// [share of R] Smaller gaps are rounding of the positions: the balls touch.
 inline constexpr double kTouchUlp = 64.0 * kEpsilon;
 
-/// [V] Regularisation of the friction in the compliant model. Against Coulomb's law it errs by 1.4e-3 V in breaks,
-/// in proportion to its size (docs/reference/physics.md, several contacts at once).
+/// [V] Regularisation of the friction in the compliant model. Against Coulomb's law it errs by 1.4e-3 V in
+/// breaks, in proportion to its size (docs/reference/physics.md, several contacts at once).
 inline constexpr double kClusterEpsilon = 1.3e-3;
 /// [L/V] A cluster that has not separated after this many contact times of its heaviest balls is solved as
 /// rigid; the slowest of 16 balls needs a few dozen.
@@ -74,10 +74,10 @@ double fifth_root(double x);
 class ClusterMap {
   public:
     /// Compliant: integrates the contact phase in its own time, scaled by the approach speed V [m/s] of the
-    /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of evaluations of
-    /// the forces, or -1 if the contacts did not separate within kClusterTimeLimit. The positions of the balls are
-    /// unchanged; see duration() and moved(). `held`: all balls stay on the cloth. Otherwise a ball flies or may
-    /// leave the cloth, which reacts next: cloth friction is ignored.
+    /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of
+    /// evaluations of the forces, or -1 if the contacts did not separate within kClusterTimeLimit. The
+    /// positions of the balls are unchanged; see duration() and moved(). `held`: all balls stay on the cloth.
+    /// Otherwise a ball flies or may leave the cloth, which reacts next: cloth friction is ignored.
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V, bool held);
 

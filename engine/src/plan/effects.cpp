@@ -147,7 +147,8 @@ Need contact_time(const Facts& f) {
     // Forced on, it does not change the model.
     if (f.scene.physics.clusters != ClusterModel::kCompliant)
         return {false, f.say("clusters = \"{}\": impacts are instants", name(f.scene.physics.clusters))};
-    if (f.scene.physics.substeps) return {false, f.say("substeps = {}: the published result", *f.scene.physics.substeps)};
+    if (f.scene.physics.substeps)
+        return {false, f.say("substeps = {}: the published result", *f.scene.physics.substeps)};
     if (f.plan.ball_ball->free) return {false, f.say("model {} has free impacts", f.plan.ball_ball->name)};
     if (!f.plan.pairs) return no_two_balls_meet(f);
     return {true, f.say("clusters = \"compliant\": the line of centres turns while two balls touch")};

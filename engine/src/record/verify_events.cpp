@@ -186,8 +186,7 @@ class Events {
                           name(next.state), now_);
         if (next.state == MotionState::kPocketed) return check_pocketed(ball);
         if (next.state == MotionState::kColliding) return check_colliding(ball);
-        if (c.held || c.next == c.before)
-            check_start(ball, next);
+        if (c.held || c.next == c.before) check_start(ball, next);
         // A pile of impacts at one instant is compared as a whole.
         else if (c.next != c.after && c.events < kPile)
             report("U6", "ball {} changes its motion at {:.17g} s more often than its events", id(ball),
@@ -491,9 +490,9 @@ class Events {
         const auto solve = [&](const BallBallModelInfo& model, Velocities& v1, Velocities& v2) {
             const auto hit = [&](bool contact_time) {
                 Velocities one = v1, two = v2;
-                const PairImpact impact = collide({model, settings, plan_.balls, contact_time}, plan_.sizes[a],
-                                                  plan_.sizes[b], body(a, true).r,
-                                                  body(b, true).r + Vec3(0.0, 0.0, R(b) - R(a)), one, two);
+                const PairImpact impact =
+                    collide({model, settings, plan_.balls, contact_time}, plan_.sizes[a], plan_.sizes[b],
+                            body(a, true).r, body(b, true).r + Vec3(0.0, 0.0, R(b) - R(a)), one, two);
                 if (impact.grazes) return false;
                 v1 = one;
                 v2 = two;
@@ -552,7 +551,7 @@ class Events {
         Velocities m{body(ball, true).v, c.w};
         if (!bounce(plan_.balls, plan_.sizes[ball], touches,
                     flights() && !falls(ball) ? std::optional(record_.gravity) : std::nullopt,
-                        plan_.impact.tolerance, m))
+                    plan_.impact.tolerance, m))
             return;
         if (falls(ball)) m.v.z() = c.at.velocity.z();
         free(ball, m.v, m.w);
@@ -659,8 +658,9 @@ class Events {
         const double contacts =
             std::min(0.5 * static_cast<double>(balls * (balls - 1)), 3.0 * static_cast<double>(balls));
         // The line of centres of unlike balls is tilted, and presses one of them on the cloth.
-        const auto [least, most] = std::minmax_element(
-            plan_.sizes.begin(), plan_.sizes.end(), [](const BallSize& p, const BallSize& q) { return p.R < q.R; });
+        const auto [least, most] =
+            std::minmax_element(plan_.sizes.begin(), plan_.sizes.end(),
+                                [](const BallSize& p, const BallSize& q) { return p.R < q.R; });
         const double tilt = (most->R - least->R) / (most->R + least->R);
         return 2.0 * plan_.balls.mu_s * (mu_b + tilt) * contacts;
     }

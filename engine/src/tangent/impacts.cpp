@@ -234,8 +234,8 @@ void collide(Laws& laws, int one, int two, const Dual3& apart, State& s1, State&
                       planar(r) * (contact_distance(size1.R, size2.R, in.balls.discs()) / length(planar(r)));
                   // A skipped friction has no effect, but may have derivatives: skip none.
                   const PairImpact impact =
-                      carom::collide({*plan.ball_ball, settings, in.balls, plan.contact_time}, size1,
-                                     size2, {0.0, 0.0, size1.R}, {level.x(), level.y(), size2.R}, ball1, ball2);
+                      carom::collide({*plan.ball_ball, settings, in.balls, plan.contact_time}, size1, size2,
+                                     {0.0, 0.0, size1.R}, {level.x(), level.y(), size2.R}, ball1, ball2);
                   if (impact.status != kernel::ImpactStatus::kOk)
                       throw TangentError("its model has no solution nearby, as at the edge of a miss");
               });
@@ -342,14 +342,13 @@ void meet_cushion(Laws& laws, int ball, const CushionModelInfo& model, const Dua
     s.v[2] = 0.0;
     const double speed = std::abs(normal[0].x * s.v[0].x + normal[1].x * s.v[1].x);
     const double most = std::max(speed_of(s, laws.numbers.balls[ball].R), speed);
-    meet_table(
-        laws, ball, {normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0, speed, s,
-        [&](const Reader& in, const BallSize& size, const Vec3& nose, Velocities& at) {
-            const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
-            if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt,
-                        laws.plan.impact.tolerance, at))
-                throw TangentError("its model has no solution nearby");
-        });
+    meet_table(laws, ball, {normal[0], normal[1], height}, most > 0.0 ? speed / most : 1.0, speed, s,
+               [&](const Reader& in, const BallSize& size, const Vec3& nose, Velocities& at) {
+                   const NoseTouch touch{planar(nose) / length(planar(nose)), nose.z(), &model};
+                   if (!bounce(in.balls, size, {&touch, 1}, hops ? std::optional(in.gravity) : std::nullopt,
+                               laws.plan.impact.tolerance, at))
+                       throw TangentError("its model has no solution nearby");
+               });
     if (!hops) s.v[2] = fall;
 }
 

@@ -1,10 +1,11 @@
 // The contact phase, four contacts at a time. Built once per instruction set.
 //
-// An evaluation of the right-hand side gathers the balls of four closed contacts, computes their forces in lanes,
-// then adds them to the balls, one contact after another in the order of their numbers. A lane computes the same
-// as a scalar program, and every sum has a fixed order. Only the balls of closed contacts take part in a step; the
-// others move on parabolas. After each step all contacts are examined in lanes: overlaps, rates, largest overlaps,
-// and the predicted time at which each closes, opens or turns, where the next step ends.
+// An evaluation of the right-hand side gathers the balls of four closed contacts, computes their forces in
+// lanes, then adds them to the balls, one contact after another in the order of their numbers. A lane
+// computes the same as a scalar program, and every sum has a fixed order. Only the balls of closed contacts
+// take part in a step; the others move on parabolas. After each step all contacts are examined in lanes:
+// overlaps, rates, largest overlaps, and the predicted time at which each closes, opens or turns, where the
+// next step ends.
 #include "carom/kernel/contact_phase.h"
 
 #include <cstdint>
@@ -20,20 +21,21 @@ namespace {
 using Four = Pack<4>;
 
 constexpr double kNever = 1e300;
-// [V] Smaller changes of the balls' speeds by a contact are rounding and may be ignored. Balls that move together
-// would close at such speeds forever.
+// [V] Smaller changes of the balls' speeds by a contact are rounding and may be ignored. Balls that move
+// together would close at such speeds forever.
 constexpr double kNothing = 1e-12;
-// [L/V] An event that is nearer than this is part of the present step. A prediction that misses by as much costs
-// 1e-8 V.
+// [L/V] An event that is nearer than this is part of the present step. A prediction that misses by as much
+// costs 1e-8 V.
 constexpr double kEarly = 1e-3;
 // [L/V] The first step, that after a flight, and the longest one.
 constexpr double kFirstStep = 0.01, kAfterFlight = 0.05, kLongestStep = 1.0, kShortestStep = 1e-9;
-// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have moved
-// far.
+// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have
+// moved far.
 constexpr double kLongPhase = 40.0;
 // Step after an error: the fourth root aims at this fraction of the tolerance; the factor is within limits.
 constexpr double kSafety = 0.8, kGrow = 5.0, kShrink = 0.2, kRetry = 0.9, kRetryLeast = 0.1;
-// [slide L/V] Regularisation of the slip that the weight stops: it is stopped within 0.03 L/V, so it is not stiff.
+// [slide L/V] Regularisation of the slip that the weight stops: it is stopped within 0.03 L/V, so it is not
+// stiff.
 constexpr double kWeightSlip = 0.1;
 
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
@@ -41,8 +43,8 @@ constexpr double kSoon = 0.25;
 
 constexpr int kLanes = 4;
 
-// Numbers per ball. Rows of four: (x, y, v_x, v_y), (R w_x, R w_y, R w_z, -), and in space (z, v_z, -, -). In a
-// slope, the last number of the second row is the vertical force of the contacts.
+// Numbers per ball. Rows of four: (x, y, v_x, v_y), (R w_x, R w_y, R w_z, -), and in space (z, v_z, -, -). In
+// a slope, the last number of the second row is the vertical force of the contacts.
 constexpr int kPlane = 8, kInSpace = 12;
 constexpr int kSlopes = 6;
 
@@ -50,21 +52,22 @@ CAROM_INLINE int padded(int n) {
     return (n + kLanes - 1) / kLanes * kLanes;
 }
 
-// e^-x for x >= 0, as the 16th power of a Taylor series: relative error 3e-9 up to x = 10. Constant above x = 16.
-// Summed in pairs, because the chain of forces waits for it.
+// e^-x for x >= 0, as the 16th power of a Taylor series: relative error 3e-9 up to x = 10. Constant above x
+// = 16. Summed in pairs, because the chain of forces waits for it.
 CAROM_INLINE Four falling_exponential(Four x) {
     const auto number = [](double value) { return broadcast<4>(value); };
     const Four t = smaller((1.0 / 16.0) * x, number(1.0)), t2 = t * t, t4 = t2 * t2;
     const Four low = (number(1.0) - t) + t2 * (number(0.5) - (1.0 / 6.0) * t);
-    const Four middle = (number(1.0 / 24.0) - (1.0 / 120.0) * t) + t2 * (number(1.0 / 720.0) - (1.0 / 5040.0) * t);
+    const Four middle =
+        (number(1.0 / 24.0) - (1.0 / 120.0) * t) + t2 * (number(1.0 / 720.0) - (1.0 / 5040.0) * t);
     const Four high = (number(1.0 / 40320.0) - (1.0 / 362880.0) * t) + (1.0 / 3628800.0) * t2;
     Four power = (low + t4 * middle) + (t4 * t4) * high;
     for (int doubling = 0; doubling < 4; ++doubling) power = power * power;
     return power;
 }
 
-// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant; m0
-// and m1 are the rates at its ends times its length.
+// The largest overlap inside a step in which the overlap stopped growing, from the cubic Hermite interpolant;
+// m0 and m1 are the rates at its ends times its length.
 CAROM_INLINE double peak(double before, double after, double m0, double m1) {
     const double rise = after - before, q2 = 3.0 * rise - 2.0 * m0 - m1, q3 = m0 + m1 - 2.0 * rise;
     const double s = m0 / (square_root(largest(0.0, q2 * q2 - 3.0 * q3 * m0)) - q2);
@@ -101,8 +104,8 @@ class Phase {
         for (double** state : states) *state = take(rows);
         for (double*& slope : slope_) slope = take(rows);
         stiff_ = take(phase.balls + 1);
-        double** const of_contacts[] = {&start_[0], &start_[1], &start_[2], &gap2_, &touch_, &d_,
-                                        &rate_, &pull_, &most_, &closes_, &force_};
+        double** const of_contacts[] = {&start_[0], &start_[1], &start_[2], &gap2_,   &touch_, &d_,
+                                        &rate_,     &pull_,     &most_,     &closes_, &force_};
         for (double** numbers_of : of_contacts) *numbers_of = take(lanes_);
         packed_ = take(kPacked * lanes_);
         forces_ = take(kForces * lanes_);
@@ -130,7 +133,8 @@ class Phase {
         }
         for (int c = 0; c < lanes_; ++c) {
             const bool real = c < phase.contacts;
-            const HertzContact contact = real ? phase.contact[c] : HertzContact{0, 0, {1.0, 0.0, 0.0}, -1.0, 1.0};
+            const HertzContact contact =
+                real ? phase.contact[c] : HertzContact{0, 0, {1.0, 0.0, 0.0}, -1.0, 1.0};
             const double gap = -contact.overlap;
             for (int k = 0; k < 3; ++k) start_[k][c] = (contact.touch + gap) * contact.n[k];
             gap2_[c] = gap * (2.0 * contact.touch + gap);
@@ -190,9 +194,10 @@ class Phase {
     }
 
   private:
-    // Numbers per closed contact, in packs of four: from start_, gap2_, touch_, 1 over the largest overlap, the
-    // stiffness, friction over slip, and the normal force.
-    static constexpr int kGap2 = 3, kTouch = 4, kInverse = 5, kStiffness = 6, kFriction = 7, kNormal = 8, kPacked = 9;
+    // Numbers per closed contact, in packs of four: from start_, gap2_, touch_, 1 over the largest overlap,
+    // the stiffness, friction over slip, and the normal force.
+    static constexpr int kGap2 = 3, kTouch = 4, kInverse = 5, kStiffness = 6, kFriction = 7, kNormal = 8,
+                         kPacked = 9;
     static constexpr int kForces = 3 * kLanes;
     static constexpr double kReach = 0.353 * kMostStages * kMostStages - 3.0;
 
@@ -201,7 +206,9 @@ class Phase {
         const double whole = static_cast<double>(static_cast<std::int64_t>(x));
         return largest(1.0, whole < x ? whole + 1.0 : whole);
     }
-    double mobility(int ball) const { return phase_.inverse_mass == nullptr ? 1.0 : phase_.inverse_mass[ball]; }
+    double mobility(int ball) const {
+        return phase_.inverse_mass == nullptr ? 1.0 : phase_.inverse_mass[ball];
+    }
 
     // The closed contacts, and those about to close, with their balls.
     // @return whether the same balls were active before
@@ -228,8 +235,7 @@ class Phase {
                 active_[actives_++] = row;
                 same = same && was_active_[ball] != 0;
             }
-            if (phase_.history != nullptr && phase_.history[c].first < 0.0)
-                phase_.history[c].first = time_;
+            if (phase_.history != nullptr && phase_.history[c].first < 0.0) phase_.history[c].first = time_;
         }
         for (int n = 0; n < kLanes; ++n) active_[actives_ + n] = nobody_;
         for (int b = 0; b < phase_.balls; ++b) {
@@ -246,7 +252,11 @@ class Phase {
             at_j_[n] = real ? j_[c] : nobody_;
             double* const to = packed_ + kPacked * (n / kLanes * kLanes) + n % kLanes;
             const double nowhere[] = {2.0, 0.0, 0.0, 3.0, 1.0, kNever, 1.0};
-            const double here[] = {start_[0][c], start_[1][c], start_[2][c], gap2_[c], touch_[c],
+            const double here[] = {start_[0][c],
+                                   start_[1][c],
+                                   start_[2][c],
+                                   gap2_[c],
+                                   touch_[c],
                                    most_[c] > 0.0 ? 1.0 / most_[c] : kNever,
                                    real ? phase_.contact[c].stiffness : 1.0};
             for (int k = 0; k <= kStiffness; ++k) to[kLanes * k] = real ? here[k] : nowhere[k];
@@ -303,7 +313,8 @@ class Phase {
         Apart moved, v;
         differences(y, i, j, moved, v);
         Four w[4];
-        for (int lane = 0; lane < kLanes; ++lane) w[lane] = load<4>(y + i[lane] + 4) + load<4>(y + j[lane] + 4);
+        for (int lane = 0; lane < kLanes; ++lane)
+            w[lane] = load<4>(y + i[lane] + 4) + load<4>(y + j[lane] + 4);
         transpose(w[0], w[1], w[2], w[3]);
         const Geometry g = geometry({packed(0), packed(1), packed(2)}, packed(kGap2), packed(kTouch), moved);
         const Apart& n = g.n;
@@ -311,7 +322,8 @@ class Phase {
         const Four loading = d * square_root(d), share = d * packed(kInverse);
         Four power = share;
         for (int p = law_.p; p > 1; p /= 2) power = power * power;
-        Four F = select(share < broadcast<4>(1.0), loading * (broadcast<4>(law_.a) + law_.b * power), loading);
+        Four F =
+            select(share < broadcast<4>(1.0), loading * (broadcast<4>(law_.a) + law_.b * power), loading);
         if constexpr (kSpace) F = packed(kStiffness) * F;
         Apart s;  // slip of i on j, and in the plane: along (n_y, -n_x), and upwards in z
         Four slip2;
@@ -439,10 +451,10 @@ class Phase {
             for (int n = 0; n < actives_; n += kLanes) add_cloth(y, n, slope);
     }
 
-    // An upper bound of the rates at which friction makes slips decay, after an evaluation. With k = mu_b F / |s|,
-    // the friction of one contact makes its slip decay at the rate 7 k. Each further contact of one of the two balls
-    // adds at most 3.5 times its own k, as does the cloth. By Gershgorin's theorem no rate of all contacts together
-    // exceeds 3.5 times the largest sum of k over both balls of a contact.
+    // An upper bound of the rates at which friction makes slips decay, after an evaluation. With k = mu_b F /
+    // |s|, the friction of one contact makes its slip decay at the rate 7 k. Each further contact of one of
+    // the two balls adds at most 3.5 times its own k, as does the cloth. By Gershgorin's theorem no rate of
+    // all contacts together exceeds 3.5 times the largest sum of k over both balls of a contact.
     double find_stiffest() {
         for (int n = 0; n < count_; ++n) {
             const double k = packed(n, kFriction);
@@ -480,7 +492,7 @@ class Phase {
         const int stages = whole < kFewestStages ? kFewestStages : whole > kMostStages ? kMostStages : whole;
         const int chain = stages - 4;
         const double* rec = kChain + (chain - 1) * (chain - 1);
-        double *const* k = slope_ + 1, *older = a_, *old = b_, *now = c_;
+        double *const *k = slope_ + 1, *older = a_, *old = b_, *now = c_;
         combine<1>(old, y_, {h * rec[0]}, slope_);
         const double* before = y_;
         for (int n = 2; n <= chain; ++n) {
@@ -489,7 +501,8 @@ class Phase {
             for (int m = 0; m < actives_; ++m) {
                 for (int q = 0; q < kRow; q += 4) {
                     const int at = active_[m] + q;
-                    store(now + at, (mu * load<4>(k[0] + at) + nu * load<4>(old + at)) - kappa * load<4>(before + at));
+                    store(now + at,
+                          (mu * load<4>(k[0] + at) + nu * load<4>(old + at)) - kappa * load<4>(before + at));
                 }
             }
             before = old;
@@ -511,9 +524,10 @@ class Phase {
         combine<4>(next_, old, {h * last[0], h * last[1], h * last[2], h * last[3]}, k);
         evaluate(next_, k[4]);
         Four most = broadcast<4>(0.0);
-        const double e[] = {h * (embedded[0] - last[0]), h * (embedded[1] - last[1]), h * (embedded[2] - last[2]),
-                            h * (embedded[3] - last[3]), h * embedded[4]};
-        const Four velocities[] = {pack(0.0, 0.0, 1.0, 1.0), pack(1.0, 1.0, 1.0, 0.0), pack(0.0, 1.0, 0.0, 0.0)};
+        const double e[] = {h * (embedded[0] - last[0]), h * (embedded[1] - last[1]),
+                            h * (embedded[2] - last[2]), h * (embedded[3] - last[3]), h * embedded[4]};
+        const Four velocities[] = {pack(0.0, 0.0, 1.0, 1.0), pack(1.0, 1.0, 1.0, 0.0),
+                                   pack(0.0, 1.0, 0.0, 0.0)};
         for (int n = 0; n < actives_; ++n) {
             for (int q = 0; q < kRow; q += 4) {
                 const int at = active_[n] + q;
@@ -563,7 +577,8 @@ class Phase {
             if (slip > 0.0) {
                 const double ends = slip / (3.5 * law_.slide), lasts = smallest(h, ends);
                 // Once it rolls, the slip is exactly 0.
-                const double dv = ends < h ? 2.0 / 7.0 : law_.slide * lasts / slip, back = dv * (h - 0.5 * lasts);
+                const double dv = ends < h ? 2.0 / 7.0 : law_.slide * lasts / slip,
+                             back = dv * (h - 0.5 * lasts);
                 y[0] -= back * ux;
                 y[1] -= back * uy;
                 y[2] -= dv * ux;
@@ -577,8 +592,9 @@ class Phase {
         if constexpr (kSpace) y[8] += h * y[9];
     }
 
-    // The contacts after a step of length h (0: at the start, or after a flight): overlaps, rates, largest overlaps,
-    // and the predicted times of events. Contacts that nothing acts on need it only when they are about to close.
+    // The contacts after a step of length h (0: at the start, or after a flight): overlaps, rates, largest
+    // overlaps, and the predicted times of events. Contacts that nothing acts on need it only when they are
+    // about to close.
     void examine(double h) {
         const Four zero = broadcast<4>(0.0), never = broadcast<4>(kNever);
         const double *y = y_, *slope = slope_[0];
@@ -599,8 +615,9 @@ class Phase {
             Apart moved, v, none, pull;
             differences(y, i, j, moved, v);
             differences(slope, i, j, none, pull);
-            const Geometry g = geometry({load<4>(start_[0] + c), load<4>(start_[1] + c), load<4>(start_[2] + c)},
-                                        load<4>(gap2_ + c), load<4>(touch_ + c), moved);
+            const Geometry g =
+                geometry({load<4>(start_[0] + c), load<4>(start_[1] + c), load<4>(start_[2] + c)},
+                         load<4>(gap2_ + c), load<4>(touch_ + c), moved);
             const Four d = g.d, rate = -dot(v, g.n), across2 = larger(dot(v, v) - rate * rate, zero);
             const Four acceleration = -dot(pull, g.n) - across2 * g.inverse;
             const int closed = bits_less(zero, d);
@@ -612,17 +629,19 @@ class Phase {
                 closes = select(zero < d, never, select(zero < root2, time, never));
             }
             if (closed != 0) {
-                const Four d_before = load<4>(d_ + c), rate_before = load<4>(rate_ + c), most = load<4>(most_ + c);
+                const Four d_before = load<4>(d_ + c), rate_before = load<4>(rate_ + c),
+                           most = load<4>(most_ + c);
                 store(most_ + c, select(zero < d, larger(most, d), zero));
-                const int turned = h > 0.0 ? bits_less(zero, rate_before) & bits_less(rate, zero) & closed : 0;
+                const int turned =
+                    h > 0.0 ? bits_less(zero, rate_before) & bits_less(rate, zero) & closed : 0;
                 for (int k = 0; turned >> k != 0; ++k) {
                     if ((turned >> k & 1) == 0) continue;
                     const double top = peak(kernel::lane(d_before, k), kernel::lane(d, k),
                                             h * kernel::lane(rate_before, k), h * kernel::lane(rate, k));
                     most_[c + k] = largest(most_[c + k], top);
                 }
-                // The third derivative, from the last step. A closed contact turns where the rate is 0, or opens where
-                // d is: from there two of Newton's steps.
+                // The third derivative, from the last step. A closed contact turns where the rate is 0, or
+                // opens where d is: from there two of Newton's steps.
                 const Four third = h > 0.0 ? (acceleration - load<4>(pull_ + c)) / broadcast<4>(h) : zero;
                 const auto loads = zero < rate;
                 const Four c0 = select(loads, rate, d), c1 = select(loads, acceleration, rate),
@@ -694,13 +713,13 @@ class Phase {
     const ContactPhase& phase_;
     const HertzLaw& law_;
     const double tolerance_, weight_slip2_, cloth_sign_;
-    const int nobody_, lanes_;  // the row of a ball at rest that fills packs; contacts in whole packs
+    const int nobody_, lanes_;         // the row of a ball at rest that fills packs; contacts in whole packs
     double time_ = 0.0, event_ = 0.0;  // now; time until the next event
     std::int64_t evaluations_ = 0;
     double *y_, *a_, *b_, *c_, *next_, *slope_[kSlopes];
     double* stiff_;  // per ball: the sum of friction over slip, times its mobility
-    // Per contact: the vector from i to j at the start, and |it|^2 - touch^2; overlap, its derivatives, and its maximum
-    // since the contact opened; the time until it closes; its last force.
+    // Per contact: the vector from i to j at the start, and |it|^2 - touch^2; overlap, its derivatives, and
+    // its maximum since the contact opened; the time until it closes; its last force.
     double *start_[3], *gap2_, *touch_, *d_, *rate_, *pull_, *most_, *closes_, *force_;
     double *packed_, *forces_;  // per closed contact
     int *i_, *j_;               // rows of the balls
@@ -719,8 +738,8 @@ std::int64_t run(const ContactPhase& phase, const HertzLaw& law, double toleranc
 
 namespace CAROM_ISA_NAMESPACE {
 
-std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance, double look_ahead,
-                           double time_limit) noexcept {
+std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance,
+                           double look_ahead, double time_limit) noexcept {
     bool level = phase.held && phase.inverse_mass == nullptr;
     for (int c = 0; c < phase.contacts && level; ++c)
         level = phase.contact[c].n[2] == 0.0 && phase.contact[c].stiffness == 1.0;

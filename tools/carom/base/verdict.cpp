@@ -33,7 +33,8 @@ std::string next_text(const State& state) {
     if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
     if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
     if (state.game != games::Game::kSnooker) return text;
-    text += state.on == games::BallOn::kColour ? ", any colour on" : fmt::format(", {} on", carom::name(state.on));
+    text += state.on == games::BallOn::kColour ? ", any colour on"
+                                               : fmt::format(", {} on", carom::name(state.on));
     return text + (state.free_ball ? ", free ball" : "");
 }
 

@@ -73,8 +73,8 @@ struct PairLaw {
     const BallBallModelInfo& model;
     const BallBallSettings& settings;
     const BallParams& balls;
-    /// The impact lasts for the time of a Hertz contact, in which the balls move past each other, so it acts along
-    /// the line of centres in the middle of that time: docs/reference/physics.md, "Ball-ball impact".
+    /// The impact lasts for the time of a Hertz contact, in which the balls move past each other, so it acts
+    /// along the line of centres in the middle of that time: docs/reference/physics.md, "Ball-ball impact".
     bool contact_time = false;
 
     /// The parameters of an impact with the friction mu_b between the balls.
@@ -85,8 +85,8 @@ struct PairImpact {
     kernel::ImpactStatus status;
     std::int64_t steps;
     const char* method;  ///< for people: the model, or how the kernel integrated it
-    /// They still close where they met: they only graze each other, and separate by moving past each other. Without
-    /// contact_time never.
+    /// They still close where they met: they only graze each other, and separate by moving past each other.
+    /// Without contact_time never.
     bool grazes = false;
 };
 

@@ -27,7 +27,8 @@ double closing(const NoseTouch& touch, const Velocities& m) {
 
 class Bounce {
   public:
-    Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches, double tolerance)
+    Bounce(const BallParams& balls, const BallSize& size, std::span<const NoseTouch> touches,
+           double tolerance)
         : balls_(balls), size_(size), touches_(touches), tolerance_(tolerance) {}
 
     bool run(Velocities& m) const {

@@ -29,7 +29,8 @@ namespace carom {
 namespace detail {
 namespace {
 
-// [of the tolerance] Error allowed in each step. The error of a result, after about ten steps, is about the same.
+// [of the tolerance] Error allowed in each step. The error of a result, after about ten steps, is about the
+// same.
 constexpr double kCushionStep = 0.1;
 // [of the approach speed] A nose that can stick is treated as sticking below this slip. The error is of
 // second order (docs/reference/physics.md, "Cushion impact").

@@ -32,7 +32,7 @@ struct HertzLaw {
     double slide = 0.0;
 };
 
-/// What happened at one contact.
+/// The course of one contact.
 struct HertzHistory {
     double first;    ///< [L/V] when the balls touched for the first time; negative: never
     double impulse;  ///< [m V] along the normal, positive if they pushed each other; to about 1e-3 of itself
@@ -46,8 +46,8 @@ struct ContactPhase {
     const HertzContact* contact;
     double* numbers;
     int* places;
-    /// All balls stay on the cloth, which exerts friction; false: all are free, and the cloth, which reacts ten
-    /// times as slowly as the contacts, comes next.
+    /// All balls stay on the cloth, which exerts friction; false: all are free, and the cloth, which reacts
+    /// ten times as slowly as the contacts, comes next.
     bool held = true;
     const double* inverse_mass = nullptr;  ///< per ball; null: all have the mass 1
     double* moved = nullptr;               ///< receives the displacement of each ball (3 numbers) [L]
@@ -64,14 +64,15 @@ constexpr std::size_t contact_phase_places(int balls, int contacts) noexcept {
 
 /// Integrates places, velocities and spins as one differential equation until every contact is open and none
 /// would close again within look_ahead [L/V]. Normals and overlaps follow the places. The method is ROCK4, of
-/// order 4 and stable although friction is stiff; steps end where a contact opens, closes or turns from loading
-/// to unloading. While all contacts are open the balls fly without steps. A ball's contacts are summed in the
-/// given order.
+/// order 4 and stable although friction is stiff; steps end where a contact opens, closes or turns from
+/// loading to unloading. While all contacts are open the balls fly without steps. A ball's contacts are
+/// summed in the given order.
 /// @param tolerance  [V] error of the velocities and spins that a step may make
 /// @return the number of evaluations of the forces, or -1 if the contacts did not separate within time_limit
 ///         [L/V] or kMostSteps
-using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law, double tolerance,
-                                              double look_ahead, double time_limit) noexcept;
+using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law,
+                                              double tolerance, double look_ahead,
+                                              double time_limit) noexcept;
 
 inline constexpr std::int64_t kMostSteps = 100'000;
 

@@ -180,7 +180,8 @@ SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs
             if (result.clusters) {
                 Plan only = tight;
                 only.cluster_tolerance = s.plan.cluster_tolerance;
-                s.row.cluster_error = final_error(final_positions(simulate(only, interruptible())), end).largest;
+                s.row.cluster_error =
+                    final_error(final_positions(simulate(only, interruptible())), end).largest;
             }
             set_shares(s.row, s.plan);
         } catch (const SimulationError& error) {

@@ -52,7 +52,8 @@ struct SceneAccuracyRow {
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double kernel_share = 0.0, cluster_share = 0.0;  ///< of a profiled run
     FinalError error;                                ///< relative to the converged run
-    double cluster_error = 0.0;  ///< [m] the same if only clusters have this setting, and impacts of two balls none
+    double cluster_error =
+        0.0;  ///< [m] the same if only clusters have this setting, and impacts of two balls none
     bool order_same = false, first_same = false, pocketed_same = false;
     std::string failed;  ///< why the run failed, or ""
 };
@@ -74,8 +75,8 @@ struct SceneAccuracy {
     std::vector<SceneAccuracyRow> rows;
 };
 
-/// The gain, from twins of the plan whose struck ball starts a twin_step() to the side and ahead; the larger of the
-/// two.
+/// The gain, from twins of the plan whose struck ball starts a twin_step() to the side and ahead; the larger
+/// of the two.
 double gain_of(const Plan& plan, const Record& record);
 /// [m] Clusters are smooth only to their own error, so their twins must differ by more.
 double twin_step(const Record& record);
@@ -92,8 +93,8 @@ inline constexpr double kFlight = 1.0;
 /// A plan of the same scene with another setting.
 Plan with_tolerance(const Scene& scene, double tolerance);
 Plan with_substeps(const Scene& scene, int substeps, March march = March::kSummed);
-/// Solves every impact of two balls by power series in extended precision, and clusters by short steps between located
-/// events, which share no code with the kernels: the second converged method.
+/// Solves every impact of two balls by power series in extended precision, and clusters by short steps
+/// between located events, which share no code with the kernels: the second converged method.
 Plan with_reference(const Scene& scene);
 
 SceneAccuracy measure_scene_accuracy(const Scene& scene, const AccuracySceneArgs& args);

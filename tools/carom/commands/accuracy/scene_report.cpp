@@ -22,23 +22,26 @@ std::string error_text(double error, const SceneAccuracy& result) {
 
 std::string gain_sentence(const SceneAccuracy& result) {
     return fmt::format("{}. Gain {:.2e}: a ball displaced by {:g} m ends up to {:.1e} m off.",
-                       counted(result.contacts, "contact"), result.gain, result.twin, result.gain * result.twin);
+                       counted(result.contacts, "contact"), result.gain, result.twin,
+                       result.gain * result.twin);
 }
 
 std::string converged_sentence(const SceneAccuracy& result) {
     return fmt::format(
         "Two converged methods ({}) end {:.1e} m apart; their outcomes are {}.",
-        result.clusters ? "collocation at 1e-13 and clusters at 1e-11; power series in extended precision and "
-                          "clusters in short steps between located events"
-                        : "collocation at 1e-13; power series in extended precision",
+        result.clusters
+            ? "collocation at 1e-13 and clusters at 1e-11; power series in extended precision and "
+              "clusters in short steps between located events"
+            : "collocation at 1e-13; power series in extended precision",
         result.agreement, result.outcome_agrees ? "the same" : "different");
 }
 
-/// What every run holds fixed.
+/// The settings that every run holds fixed.
 std::string fixed_sentence(const SceneAccuracy& result) {
     if (!result.clusters)
         return "Held fixed: the models, and the gap of 1e-8 m that resting contacts may keep.";
-    return "Held fixed: the models, and in clusters the regularisation of friction, which errs by 1.4e-3 of the "
+    return "Held fixed: the models, and in clusters the regularisation of friction, which errs by 1.4e-3 of "
+           "the "
            "fastest approach against Coulomb's law: it can move the ends of a break by decimetres.";
 }
 
@@ -63,9 +66,9 @@ Table scene_accuracy_table(const SceneAccuracy& result) {
         if (r.failed.empty())
             table.add({r.method, r.setting, in_ms(r.ns_min), in_ms(r.ns_median), r.ns_max,
                        ours ? share(r.kernel_share) : Cell(), ours ? share(r.cluster_share) : Cell(),
-                       error(r.error.largest),
-                       result.clusters && ours ? error(r.cluster_error) : Cell(), error(r.error.median), error(r.error.largest),
-                       ours ? same(r.order_same) : Cell(), same(r.first_same), same(r.pocketed_same)});
+                       error(r.error.largest), result.clusters && ours ? error(r.cluster_error) : Cell(),
+                       error(r.error.median), error(r.error.largest), ours ? same(r.order_same) : Cell(),
+                       same(r.first_same), same(r.pocketed_same)});
         else
             table.add({r.method, r.setting}, "  failed: " + r.failed);
     }
