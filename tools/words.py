@@ -40,7 +40,7 @@ WEAK = {
     r"\banswers?\b": (19, "return, print, respond"),
     r"\bstands?\b": (9, "be, be listed, be stated"),
     r"\b(those|that) of\b": (111, "the noun again"),
-    r"\b(what|whatever|whoever)\b": (134, "a noun"),
+    r"\b(what|whatever|whoever)\b": (133, "a noun"),
 }
 
 

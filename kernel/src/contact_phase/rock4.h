@@ -1,17 +1,15 @@
-// The coefficients of ROCK4: A. Abdulle,
-"Fourth order Chebyshev methods with recurrence relation", SIAM J.
+// The coefficients of ROCK4: A. Abdulle, "Fourth order Chebyshev methods with recurrence relation", SIAM J.
 // Sci. Comput. 23 (2002). Its explicit steps of s stages are stable to h rho = 0.353 s^2 - 3 along the
 // negative axis. Part of contact_phase.cpp.
 #pragma once
 
-                                                           namespace carom::kernel {
-    namespace {
+namespace carom::kernel {
+namespace {
 
-    constexpr int kFewestStages = 5, kMostStages = 12;
+constexpr int kFewestStages = 5, kMostStages = 12;
 
-    // clang-format off
-// For s stages, s - 4 stages by a recurrence of three terms: the first coefficient,
- then two for each further
+// clang-format off
+// For s stages, s - 4 stages by a recurrence of three terms: the first coefficient, then two for each further
 // stage. The coefficients of s begin at (s - 5)^2.
 constexpr double kChain[] = {
     0.1762962957651941,
@@ -83,7 +81,7 @@ constexpr double kEmbedded[][5] = {
     {0.94358778706469, -0.389377300510789, -0.516876350192269, 0.632531861517858,
      0.0212476873553974},
 };
- // clang-format on
+// clang-format on
 
- }  // namespace
+}  // namespace
 }  // namespace carom::kernel
