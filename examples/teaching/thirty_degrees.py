@@ -30,7 +30,9 @@ def scene(cut: float, **balls: float) -> carom.Scene:
     """A rolling cue ball and a ball that it hits at this cut angle [rad], on a cloth without cushions."""
     place = [2 * R * np.sin(cut), 0.3 + 2 * R * np.cos(cut)]
     rolling = {"id": "cue", "position": [0.0, 0.0], "velocity": [0.0, SPEED], "spin": [-SPEED / R, 0.0, 0.0]}
-    return carom.Scene(table={"cushion": []}, balls=balls, ball=[rolling, {"id": "1", "position": place}])
+    # The derivation assumes an impact that takes no time.
+    return carom.Scene(table={"cushion": []}, balls=balls, physics={"clusters": "sequential"},
+                       ball=[rolling, {"id": "1", "position": place}])
 
 
 def deflection(record: carom.Record) -> float:

@@ -41,6 +41,9 @@ class SceneNotFoundError(SceneError, FileNotFoundError):
         super().__init__(message, file, line, column)
         self.errno, self.strerror, self.filename = errno.ENOENT, os.strerror(errno.ENOENT), file
 
+    def __reduce__(self) -> tuple[type[SceneNotFoundError], tuple[str, str]]:
+        return SceneNotFoundError, (self.message, self.file)
+
 
 def check_exists(path: str) -> None:
     if not os.path.lexists(path):

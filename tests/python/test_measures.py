@@ -22,7 +22,7 @@ def quarter_ball():
     return carom.Scene(
         table={"cushion": []},
         balls={"mu_b": 0.0, "e_b": 1.0, "mu_s": 0.0, "mu_r": 0.0, "mu_sp": 0.0},
-        physics={"ball_ball": "elastic"},
+        physics={"ball_ball": "elastic", "clusters": "sequential"},
         ball=[{"id": "cue", "position": [0, 0], "velocity": [0, 2.0]},
               {"id": "1", "position": [far[0] + 2 * R * math.sin(CUT), far[1]]}],
         stop={"time": 0.4},

@@ -170,6 +170,8 @@ def test_the_final_scene_is_the_next_shot(break_scene):
     # Over many shots, a resting ball keeps its place bit for bit.
     for shot in range(1, 8):
         record = carom.simulate(after)
+        if record.final_scene().ids.count("cue") == 0:
+            break
         end = dict(zip(record.ids, record.states(record.duration)[:, 0, :2]))
         after = record.final_scene(cue={"speed": 0.5, "aim_deg": 50 * shot})
         assert all((place == end[ball]).all() for ball, place in zip(after.ids, after.positions))
