@@ -139,7 +139,7 @@ Spoil event(const Admits& admits, const Change& change) {
 }
 
 template <class Admits, class Change>
-Spoil motion(const Admits& admits, const Change& change) {
+Spoil motion(Admits admits, Change change) {
     return [=](Record& r, Generator& random) {
         const auto place =
             segment(r, random, [&](const BallTrack& t, std::size_t k) { return admits(r, t, k); });

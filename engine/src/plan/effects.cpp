@@ -142,7 +142,7 @@ Need clusters(const Facts& f) {
                         name(model))};
 }
 
-Need contact_time(const Facts& f) {
+Need contact_lasts(const Facts& f) {
     if (f.scene.ball.size() < 2) return {false, f.say("one ball only")};
     // Forced on, it does not change the model.
     if (f.scene.physics.clusters != ClusterModel::kCompliant)
@@ -235,7 +235,7 @@ constexpr EffectInfo kTable[kEffects] = {
     {.keyword = "contact_time",
      .skipped_when = "`clusters` is not `compliant`, `substeps`, model `two_step`, or no two balls can meet",
      .keys = "`clusters`, `substeps`",
-     .need = contact_time,
+     .need = contact_lasts,
      .leave_out = [](Plan& plan) { plan.contact_time = false; }},
 };
 
