@@ -182,8 +182,9 @@ def test_shots_beyond_the_arrays_are_refused(draw_scene):
 
 def test_tables_of_shots_name_pockets_as_sweeps_do():
     pytest.importorskip("pandas", reason="pandas is not installed")
-    table = carom.simulate_many(str(SOURCE / "scenes/draw.toml"), params={"cue.speed": [0.1, 2.25]}).to_pandas()
+    draw = str(SOURCE / "scenes/draw.toml")
+    table = carom.simulate_many(draw, params={"cue.speed": [0.1, 2.25]}).to_pandas()
     assert list(table["1.pocket"]) == ["", "p3"]
     assert list(table["cue.pocket"]) == ["", ""]
-    swept = carom.sweep.columns(str(SOURCE / "scenes/draw.toml"), {"cue.speed": "list(0.1, 2.25)"}, 4)
+    swept = carom.sweep.columns(draw, {"cue.speed": "list(0.1, 2.25)"}, 4)
     assert set(swept["1.pocket"]) <= {"", "p3"}

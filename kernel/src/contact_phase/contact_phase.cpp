@@ -3,7 +3,7 @@
 // An evaluation of the right-hand side gathers the balls of four closed contacts, computes their forces in
 // lanes, then adds them to the balls, one contact after another in the order of their numbers. A lane
 // computes the same as a scalar program, and every sum has a fixed order. Only the balls of closed contacts
-// take part in a step; the others move on parabolas. After each step all contacts are examined in lanes:
+// belong to a step; the others move on parabolas. After each step all contacts are examined in lanes:
 // overlaps, rates, largest overlaps, and the predicted time at which each closes, opens or turns, where the
 // next step ends.
 #include "carom/kernel/contact_phase.h"
