@@ -10,8 +10,6 @@ namespace {
 // [L/V] The longest step, in which no contact may open and close unseen; that of the method, in which
 // friction is not stiff; and the resolution of events.
 constexpr double kStep = 0.01, kShort = 1e-3, kEvent = 1e-13;
-// [slide L/V] As in the kernel: part of the model.
-constexpr double kWeightSlip = 0.1;
 
 }  // namespace
 
@@ -46,7 +44,7 @@ void ContactReference::run(double time) {
 
 double ContactReference::run_to_end(double look_ahead, double time_limit) {
     double time = 0.0;
-    while (!ended(look_ahead)) {
+    while (!ended(time > kernel::kLongPhase ? 0.0 : look_ahead)) {
         if (!(time < time_limit)) return -1.0;
         run(kStep);
         time += kStep;
@@ -178,7 +176,7 @@ std::vector<double> ContactReference::slope(const std::vector<double>& y) const 
                          std::sqrt(x * x + z * z + law_.epsilon * law_.epsilon);
         if (law_.slide > 0.0) {
             const double u[2] = {y[9 * b + 3] - y[9 * b + 7], y[9 * b + 4] + y[9 * b + 6]};
-            const double sharp = kWeightSlip * law_.slide,
+            const double sharp = kernel::kWeightSlip * law_.slide,
                          weight = law_.slide / std::sqrt(u[0] * u[0] + u[1] * u[1] + sharp * sharp);
             s[9 * b + 3] -= weight * u[0];
             s[9 * b + 4] -= weight * u[1];

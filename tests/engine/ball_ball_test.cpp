@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/temporary_folder.h"
 #include "carom/kernel/closed_forms.h"
+#include "physics/cluster.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
+#include "support/hard_scenes.h"
 #include "support/scene_errors.h"
 
 namespace carom {
@@ -296,6 +301,67 @@ TEST(Unequal, FrictionFallsWithTheSlipOfBothSurfaces) {
         // m/s.
         EXPECT_LE((a.v - a1.v).norm() + (b.v - b1.v).norm(), 1e-6);
         EXPECT_LE(size1.R * (a.w - a1.w).norm() + size2.R * (b.w - b1.w).norm(), 1e-6);
+    }
+}
+
+// Against the integration of one Hertz contact of balls that move: any cut, spin, speed, friction and mass.
+TEST(ContactTime, ActsInTheMiddleOfTheContact) {
+    reference::Generator rng(7);
+    BallParams balls = make_ball_params("pool_classic");
+    for (const bool masses : {false, true}) {
+        std::vector<double> errors, instant;
+        for (int k = 0; k < 4000; ++k) {
+            const double V = std::exp(rng.uniform(std::log(0.1), std::log(10.0))),
+                         cut = rng.uniform(0.0, 1.569),
+                         ratio = masses ? std::exp(rng.uniform(-1.38, 1.38)) : 1.0;
+            balls.mu_b = rng.uniform(0.0, 0.1);
+            balls.e_b = rng.uniform(0.9, 1.0);
+            const double R = balls.R, spin = rng.uniform() < 0.3 ? 0.0 : V / R;
+            const Vec3 n(std::cos(0.3), std::sin(0.3), 0.0), t(-n.y(), n.x(), 0.0);
+            const auto any = [&](double most) {
+                const double x = rng.uniform(-most, most), y = rng.uniform(-most, most);
+                return Vec3(x, y, rng.uniform(-most, most));
+            };
+            const Velocities one{V * (std::cos(cut) * n + std::sin(cut) * t), any(spin)},
+                two{Vec3::Zero(), any(0.3 * spin)};
+            // The integration, as the contact phase of a cluster of two.
+            std::vector<ClusterBall> truth{{0, Vec3(0.0, 0.0, R), one.v, one.w, R, 1.0},
+                                           {1, Vec3(0.0, 0.0, R) + 2.0 * R * n, two.v, two.w, R, ratio}};
+            ClusterMap map;
+            ASSERT_GT(map.compliant(truth, {{0, 1, n, 0.0}},
+                                    {.R = R,
+                                     .mu_s = balls.mu_s,
+                                     .mu_b = balls.mu_b,
+                                     .e_b = balls.e_b,
+                                     .epsilon = 1e-4,
+                                     .tolerance = 1e-8,
+                                     .integrate = kernel::contact_phase_function(kernel::best_isa()),
+                                     .unlike = masses},
+                                    V * std::cos(cut), true),
+                      0);
+            const BallSize size1{R, balls.m}, size2{R, balls.m * ratio};
+            for (const bool contact_time : {false, true}) {
+                Velocities a = one, b = two;
+                collide({kMathavan, settings(), balls, contact_time}, size1, size2, truth[0].r, truth[1].r, a,
+                        b);
+                const double error = std::max({(a.v - truth[0].v).lpNorm<Eigen::Infinity>(),
+                                               (b.v - truth[1].v).lpNorm<Eigen::Infinity>(),
+                                               R * (a.w - truth[0].w).lpNorm<Eigen::Infinity>(),
+                                               R * (b.w - truth[1].w).lpNorm<Eigen::Infinity>()});
+                (contact_time ? errors : instant).push_back(error / V);
+            }
+        }
+        const std::string which = masses ? "masses 1/4 to 4, " : "";
+        for (const double share : {0.5, 0.9, 0.99, 1.0}) {
+            report((which + "middle of the contact, error in V, share " + std::to_string(share)).c_str(),
+                   share_of(errors, share));
+            report((which + "first touch, error in V, share " + std::to_string(share)).c_str(),
+                   share_of(instant, share));
+        }
+        EXPECT_LT(share_of(errors, 0.5), 5e-5);
+        EXPECT_LT(share_of(errors, 0.9), 3e-4);
+        EXPECT_LT(share_of(errors, 1.0), 1e-2);
+        EXPECT_GT(share_of(instant, 0.9), 20.0 * share_of(errors, 0.9));
     }
 }
 

@@ -374,6 +374,33 @@ TEST(Cushion, Mathavan2010KeepsItsTolerance) {
     EXPECT_LE(off.back(), 5e-5);
 }
 
+// One ball with spin around a snooker table: no other step depends on the tolerance.
+TEST(Cushion, Mathavan2010FollowsTheTolerance) {
+    reference::Generator rng(21);
+    double coarse = 0.0, fine = 0.0;
+    for (int k = 0; k < 20; ++k) {
+        Scene scene = empty_scene();
+        scene.balls = make_ball_params("snooker");
+        scene.table = make_table("snooker");
+        scene.table.pockets.clear();
+        scene.physics.cushion = cushion_model("mathavan_2010");
+        add_ball(scene, "cue", Vec3(0.8, 1.5, scene.balls.R),
+                 Vec3(rng.uniform(-4.0, 4.0), rng.uniform(-4.0, 4.0), 0.0),
+                 Vec3(rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0), rng.uniform(-60.0, 60.0)));
+        scene.stop.events = 6;
+        const auto end = [&](double tolerance) {
+            scene.physics.tolerance = tolerance;
+            const Record record = simulate(plan_of(scene));
+            return record.tracks[0].segments.back().v;
+        };
+        const Vec3 truth = end(1e-11);
+        coarse = std::max(coarse, (end(1e-4) - truth).norm());
+        fine = std::max(fine, (end(1e-8) - truth).norm());
+    }
+    EXPECT_GT(coarse, 1e-7);
+    EXPECT_LT(fine, 1e-2 * coarse);
+}
+
 // For any scene that the reader accepts, the model ends or reports failure and changes nothing.
 TEST(Cushion, Mathavan2010EndsOrReportsFailure) {
     reference::Generator rng(13);

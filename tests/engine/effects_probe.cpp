@@ -35,6 +35,7 @@ Scene bare() {
     scene.balls.e_b = scene.balls.e_c = 1.0;
     scene.physics.ball_ball = ball_ball_model("elastic");
     scene.physics.cushion = &kSmooth;
+    scene.physics.clusters = ClusterModel::kSequential;
     const double w = 0.5, l = 0.7, h = 0.036576;
     scene.table.width = w;
     scene.table.length = l;
@@ -110,6 +111,8 @@ const Case kCases[] = {
          s.physics.clusters = ClusterModel::kCompliant;
          add(s, "c", 0.25, 0.33, 0.0, 0.0);
      }},
+    {"contact_time", "carom::effects::contact_turn", "clusters = \"compliant\"",
+     [](Scene& s) { s.physics.clusters = ClusterModel::kCompliant; }},
     {"clusters:none", "", "the third ball alone, pair by pair",
      [](Scene& s) {
          s.physics.clusters = ClusterModel::kSequential;

@@ -98,6 +98,27 @@ TEST(RestingContacts, TopspinPushesAVOfTwo) {
     }
 }
 
+// The ends of a push converge with physics.tolerance.
+TEST(RestingContacts, FollowTheTolerance) {
+    double coarse = 0.0, fine = 0.0;
+    for (const double degrees : {31.0, 36.0, 40.0}) {
+        Scene scene = plastic();
+        add_spinning(scene, Vec2::Zero(), {2.0, 0.0});
+        for (const double side : {1.0, -1.0})
+            add_spinning(scene, 2.0 * scene.balls.R * direction(side * degrees));
+        const auto end = [&](double tolerance) {
+            scene.physics.tolerance = tolerance;
+            return planar(run_verified(scene).tracks[0].segments.back().r);
+        };
+        const Vec2 truth = end(1e-10);
+        coarse = std::max(coarse, length(end(1e-6) - truth));
+        fine = std::max(fine, length(end(1e-8) - truth));
+    }
+    report("resting push at 1e-6, m", coarse);
+    report("resting push at 1e-8, m", fine);
+    EXPECT_LT(fine, 0.5 * coarse);
+}
+
 TEST(RestingContacts, TopspinPushesABallAlongARail) {
     Scene scene = plastic();
     const double R = scene.balls.R;

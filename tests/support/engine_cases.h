@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "carom/engine/plan.h"
 #include "carom/engine/simulate.h"
@@ -54,6 +56,12 @@ inline Scene empty_scene() {
     scene.file = "(test)";
     scene.balls = pool_balls();
     return scene;
+}
+
+/// The number of a list below which this share of it lies.
+inline double share_of(std::vector<double> list, double share) {
+    std::sort(list.begin(), list.end());
+    return list[static_cast<std::size_t>(share * static_cast<double>(list.size() - 1))];
 }
 
 /// Impacts take no time, as in the textbooks' formulas.

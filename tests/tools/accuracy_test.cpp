@@ -109,14 +109,16 @@ Scene seeded_break(reference::Generator& rng, int seed) {
 // least 19 of 20 breaks.
 TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
 #ifdef CAROM_SANITIZED
-    GTEST_SKIP() << "the reference method would run for minutes";
+    constexpr int kDrawn = 1, kLeast = 0;
+#else
+    constexpr int kDrawn = 20, kLeast = 15;
 #endif
     reference::Generator rng(9);
     AccuracySceneArgs args;
     args.march.clear();
     args.repeat = 1;
     int allowed = 0, met = 0, looser = 0;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < kDrawn; ++i) {
         const Scene scene = seeded_break(rng, i + 1);
         const SceneAccuracy result = measure_scene_accuracy(scene, args);
         if (!result.recommended) continue;
@@ -129,10 +131,10 @@ TEST(Recommendation, MeetsAMillimetreOnSeededBreaks) {
         looser += error(1e-4) <= args.target ? 1 : 0;
     }
     std::printf("allowed %d, met %d; tolerance 1e-4 would have met %d\n", allowed, met, looser);
-    EXPECT_GE(allowed, 15);
+    EXPECT_GE(allowed, kLeast);
     EXPECT_GE(20 * met, 19 * allowed);
     // A tolerance chosen without the shot does not: the recommendation is informative.
-    EXPECT_LT(looser, met);
+    EXPECT_LE(looser, met - kLeast / 2);
 }
 
 }  // namespace

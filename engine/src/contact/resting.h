@@ -52,8 +52,8 @@ struct RestingSurroundings {
     const Geometry& geometry;
     const BallParams& balls;
     double gravity;
-    double precision =
-        1.0;  ///< physics.tolerance over the default, from 1e-4 to 1: errors of places and frictions
+    /// physics.tolerance over the default, from 1e-4 to 1: scales the errors of places and frictions.
+    double precision = 1.0;
 };
 
 /// Solves the group from `now` [s] on and writes the segments of all members (resting_group.h). They end

@@ -169,7 +169,8 @@ namespace effects {
 // How the line of centres turns until the middle of a contact.
 struct ContactTurn {
     double tangent = 0.0;  // of the angle, against the balls' motion past each other
-    double spin = 0.0;  // [rad/s] vertical spin of both balls that has the effect of the turning on the slip
+    // [rad/s] Vertical spin of both balls that has the effect of the turning on the slip.
+    double spin = 0.0;
 };
 
 // A contact of two balls without friction and losses: x'' = -2 x^1.5 - v_t^2 / D in units of the approach. In

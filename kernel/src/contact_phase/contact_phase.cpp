@@ -29,14 +29,8 @@ constexpr double kNothing = 1e-12;
 constexpr double kEarly = 1e-3;
 // [L/V] The first step, that after a flight, and the longest one.
 constexpr double kFirstStep = 0.01, kAfterFlight = 0.05, kLongestStep = 1.0, kShortestStep = 1e-9;
-// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have
-// moved far.
-constexpr double kLongPhase = 40.0;
 // Step after an error: the fourth root aims at this fraction of the tolerance; the factor is within limits.
 constexpr double kSafety = 0.8, kGrow = 5.0, kShrink = 0.2, kRetry = 0.9, kRetryLeast = 0.1;
-// [slide L/V] Regularisation of the slip that the weight stops: it is stopped within 0.03 L/V, so it is not
-// stiff.
-constexpr double kWeightSlip = 0.1;
 
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
 constexpr double kSoon = 0.25;

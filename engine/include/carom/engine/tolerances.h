@@ -36,12 +36,13 @@ inline constexpr int kMostEvents = 10 * kUsualEvents;
 /// 0.6.0.
 inline constexpr double kPocketDepth = 0.08;
 
+/// physics.tolerance unless the scene has one.
+inline constexpr double kDefaultTolerance = 1e-6;
+
 /// A contact becomes a resting one at approach speeds whose bounce would be shorter than the contact itself:
 /// 2 e v / a < t_c(v), with the Hertz contact time t_c = 2.6 (m / k)^0.4 v^-0.2 of two pool balls: about
 /// 1.4e-3 m/s at a = 2 m/s^2. k is from 2270 N at a compression of 0.1995 mm, in a contact of 284 us at
 /// 2.06 m/s (Alciatore, TP B.29): E = 8.94 GPa with nu = 0.34.
-/// physics.tolerance unless the scene has one.
-inline constexpr double kDefaultTolerance = 1e-6;
 inline constexpr double kContactTimeFactor = 2.6;
 inline constexpr double kContactStiffness = 4.736e9;  ///< [m^-0.5 s^-2] k/m
 

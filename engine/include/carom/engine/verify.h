@@ -27,9 +27,8 @@ struct Violation {
 ///   U4 energy never rises (tolerance: 1e-12 of the initial energy), nor falls if nothing dissipates it (in a
 ///      cluster 1e-5)
 ///   U5 each impact, landing and strike, computed again, gives the motion after it, within 1e-9 of the
-///   speeds,
-///      and two tolerances of the scene for two balls on the cloth; a cluster changes the momentum by the
-///      friction of the cloth at most
+///      speeds, and two tolerances of the scene for two balls on the cloth (14 if they differ); a cluster
+///      changes the momentum by the friction of the cloth at most
 ///   U6 each change of a motion has an event of that instant with this ball, which touches and approaches the
 ///      other body; each event has its change; places, and without an event velocities, are continuous
 ///   U7 each motion has the accelerations, the decay and the duration of its state; a rolling ball does not

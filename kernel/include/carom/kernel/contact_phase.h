@@ -74,6 +74,12 @@ using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const H
                                               double tolerance, double look_ahead,
                                               double time_limit) noexcept;
 
+/// [L/V] A longer phase ends as soon as no contact is closed, even if one is about to close: the balls have
+/// moved far.
+inline constexpr double kLongPhase = 40.0;
+/// [slide L/V] Regularisation of the slip that the weight stops: it is stopped within 0.03 L/V, so it is not
+/// stiff.
+inline constexpr double kWeightSlip = 0.1;
 inline constexpr std::int64_t kMostSteps = 100'000;
 
 /// The integration built for one instruction set (which must be available). All give the same bits.

@@ -52,8 +52,8 @@ struct SceneAccuracyRow {
     double ns_min = 0.0, ns_median = 0.0, ns_max = 0.0;
     double kernel_share = 0.0, cluster_share = 0.0;  ///< of a profiled run
     FinalError error;                                ///< relative to the converged run
-    double cluster_error =
-        0.0;  ///< [m] the same if only clusters have this setting, and impacts of two balls none
+    /// [m] The same if only clusters have this setting.
+    double cluster_error = 0.0;
     bool order_same = false, first_same = false, pocketed_same = false;
     std::string failed;  ///< why the run failed, or ""
 };

@@ -41,8 +41,7 @@ std::string fixed_sentence(const SceneAccuracy& result) {
     if (!result.clusters)
         return "Held fixed: the models, and the gap of 1e-8 m that resting contacts may keep.";
     return "Held fixed: the models, and in clusters the regularisation of friction, which errs by 1.4e-3 of "
-           "the "
-           "fastest approach against Coulomb's law: it can move the ends of a break by decimetres.";
+           "the fastest approach against Coulomb's law: it can move the ends of a break by decimetres.";
 }
 
 }  // namespace
