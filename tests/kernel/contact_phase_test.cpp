@@ -174,7 +174,7 @@ TEST(ContactPhase, TheErrorFollowsTheTolerance) {
         }
         std::sort(errors.begin(), errors.end());
         std::sort(places.begin(), places.end());
-        EXPECT_LT(errors[errors.size() / 2], 2.0 * tolerance) << tolerance;
+        EXPECT_LT(errors[(errors.size() - 1) / 2], 2.0 * tolerance) << tolerance;
         EXPECT_LT(errors.back(), 20.0 * tolerance) << tolerance;
         EXPECT_LT(places.back(), 60.0 * tolerance) << tolerance;
     }
@@ -199,6 +199,16 @@ TEST(ContactPhase, StiffFrictionCostsLittle) {
                        stiff = run(best_isa(), small_rack(), pool_law(2e-4), 1e-6).evaluations;
     EXPECT_LT(static_cast<double>(stiff), 3.0 * static_cast<double>(soft));
     EXPECT_LT(soft, 700);
+}
+
+// A cloth on which no ball slides is stiff too.
+TEST(ContactPhase, StickAtTheClothCostsLittle) {
+    HertzLaw smooth = pool_law(1e-2), rough = smooth;
+    rough.mu_s = 20.0;
+    const std::int64_t few = run(best_isa(), small_rack(), smooth, 1e-4).evaluations,
+                       many = run(best_isa(), small_rack(), rough, 1e-4).evaluations;
+    // 159 and 319; 589 if the step did not follow the cloth.
+    EXPECT_LT(static_cast<double>(many), 2.5 * static_cast<double>(few));
 }
 
 // A constant fit is the same as one friction number.
