@@ -31,10 +31,14 @@ double count(const PlayedShot& played, EventType type, bool struck) {
         }));
 }
 
-std::optional<std::size_t> cushion(const PlayedShot& played, double number) {
-    const std::vector<std::size_t> events = driven(played, played.struck());
+/// Where a ball is driven to its `number`-th cushion, from 1.
+std::optional<CushionPoint> cushion(const PlayedShot& played, double number) {
+    const std::vector<Hit> hits = driven(played, played.struck());
     const auto index = static_cast<std::size_t>(number) - 1;
-    return index < events.size() ? std::optional(events[index]) : std::nullopt;
+    if (index >= hits.size()) return std::nullopt;
+    const Hit& hit = hits[index];
+    const Vec3 at = played.record.state_at(hit.a, hit.time).position;
+    return cushion_point(played.record.table, hit.partner, hit.b, planar(at));
 }
 
 /// Sums or compares over the pieces of a ball's motion: f(segment, seconds for which it applies).
@@ -116,24 +120,24 @@ const MeasureRow kRows[] = {
     {{"cushions", "", "list", "cushions and jaws that the struck ball is driven to, in order"},
      [](P p, A) -> V {
          Texts texts;
-         for (const std::size_t i : driven(p, p.struck()))
-             texts.push_back(p.record.partner_id(p.record.events[i]));
+         for (const Hit& hit : driven(p, p.struck()))
+             texts.push_back(p.record.partner_id(hit.partner, hit.b));
          return texts;
      }},
     {{"cushion_x", "K", "m", "x of the struck ball's K-th contact with a cushion"},
      [](P p, A of) -> V {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).point.x() : kNone;
+         const auto at = cushion(p, of.numbers[0]);
+         return at ? at->point.x() : kNone;
      }},
     {{"cushion_y", "K", "m", "y of that contact"},
      [](P p, A of) -> V {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).point.y() : kNone;
+         const auto at = cushion(p, of.numbers[0]);
+         return at ? at->point.y() : kNone;
      }},
     {{"cushion_diamond", "K", "", "its place in diamonds: 0 to 4 on short rails, 0 to 8 on long ones"},
      [](P p, A of) -> V {
-         const auto i = cushion(p, of.numbers[0]);
-         return i ? details_of(p.record, *i).diamond : kNone;
+         const auto at = cushion(p, of.numbers[0]);
+         return at ? at->diamond : kNone;
      }},
     {{"driven", "", "",
       "number of balls driven to a rail, pocketed or off the table, except the struck ball"},

@@ -51,8 +51,8 @@ std::span<const MeasureRow> measure_rows();
 /// Measures of a ball's route, and of the points that it scores (routes.cpp).
 std::span<const MeasureRow> route_rows();
 
-/// The events in which a ball is driven to a cushion or a jaw.
-std::vector<std::size_t> driven(const PlayedShot& played, int ball);
+/// The hits by which a ball is driven to a cushion or a jaw.
+std::vector<Hit> driven(const PlayedShot& played, int ball);
 /// The verdict on a shot as a break, or in the middle of a game; in eight-ball with an open table. Every ball
 /// that falls counts as called.
 Verdict judged(const PlayedShot& played, Game game, bool opening);

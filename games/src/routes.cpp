@@ -26,11 +26,10 @@ std::vector<Touch> meetings(const PlayedShot& played) {
 }
 
 /// The cushions that the struck ball is driven to before a contact; all if there is none.
-std::vector<std::size_t> cushions_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
-    std::vector<std::size_t> events = driven(played, played.struck());
-    if (meeting)
-        std::erase_if(events, [&](std::size_t i) { return played.record.events[i].time >= meeting->time; });
-    return events;
+std::vector<Hit> cushions_before(const PlayedShot& played, const std::optional<Touch>& meeting) {
+    std::vector<Hit> hits = driven(played, played.struck());
+    if (meeting) std::erase_if(hits, [&](const Hit& hit) { return hit.time >= meeting->time; });
+    return hits;
 }
 
 /// The K-th ball that the struck ball hits, from 0.
@@ -53,12 +52,10 @@ Texts route(const PlayedShot& played) {
     Texts rails;
     const Record& record = played.record;
     const std::optional<Touch> second = meeting(played, 1);
-    for (const std::size_t i : cushions_before(played, second ? second : meeting(played, 0))) {
-        const Event& event = record.events[i];
-        rails.push_back(kind(event.type).partner == Partner::kCushion
-                            ? rail(record.table.cushions[static_cast<std::size_t>(event.b)])
-                            : record.partner_id(event));
-    }
+    for (const Hit& hit : cushions_before(played, second ? second : meeting(played, 0)))
+        rails.push_back(hit.partner == Partner::kCushion
+                            ? rail(record.table.cushions[static_cast<std::size_t>(hit.b)])
+                            : record.partner_id(hit.partner, hit.b));
     return rails;
 }
 
@@ -117,18 +114,18 @@ std::span<const MeasureRow> route_rows() {
     return kRouteRows;
 }
 
-std::vector<std::size_t> driven(const PlayedShot& played, int ball) {
-    std::vector<std::size_t> events;
-    for (std::size_t i = 0; ball >= 0 && i < played.record.events.size(); ++i) {
-        const Event& event = played.record.events[i];
-        const EventKind& of = kind(event.type);
-        const bool wall = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
-        if (!wall || event.a != ball || of.phase == EventPhase::kRelease) continue;
-        const auto& segments = played.record.tracks[static_cast<std::size_t>(ball)].segments;
-        if (!still_frozen(played.record.table, event, segments, played.record.size(ball).R))
-            events.push_back(i);
-    }
-    return events;
+std::vector<Hit> driven(const PlayedShot& played, int ball) {
+    std::vector<Hit> hits;
+    if (ball < 0) return hits;
+    const Record& record = played.record;
+    const auto& segments = record.tracks[static_cast<std::size_t>(ball)].segments;
+    for (const Event& event : record.events)
+        each_hit(event, record.hits(event), [&](const Hit& hit) {
+            const bool wall = hit.partner == Partner::kCushion || hit.partner == Partner::kJaw;
+            if (wall && hit.a == ball && !still_frozen(record.table, hit, segments, record.size(ball).R))
+                hits.push_back(hit);
+        });
+    return hits;
 }
 
 Verdict judged(const PlayedShot& played, Game game, bool opening) {

@@ -95,6 +95,17 @@ std::vector<std::tuple<double, std::string, std::string, std::string>> event_lis
     return list;
 }
 
+std::vector<std::tuple<double, std::string, std::string, double>> hit_list(const NativeRecord& r) {
+    std::vector<std::tuple<double, std::string, std::string, double>> list;
+    const Record& record = *r.record;
+    for (const Event& e : record.events)
+        each_hit(e, record.hits(e), [&](const Hit& hit) {
+            list.emplace_back(hit.time, record.tracks.at(static_cast<std::size_t>(hit.a)).id,
+                              record.partner_id(hit.partner, hit.b), hit.impulse);
+        });
+    return list;
+}
+
 /// Cushions as (from, to), jaws and pockets as (centre,
 /// radius), with their ids: what a plan of the table draws.
 nb::typed<nb::dict, nb::str, nb::any> table_of(const NativeRecord& r) {
@@ -160,7 +171,13 @@ void add_records(nb::module_& m) {
             "picture_size",
             [](const NativeRecord& r) { return std::tuple(r.record->render.width, r.record->render.height); })
         .def_prop_ro("has_scene", [](const NativeRecord& r) { return r.scene != nullptr; })
-        .def_prop_ro("clusters", [](const NativeRecord& r) { return r.record->clusters; })
+        .def_prop_ro("clusters",
+                     [](const NativeRecord& r) {
+                         std::vector<std::vector<int>> lists;
+                         for (const Cluster& cluster : r.record->clusters) lists.push_back(cluster.balls);
+                         return lists;
+                     })
+        .def("hit_list", hit_list)
         .def("radius", [](const NativeRecord& r, int ball) { return r.record->size(ball).R; })
         .def("mass", [](const NativeRecord& r, int ball) { return r.record->size(ball).m; })
         .def("color", color)

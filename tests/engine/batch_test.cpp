@@ -59,7 +59,7 @@ int met_in(const Record& record, const Event& e, int ball) {
         return -1;
     if (e.a == ball || e.b == ball) return e.a == ball ? e.b : e.a;
     if (e.type != EventType::kBallCluster) return -1;
-    const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail));
+    const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail)).balls;
     if (std::find(members.begin(), members.end(), ball) == members.end()) return -1;
     const Vec3 here = record.state_at(ball, e.time).position;
     int best = -1;

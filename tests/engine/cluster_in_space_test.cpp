@@ -274,7 +274,7 @@ TEST(ClusterInSpace, TheThirdBallMayFly) {
     high.velocity = {0.0, 0.0, -0.02};
     const Record record = run_verified(scene);
     EXPECT_EQ(count(record, EventType::kBallCluster) > 0, true);
-    EXPECT_EQ(record.clusters.front().size(), 3u);
+    EXPECT_EQ(record.clusters.front().balls.size(), 3u);
 }
 
 // A ball passes a resting one at 8 m/s and approaches it at 0.2 m/s while a third flies within reach: the
@@ -301,7 +301,7 @@ TEST(ClusterInSpace, TwoStepBreaksComeToRest) {
         const Record record = run_verified(scene);
         EXPECT_EQ(record.stopped, StopReason::kAtRest);
         ASSERT_GE(count(record, EventType::kBallCluster), 1);
-        EXPECT_EQ(record.clusters.front().size(), 16u);
+        EXPECT_EQ(record.clusters.front().balls.size(), 16u);
     }
 }
 

@@ -64,7 +64,7 @@ double first_cluster_error(double gap, double speed, double aim_deg) {
     const auto event = std::find_if(record.events.begin(), record.events.end(),
                                     [](const Event& e) { return e.type == EventType::kBallCluster; });
     if (event == record.events.end()) return 1.0;
-    const std::vector<int>& members = record.clusters[event->detail];
+    const std::vector<int>& members = record.clusters[event->detail].balls;
     EXPECT_EQ(members.size(), 16u);
     std::vector<MovingBall> before, after;
     double V = 0.0;

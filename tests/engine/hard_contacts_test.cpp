@@ -128,7 +128,7 @@ TEST(HardContacts, CradleIsOneEvent) {
             const Record record = run_verified(scene);
             ASSERT_FALSE(record.events.empty());
             EXPECT_EQ(record.events[0].type, EventType::kBallCluster);
-            EXPECT_EQ(record.clusters[0].size(), static_cast<std::size_t>(n + 1));
+            EXPECT_EQ(record.clusters[0].balls.size(), static_cast<std::size_t>(n + 1));
             EXPECT_LE(record.events.size(), static_cast<std::size_t>(n * (n + 1) / 2 + 2 * n));
             double sum = 0.0, last = -1.0;
             for (int k = 0; k <= n; ++k) {

@@ -114,7 +114,7 @@ TEST(KnownBad, SymmetricDoubleHit) {
     const Record record = run_verified(scene_named("symmetric_double_hit"));
     const Event* hit = first(record, EventType::kBallCluster);
     ASSERT_NE(hit, nullptr);
-    EXPECT_EQ(record.clusters[0].size(), 3u);
+    EXPECT_EQ(record.clusters[0].balls.size(), 3u);
     const Vec3 a = record.state_at(ball(record, "a"), hit->time).velocity;
     const Vec3 l = record.state_at(ball(record, "L"), hit->time).velocity,
                r = record.state_at(ball(record, "Rr"), hit->time).velocity;

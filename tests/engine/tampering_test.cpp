@@ -307,14 +307,14 @@ std::vector<Kind> kinds() {
         event([](const Event& e) { return e.type == EventType::kBallCluster; },
               [](Record& r, Event& e, Generator& random) {
                   if (in_group(r, e)) return false;
-                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
+                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)].balls;
                   list.erase(list.begin() + draw(random, list.size()));
                   return true;
               }));
     add("a cluster has one more ball", "U6",
         event([](const Event& e) { return e.type == EventType::kBallCluster; },
               [](Record& r, Event& e, Generator&) {
-                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)];
+                  std::vector<int>& list = r.clusters[static_cast<std::size_t>(e.detail)].balls;
                   for (int ball = 0; ball < static_cast<int>(r.tracks.size()); ++ball) {
                       if (std::find(list.begin(), list.end(), ball) != list.end()) continue;
                       const BallTrack& t = r.tracks[static_cast<std::size_t>(ball)];

@@ -182,7 +182,7 @@ TEST(Tangents, ShotsWithoutDerivativesSayWhy) {
     EXPECT_THROW(Tangents(plan_of(bare), simulate(plan_of(draw)), {"cue.speed"}), std::invalid_argument);
     const Scene three = combination(0.3);
     Record wrong = simulate(plan_of(three));
-    std::erase(wrong.clusters[0], 1);
+    std::erase(wrong.clusters[0].balls, 1);
     EXPECT_THROW(Tangents(plan_of(three), wrong, {"cue.speed"}), std::invalid_argument);
     // The time before an event without derivatives still has them.
     const Plan plan = plan_of(scene_of("snooker_break"));

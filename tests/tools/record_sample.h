@@ -82,7 +82,7 @@ inline Record sample_record() {
                      {0.3, EventType::kBallPocket, 1, 0},     {1.0 / 3.0, EventType::kSlideRoll, 0, -1},
                      {7.0 / 3.0, EventType::kRollStop, 2, -1}};
     record.events.insert(record.events.begin() + 2, {0.1, EventType::kBallCluster, 0, 1, 0});
-    record.clusters = {{0, 1, 2}};
+    record.clusters = {{{0, 1, 2}, {{0.25, 0, Partner::kBall, 1, 0.125}}}};
     record.events[4].detail = 1;  // a jaw is a round nose
     record.events[4].slow = true;
     record.start_time = 1e6 / 3.0;

@@ -76,9 +76,15 @@ Json events_json(const Record& record) {
                      {"diamond", number(d.diamond)}};
         if (event.type == EventType::kBallCluster) {
             Json balls = Json::array();
-            for (const int ball : record.clusters[static_cast<std::size_t>(event.detail)])
+            for (const int ball : record.clusters[static_cast<std::size_t>(event.detail)].balls)
                 balls.push_back(record.tracks[static_cast<std::size_t>(ball)].id);
             item["balls"] = balls;
+            item["hits"] = Json::array();
+            for (const Hit& hit : record.hits(event))
+                item["hits"].push_back({{"time", hit.time},
+                                        {"ball", record.tracks[static_cast<std::size_t>(hit.a)].id},
+                                        {"other", record.partner_id(hit.partner, hit.b)},
+                                        {"impulse", hit.impulse}});
         }
         list.push_back(std::move(item));
     }

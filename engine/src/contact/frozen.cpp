@@ -35,16 +35,16 @@ double farthest(std::span<const Segment> segments, const Vec2& along, double tim
     return most;
 }
 
-bool still_frozen(const Table& table, const Event& event, std::span<const Segment> segments, double R) {
+bool still_frozen(const Table& table, const Hit& hit, std::span<const Segment> segments, double R) {
     const Vec2 start = planar(segments.front().r);
-    const Vec2 away = start - nearest_point(table, event, start);
+    const Vec2 away = start - nearest_point(table, hit.partner, hit.b, start);
     if (away.isZero(0.0)) return false;
     const Vec2 along = away / length(away);
     const double from = dot(along, start), slack = kStillFrozen * R;
     std::size_t last = 0;
-    while (last + 1 < segments.size() && segments[last + 1].start <= event.time) ++last;
-    const Vec2 here = planar(position_at(segments[last], lasts(segments, last, event.time)));
-    return dot(along, here) >= from - slack && farthest(segments, along, event.time) <= from + slack;
+    while (last + 1 < segments.size() && segments[last + 1].start <= hit.time) ++last;
+    const Vec2 here = planar(position_at(segments[last], lasts(segments, last, hit.time)));
+    return dot(along, here) >= from - slack && farthest(segments, along, hit.time) <= from + slack;
 }
 
 }  // namespace carom

@@ -43,7 +43,7 @@ class Balls : private Borrowed<BallsMemory> {
     const Segment& segment(int ball) const { return segments_[ball]; }
     void set(int ball, const Segment& segment) {
         const MotionState before = segments_[ball].state;
-        if (flies(before)) turns_[ball].flew = segment.start;
+        if (is_aloft(segments_[ball], radius(ball))) turns_[ball].flew = segment.start;
         if (segment.state == MotionState::kFalling && before != MotionState::kFalling)
             turns_[ball].fell = segment.start;
         if (before == MotionState::kColliding) leave_cluster(ball);
@@ -65,7 +65,7 @@ class Balls : private Borrowed<BallsMemory> {
     /// other began to fall into a pocket. Until one of them is gone or the falling ball is back on the cloth,
     /// they may overlap in the plane.
     bool in_space(int a, int b) const {
-        return flies(segments_[a].state) || flies(segments_[b].state) ||
+        return is_aloft(segments_[a], radius(a)) || is_aloft(segments_[b], radius(b)) ||
                (sinks(a) && turns_[b].flew >= turns_[a].fell) ||
                (sinks(b) && turns_[a].flew >= turns_[b].fell);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "carom/engine/airborne.h"
 #include "contact/place.h"
 #include "contact/touch.h"
 
@@ -18,10 +19,10 @@ constexpr double kListed = 8.0;
 // [contact time] A cluster that would last longer is instantaneous: its balls would travel too far on
 // straight paths.
 constexpr double kLongest = 20.0;
-// Most balls that may join a cluster because one of its balls would hit them.
-constexpr std::size_t kMostJoin = 4;
 // [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
+// [strongest impulse] A weaker one is rounding: the balls did not touch.
+constexpr double kPushes = 1e-9;
 
 /// For balls on the cloth, ignores the height at which the fall of one began; unlike balls touch above or
 /// below their equators.
@@ -162,22 +163,32 @@ void Clusters::collect_at(int a, int b, double v_n) {
     }
 }
 
-// Positions of the balls at the end of the cluster, when no two of them overlap.
+// Positions of the balls at the end of the cluster, when no two of them overlap, outside of cushions.
 // @return false: the balls must stay in place
 bool Clusters::find_paths() {
+    duration_ = 0.0;
     double duration = map_.duration();
     paths_.clear();
-    for (std::size_t k = 0; k < members_.size(); ++k) paths_.push_back(planar(map_.moved(k)));
+    for (std::size_t k = 0; k < members_.size(); ++k) paths_.push_back(map_.moved(k));
+    const auto place = [&] {
+        for (std::size_t k = 0; k < members_.size(); ++k) {
+            ClusterBall& m = members_[k];
+            const Placed at{m.r + paths_[k], m.v};
+            paths_[k] = near_.outside(k, at) - m.r;
+            if (in_space_ && near_.lies(m.ball, at)) m.v.z() = 0.0;
+        }
+    };
+    place();
+    const double longest = kLongest * contact_time_;
     while (const double more = overlap_ends()) {
         duration += more;
-        if (!(duration <= kLongest * contact_time_)) break;
-        for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * planar(members_[k].v);
+        if (!(duration <= longest)) break;
+        for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * members_[k].v;
+        place();
     }
-    obstacle_ = kTable;
-    if (!(duration <= kLongest * contact_time_)) return false;
+    if (!(duration <= longest)) return false;
     duration_ = duration;
     obstacle_ = find_obstacle();
-    if (obstacle_ != kNone) duration_ = 0.0;
     return duration_ > 0.0;
 }
 
@@ -186,35 +197,31 @@ double Clusters::overlap_ends() const {
     double longest = 0.0;
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
-            const ClusterBall &p = members_[i], &q = members_[j];
-            const Vec2 apart = planar(q.r) + paths_[j] - planar(p.r) - paths_[i];
-            const double distance = length(apart), most = contact_distance(p.R, q.R, plan_.balls.discs());
-            if (!(distance < most - kTouchUlp * std::max(p.R, q.R))) continue;
-            const double opens = dot(apart, planar(q.v) - planar(p.v)) / distance;
-            if (!(opens > 0.0)) return kNever;
-            longest = std::max(longest, (most - distance) / opens * (1.0 + kBoxShare));
+            ClusterBall p = members_[i], q = members_[j];
+            p.r += paths_[i];
+            q.r += paths_[j];
+            const Touch<Vec3> ends = touch_of(p, q, in_space_, plan_.balls.discs());
+            if (ends.gap >= -kTouchUlp * std::max(p.R, q.R)) continue;
+            if (!(ends.closing < 0.0)) return kNever;
+            longest = std::max(longest, ends.gap / ends.closing * (1.0 + kBoxShare));
         }
     }
     return longest;
 }
 
-// Returns the first ball that a member hits on its path, kTable or kNone. A ball that no cluster may include
-// counts as the table.
+// Returns the first ball that a member hits on its path, or kNone.
 int Clusters::find_obstacle() const {
     int found = kNone;
-    for (std::size_t k = 0; k < members_.size() && found != kTable; ++k) {
+    for (std::size_t k = 0; k < members_.size(); ++k) {
         const ClusterBall& ball = members_[k];
-        const Vec2& path = paths_[k];
-        detector_.parts_near(near_box(ball, length(path)), [&](const Contact&) { found = kTable; });
-        const double most = length(path) + duration_ * detector_.fastest();
+        const Vec3& path = paths_[k];
+        const double most = length(planar(path)) + duration_ * detector_.fastest();
         detector_.balls_near(near_box(ball, most), [&](int q) {
             const auto is_before = [this](int one, int two) {
                 return before_place(planar(balls_.position(one)), planar(balls_.position(two)));
             };
-            if (found == kTable || is_member(q) || has_room(ball, path, q)) return;
-            const bool joins = !balls_.collides(q) && !balls_.segment(q).held && !balls_.sinks(q) &&
-                               !flies(balls_.segment(q).state);
-            found = !joins ? kTable : found == kNone || is_before(q, found) ? q : found;
+            if (is_member(q) || balls_.collides(q) || passes(ball.ball, q) || has_room(ball, path, q)) return;
+            found = found == kNone || is_before(q, found) ? q : found;
         });
     }
     return found;
@@ -226,18 +233,13 @@ bool Clusters::is_member(int ball) const {
 }
 
 // Whether a ball on its path misses another one that continues its present motion.
-bool Clusters::has_room(const ClusterBall& ball, const Vec2& path, int other) const {
+bool Clusters::has_room(const ClusterBall& ball, const Vec3& path3, int other) const {
+    const Vec2 path = planar(path3);
     const Segment& s = balls_.segment(other);
     if (is_gone(s.state)) return true;
     const Vec2 apart = planar(balls_.position(other)) - planar(ball.r);
     double touching = (ball.R + balls_.radius(other)) * (1.0 + kBoxShare);
     touching += 0.5 * duration_ * duration_ * length(s.a);
-    if (balls_.collides(other) || s.held) {
-        // The other one may leave its cluster, or be pushed by other balls.
-        double speed = length(planar(balls_.velocity(other)));
-        if (!s.held) speed = std::max(speed, length(planar(balls_.afterwards(other).v)));
-        return length(apart) > touching + length(path) + duration_ * speed;
-    }
     const Vec2 relative = duration_ * planar(balls_.velocity(other)) - path;
     const double whole = dot(relative, relative),
                  share = whole > 0.0 ? std::clamp(-dot(apart, relative) / whole, 0.0, 1.0) : 0.0;
@@ -271,38 +273,76 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .slide = p.rolls() ? plan_.motion.front().slide : 0.0,
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
-    const auto run = [&] { return map_.compliant(members_, contacts_, settings, v_n, !in_space_); };
-    // A falling ball, or one in space, would move up or down during the cluster, and resting contacts would
-    // push other balls meanwhile.
-    may_last &= !in_space_ && std::none_of(members_.begin(), members_.end(), [this](const ClusterBall& m) {
-        return balls_.sinks(m.ball) || balls_.segment(m.ball).held;
-    });
-    std::int64_t steps = run();
-    if (steps >= 0 && may_last) {
-        if (find_paths()) return steps;
-        // A ball that is hit meanwhile joins. If that does not help, the cluster is instantaneous and the
-        // ball is hit afterwards.
-        while (obstacle_ != kTable && joined_.size() < kMostJoin) {
-            joined_.push_back(obstacle_);
-            collect_at(first_, second_, v_n);
-            const std::int64_t more = unlike_ == settings.unlike && !in_space_ ? run() : -1;
-            if (more < 0) break;
-            steps += more;
-            if (find_paths()) return steps;
-        }
-        if (!joined_.empty()) {
-            joined_.clear();
-            collect_at(first_, second_, v_n);
-            steps += run();
-        }
+    settings.surfaces = &near_;
+    settings.gravity = in_space_ ? plan_.gravity : 0.0;
+    if (in_space_) settings.hop = bounce_end(p.R, plan_.gravity);
+    // A ball that falls into a pocket would move down during the cluster.
+    may_last &= std::none_of(members_.begin(), members_.end(),
+                             [this](const ClusterBall& m) { return balls_.sinks(m.ball); });
+    std::int64_t steps = may_last ? integrate(settings, v_n) : -1;
+    // A ball that is hit meanwhile joins.
+    while (steps >= 0 && find_paths()) {
+        if (obstacle_ == kNone) return steps;
+        joined_.push_back(obstacle_);
+        collect_at(first_, second_, v_n);
+        settings.unlike = unlike_;
+        settings.R = unlike_ ? p.R : balls_.radius(members_.front().ball);
+        const std::int64_t more = integrate(settings, v_n);
+        steps = more < 0 ? more : steps + more;
     }
+    // Without time the balls stay in place, and nothing else joins.
+    duration_ = 0.0;
+    if (!joined_.empty()) {
+        joined_.clear();
+        collect_at(first_, second_, v_n);
+    }
+    near_.forget();
+    settings.surfaces = nullptr;
+    steps = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
     if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
-        const std::int64_t more = run();
+        const std::int64_t more = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
         steps = more < 0 ? more : steps + more;
     }
     // Friction and a wedge can press balls together without end: then resolve the cluster as rigid.
     return steps < 0 ? rigid(settings) : steps;
+}
+
+// The motion of a cluster that lasts, with the parts of the table that its balls may reach.
+std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
+    const double longest = kLongest * contact_time_;
+    near_.begin(members_, in_space_, longest);
+    double fastest = v_n;
+    for (const ClusterBall& m : members_) fastest = std::max(fastest, length3(m.v));
+    for (std::size_t k = 0; k < members_.size(); ++k)
+        detector_.parts_near(near_box(members_[k], fastest * longest), [&](const Contact& part) {
+            if (part.with != With::kPocket) near_.add(k, part);
+        });
+    near_.sort();
+    ClusterSettings with = settings;
+    if (!near_.any()) with.surfaces = nullptr;
+    return map_.compliant(members_, contacts_, with, v_n, !in_space_);
+}
+
+// A contact that changed no speed by more than rounding did not take place.
+const std::vector<Hit>& Clusters::hits() {
+    double strongest = 0.0;
+    for (const ClusterPush& push : map_.pushes()) strongest = std::max(strongest, push.impulse);
+    hits_.clear();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const ClusterPush& push = map_.pushes()[c];
+        if (push.first < 0.0 || !(push.impulse > kPushes * strongest)) continue;
+        hits_.push_back({balls_.now() + push.first, members_[contacts_[c].i].ball, Partner::kBall,
+                         members_[contacts_[c].j].ball, plan_.balls.m * push.impulse});
+    }
+    for (Hit hit : near_.hits()) {
+        hit.time += balls_.now();
+        hits_.push_back(hit);
+    }
+    // Of simultaneous ones the order of contacts_ stays.
+    std::stable_sort(hits_.begin(), hits_.end(),
+                     [](const Hit& one, const Hit& two) { return one.time < two.time; });
+    return hits_;
 }
 
 // Balls on the cloth push each other in the plane, whatever the tilt of their normals.

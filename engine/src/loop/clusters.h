@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "loop/balls.h"
+#include "loop/cluster_surfaces.h"
 #include "loop/detector.h"
 #include "loop/memory.h"
 #include "physics/cluster.h"
@@ -16,8 +17,10 @@ struct ClustersMemory {
     ClusterMap map_;
     std::vector<ClusterBall> members_;
     std::vector<ClusterContact> contacts_;
-    std::vector<Vec2> paths_;  // per ball
+    std::vector<Vec3> paths_;  // per ball
+    ClusterSurfacesMemory surfaces_;
     std::vector<int> joined_;  // balls that a member would hit during the cluster
+    std::vector<Hit> hits_;
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -41,10 +44,13 @@ class Clusters : private Borrowed<ClustersMemory> {
     /// @return number of integration steps
     std::int64_t resolve(double v_n, bool friction, bool may_last);
 
+    /// Who touched whom in the last resolved cluster, ordered by time.
+    const std::vector<Hit>& hits();
+
     /// [s] Duration of the last resolved cluster; 0: instantaneous, and the balls stay in place.
     double duration() const { return duration_; }
     /// [m] The displacement of the k-th ball during that time.
-    const Vec2& path(std::size_t k) const { return paths_[k]; }
+    const Vec3& path(std::size_t k) const { return paths_[k]; }
 
     /// Number of balls that collect() examined besides the first two; for tests.
     std::int64_t looks() const { return looks_; }
@@ -52,11 +58,12 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     std::int64_t rigid(const ClusterSettings& settings);
+    std::int64_t integrate(const ClusterSettings& settings, double v_n);
     bool find_paths();
     double overlap_ends() const;
     int find_obstacle() const;
     bool is_member(int ball) const;
-    bool has_room(const ClusterBall& ball, const Vec2& path, int other) const;
+    bool has_room(const ClusterBall& ball, const Vec3& path, int other) const;
     bool closes_still(double v_n) const;
     Box near_box(const ClusterBall& ball, double gap) const;
     ClusterBall member(int ball) const;
@@ -70,9 +77,10 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
-    // The ball that made the last cluster instantaneous, or one of these two.
-    static constexpr int kNone = -1, kTable = -2;
-    int obstacle_ = kTable;
+    // A ball that a member hits on its path.
+    static constexpr int kNone = -1;
+    int obstacle_ = kNone;
+    NearSurfaces near_{plan_, surfaces_};
     bool in_space_ = false;
     bool pair_ = false;    // of the last collect()
     bool unlike_ = false;  // the last collect() found balls of different size

@@ -37,6 +37,7 @@ Log::Log(const Plan& plan, const SimulateOptions& options, Balls& balls, LogMemo
     events_.clear();
     segments_.clear();
     cluster_ball_.clear();
+    hits_.clear();
     cluster_end_.clear();
     touched_.clear();
     stays_.assign(plan.in_force(Effect::kAirborne) ? plan.sizes.size() : 0, {0.0, Vec3::Zero()});
@@ -48,15 +49,17 @@ void Log::reserve() {
     if (keep_ != Keep::kOutcome) segments_.reserve(static_cast<std::size_t>(balls_.count()) + kRoom);
     if (plan_.clusters != ClusterModel::kSequential) {
         cluster_ball_.reserve(kRoom);
+        hits_.reserve(kRoom);
         cluster_end_.reserve(kRoom);
     }
     events_.reserve(kRoom);
 }
 
-void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls) {
+void Log::cluster(int a, int b, const std::vector<ClusterBall>& balls, const std::vector<Hit>& hits) {
     event(EventType::kBallCluster, a, b, static_cast<int>(cluster_end_.size()));
     cluster_ball_.insert(cluster_ball_.end(), balls.begin(), balls.end());
-    cluster_end_.push_back(cluster_ball_.size());
+    hits_.insert(hits_.end(), hits.begin(), hits.end());
+    cluster_end_.push_back({cluster_ball_.size(), hits_.size()});
 }
 
 void Log::watch(int ball) {
@@ -183,10 +186,15 @@ void Log::record(StopReason why, Record& record) {
     for (int i = 0; i < balls_.count(); ++i)
         if (balls_.collides(i)) record.tracks[i].segments.push_back(balls_.afterwards(i));
     auto member = cluster_ball_.begin();
-    for (const std::size_t end : cluster_end_) {
-        std::vector<int>& cluster = record.clusters.emplace_back();
-        for (const auto to = cluster_ball_.begin() + static_cast<std::ptrdiff_t>(end); member != to; ++member)
-            cluster.push_back(member->ball);
+    auto hit = hits_.begin();
+    for (const End& end : cluster_end_) {
+        Cluster& cluster = record.clusters.emplace_back();
+        for (const auto to = cluster_ball_.begin() + static_cast<std::ptrdiff_t>(end.ball); member != to;
+             ++member)
+            cluster.balls.push_back(member->ball);
+        const auto to = hits_.begin() + static_cast<std::ptrdiff_t>(end.hit);
+        cluster.hits.assign(hit, to);
+        hit = to;
     }
     for (const Event& e : events_)
         if (e.type == EventType::kBallPocket) record.tracks[e.a].pocket = e.b;

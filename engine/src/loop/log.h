@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,12 @@ struct LogMemory {
     // Segments and clusters in chronological order.
     std::vector<BallSegment> segments_;
     std::vector<ClusterBall> cluster_ball_;
-    std::vector<std::size_t> cluster_end_;
+    std::vector<Hit> hits_;
+    /// Where a cluster ends in cluster_ball_ and in hits_.
+    struct End {
+        std::size_t ball, hit;
+    };
+    std::vector<End> cluster_end_;
     std::vector<int> touched_;
     /// For a ball in the air: where it has stayed, apart from trembling, and since when [s].
     struct Stay {
@@ -72,7 +78,7 @@ class Log : private Borrowed<LogMemory> {
         event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));
     }
     /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
-    void cluster(int a, int b, const std::vector<ClusterBall>& balls);
+    void cluster(int a, int b, const std::vector<ClusterBall>& balls, const std::vector<Hit>& hits);
     /// The ball falls into the pocket now.
     void fall(int ball, int pocket);
 
@@ -112,8 +118,8 @@ class Log : private Borrowed<LogMemory> {
   private:
     void reserve();
     void begin_record(Record& record) const;
-    int met_by(int struck, const Event& event) const;
-    bool is_driven(const Event& event);
+    bool is_driven(const Hit& hit);
+    std::span<const Hit> hits(const Event& event) const;
     std::uint64_t hash() const;
     bool is_crowded() const {
         const std::vector<Event>& e = events_;

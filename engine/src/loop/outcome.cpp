@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "base/record_hash.h"
@@ -11,26 +10,6 @@
 #include "physics/motion.h"
 
 namespace carom {
-
-namespace {
-
-/// The member of a cluster nearest to this ball; -1 if the ball is not in it.
-int nearest(std::span<const ClusterBall> cluster, int ball) {
-    const auto self =
-        std::find_if(cluster.begin(), cluster.end(), [ball](const ClusterBall& b) { return b.ball == ball; });
-    if (self == cluster.end()) return -1;
-    int best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (const ClusterBall& other : cluster) {
-        const double distance = other.ball == ball ? least : (other.r - self->r).norm();
-        if (distance >= least) continue;
-        least = distance;
-        best = other.ball;
-    }
-    return best;
-}
-
-}  // namespace
 
 int struck_ball(const Scene& scene) {
     for (std::size_t i = 0; i < scene.ball.size(); ++i) {
@@ -42,23 +21,19 @@ int struck_ball(const Scene& scene) {
     return -1;
 }
 
-/// Whether the struck ball was driven to its partner in this event, a cushion or jaw.
-bool Log::is_driven(const Event& event) {
+/// Whether the struck ball was driven to the cushion or jaw that it hits.
+bool Log::is_driven(const Hit& hit) {
     if (of_struck_.empty())
         for (const BallSegment& s : segments_)
             if (s.ball == struck_) of_struck_.push_back(s.segment);
-    return !still_frozen(plan_.scene.table, event, of_struck_, balls_.radius(struck_));
+    return !still_frozen(plan_.scene.table, hit, of_struck_, balls_.radius(struck_));
 }
 
-// The ball that the struck ball touches in this event, or -1.
-int Log::met_by(int struck, const Event& e) const {
-    const bool cluster = e.type == EventType::kBallCluster;
-    if (!cluster && e.type != EventType::kBallBall && e.type != EventType::kBallBallHold) return -1;
-    if (e.a == struck || e.b == struck) return e.a == struck ? e.b : e.a;
-    if (!cluster) return -1;
-    const auto index = static_cast<std::size_t>(e.detail);
-    const std::size_t begin = index == 0 ? 0 : cluster_end_[index - 1];
-    return nearest(std::span(cluster_ball_).subspan(begin, cluster_end_[index] - begin), struck);
+std::span<const Hit> Log::hits(const Event& event) const {
+    if (event.type != EventType::kBallCluster) return {};
+    const auto index = static_cast<std::size_t>(event.detail);
+    const std::size_t begin = index == 0 ? 0 : cluster_end_[index - 1].hit;
+    return std::span(hits_).subspan(begin, cluster_end_[index].hit - begin);
 }
 
 std::uint64_t Log::hash() const {
@@ -95,18 +70,19 @@ void Log::outcome(StopReason why, Outcome& out) {
     }
     int fallen = 0;
     for (const Event& e : events_) {
-        BallOutcome& ball = out.balls[e.a];
-        const EventKind& of = kind(e.type);
-        const bool table = of.partner == Partner::kCushion || of.partner == Partner::kJaw;
-        if (table && of.phase != EventPhase::kRelease) {
-            ++ball.cushions;
-            if (e.a == struck_ && out.contacts < 2 && is_driven(e)) ++out.approach_cushions;
-        }
-        const int met = out.struck < 0 || of.partner != Partner::kBall ? -1 : met_by(out.struck, e);
-        if (met >= 0 && !out.balls[met].met) {
+        each_hit(e, hits(e), [&](const Hit& hit) {
+            if (hit.partner == Partner::kCushion || hit.partner == Partner::kJaw) {
+                ++out.balls[hit.a].cushions;
+                if (hit.a == struck_ && out.contacts < 2 && is_driven(hit)) ++out.approach_cushions;
+            }
+            if (hit.partner != Partner::kBall || struck_ < 0 || (hit.a != struck_ && hit.b != struck_))
+                return;
+            const int met = hit.a == struck_ ? hit.b : hit.a;
+            if (out.balls[met].met) return;
             out.balls[met].met = true;
             if (out.contacts++ == 0) out.first_hit = met;
-        }
+        });
+        BallOutcome& ball = out.balls[e.a];
         if (e.type == EventType::kBallOut) ball.pocket = kOffTable;
         if (e.type != EventType::kBallPocket) continue;
         ball.pocket = e.b;

@@ -207,7 +207,7 @@ bool Resolver::cluster(int a, int b, double v_n, bool pair) {
     const std::vector<ClusterBall>& members = clusters_.balls();
     if (in_space)
         for (const ClusterBall& ball : members) resting_.release(ball.ball);
-    log_.cluster(a, b, members);
+    log_.cluster(a, b, members, clusters_.hits());
     for (const ClusterBall& ball : members) {
         if (in_space)
             go_on(ball.ball, ball.r, {ball.v, ball.w});
@@ -221,16 +221,18 @@ bool Resolver::cluster(int a, int b, double v_n, bool pair) {
 // Every ball moves straight to its position at the end of the cluster, and freely from there.
 void Resolver::begin_cluster(int a, int b) {
     const std::vector<ClusterBall>& members = clusters_.balls();
-    log_.cluster(a, b, members);
+    for (const ClusterBall& ball : members) resting_.release(ball.ball);
+    log_.cluster(a, b, members, clusters_.hits());
     const double now = balls_.now(), duration = clusters_.duration();
     int other = members.front().ball;
     for (std::size_t k = 0; k < members.size(); ++k) {
         const ClusterBall& m = members[k];
-        const Vec2& path = clusters_.path(k);
-        const Vec3 end = m.r + Vec3(path.x(), path.y(), 0.0);
+        const Vec3& path = clusters_.path(k);
+        const Vec3 end = m.r + path;
         log_.begin_colliding(m.ball, colliding_segment(now, m.r, path, m.w, duration),
                              after_impact(now + duration, m.ball, end, m.v, m.w), other);
         other = m.ball;
+        log_.watch(m.ball);
     }
 }
 
@@ -238,6 +240,11 @@ void Resolver::end_cluster(int ball) {
     while (balls_.collides(ball)) {
         const int next = balls_.next_in_cluster(ball);
         log_.begin(ball, balls_.afterwards(ball));
+        // The cluster may have moved it over a pocket.
+        const std::vector<Pocket>& pockets = plan_.geometry.pockets;
+        for (std::size_t k = 0; k < pockets.size() && !is_off_cloth(balls_.segment(ball).state); ++k)
+            if (is_inside(pockets[k], planar(balls_.position(ball))))
+                pocket({ball, With::kPocket, static_cast<int>(k)});
         ball = next;
     }
 }

@@ -72,7 +72,8 @@ void Detector::search_table(int ball, const RoundedBox& whole) {
     PredictedEvent& first = mover_[ball].table;
     first = {};
     const Segment& s = balls_.segment(ball);
-    if (is_gone(s.state) || (parts_.empty() && !plan_.scene.table.bed)) return;
+    // The integration of a cluster has included the table.
+    if (is_gone(s.state) || balls_.collides(ball) || (parts_.empty() && !plan_.scene.table.bed)) return;
     find_parts(whole);
     if (flights_ && flies(s.state)) {
         search_table_in_air(ball);

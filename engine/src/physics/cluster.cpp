@@ -79,8 +79,8 @@ kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     const int p = law_exponent(s.e_b);
     const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
     const double slide = s.slide * contact_length(V) / (V * V);
-    return {1.0 - b,         b,    p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more,
-            s.mu_b_fall * V, slide};
+    return {1.0 - b,         b,     p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more,
+            s.mu_b_fall * V, slide, s.gravity * contact_length(V) / (V * V), s.hop * s.hop / (V * V)};
 }
 
 // The integration reads and writes four numbers at once. With cache-line alignment, no such group crosses two
@@ -96,6 +96,16 @@ double radius(const ClusterBall& ball, const ClusterSettings& settings) {
 }
 
 }  // namespace
+
+Placed ClusterMap::Reached::placed(int ball, const double* state) const {
+    return {(*balls)[static_cast<std::size_t>(ball)].r + L * Vec3(state[0], state[1], state[2]),
+            V * Vec3(state[3], state[4], state[5])};
+}
+
+Vec3 ClusterMap::Reached::spin(int ball, const double* state) const {
+    const double R = radius((*balls)[static_cast<std::size_t>(ball)], *settings);
+    return V / R * Vec3(state[6], state[7], state[8]);
+}
 
 void ClusterMap::load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V) {
     motion_.clear();
@@ -218,6 +228,33 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     numbers_.resize(
         std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
     places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
+    history_.resize(contacts.size());
+    lies_.clear();
+    for (const ClusterBall& ball : balls) lies_.push_back((radius(ball, settings) - ball.r.z()) / L);
+    Reached reached{&balls, &settings, V, L};
+    const kernel::ContactSurfaces surfaces{
+        &reached,
+        [](void* owner, int ball, const double* state) noexcept {
+            const Reached& at = *static_cast<Reached*>(owner);
+            return at.settings->surfaces->next(static_cast<std::size_t>(ball), at.placed(ball, state),
+                                               at.spin(ball, state)) *
+                   (at.V / at.L);
+        },
+        [](void* owner, int ball, double time, double* state) noexcept {
+            const Reached& at = *static_cast<Reached*>(owner);
+            const Placed before = at.placed(ball, state);
+            Velocities now{before.velocity, at.spin(ball, state)};
+            at.settings->surfaces->hit(static_cast<std::size_t>(ball), time * (at.L / at.V), before.position,
+                                       now);
+            const double R = radius((*at.balls)[static_cast<std::size_t>(ball)], *at.settings);
+            for (int k = 0; k < 3; ++k) state[3 + k] = now.v[k] / at.V;
+            for (int k = 0; k < 3; ++k) state[6 + k] = R * now.w[k] / at.V;
+        },
+        [](void* owner, int ball, const double* state) noexcept {
+            const Reached& at = *static_cast<Reached*>(owner);
+            return at.settings->surfaces->out(static_cast<std::size_t>(ball), at.placed(ball, state)) *
+                   (at.V / at.L);
+        }};
     const double before = energy();
     const kernel::ContactPhase phase{.balls = m,
                                      .contacts = n,
@@ -226,9 +263,12 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                                      .numbers = on_cache_line(numbers_),
                                      .places = places_.data(),
                                      .held = held,
+                                     .surfaces = settings.surfaces != nullptr ? &surfaces : nullptr,
+                                     .lies = held || settings.surfaces == nullptr ? nullptr : lies_.data(),
                                      .inverse_mass = settings.unlike ? inverse_mass_.data() : nullptr,
                                      .moved = moved_.data(),
-                                     .time = &duration_};
+                                     .time = &duration_,
+                                     .history = history_.data()};
     // Heavy balls compress each other for longer.
     const double longest = kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
     kernel::HertzLaw law = law_of(settings, V);
@@ -239,8 +279,12 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     const std::int64_t evaluations =
         settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, slow * longest);
     if (evaluations < 0) return evaluations;
-    keep_energy(before);
+    // A surface may also drive balls apart (a hop, a slow contact in the air).
+    if (settings.surfaces == nullptr) keep_energy(before);
     unload(settings, V, balls);
+    pushes_.clear();
+    for (const kernel::HertzHistory& h : history_)
+        pushes_.push_back({h.first < 0.0 ? -1.0 : h.first * (L / V), h.impulse * V});
     return evaluations;
 }
 
@@ -281,6 +325,9 @@ std::int64_t ClusterMap::rigid(std::vector<ClusterBall>& balls, const std::vecto
         if (change <= 1e-16 * scale) break;
     }
     for (std::size_t b = 0; b < balls.size(); ++b) balls[b].v = (1.0 + e_b) * v[b] - e_b * balls[b].v;
+    pushes_.clear();
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        pushes_.push_back({impulse[c] > 0.0 ? 0.0 : -1.0, (1.0 + e_b) * impulse[c]});
     return sweeps;
 }
 

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/engine/cushion.h"
 #include "carom/engine/scene.h"
 #include "carom/engine/tolerances.h"
 #include "carom/engine/vec.h"
 #include "carom/kernel/contact_phase.h"
+#include "physics/motion.h"
 
 namespace carom {
 
@@ -42,6 +44,22 @@ struct ClusterContact {
     double nearness = 1.0;
 };
 
+/// When the balls of a contact touched for the first time [s after the start; negative: never], and their
+/// impulse along the normal [m/s times the mass that ClusterSettings describes].
+struct ClusterPush {
+    double first = -1.0, impulse = 0.0;
+};
+
+/// The cushions and, under balls in space, the cloth near a cluster: SI units, and k is the index in the list
+/// of balls. See kernel::ContactSurfaces.
+class ClusterSurfaces {
+  public:
+    virtual ~ClusterSurfaces() = default;
+    virtual double next(std::size_t k, const Placed& at, const Vec3& spin) const = 0;
+    virtual void hit(std::size_t k, double time, const Vec3& r, Velocities& ball) = 0;
+    virtual double out(std::size_t k, const Placed& at) const = 0;
+};
+
 struct ClusterSettings {
     double R;  ///< [m]
     double mu_s = 0.0, mu_b = 0.0, e_b = 1.0;
@@ -54,6 +72,9 @@ struct ClusterSettings {
     double slide = 0.0;   ///< [m/s^2] deceleration of a ball that slips on the cloth
     bool turns = true;    ///< false: all normals remain as in the contacts
     bool unlike = false;  ///< the balls differ in size; R is that of balls with mass 1
+    ClusterSurfaces* surfaces = nullptr;
+    double gravity = 0.0;  ///< [m/s^2] of balls in space
+    double hop = 0.0;      ///< [m/s] a slower rise does not leave the cloth
 };
 
 /// Duration of a Hertz contact at the approach speed V: t_c = 2.6 L / V [s], L = (V^2 m / k)^0.4 (equation
@@ -77,7 +98,8 @@ class ClusterMap {
     /// triggering pair or of the fastest one. Replaces velocities and spins. Returns the number of
     /// evaluations of the forces, or -1 if the contacts did not separate within kClusterTimeLimit. The
     /// positions of the balls are unchanged; see duration() and moved(). `held`: all balls stay on the cloth.
-    /// Otherwise a ball flies or may leave the cloth, which reacts next: cloth friction is ignored.
+    /// Otherwise a ball flies or may leave the cloth, which is one of the surfaces: its friction with balls
+    /// that are pressed down is ignored.
     std::int64_t compliant(std::vector<ClusterBall>& balls, const std::vector<ClusterContact>& contacts,
                            const ClusterSettings& settings, double V, bool held);
 
@@ -89,9 +111,19 @@ class ClusterMap {
 
     /// Of the last compliant map: its duration [s], and ball k's displacement in it [m].
     double duration() const { return duration_; }
+    /// Of the last map, the course of every contact.
+    const std::vector<ClusterPush>& pushes() const { return pushes_; }
     Vec3 moved(std::size_t k) const { return {moved_[3 * k], moved_[3 * k + 1], moved_[3 * k + 2]}; }
 
   private:
+    /// What the kernel's surfaces need.
+    struct Reached {
+        const std::vector<ClusterBall>* balls;
+        const ClusterSettings* settings;
+        double V, L;
+        Placed placed(int ball, const double* state) const;
+        Vec3 spin(int ball, const double* state) const;
+    };
     void load(const std::vector<ClusterBall>& balls, const ClusterSettings& settings, double V);
     void unload(const ClusterSettings& settings, double V, std::vector<ClusterBall>& balls);
     void keep_energy(double before);
@@ -104,6 +136,9 @@ class ClusterMap {
     double duration_ = 0.0;
     std::vector<double> mass_, inverse_mass_;  // per ball
     std::vector<kernel::HertzContact> contacts_;
+    std::vector<kernel::HertzHistory> history_;
+    std::vector<ClusterPush> pushes_;
+    std::vector<double> lies_;  // per ball [L]
     std::vector<double> numbers_;
     std::vector<int> places_;
     // For rigid(): per ball [m/s], and per contact.

@@ -151,11 +151,11 @@ Vec3 landing_velocity(const Segment& s, const MotionParams& p) {
     return {s.v.x(), s.v.y(), -std::sqrt(s.v.z() * s.v.z() + 2.0 * p.gravity * c)};
 }
 
-Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration) {
+Segment colliding_segment(double t, const Vec3& r, const Vec3& path, const Vec3& w, double duration) {
     Segment s;
     s.start = t;
     s.r = r;
-    s.v = Vec3(path.x() / duration, path.y() / duration, 0.0);
+    s.v = path / duration;
     s.w = w;
     s.a = s.dw = Vec2::Zero();
     s.duration = duration;

@@ -29,6 +29,11 @@ inline double fall_speed(const Segment& segment, double tau, double gravity) {
     return gravity * tau - segment.v.z();
 }
 
+/// Whether a ball of radius R is above the cloth: in flight, or in a cluster in space.
+inline bool is_aloft(const Segment& s, double R) {
+    return flies(s.state) || (s.state == MotionState::kColliding && (s.r.z() > R || s.v.z() > 0.0));
+}
+
 /// Position and velocity of a ball, including the height in a fall or flight, which position_at and
 /// velocity_at omit.
 struct Placed {
@@ -68,7 +73,7 @@ Vec3 landing_velocity(const Segment& segment, const MotionParams& params);
 
 /// The segment of a ball in a cluster that lasts for `duration` and moves it by `path`. Its spin afterwards
 /// is w.
-Segment colliding_segment(double t, const Vec3& r, const Vec2& path, const Vec3& w, double duration);
+Segment colliding_segment(double t, const Vec3& r, const Vec3& path, const Vec3& w, double duration);
 
 /// Whether two balls with these segments are in the same cluster. They may overlap.
 inline bool collide(const Segment& a, const Segment& b) {

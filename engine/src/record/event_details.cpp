@@ -18,7 +18,7 @@ namespace {
 bool has(const Record& record, const Event& event, int ball) {
     if (event.a == ball || (kind(event.type).partner == Partner::kBall && event.b == ball)) return true;
     if (event.type != EventType::kBallCluster) return false;
-    const std::vector<int>& cluster = record.clusters[static_cast<std::size_t>(event.detail)];
+    const std::vector<int>& cluster = record.clusters[static_cast<std::size_t>(event.detail)].balls;
     return std::find(cluster.begin(), cluster.end(), ball) != cluster.end();
 }
 
@@ -75,16 +75,11 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
         }
         case Partner::kCushion:
         case Partner::kJaw: {
-            const bool jaw = kind(event.type).partner == Partner::kJaw;
-            const auto part = static_cast<std::size_t>(event.b);
-            const Vec2 center = planar(a.position), nearest = nearest_point(record.table, event, center);
-            const Vec2 n = (center - nearest).normalized();
-            const Vec2 point = jaw && !record.table.jaws[part].is_arc()
-                                   ? Vec2(nearest + record.table.jaws[part].radius * n)
-                                   : nearest;
-            d.normal = Vec3(n.x(), n.y(), 0.0);
-            d.point = Vec3(point.x(), point.y(),
-                           jaw ? record.table.jaws[part].height : record.table.cushions[part].height);
+            const CushionPoint at =
+                cushion_point(record.table, kind(event.type).partner, event.b, planar(a.position));
+            d.point = at.point;
+            d.normal = Vec3(at.normal.x(), at.normal.y(), 0.0);
+            d.diamond = at.diamond;
             return;
         }
         case Partner::kPocket:
@@ -95,9 +90,8 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
     }
 }
 
-double diamond(const Table& table, const Event& event, const Vec3& point) {
+double diamond(const Table& table, const Cushion& cushion, const Vec2& point) {
     if (!(table.width > 0.0 && table.length > 0.0)) return EventDetails::kNone;
-    const Cushion& cushion = table.cushions[static_cast<std::size_t>(event.b)];
     const Vec2 along = cushion.to - cushion.from;
     return std::abs(along.y()) > std::abs(along.x())
                ? (point.y() - table.corner.y()) / table.length * kLongRail
@@ -163,11 +157,21 @@ std::string met_name(const Record& record, const Event& event) {
     return text.empty() ? record.partner_id(event) : text;
 }
 
-Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place) {
-    const auto part = static_cast<std::size_t>(event.b);
-    return kind(event.type).partner == Partner::kJaw
-               ? nearest_point(nose_of(table.jaws[part], event.b, 0.0), place)
-               : nearest_point(line_of(table.cushions[part], 0.0), place);
+Vec2 nearest_point(const Table& table, Partner partner, int part, const Vec2& place) {
+    const auto at = static_cast<std::size_t>(part);
+    return partner == Partner::kJaw ? nearest_point(nose_of(table.jaws[at], part, 0.0), place)
+                                    : nearest_point(line_of(table.cushions[at], 0.0), place);
+}
+
+CushionPoint cushion_point(const Table& table, Partner partner, int part, const Vec2& center) {
+    const Vec2 nearest = nearest_point(table, partner, part, center), n = (center - nearest).normalized();
+    const auto at = static_cast<std::size_t>(part);
+    if (partner == Partner::kCushion)
+        return {Vec3(nearest.x(), nearest.y(), table.cushions[at].height), n,
+                diamond(table, table.cushions[at], nearest)};
+    const Jaw& jaw = table.jaws[at];
+    const Vec2 point = jaw.is_arc() ? nearest : Vec2(nearest + jaw.radius * n);
+    return {Vec3(point.x(), point.y(), jaw.height), n};
 }
 
 Table without_arcs(const Table& table) {
@@ -204,12 +208,11 @@ EventDetails details_of(const Record& record, std::size_t event) {
     d.balls.push_back(around(record, event, e.a));
     if (of.partner == Partner::kBall) d.balls.push_back(around(record, event, e.b));
     if (e.type == EventType::kBallCluster)
-        for (const int ball : record.clusters[static_cast<std::size_t>(e.detail)])
+        for (const int ball : record.clusters[static_cast<std::size_t>(e.detail)].balls)
             if (ball != e.a && ball != e.b) d.balls.push_back(around(record, event, ball));
 
     const BallAtEvent& a = d.balls.front();
     place_contact(record, e, d);
-    if (of.partner == Partner::kCushion) d.diamond = diamond(record.table, e, d.point);
     const bool impact = of.phase == EventPhase::kImpact && of.partner != Partner::kPocket;
     if (!impact && of.phase != EventPhase::kStrike) return d;
     const auto known = [&](auto member, std::size_t count) {

@@ -36,7 +36,7 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
     const std::vector<Segment>& segments = record.tracks[ball].segments;
     SeenBall seen{.r = r,
                   .R = record.size(static_cast<int>(ball)).R,
-                  .flies = flies(segments[segment].state),
+                  .flies = is_aloft(segments[segment], record.size(static_cast<int>(ball)).R),
                   .rounding = rounding,
                   .disc = record.balls.discs()};
     if (!flights) return seen;
@@ -46,7 +46,7 @@ SeenBall see(const Record& record, std::size_t ball, std::size_t segment, const 
         while (k > 0 && falls(k - 1)) --k;
         seen.fell = segments[k].start;
     }
-    while (k > 0 && !flies(segments[k - 1].state)) --k;
+    while (k > 0 && !is_aloft(segments[k - 1], seen.R)) --k;
     if (k > 0) seen.flew = segments[k].start;
     return seen;
 }

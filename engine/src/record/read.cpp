@@ -147,8 +147,8 @@ BallTrack read_track(const JsonValue& value, const Table& table) {
 }
 
 /// Number of possible values of an event's b: the index of a ball, cushion, jaw or pocket; 0 if it has none.
-std::int64_t partners(EventType type, const Record& record) {
-    switch (kind(type).partner) {
+std::int64_t partners(Partner partner, const Record& record) {
+    switch (partner) {
         case Partner::kBall:
             return static_cast<std::int64_t>(record.tracks.size());
         case Partner::kCushion:
@@ -163,22 +163,41 @@ std::int64_t partners(EventType type, const Record& record) {
     return 0;
 }
 
+Hit read_hit(const JsonValue& value, const Record& record) {
+    const JsonObject all(value, {"time", "a", "with", "b", "impulse"});
+    Hit hit;
+    hit.time = all.at("time").non_negative();
+    hit.a = index_below(all.at("a"), 0, record.tracks.size());
+    hit.partner = all.at("with").one_of<Partner>(std::size(names_of(Partner())));
+    const std::int64_t count = partners(hit.partner, record);
+    hit.b = static_cast<int>(all.at("b").integer(count > 0 ? 0 : -1, count > 0 ? count - 1 : -1));
+    hit.impulse = all.at("impulse").non_negative();
+    return hit;
+}
+
 Event read_event(const JsonObject& all, Record& record) {
     Event event;
     event.time = all.at("time").non_negative();
     event.type = all.at("type").one_of<EventType>(std::size(kEventKinds));
     event.a = index_below(all.at("a"), 0, record.tracks.size());
-    const std::int64_t count = partners(event.type, record);
+    const std::int64_t count = partners(kind(event.type).partner, record);
     event.b = static_cast<int>(all.at("b").integer(count > 0 ? 0 : -1, count > 0 ? count - 1 : -1));
     if (event.type == EventType::kBallCluster) {
-        std::vector<int> balls;
+        Cluster cluster;
         const JsonValue list = all.at("balls");
-        balls.reserve(list.size());
+        cluster.balls.reserve(list.size());
         list.each([&](const JsonValue& ball, std::size_t) {
-            balls.push_back(index_below(ball, 0, record.tracks.size()));
+            cluster.balls.push_back(index_below(ball, 0, record.tracks.size()));
         });
+        // Records before version 4 tell only which pair met first.
+        if (all.has("hits"))
+            all.at("hits").each([&](const JsonValue& hit, std::size_t) {
+                cluster.hits.push_back(read_hit(hit, record));
+            });
+        else
+            cluster.hits.push_back({event.time, event.a, Partner::kBall, event.b});
         event.detail = static_cast<int>(record.clusters.size());
-        record.clusters.push_back(std::move(balls));
+        record.clusters.push_back(std::move(cluster));
     } else if (all.has("nose")) {
         event.detail =
             index_below(all.at("nose"), 0, 2 * record.table.cushions.size() + 3 * record.table.jaws.size());
@@ -203,7 +222,7 @@ void read_events(const JsonValue& list, bool profiled, Record& record) {
     record.events.reserve(count);
     if (profiled) record.costs.reserve(count);
     list.each([&](const JsonValue& item, std::size_t i) {
-        const JsonObject all(item, {"time", "type", "a", "b", "balls", "nose", "slow", "detect_ns",
+        const JsonObject all(item, {"time", "type", "a", "b", "balls", "hits", "nose", "slow", "detect_ns",
                                     "resolve_ns", "kernel_ns", "steps", "method", "queue_ns"});
         record.events.push_back(read_event(all, record));
         if (i > 0 && record.events[i].time < record.events[i - 1].time) {

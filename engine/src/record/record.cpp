@@ -225,10 +225,10 @@ std::string Record::hash() const {
     return fmt::format("{:016x}", hash.value());
 }
 
-std::string Record::partner_id(const Event& event) const {
-    if (event.b < 0) return "";
-    const auto index = static_cast<std::size_t>(event.b);
-    switch (kind(event.type).partner) {
+std::string Record::partner_id(Partner partner, int number) const {
+    if (number < 0) return "";
+    const auto index = static_cast<std::size_t>(number);
+    switch (partner) {
         case Partner::kBall:
             return tracks[index].id;
         case Partner::kCushion:

@@ -202,7 +202,7 @@ class Events {
         const std::vector<Segment>& segments = track(ball).segments;
         const auto has = [&](const Event& e) {
             if (e.type != EventType::kBallCluster) return e.a == of || contact_of(e).partner() == of;
-            const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)];
+            const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)].balls;
             return std::find(members.begin(), members.end(), of) != members.end();
         };
         while (from < last_ && !has(record_.events[from])) ++from;
@@ -288,7 +288,7 @@ class Events {
                 report("U6", "the balls of the cluster are missing");
                 return false;
             }
-            const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)];
+            const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)].balls;
             for (const int ball : {e.a, e.b})
                 if (std::count(members.begin(), members.end(), ball) != 1)
                     report("U6", "the cluster lacks a ball that met another");
@@ -608,7 +608,7 @@ class Events {
 
     // Contacts conserve the momentum of a cluster, and friction with the cloth absorbs a part.
     void cluster(const Event& e) {
-        const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)];
+        const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)].balls;
         const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
         if (!meets(a, "ball " + id(b), gap_between(seen(a), seen(b)), 0.0, kNever)) return;
         const double closing = touch_ball(body(a, false), body(b, false)).closing;

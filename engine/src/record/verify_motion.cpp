@@ -133,7 +133,9 @@ class Motions {
         const bool spins = !is_off_cloth(s.state) && !is_gone(s.state) &&
                            s.state != MotionState::kColliding && s.w.z() != 0.0;
         if (spins && p.spin_decay) decay = p.spin;
-        const bool lies = !is_off_cloth(s.state) && !is_gone(s.state);
+        // In a cluster balls may rise.
+        const bool rises = s.state == MotionState::kColliding && plan_.in_force(Effect::kAirborne);
+        const bool lies = !is_off_cloth(s.state) && !is_gone(s.state) && !rises;
         if (lies && (!flat || std::abs(s.r.z() - p.R) > kSamePlace)) moves_so = false;
         if (!moves_so)
             return report("U7", "ball {} is {} at {:.17g} s, which its place, velocity or spin contradicts",

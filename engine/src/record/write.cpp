@@ -90,9 +90,16 @@ OrderedJson segment_json(const Segment& s) {
 
 OrderedJson event_json(const Record& record, const Event& event, const EventCost* cost) {
     OrderedJson out = {{"time", event.time}, {"type", name(event.type)}, {"a", event.a}, {"b", event.b}};
-    if (event.type == EventType::kBallCluster)
-        out["balls"] = record.clusters[event.detail];
-    else if (event.detail >= 0)
+    if (event.type == EventType::kBallCluster) {
+        out["balls"] = record.clusters[event.detail].balls;
+        out["hits"] = OrderedJson::array();
+        for (const Hit& hit : record.hits(event))
+            out["hits"].push_back({{"time", hit.time},
+                                   {"a", hit.a},
+                                   {"with", name(hit.partner)},
+                                   {"b", hit.b},
+                                   {"impulse", hit.impulse}});
+    } else if (event.detail >= 0)
         out["nose"] = event.detail;
     if (event.slow) out["slow"] = true;
     if (cost != nullptr) {

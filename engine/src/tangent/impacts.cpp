@@ -308,7 +308,7 @@ void collide_cluster(Laws& laws, const std::vector<int>& balls, int hit, int met
         plan.cluster_tolerance = tolerance;
         const Record record = simulate(plan);
         if (record.events.empty() || record.events[0].type != EventType::kBallCluster ||
-            record.clusters[0].size() != balls.size())
+            record.clusters[0].balls.size() != balls.size())
             throw TangentError("a small change makes more or fewer balls touch");
         List after;
         for (const BallTrack& track : record.tracks) {

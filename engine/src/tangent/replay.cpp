@@ -289,7 +289,7 @@ Dual Replay::ball_ball(const Event& event) {
 }
 
 Dual Replay::cluster(const Event& event) {
-    const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(event.detail)];
+    const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(event.detail)].balls;
     const auto has = [&members](int ball) {
         return std::find(members.begin(), members.end(), ball) != members.end();
     };

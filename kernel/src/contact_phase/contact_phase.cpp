@@ -32,6 +32,8 @@ constexpr double kFirstStep = 0.01, kAfterFlight = 0.05, kLongestStep = 1.0, kSh
 // Step after an error: the fourth root aims at this fraction of the tolerance; the factor is within limits.
 constexpr double kSafety = 0.8, kGrow = 5.0, kShrink = 0.2, kRetry = 0.9, kRetryLeast = 0.1;
 
+// [L/V] A surface that is nearer than this is hit now.
+constexpr double kAtOnce = 1e-7;
 // [L/V] Contacts that nothing acts on are examined again when they are as near to closing.
 constexpr double kSoon = 0.25;
 
@@ -143,15 +145,22 @@ class Phase {
     std::int64_t run(double look_ahead, double time_limit) {
         double h = kFirstStep, longest = kFirstStep;
         examine(0.0);
+        bool known = false;  // the slopes of the active balls
         for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit; ++steps) {
-            const bool same = gather();
+            known = gather() && known;
+            if (phase_.surfaces != nullptr && hit_surfaces()) {
+                examine(0.0);
+                continue;
+            }
             if (!presses(time_limit - time_)) {
-                const double flight = next_closing();
-                if (!(flight < look_ahead) || (time_ > kLongPhase && actives_ == 0)) {
+                const double closing = next_closing(), out = until_out();
+                const bool ends = !(closing < look_ahead) || (time_ > kLongPhase && actives_ == 0);
+                if (ends && !(out > 0.0)) {
                     leave();
                     return evaluations_;
                 }
                 if (actives_ == 0) {
+                    const double flight = smallest(smallest(closing, wall_), out > 0.0 ? out : kNever);
                     for (int b = 0; b < phase_.balls; ++b) glide(b, flight);
                     time_ += flight;
                     examine(0.0);
@@ -159,9 +168,10 @@ class Phase {
                     continue;
                 }
             }
-            if (!same || steps == 0) evaluate(y_, slope_[0]);
+            if (!known) evaluate(y_, slope_[0]);
+            known = true;
             const double stiffest = find_stiffest();
-            const double event = event_;
+            const double event = smallest(event_, wall_);
             bool again = false;
             double wanted = h;
             for (;;) {
@@ -203,6 +213,56 @@ class Phase {
     }
     double mobility(int ball) const {
         return phase_.inverse_mass == nullptr ? 1.0 : phase_.inverse_mass[ball];
+    }
+
+    // The state of a ball for ContactSurfaces.
+    struct State {
+        double number[9];
+    };
+    State state_of(int ball) const {
+        const double* y = y_ + kRow * ball;
+        return {{y[0], y[1], kSpace ? y[kRow - 4] : 0.0, y[2], y[3], kSpace ? y[kRow - 3] : 0.0, y[4], y[5],
+                 y[6]}};
+    }
+
+    // Hits the surfaces that balls without a closed contact have reached, and finds when the next one is hit.
+    // @return whether a ball hit one
+    bool hit_surfaces() {
+        bool hit = false;
+        wall_ = kNever;
+        for (int b = 0; b < phase_.balls; ++b) {
+            if (is_active_[b] != 0) continue;
+            State s = state_of(b);
+            const double time = phase_.surfaces->next(phase_.surfaces->owner, b, s.number);
+            if (!(time < kAtOnce)) {
+                wall_ = smallest(wall_, time);
+                continue;
+            }
+            phase_.surfaces->hit(phase_.surfaces->owner, b, time_, s.number);
+            double* y = y_ + kRow * b;
+            for (int k = 0; k < 2; ++k) y[2 + k] = s.number[3 + k];
+            if constexpr (kSpace) y[9] = phase_.held ? 0.0 : s.number[5];
+            for (int k = 0; k < 3; ++k) y[4 + k] = s.number[6 + k];
+            hit = true;
+        }
+        return hit;
+    }
+
+    // Time until no ball is inside a surface.
+    double until_out() const {
+        double longest = 0.0;
+        for (int b = 0; phase_.surfaces != nullptr && b < phase_.balls; ++b)
+            longest = largest(
+                longest, phase_.surfaces->out(phase_.surfaces->owner, b, state_of(b).number));
+        return longest;
+    }
+
+    // Whether a free ball is off the cloth: it rises or falls by more than the cloth yields.
+    CAROM_INLINE bool is_aloft(int ball) const {
+        if constexpr (!kSpace) return false;
+        if (phase_.held || phase_.lies == nullptr) return false;
+        const double* y = y_ + kRow * ball;
+        return y[9] * y[9] + 2.0 * law_.gravity * (y[kRow - 4] - phase_.lies[ball]) > law_.hop;
     }
 
     // The closed contacts, and those about to close, with their balls.
@@ -437,7 +497,10 @@ class Phase {
             double* to = slope + active_[n];
             store(to, pack(from[2], from[3], 0.0, 0.0));
             store(to + 4, zero);
-            if constexpr (kSpace) store(to + kPlane, pack(from[9], 0.0, 0.0, 0.0));
+            if constexpr (kSpace) {
+                const double pull = is_aloft(active_[n] / kRow) ? -law_.gravity : 0.0;
+                store(to + kPlane, pack(from[9], pull, 0.0, 0.0));
+            }
             stiff_[active_[n] / kRow] = 0.0;
         }
         for (int n = 0; n < count_; n += kLanes) find_forces(y, n);
@@ -567,7 +630,8 @@ class Phase {
     CAROM_INLINE void glide(int ball, double h) {
         double* y = y_ + kRow * ball;
         const double v[] = {y[2], y[3]};
-        if (phase_.held && law_.slide > 0.0) {
+        const bool aloft = is_aloft(ball);
+        if (law_.slide > 0.0 && (phase_.held || (phase_.lies != nullptr && !aloft))) {
             const double ux = y[2] - y[5], uy = y[3] + y[4], slip = square_root(ux * ux + uy * uy);
             if (slip > 0.0) {
                 const double ends = slip / (3.5 * law_.slide), lasts = smallest(h, ends);
@@ -584,7 +648,13 @@ class Phase {
         }
         y[0] += h * v[0];
         y[1] += h * v[1];
-        if constexpr (kSpace) y[8] += h * y[9];
+        if constexpr (kSpace) {
+            y[8] += h * y[9];
+            if (aloft) {
+                y[8] -= 0.5 * h * h * law_.gravity;
+                y[9] -= h * law_.gravity;
+            }
+        }
     }
 
     // The contacts after a step of length h (0: at the start, or after a flight): overlaps, rates, largest
@@ -709,7 +779,8 @@ class Phase {
     const HertzLaw& law_;
     const double tolerance_, early_, weight_slip2_, cloth_sign_;
     const int nobody_, lanes_;         // the row of a ball at rest that fills packs; contacts in whole packs
-    double time_ = 0.0, event_ = 0.0;  // now; time until the next event
+    // Now; time until the next event of a contact, and until a ball hits a surface.
+    double time_ = 0.0, event_ = 0.0, wall_ = kNever;
     std::int64_t evaluations_ = 0;
     double *y_, *a_, *b_, *c_, *next_, *slope_[kSlopes];
     double* stiff_;  // per ball: the sum of friction over slip, times its mobility

@@ -24,10 +24,11 @@ int index_of(const Record& record, const std::string& id) {
 }
 
 bool involves(const Record& record, const Event& event, int ball) {
-    if (event.a == ball || (event.b == ball && kind(event.type).partner == Partner::kBall)) return true;
-    if (event.type != EventType::kBallCluster) return false;
-    const std::vector<int>& members = record.clusters.at(event.detail);
-    return std::find(members.begin(), members.end(), ball) != members.end();
+    bool hit = event.a == ball && event.type != EventType::kBallCluster;
+    each_hit(event, record.hits(event), [&](const Hit& h) {
+        hit = hit || h.a == ball || (h.b == ball && h.partner == Partner::kBall);
+    });
+    return hit;
 }
 
 /// The time of the ball's first impact accepted by `matters`.

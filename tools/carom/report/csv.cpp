@@ -46,7 +46,7 @@ void write_events_csv(const Record& record, const std::string& path) {
         row += fmt::format(",\"{}\",", met_name(record, event));
         if (event.type == EventType::kBallCluster) {
             const char* between = "";
-            for (const int member : record.clusters.at(static_cast<std::size_t>(event.detail)))
+            for (const int member : record.clusters.at(static_cast<std::size_t>(event.detail)).balls)
                 row += std::exchange(between, ";") + record.tracks.at(member).id;
         }
         file.write(row + '\n');

@@ -212,12 +212,10 @@ class Drawing {
     /// When the ball first meets another one, or the end of the shot.
     double first_contact(int ball) const {
         for (const Event& event : record_.events) {
-            if (kind(event.type).partner != Partner::kBall) continue;
-            bool in = event.a == ball || event.b == ball;
-            if (event.type == EventType::kBallCluster) {
-                const std::vector<int>& cluster = record_.clusters[static_cast<std::size_t>(event.detail)];
-                in = in || std::find(cluster.begin(), cluster.end(), ball) != cluster.end();
-            }
+            bool in = false;
+            each_hit(event, record_.hits(event), [&](const Hit& hit) {
+                in = in || (hit.partner == Partner::kBall && (hit.a == ball || hit.b == ball));
+            });
             if (in) return event.time;
         }
         return record_.duration;

@@ -54,11 +54,19 @@ std::string met_name(const Record& record, const Event& event);
 /// EventDetails::diamond; nothing for another rail or an endless cloth.
 std::optional<Vec2> diamond_place(const Table& table, std::string_view rail, double number);
 
+/// Where a ball at `center` touches a cushion or a jaw.
+struct CushionPoint {
+    Vec3 point;                              ///< [m] at the height of the nose
+    Vec2 normal;                             ///< unit, out of the cushion
+    double diamond = EventDetails::kNone;    ///< as EventDetails::diamond
+};
+CushionPoint cushion_point(const Table& table, Partner partner, int part, const Vec2& center);
+
 /// [-] Diamonds along a long and a short rail.
 inline constexpr double kLongRail = 8.0, kShortRail = 4.0;
 
-/// The point of this event's cushion, or the centre of its jaw, that is nearest to a position.
-Vec2 nearest_point(const Table& table, const Event& event, const Vec2& place);
+/// The point of this cushion, or the centre of this jaw, that is nearest to a position.
+Vec2 nearest_point(const Table& table, Partner partner, int part, const Vec2& place);
 
 /// The table with short straight cushions in place of its arcs, for drawing.
 Table without_arcs(const Table& table);

@@ -12,10 +12,10 @@ namespace carom {
 /// @param segments  of the ball; must include all that begin before `time`
 double farthest(std::span<const Segment> segments, const Vec2& along, double time);
 
-/// Whether a ball that meets a cushion or a jaw in this event has touched it since the start. Such a contact
+/// Whether a ball that hits a cushion or a jaw has touched it since the start. Such a contact
 /// does not count as driven to the cushion.
 /// @param segments  of the ball
 /// @param R  its radius [m]
-bool still_frozen(const Table& table, const Event& event, std::span<const Segment> segments, double R);
+bool still_frozen(const Table& table, const Hit& hit, std::span<const Segment> segments, double R);
 
 }  // namespace carom

@@ -97,6 +97,10 @@ inline constexpr int kEventTypes = 19;
 
 /// The list that Event::b indexes.
 enum class Partner : std::uint8_t { kNone, kBall, kCushion, kJaw, kPocket };
+/// In record files: with whom a ball of a cluster collided.
+constexpr auto names_of(Partner) {
+    return std::array{"cloth", "ball", "cushion", "jaw", "pocket"};
+}
 
 /// The kind of change for the ball.
 enum class EventPhase : std::uint8_t {
@@ -160,6 +164,36 @@ struct Event {
     bool slow = false;
     bool operator==(const Event&) const = default;
 };
+
+/// Two bodies that pushed each other: one contact of an impact.
+struct Hit {
+    double time = 0.0;  ///< s since the start of the shot: they touched for the first time
+    int a = -1;         ///< ball
+    Partner partner = Partner::kBall;
+    int b = -1;            ///< ball, cushion or jaw; -1: the cloth
+    double impulse = 0.0;  ///< N s, along the normal
+    bool operator==(const Hit&) const = default;
+};
+
+/// What a ball_cluster event resolved.
+struct Cluster {
+    std::vector<int> balls;  ///< ordered by position
+    std::vector<Hit> hits;   ///< ordered by time
+    bool operator==(const Cluster&) const = default;
+};
+
+/// Calls f(const Hit&) for everything that touched in this event, so that nobody has to ask whether it is a
+/// cluster. The hit of a single pair has no impulse.
+/// @param of_cluster  the hits of a ball_cluster event
+template <class F>
+void each_hit(const Event& event, std::span<const Hit> of_cluster, F&& f) {
+    const EventKind& of = kind(event.type);
+    if (event.type == EventType::kBallCluster)
+        for (const Hit& hit : of_cluster) f(hit);
+    else if ((of.phase == EventPhase::kImpact && of.partner != Partner::kPocket) ||
+             of.phase == EventPhase::kHold)
+        f(Hit{event.time, event.a, of.partner, event.b});
+}
 
 /// Cost of one event; only in a profiled run.
 struct EventCost {
@@ -226,8 +260,8 @@ class Record {
     RenderSettings render;
     std::vector<BallTrack> tracks;
     std::vector<Event> events;
-    /// Balls of every ball_cluster event, ordered by position; Event::a and b are the first pair.
-    std::vector<std::vector<int>> clusters;
+    /// Of every ball_cluster event; Event::a and b are the pair that met first.
+    std::vector<Cluster> clusters;
     std::vector<EventCost> costs;  ///< empty, or one per event
     double setup_detect_ns = 0.0;  ///< profiled: the first detection, of all pairs
     double duration = 0.0;         ///< s
@@ -256,8 +290,15 @@ class Record {
     /// duration, as 16 hex digits.
     std::string hash() const;
 
+    /// The hits of a ball_cluster event; empty for another one.
+    std::span<const Hit> hits(const Event& event) const {
+        if (event.type != EventType::kBallCluster) return {};
+        return clusters[static_cast<std::size_t>(event.detail)].hits;
+    }
+
     /// Id of an event's b: a ball, cushion, jaw or pocket, or "".
-    std::string partner_id(const Event& event) const;
+    std::string partner_id(const Event& event) const { return partner_id(kind(event.type).partner, event.b); }
+    std::string partner_id(Partner partner, int index) const;
 
   private:
     struct Orientations;
@@ -278,12 +319,14 @@ class Record {
     Aside aside_;
 };
 
-/// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0).
+/// Position, velocity and spin of a segment `tau` seconds after its start (tau >= 0), without the height of a
+/// ball that flies or falls into a pocket.
 inline Vec3 position_at(const Segment& s, double tau) {
     return {s.r.x() + tau * (s.v.x() + 0.5 * tau * s.a.x()), s.r.y() + tau * (s.v.y() + 0.5 * tau * s.a.y()),
-            s.r.z()};
+            s.state == MotionState::kColliding ? s.r.z() + tau * s.v.z() : s.r.z()};
 }
 inline Vec3 velocity_at(const Segment& s, double tau) {
+    if (s.state == MotionState::kColliding) return s.v;
     if (s.state == MotionState::kRolling && s.duration < std::numeric_limits<double>::infinity() && !s.held) {
         // v + a tau, written so that the direction is kept and the end is exactly 0.
         const double left = std::max(0.0, 1.0 - tau / s.duration);

@@ -70,7 +70,7 @@ struct Outcome {
     std::int64_t events = 0;  ///< as in the record
     int clusters = 0;         ///< ball_cluster events
     int struck = -1;          ///< struck_ball()
-    int first_hit = -1;       ///< the first ball it hits (in a cluster, the nearest); or -1
+    int first_hit = -1;       ///< the first ball it hits; or -1
     int contacts = 0;         ///< balls it hits, each counted once
     /// Its contacts with cushions and jaws before the second ball, or in all, except with one to which it has
     /// been frozen since the start (still_frozen).

@@ -30,12 +30,28 @@ struct HertzLaw {
     double mu_b_fall = 0.0;    ///< [1/V]
     /// [V^2/L] Deceleration of a ball that slips on the cloth under its weight.
     double slide = 0.0;
+    /// Of free balls that lie or fly (ContactPhase::lies): gravity [V^2/L], and the largest v_z^2 + 2 gravity
+    /// height [V^2] with which a ball does not leave the cloth.
+    double gravity = 0.0, hop = 0.0;
 };
 
 /// The course of one contact.
 struct HertzHistory {
     double first;    ///< [L/V] when the balls touched for the first time; negative: never
     double impulse;  ///< [m V] along the normal, positive if they pushed each other; to about 1e-3 of itself
+};
+
+/// Cushions, and the cloth under free balls. They react ten times as slowly as contacts between balls, so they
+/// act only on a ball that touches no other one. A state is the place relative to the start (3 numbers) [L],
+/// v (3) and R w (3) [V].
+struct ContactSurfaces {
+    void* owner;
+    /// @return [L/V] time until the ball hits one; 0: it does so now; infinite: never
+    double (*next)(void* owner, int ball, const double* state) noexcept;
+    /// Replaces v and R w by those after the hit. @param time  [L/V]
+    void (*hit)(void* owner, int ball, double time, double* state) noexcept;
+    /// @return [L/V] time until a ball that has been pushed into one is out of it again; 0: it is out
+    double (*out)(void* owner, int ball, const double* state) noexcept;
 };
 
 /// Input and output of one call. `numbers` and `places` are scratch memory of contact_phase_numbers() and
@@ -46,9 +62,10 @@ struct ContactPhase {
     const HertzContact* contact;
     double* numbers;
     int* places;
-    /// All balls stay on the cloth, which exerts friction; false: all are free, and the cloth, which reacts
-    /// ten times as slowly as the contacts, comes next.
+    /// All balls stay on the cloth, which exerts friction; false: all are free, and the cloth is a surface.
     bool held = true;
+    const ContactSurfaces* surfaces = nullptr;
+    const double* lies = nullptr;  ///< per free ball: z relative to the start at which it lies on the cloth [L]
     const double* inverse_mass = nullptr;  ///< per ball; null: all have the mass 1
     double* moved = nullptr;               ///< receives the displacement of each ball (3 numbers) [L]
     double* time = nullptr;                ///< receives the duration [L/V]

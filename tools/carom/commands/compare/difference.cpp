@@ -82,7 +82,7 @@ NamedEvent by_names(const Record& record, const Event& event) {
     const auto id = [&record](int ball) { return record.tracks.at(ball).id; };
     NamedEvent out{event.time, name(event.type), {}};
     if (event.type == EventType::kBallCluster && event.detail >= 0) {
-        for (const int ball : record.clusters.at(event.detail)) out.who.push_back(id(ball));
+        for (const int ball : record.clusters.at(event.detail).balls) out.who.push_back(id(ball));
     } else {
         out.who.push_back(id(event.a));
         if (std::string partner = record.partner_id(event); !partner.empty())
