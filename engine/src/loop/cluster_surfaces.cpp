@@ -20,6 +20,10 @@ namespace {
 constexpr double kCreeps = 1e-6;
 // [R] Smaller distances are rounding of the places.
 constexpr double kTouches = 1e-9;
+// [R] A ball that is deeper in a cushion than this has left the model.
+constexpr double kDeepest = 0.25;
+// [-] Pushes that may bring a ball out of a corner.
+constexpr int kRounds = 8;
 
 }  // namespace
 
@@ -131,13 +135,24 @@ double NearSurfaces::out(std::size_t member, const Placed& at) const {
     return longest;
 }
 
-Vec3 NearSurfaces::outside(std::size_t member, const Placed& at) const {
-    Vec3 place = at.position;
-    each_beside(member, at, [&](const Contact&, const Touch<Vec3>& touch, double) {
-        if (touch.gap < 0.0) place += touch.gap * touch.n;
-    });
-    if (in_space_ && (lies(m_.ball_[member], at) || place.z() < R(member))) place.z() = R(member);
-    return place;
+std::optional<Vec3> NearSurfaces::outside(std::size_t member, const Vec3& from, const Placed& at) const {
+    Placed there = at;
+    const bool down = lies(m_.ball_[member], at) || there.position.z() < R(member);
+    if (in_space_ && down) there.position.z() = R(member);
+    bool inside = true, through = false;
+    for (int round = 0; round < kRounds && inside; ++round) {
+        inside = false;
+        each_beside(member, there, [&](const Contact& part, const Touch<Vec3>& touch, double) {
+            const BallAt<Vec3> ball{from, at.velocity, R(member), false};
+            through = through || touch.n.dot(touch_part(plan_.geometry, part, ball).n) < 0.0 ||
+                      touch.gap < -kDeepest * R(member);
+            if (touch.gap >= -kTouchUlp * R(member)) return;
+            there.position += touch.gap * touch.n;
+            inside = true;
+        });
+    }
+    if (inside || through) return std::nullopt;
+    return there.position;
 }
 
 }  // namespace carom

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "carom/engine/plan.h"
@@ -35,8 +36,9 @@ class NearSurfaces : public ClusterSurfaces {
 
     /// Whether a ball is on the cloth: it does not rise or fall by more than the cloth yields.
     bool lies(int ball, const Placed& at) const;
-    /// The place of a ball outside of all parts, and not below the cloth.
-    Vec3 outside(std::size_t member, const Placed& at) const;
+    /// The place of a ball outside of all parts, and not below the cloth; nothing if there is none near, or
+    /// the ball has passed through a part since it was at `from`.
+    std::optional<Vec3> outside(std::size_t member, const Vec3& from, const Placed& at) const;
 
     double next(std::size_t member, const Placed& at, const Vec3& spin) const override;
     void hit(std::size_t member, double time, const Vec3& r, Velocities& ball) override;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "carom/engine/airborne.h"
 #include "contact/place.h"
@@ -19,6 +20,9 @@ constexpr double kListed = 8.0;
 // [contact time] A cluster that would last longer is instantaneous: its balls would travel too far on
 // straight paths.
 constexpr double kLongest = 20.0;
+// [contact time] A ball that was pushed into a cushion is waited for as long; a slower one is put at its
+// edge.
+constexpr double kWaits = 4.0;
 // [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
 // [strongest impulse] A weaker one is rounding: the balls did not touch.
@@ -114,6 +118,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     };
     members_.clear();
     contacts_.clear();
+    pushes_.clear();
     members_.push_back(member(a));
     members_.push_back(member(b));
     for (const int ball : joined_) members_.push_back(member(ball));
@@ -174,17 +179,20 @@ bool Clusters::find_paths() {
         for (std::size_t k = 0; k < members_.size(); ++k) {
             ClusterBall& m = members_[k];
             const Placed at{m.r + paths_[k], m.v};
-            paths_[k] = near_.outside(k, at) - m.r;
+            const std::optional<Vec3> out = near_.outside(k, m.r, at);
+            if (!out) return false;
+            paths_[k] = *out - m.r;
             if (in_space_ && near_.lies(m.ball, at)) m.v.z() = 0.0;
         }
+        return true;
     };
-    place();
+    if (!place()) return false;
     const double longest = kLongest * contact_time_;
     while (const double more = overlap_ends()) {
         duration += more;
         if (!(duration <= longest)) break;
         for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * members_[k].v;
-        place();
+        if (!place()) return false;
     }
     if (!(duration <= longest)) return false;
     duration_ = duration;
@@ -209,10 +217,10 @@ double Clusters::overlap_ends() const {
     return longest;
 }
 
-// Returns the first ball that a member hits on its path, or kNone.
+// Returns the first ball that a member hits on its path, kNone or kColliding.
 int Clusters::find_obstacle() const {
     int found = kNone;
-    for (std::size_t k = 0; k < members_.size(); ++k) {
+    for (std::size_t k = 0; k < members_.size() && found != kColliding; ++k) {
         const ClusterBall& ball = members_[k];
         const Vec3& path = paths_[k];
         const double most = length(planar(path)) + duration_ * detector_.fastest();
@@ -220,8 +228,12 @@ int Clusters::find_obstacle() const {
             const auto is_before = [this](int one, int two) {
                 return before_place(planar(balls_.position(one)), planar(balls_.position(two)));
             };
-            if (is_member(q) || balls_.collides(q) || passes(ball.ball, q) || has_room(ball, path, q)) return;
-            found = found == kNone || is_before(q, found) ? q : found;
+            if (found == kColliding || is_member(q) || passes(ball.ball, q) || has_room(ball, path, q))
+                return;
+            if (balls_.collides(q))
+                found = kColliding;
+            else if (found == kNone || is_before(q, found))
+                found = q;
         });
     }
     return found;
@@ -240,6 +252,12 @@ bool Clusters::has_room(const ClusterBall& ball, const Vec3& path3, int other) c
     const Vec2 apart = planar(balls_.position(other)) - planar(ball.r);
     double touching = (ball.R + balls_.radius(other)) * (1.0 + kBoxShare);
     touching += 0.5 * duration_ * duration_ * length(s.a);
+    if (balls_.collides(other)) {
+        // It may leave its cluster.
+        const double speed =
+            std::max(length(planar(balls_.velocity(other))), length(planar(balls_.afterwards(other).v)));
+        return length(apart) > touching + length(path) + duration_ * speed;
+    }
     const Vec2 relative = duration_ * planar(balls_.velocity(other)) - path;
     const double whole = dot(relative, relative),
                  share = whole > 0.0 ? std::clamp(-dot(apart, relative) / whole, 0.0, 1.0) : 0.0;
@@ -283,6 +301,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     // A ball that is hit meanwhile joins.
     while (steps >= 0 && find_paths()) {
         if (obstacle_ == kNone) return steps;
+        if (obstacle_ == kColliding) break;
         joined_.push_back(obstacle_);
         collect_at(first_, second_, v_n);
         settings.unlike = unlike_;
@@ -292,16 +311,15 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     }
     // Without time the balls stay in place, and nothing else joins.
     duration_ = 0.0;
-    if (!joined_.empty()) {
-        joined_.clear();
-        collect_at(first_, second_, v_n);
-    }
+    joined_.clear();
+    collect_at(first_, second_, v_n);
+    settings.unlike = unlike_;
     near_.forget();
     settings.surfaces = nullptr;
-    steps = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
+    steps = compliant(settings, v_n);
     if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;
-        const std::int64_t more = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
+        const std::int64_t more = compliant(settings, v_n);
         steps = more < 0 ? more : steps + more;
     }
     // Friction and a wedge can press balls together without end: then resolve the cluster as rigid.
@@ -311,7 +329,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
 // The motion of a cluster that lasts, with the parts of the table that its balls may reach.
 std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
     const double longest = kLongest * contact_time_;
-    near_.begin(members_, in_space_, longest);
+    near_.begin(members_, in_space_, kWaits * contact_time_);
     double fastest = v_n;
     for (const ClusterBall& m : members_) fastest = std::max(fastest, length3(m.v));
     for (std::size_t k = 0; k < members_.size(); ++k)
@@ -321,18 +339,35 @@ std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
     near_.sort();
     ClusterSettings with = settings;
     if (!near_.any()) with.surfaces = nullptr;
-    return map_.compliant(members_, contacts_, with, v_n, !in_space_);
+    return compliant(with, v_n);
+}
+
+std::int64_t Clusters::compliant(const ClusterSettings& settings, double v_n) {
+    const std::int64_t steps = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
+    if (steps >= 0) add_pushes();
+    return steps;
+}
+
+void Clusters::add_pushes() {
+    pushes_.resize(contacts_.size());
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const ClusterPush& push = map_.pushes()[c];
+        if (pushes_[c].first < 0.0) pushes_[c].first = push.first;
+        pushes_[c].impulse += push.impulse;
+    }
 }
 
 // A contact that changed no speed by more than rounding did not take place.
 const std::vector<Hit>& Clusters::hits() {
     double strongest = 0.0;
-    for (const ClusterPush& push : map_.pushes()) strongest = std::max(strongest, push.impulse);
+    for (const ClusterPush& push : pushes_) strongest = std::max(strongest, push.impulse);
     hits_.clear();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-        const ClusterPush& push = map_.pushes()[c];
+        const ClusterPush& push = pushes_[c];
         if (push.first < 0.0 || !(push.impulse > kPushes * strongest)) continue;
-        hits_.push_back({balls_.now() + push.first, members_[contacts_[c].i].ball, Partner::kBall,
+        // An instant has no course.
+        const double first = duration_ > 0.0 ? push.first : 0.0;
+        hits_.push_back({balls_.now() + first, members_[contacts_[c].i].ball, Partner::kBall,
                          members_[contacts_[c].j].ball, plan_.balls.m * push.impulse});
     }
     for (Hit hit : near_.hits()) {
@@ -355,7 +390,9 @@ std::int64_t Clusters::rigid(const ClusterSettings& settings) {
             c.n = Vec3(n.x(), n.y(), 0.0) / length(n);
         }
     }
-    return map_.rigid(members_, contacts_, without);
+    const std::int64_t steps = map_.rigid(members_, contacts_, without);
+    add_pushes();
+    return steps;
 }
 
 }  // namespace carom

@@ -21,6 +21,7 @@ struct ClustersMemory {
     ClusterSurfacesMemory surfaces_;
     std::vector<int> joined_;  // balls that a member would hit during the cluster
     std::vector<Hit> hits_;
+    std::vector<ClusterPush> pushes_;  // per contact, of all that resolve() has computed for it
 };
 
 class Clusters : private Borrowed<ClustersMemory> {
@@ -58,6 +59,8 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     std::int64_t rigid(const ClusterSettings& settings);
+    std::int64_t compliant(const ClusterSettings& settings, double v_n);
+    void add_pushes();
     std::int64_t integrate(const ClusterSettings& settings, double v_n);
     bool find_paths();
     double overlap_ends() const;
@@ -77,8 +80,8 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
-    // A ball that a member hits on its path.
-    static constexpr int kNone = -1;
+    // A ball that a member hits on its path, or one of these two: none, or one of another cluster.
+    static constexpr int kNone = -1, kColliding = -2;
     int obstacle_ = kNone;
     NearSurfaces near_{plan_, surfaces_};
     bool in_space_ = false;
