@@ -10,6 +10,8 @@ namespace {
 // [L/V] The longest step, in which no contact may open and close unseen; that of the method, in which
 // friction is not stiff; and the resolution of events.
 constexpr double kStep = 0.01, kShort = 1e-3, kEvent = 1e-13;
+// [L/V] A surface that is nearer than this is hit now.
+constexpr double kAtOnce = 1e-9;
 
 }  // namespace
 
@@ -25,7 +27,7 @@ ContactReference::ContactReference(Cluster cluster, const HertzLaw& law)
 
 void ContactReference::run(double time) {
     while (time > 1e-12) {
-        double h = std::min(kStep, time);
+        double h = std::min({kStep, time, hit_surfaces()});
         std::vector<double> after = advance(h);
         if (happens(after)) {
             // The shortest step after which something has happened.
@@ -38,13 +40,14 @@ void ContactReference::run(double time) {
         }
         y_ = after;
         time -= h;
+        time_ += h;
         for (std::size_t n = 0; n < contacts_.size(); ++n) change(n);
     }
 }
 
 double ContactReference::run_to_end(double look_ahead, double time_limit) {
     double time = 0.0;
-    while (!ended(time > kernel::kLongPhase ? 0.0 : look_ahead)) {
+    while (!ended(time > kernel::kLongPhase ? 0.0 : look_ahead) || !is_out()) {
         if (!(time < time_limit)) return -1.0;
         run(kStep);
         time += kStep;
@@ -122,6 +125,44 @@ bool ContactReference::ended(double look_ahead) const {
     return true;
 }
 
+// Hits the surfaces that free balls have reached. @return [L/V] time until the next one
+double ContactReference::hit_surfaces() {
+    double next = kStep;
+    for (std::size_t b = 0; c_.surfaces != nullptr && b < c_.balls(); ++b) {
+        if (touched(b)) continue;
+        std::array<double, 9> at = state(b);
+        for (double time;
+             (time = c_.surfaces->next(c_.surfaces->owner, static_cast<int>(b), at.data())) < kStep;) {
+            if (time > kAtOnce) {
+                next = std::min(next, time);
+                break;
+            }
+            c_.surfaces->hit(c_.surfaces->owner, static_cast<int>(b), time_, at.data());
+        }
+        std::copy_n(at.begin() + 3, 6, y_.begin() + static_cast<std::ptrdiff_t>(9 * b + 3));
+        if (c_.held) y_[9 * b + 5] = 0.0;
+    }
+    return next;
+}
+
+bool ContactReference::is_out() const {
+    for (std::size_t b = 0; c_.surfaces != nullptr && b < c_.balls(); ++b)
+        if (c_.surfaces->out(c_.surfaces->owner, static_cast<int>(b), state(b).data()) > 0.0) return false;
+    return true;
+}
+
+std::array<double, 9> ContactReference::state(std::size_t ball) const {
+    std::array<double, 9> at{};
+    std::copy_n(y_.begin() + static_cast<std::ptrdiff_t>(9 * ball), 9, at.begin());
+    return at;
+}
+
+bool ContactReference::aloft(std::size_t ball) const {
+    if (c_.held || c_.lies.empty()) return false;
+    const double v = y_[9 * ball + 5], height = y_[9 * ball + 2] - c_.lies[ball];
+    return v * v + 2.0 * law_.gravity * height > law_.hop;
+}
+
 bool ContactReference::touched(std::size_t ball) const {
     for (std::size_t n = 0; n < contacts_.size(); ++n) {
         const HertzContact& contact = c_.contacts[n];
@@ -167,6 +208,8 @@ std::vector<double> ContactReference::slope(const std::vector<double>& y) const 
         down[i] -= f[2] - F * now.n[2];
         down[j] += f[2] - F * now.n[2];
     }
+    for (std::size_t b = 0; b < c_.balls(); ++b)
+        if (aloft(b)) s[9 * b + 5] -= law_.gravity;
     for (std::size_t b = 0; b < c_.balls() && c_.held; ++b) {
         s[9 * b + 5] = 0.0;
         if (!touched(b)) continue;
@@ -196,9 +239,9 @@ std::vector<double> ContactReference::advance(double h) const {
     const int parts = std::max(1, static_cast<int>(std::ceil(h / kShort)));
     std::vector<double> y = y_;
     for (int part = 0; part < parts; ++part) y = dormand_prince(y, h / parts);
-    if (c_.held && law_.slide > 0.0)
+    if (law_.slide > 0.0 && (c_.held || !c_.lies.empty()))
         for (std::size_t b = 0; b < c_.balls(); ++b)
-            if (!touched(b)) glide(y, b, h);
+            if (!touched(b) && !aloft(b)) glide(y, b, h);
     return y;
 }
 
@@ -243,6 +286,8 @@ std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, doubl
         {phase.motion, phase.motion + 6 * balls}, {phase.contact, phase.contact + contacts}, {}, phase.held};
     if (phase.inverse_mass != nullptr)
         cluster.inverse_mass.assign(phase.inverse_mass, phase.inverse_mass + balls);
+    cluster.surfaces = phase.surfaces;
+    if (phase.lies != nullptr) cluster.lies.assign(phase.lies, phase.lies + balls);
     ContactReference reference(cluster, law);
     const double time = reference.run_to_end(look_ahead, time_limit);
     if (time < 0.0) return -1;

@@ -22,6 +22,8 @@ struct Cluster {
     std::vector<HertzContact> contacts;
     std::vector<double> inverse_mass;  ///< empty: all 1
     bool held = true;
+    const kernel::ContactSurfaces* surfaces = nullptr;
+    std::vector<double> lies{};  ///< as ContactPhase::lies; empty: no cloth
 
     std::size_t balls() const { return motion.size() / 6; }
 };
@@ -59,6 +61,10 @@ class ContactReference {
     bool ended(double look_ahead) const;
     double light(std::size_t ball) const { return c_.inverse_mass.empty() ? 1.0 : c_.inverse_mass[ball]; }
     bool touched(std::size_t ball) const;
+    bool aloft(std::size_t ball) const;
+    std::array<double, 9> state(std::size_t ball) const;
+    double hit_surfaces();
+    bool is_out() const;
     std::vector<double> slope(const std::vector<double>& y) const;
     std::vector<double> advance(double h) const;
     std::vector<double> dormand_prince(const std::vector<double>& y, double h) const;
@@ -67,10 +73,11 @@ class ContactReference {
     const Cluster c_;
     const HertzLaw law_;
     std::vector<double> y_;  // per ball place, velocity and R w
+    double time_ = 0.0;      // [L/V]
     std::vector<Contact> contacts_;
 };
 
-/// A ContactPhaseFunction that calls it; the tolerance is ignored.
+/// A ContactPhaseFunction that calls it; the tolerance is ignored, and it writes no history.
 std::int64_t contact_phase(const ContactPhase& phase, const HertzLaw& law, double tolerance,
                            double look_ahead, double time_limit) noexcept;
 

@@ -36,13 +36,13 @@ MovingBall moving(const BallState& s) {
 }
 
 /// The hit of a break: its time, and the balls just before it.
-struct Hit {
+struct FirstHit {
     double time = 0.0, speed = 0.0;
     std::vector<MovingBall> balls;
 };
 
-Hit hit_of(const Record& record) {
-    Hit hit;
+FirstHit hit_of(const Record& record) {
+    FirstHit hit;
     for (const Event& e : record.events)
         if (balls_collide(e.type) && hit.time == 0.0) hit.time = e.time;
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball)
@@ -53,7 +53,7 @@ Hit hit_of(const Record& record) {
 }
 
 // Friction is regularised as in the model; cluster_moving_test.cpp measures the cost.
-MovingContacts contacts_of(const Hit& hit, const Scene& scene) {
+MovingContacts contacts_of(const FirstHit& hit, const Scene& scene) {
     MovingLaw law;
     law.R = scene.balls.R;
     law.stiffness = kContactStiffness;
@@ -105,7 +105,7 @@ Errors errors_of(const std::string& game) {
     while (errors.velocity.size() < kBreaks) {
         Scene scene = drawn_break(game, rng);
         const Record record = run_verified(scene);
-        const Hit hit = hit_of(record);
+        const FirstHit hit = hit_of(record);
         MovingContacts contacts = contacts_of(hit, scene);
         double time = hit.time + contacts.run_for(kAfter);
         while (collides(record, time)) time += contacts.run_for(0.1 * kAfter);

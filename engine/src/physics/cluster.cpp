@@ -228,7 +228,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     numbers_.resize(
         std::max(numbers_.size(), kernel::contact_phase_numbers(m, n) + kCacheLine / sizeof(double)));
     places_.resize(std::max(places_.size(), kernel::contact_phase_places(m, n)));
-    history_.resize(contacts.size());
+    history_.assign(contacts.size(), {-1.0, 0.0});
     lies_.clear();
     for (const ClusterBall& ball : balls) lies_.push_back((radius(ball, settings) - ball.r.z()) / L);
     Reached reached{&balls, &settings, V, L};
