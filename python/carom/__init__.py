@@ -17,7 +17,7 @@ from carom._errors import SceneError, SceneNotFoundError
 from carom._fit import FitResult, fit
 from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
 from carom._program import accuracy, margin, sensitivity
-from carom._record import Event, EventColumn, Record, TablePlan, event_columns
+from carom._record import Event, EventColumn, Hit, Record, TablePlan, event_columns
 from carom._scene import Scene, tables
 from carom._render import render
 from carom._show import drawing, picture, shown
@@ -48,6 +48,7 @@ __all__ = [
     "Fall",
     "FitResult",
     "Hand",
+    "Hit",
     "Measure",
     "Record",
     "Scene",

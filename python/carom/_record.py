@@ -42,6 +42,16 @@ class Event(NamedTuple):
     b: str
 
 
+class Hit(NamedTuple):
+    """A contact that pushed: the time [s] of its first touch, the ball, its partner ("": the cloth), and the
+    impulse along the normal [N s], 0 unless it belongs to a cluster."""
+
+    time: float
+    a: str
+    b: str
+    impulse: float
+
+
 class EventColumn(NamedTuple):
     """A column of `Record.event_details`: its name, its unit or "", and its meaning ("": as before)."""
 
@@ -184,6 +194,10 @@ class Record:
     def event_list(self) -> list[Event]:
         """The events with names instead of numbers."""
         return [Event(*event) for event in self._native.event_list()]
+
+    def hit_list(self) -> list[Hit]:
+        """Who pushed whom, in order of the events: the pair of an impact, and every contact of a cluster."""
+        return [Hit(*hit) for hit in self._native.hit_list()]
 
     @property
     def segments(self) -> tuple[NDArray[np.void], ...]:

@@ -52,31 +52,6 @@ struct Columns {
     }
 };
 
-/// The ball that a ball meets in an event, or -1, from the record alone.
-int met_in(const Record& record, const Event& e, int ball) {
-    if (e.type != EventType::kBallBall && e.type != EventType::kBallBallHold &&
-        e.type != EventType::kBallCluster)
-        return -1;
-    if (e.a == ball || e.b == ball) return e.a == ball ? e.b : e.a;
-    if (e.type != EventType::kBallCluster) return -1;
-    const std::vector<int>& members = record.clusters.at(static_cast<std::size_t>(e.detail)).balls;
-    if (std::find(members.begin(), members.end(), ball) == members.end()) return -1;
-    const Vec3 here = record.state_at(ball, e.time).position;
-    int best = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (const int other : members) {
-        const double distance = (record.state_at(other, e.time).position - here).norm();
-        if (other != ball && distance < least) least = distance, best = other;
-    }
-    return best;
-}
-
-bool is_cushion(const Event& e) {
-    const std::string kind = name(e.type);
-    return kind == "ball_cushion" || kind == "ball_jaw" || kind == "ball_cushion_hold" ||
-           kind == "ball_jaw_hold";
-}
-
 /// The balls that a ball meets, in order, and its cushion contacts before the second of them.
 struct Contacts {
     std::vector<int> balls;
@@ -85,10 +60,17 @@ struct Contacts {
 Contacts contacts_of(const Record& record, int ball) {
     Contacts found;
     for (const Event& e : record.events) {
-        if (e.a == ball && is_cushion(e) && found.balls.size() < 2) ++found.cushions;
-        const int met = ball < 0 ? -1 : met_in(record, e, ball);
-        if (met >= 0 && std::find(found.balls.begin(), found.balls.end(), met) == found.balls.end())
-            found.balls.push_back(met);
+        each_hit(e, record.hits(e), [&](const Hit& hit) {
+            if (hit.partner != Partner::kBall) {
+                const bool wall = hit.partner == Partner::kCushion || hit.partner == Partner::kJaw;
+                if (wall && hit.a == ball && found.balls.size() < 2) ++found.cushions;
+                return;
+            }
+            if (hit.a != ball && hit.b != ball) return;
+            const int met = hit.a == ball ? hit.b : hit.a;
+            if (std::find(found.balls.begin(), found.balls.end(), met) == found.balls.end())
+                found.balls.push_back(met);
+        });
     }
     return found;
 }
@@ -118,7 +100,9 @@ void expect_same(const Batch& batch, std::size_t shot, const Scene& scene, const
     std::vector<int> cushions(batch.balls), fell(batch.balls, -1);
     int fallen = 0;
     for (const Event& e : record.events) {
-        cushions[e.a] += is_cushion(e);
+        each_hit(e, record.hits(e), [&](const Hit& hit) {
+            cushions[hit.a] += hit.partner == Partner::kCushion || hit.partner == Partner::kJaw;
+        });
         if (e.type == EventType::kBallPocket) fell[e.a] = fallen++;
     }
     for (std::size_t b = 0; b < batch.balls; ++b) {

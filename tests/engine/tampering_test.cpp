@@ -324,6 +324,34 @@ std::vector<Kind> kinds() {
                   }
                   return false;
               }));
+    const auto hit = [&event](const auto& change) {
+        return event([](const Event& e) { return e.type == EventType::kBallCluster; },
+                     [change](Record& r, Event& e, Generator& random) {
+                         std::vector<Hit>& hits = r.clusters[static_cast<std::size_t>(e.detail)].hits;
+                         double strongest = 0.0;
+                         for (const Hit& h : hits) strongest = std::max(strongest, h.impulse);
+                         Hit* h = one_of(hits, random, [strongest](const Hit& x) {
+                             return x.partner == Partner::kBall && x.impulse > 0.5 * strongest;
+                         });
+                         return h != nullptr && !in_group(r, e) && change(hits, *h);
+                     });
+    };
+    add("a strong hit of a cluster is missing", "U5", hit([](std::vector<Hit>& hits, Hit& h) {
+            hits.erase(hits.begin() + (&h - hits.data()));
+            return true;
+        }));
+    add("a strong hit of a cluster is three times as strong", "U5", hit([](std::vector<Hit>&, Hit& h) {
+            h.impulse *= 3.0;
+            return true;
+        }));
+    add("a hit is of a ball outside of the cluster, or of one ball", "U6", hit([](std::vector<Hit>&, Hit& h) {
+            h.b = h.a;
+            return true;
+        }));
+    add("a hit is earlier than its cluster", "U6", hit([](std::vector<Hit>&, Hit& h) {
+            h.time *= 0.99;
+            return h.time > 0.0;
+        }));
     add("two balls at rest meet", "U6", [](Record& r, Generator& random) {
         if (r.tracks.size() < 2 || r.events.empty()) return false;
         const int a = draw(random, r.tracks.size()), b = (a + 1) % static_cast<int>(r.tracks.size());

@@ -42,9 +42,7 @@ def test_a_batch_has_the_bits_of_single_shots(draw_scene):
         assert shots.duration[i] == record.duration and shots.events[i] == len(record.events)
         assert shots.status[i] == ShotStatus.AT_REST and record.stopped == "at_rest"
         assert (shots.xy[i] == record.states(record.duration)[:, 0, :2]).all()
-        cushions = [
-            e.a for e in record.event_list()
-            if e.type in ("ball_cushion", "ball_jaw", "ball_cushion_hold", "ball_jaw_hold")]
+        cushions = [hit.a for hit in record.hit_list() if hit.b and hit.b not in record.ids]
         assert shots.cushions[i].tolist() == [cushions.count(ball) for ball in record.ids]
         fallen = [e.a for e in record.event_list() if e.type == "ball_pocket"]
         assert [

@@ -162,7 +162,9 @@ struct Work {
           out(arrays) {
         simulate.hash = false;
         simulate.profile = false;
+        // A crowded shot may take seconds.
         simulate.progress = nullptr;
+        if (options.stop) simulate.progress = [this](std::size_t, double) { check_stop(); };
         hashed = simulate;
         hashed.hash = out.hash != nullptr;
     }
@@ -186,6 +188,9 @@ struct Work {
         const std::lock_guard lock(mutex);
         if (!error) error = std::move(why);
         stopped = true;
+    }
+    void check_stop() const {
+        if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
     }
     void add_message(std::size_t shot, const std::string& text) {
         const std::lock_guard lock(mutex);
@@ -220,7 +225,7 @@ struct Work {
                         first + std::clamp((shots - first) / (kShareLeft * threads), std::size_t{1}, kBlock);
                 } while (!next.compare_exchange_weak(first, last));
                 for (std::size_t shot = first; shot < last; ++shot) {
-                    if (options.stop && options.stop()) throw BatchStopped("the batch was stopped");
+                    check_stop();
                     play_one(player, shot);
                 }
             }

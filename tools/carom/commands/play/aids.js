@@ -18,7 +18,8 @@ export const speedOf = (way) => HARDEST * Math.min(Math.max(way / PULL, 0), 1) *
  * side. */
 export function firstContact({motion: record, events}, id) {
   const indexOf = (name) => record.tracks.findIndex((track) => track.id === name), ball = indexOf(id);
-  const has = (e) => e.ball === id || e.other === id && e.type === "ball_ball" || e.balls?.includes(id);
+  const hits = (e) => e.hits?.filter(({ball, other}) => ball === id || other === id);
+  const has = (e) => e.hits ? hits(e).length > 0 : e.ball === id || e.other === id && e.type === "ball_ball";
   const e = events.find((event) => MEETS.includes(event.type) && has(event));
   if (!e) return null;
   const R = radiusOf(record, ball), {r: at, v} = stateAt(record, ball, e.time), lines = [];
@@ -28,11 +29,12 @@ export function firstContact({motion: record, events}, id) {
     const speed = Math.hypot(way[0], way[1]);
     if (speed > 1e-3) lines.push([from, [0, 1].map((k) => from[k] + SHORT * way[k] / speed)]);
   };
-  const others = (e.balls ?? [e.ball, e.other]).filter((other) => other !== id).map(indexOf);
+  const [hit] = hits(e) ?? [e], first = indexOf(hit.ball === id ? hit.other : hit.ball);
+  if (first < 0) return found;
   const along = (other) => [0, 1].map((k) => stateAt(record, other, e.time).r[k] - at[k]);
   const came = stateAt(record, ball, Math.max(e.time - 1e-6, 0)).v;
   const ahead = (other) => along(other).reduce((sum, x, k) => sum + x * came[k], 0);
-  const first = others.sort((a, b) => ahead(b) - ahead(a))[0], to = along(first);
+  const to = along(first);
   line(stateAt(record, first, e.time).r, stateAt(record, first, e.time).v);
   line(at, v);
   const cross = came[0] * to[1] - came[1] * to[0];
