@@ -324,7 +324,7 @@ std::vector<Kind> kinds() {
                   }
                   return false;
               }));
-    const auto hit = [&event](const auto& change) {
+    const auto hit = [](const auto& change) {
         return event([](const Event& e) { return e.type == EventType::kBallCluster; },
                      [change](Record& r, Event& e, Generator& random) {
                          std::vector<Hit>& hits = r.clusters[static_cast<std::size_t>(e.detail)].hits;

@@ -316,6 +316,7 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     settings.unlike = unlike_;
     near_.forget();
     settings.surfaces = nullptr;
+    settings.slide = 0.0;  // the weight needs time
     steps = compliant(settings, v_n);
     if (steps >= 0 && closes_still(v_n)) {
         settings.turns = false;

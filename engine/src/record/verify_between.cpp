@@ -215,7 +215,9 @@ class Between {
         follow(from, to, R(ball), pieces_[ball].speed, clear, [&](double t) { check(seen(ball, t), t); });
     }
 
+    // In a cluster a ball is drawn straight from its start to its end, which may cut a corner.
     void check_table(std::size_t ball, double from, double to) {
+        if (segment(ball).state == MotionState::kColliding) return;
         const double near = kNoseReach * R(ball) + pieces_[ball].reach;
         const bool in_air = flies(segment(ball).state);
         // With a bed there is cloth on both sides of a cushion.

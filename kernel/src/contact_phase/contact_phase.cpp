@@ -102,7 +102,7 @@ class Phase {
         for (double*& slope : slope_) slope = take(rows);
         stiff_ = take(phase.balls + 1);
         double** const of_contacts[] = {&start_[0], &start_[1], &start_[2], &gap2_,   &touch_, &d_,
-                                        &rate_,     &pull_,     &most_,     &closes_, &force_};
+                                        &rate_,     &pull_,     &most_,     &closes_, &force_, &rises_};
         for (double** numbers_of : of_contacts) *numbers_of = take(lanes_);
         packed_ = take(kPacked * lanes_);
         forces_ = take(kForces * lanes_);
@@ -252,8 +252,7 @@ class Phase {
     double until_out() const {
         double longest = 0.0;
         for (int b = 0; phase_.surfaces != nullptr && b < phase_.balls; ++b)
-            longest = largest(
-                longest, phase_.surfaces->out(phase_.surfaces->owner, b, state_of(b).number));
+            longest = largest(longest, phase_.surfaces->out(phase_.surfaces->owner, b, state_of(b).number));
         return longest;
     }
 
@@ -277,7 +276,7 @@ class Phase {
         bool same = true;
         for (int c = 0; c < phase_.contacts; ++c) {
             if (!(d_[c] > 0.0)) {
-                force_[c] = 0.0;
+                force_[c] = rises_[c] = 0.0;
                 if (!(closes_[c] < early_)) continue;
             }
             same = same && count_ < count && closed_[count_] == c;
@@ -601,13 +600,6 @@ class Phase {
 
     // Takes over the state after a step of length h.
     void accept(double h) {
-        if (phase_.history != nullptr) {
-            for (int n = 0; n < count_; ++n) {
-                const double F = packed(n, kNormal);
-                phase_.history[closed_[n]].impulse += 0.5 * h * (force_[closed_[n]] + F);
-                force_[closed_[n]] = F;
-            }
-        }
         for (int b = 0; b < phase_.balls; ++b) {
             if (is_active_[b] == 0)
                 glide(b, h);
@@ -624,6 +616,24 @@ class Phase {
         }
         time_ += h;
         examine(h);
+        if (phase_.history != nullptr) book(h);
+    }
+
+    // Adds the impulses of a step: the integral of the cubic Hermite interpolant of the force.
+    void book(double h) {
+        for (int n = 0; n < count_; ++n) {
+            const int c = closed_[n];
+            const double F = packed(n, kNormal), d = d_[c], share = most_[c] > 0.0 ? d / most_[c] : 1.0;
+            double power = share;
+            for (int p = law_.p; p > 1; p /= 2) power *= power;
+            const double rise = share < 1.0 ? 1.5 * (law_.a + law_.b * power) + law_.p * law_.b * power : 1.5;
+            const double rate =
+                d > 0.0 ? square_root(d) * rise * rate_[c] * phase_.contact[c].stiffness : 0.0;
+            phase_.history[c].impulse +=
+                0.5 * h * (force_[c] + F) + (1.0 / 12.0) * h * h * (rises_[c] - rate);
+            force_[c] = F;
+            rises_[c] = rate;
+        }
     }
 
     // Moves a ball that nothing touches: it slides with constant deceleration until it rolls.
@@ -778,15 +788,15 @@ class Phase {
     const ContactPhase& phase_;
     const HertzLaw& law_;
     const double tolerance_, early_, weight_slip2_, cloth_sign_;
-    const int nobody_, lanes_;         // the row of a ball at rest that fills packs; contacts in whole packs
+    const int nobody_, lanes_;  // the row of a ball at rest that fills packs; contacts in whole packs
     // Now; time until the next event of a contact, and until a ball hits a surface.
     double time_ = 0.0, event_ = 0.0, wall_ = kNever;
     std::int64_t evaluations_ = 0;
     double *y_, *a_, *b_, *c_, *next_, *slope_[kSlopes];
     double* stiff_;  // per ball: the sum of friction over slip, times its mobility
     // Per contact: the vector from i to j at the start, and |it|^2 - touch^2; overlap, its derivatives, and
-    // its maximum since the contact opened; the time until it closes; its last force.
-    double *start_[3], *gap2_, *touch_, *d_, *rate_, *pull_, *most_, *closes_, *force_;
+    // its maximum since the contact opened; the time until it closes; its last force and the rate of it.
+    double *start_[3], *gap2_, *touch_, *d_, *rate_, *pull_, *most_, *closes_, *force_, *rises_;
     double *packed_, *forces_;  // per closed contact
     int *i_, *j_;               // rows of the balls
     int *closed_, *at_i_, *at_j_, *active_, *is_active_, *was_active_;

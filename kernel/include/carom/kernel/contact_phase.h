@@ -38,7 +38,7 @@ struct HertzLaw {
 /// The course of one contact.
 struct HertzHistory {
     double first;    ///< [L/V] when the balls touched for the first time; negative: never
-    double impulse;  ///< [m V] along the normal, positive if they pushed each other; to about 1e-3 of itself
+    double impulse;  ///< [m V] along the normal, positive if they pushed each other; of order 4, as the method
 };
 
 /// Cushions, and the cloth under free balls. They react ten times as slowly as contacts between balls, so they
