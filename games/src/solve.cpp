@@ -64,7 +64,10 @@ class Solver {
         trials_.fresh = true;
         std::vector<Solution> solutions;
         solutions.reserve(kinds.size());
-        for (const Candidate& kind : kinds) solutions.push_back(improved(solution(kind.values, each), each));
+        for (const Candidate& kind : kinds) {
+            Solution& found = solutions.emplace_back(improved(solution(kind.values, each), each));
+            found.exact = options_.unknown == kExactTable ? found.successes : exact_successes(found);
+        }
         std::stable_sort(solutions.begin(), solutions.end(), [](const Solution& a, const Solution& b) {
             return a.successes * b.shots > b.successes * a.shots;
         });
@@ -270,6 +273,13 @@ class Solver {
                          [](const auto& one, const auto& two) { return one.count > two.count; });
         add_costs(candidate, found.costs);
         return found;
+    }
+    std::size_t exact_successes(const Solution& found) {
+        std::vector<Candidate> one(1, Candidate{found.values});
+        trials_.exact = true;
+        trials_.play(one, found.shots);
+        trials_.exact = false;
+        return one[0].successes;
     }
     void add_costs(const Candidate& candidate, std::vector<Solution::Cost>& costs) {
         for (std::size_t k = 0; k < options_.choices.size(); ++k) {

@@ -48,8 +48,9 @@ Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
     }
     return {{"success", share.value},  {"interval", {share.low, share.high}},
             {"shots", solution.shots}, {"successes", solution.successes},
-            {"values", values},        {"falls", falls},
-            {"costs", costs},          {"scene", scene_text(solution.scene)}};
+            {"exact", solution.exact}, {"values", values},
+            {"falls", falls},          {"costs", costs},
+            {"scene", scene_text(solution.scene)}};
 }
 
 }  // namespace
@@ -58,6 +59,10 @@ void add_search(Options& command, SearchArgs& args) {
     command.option("--hand", &args.hand, "ERRORS",
                    "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
                    "ball radii, elevation in degrees");
+    command.option("--unknown", &args.unknown, "ERRORS",
+                   "Standard deviations of what the player does not know: friction of the cloth and restitution "
+                   "of the rails in percent, places of the balls in mm, gaps of a rack in micrometres; or none, "
+                   "for exact tables");
     command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
     command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
@@ -78,8 +83,9 @@ template <class Play>
 auto played(const Search& what, const SearchArgs& args, const char* title, Play&& play) {
     games::SolveOptions options;
     options.choices = what.choices;
-    options.layouts = what.layouts;
+    options.racks = what.racks;
     options.hand = read_hand(args.hand);
+    options.unknown = read_unknown(args.unknown);
     options.seed = args.seed;
     options.shots = static_cast<std::size_t>(args.shots);
     options.threads = args.jobs;
@@ -135,6 +141,18 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
     write_report(args.plot, draw_plot(plot, diagram_format(args.plot), {shot}, style));
 }
 
+std::string unknown_text(const SearchArgs& args) {
+    if (read_unknown(args.unknown) == games::kExactTable) return "unknown: nothing, exact tables\n";
+    return fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
+}
+
+std::string rates_text(const Solution& solution, const char* what, const SearchArgs& args) {
+    const std::string rate = fmt::format("{}  of {}", share_text(share_of(solution.successes, solution.shots)),
+                                         counted(solution.shots, what));
+    if (read_unknown(args.unknown) == games::kExactTable) return rate + "\n";
+    return fmt::format("{}; exact table: {}\n", rate, share_text(share_of(solution.exact, solution.shots)));
+}
+
 std::string falls_text(const Solution& solution) {
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(6, solution.falls.size()); ++i) {
@@ -171,8 +189,8 @@ Json solutions_json(const std::vector<Solution>& solutions, const std::vector<Ch
 
 void write_best(const std::string& path, const Solution& best, const std::string& want,
                 const SearchArgs& args) {
-    write_report(path, fmt::format("# Found by carom for: {}\n# Success with a hand of {}: {}\n{}",
-                                   harmless(want), args.hand,
+    write_report(path, fmt::format("# Found by carom for: {}\n# Success with a hand of {}, unknown {}: {}\n{}",
+                                   harmless(want), args.hand, args.unknown,
                                    share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
 }
 

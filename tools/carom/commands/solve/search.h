@@ -16,7 +16,7 @@ namespace carom::tools {
 
 /// The options of a search.
 struct SearchArgs {
-    std::string hand = kHand, output, plot;
+    std::string hand = kHand, unknown = kUnknown, output, plot;
     std::uint64_t shots = games::SolveOptions().shots, seed = 1;
     int jobs = 0, best = 3;
     bool json = false;
@@ -30,7 +30,7 @@ struct Search {
     std::string want;
     std::optional<games::Game> game;
     std::vector<games::Choice> choices;
-    std::vector<Scene> layouts;
+    games::Racks racks;
 };
 /// Searches with a progress bar; with `exact`, refines the found shots and stores the results there.
 /// @throws UsageError, Interrupted
@@ -40,6 +40,11 @@ std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
 /// Writes the picture requested by args.plot: the shot, and success over its two strongest inputs.
 void plot_best(const Search& what, const games::Solution& best, const std::string& title,
                const SearchArgs& args);
+
+/// The line on what the shots draw.
+std::string unknown_text(const SearchArgs& args);
+/// "77.40 %  (76.32 to 78.44)  of 6000 shots", and the rate on exact tables.
+std::string rates_text(const games::Solution& solution, const char* what, const SearchArgs& args);
 
 /// "falls 1 into p5 49 %, ..." and the costs of errors, a line each.
 std::string falls_text(const games::Solution& solution);
