@@ -23,15 +23,18 @@ using detail::Trials;
 
 // Shares of the budget: the first look at the whole space, the generations, and the choice among the last
 // generation; the rest is for the figures.
-constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.10, kReport = 0.10;
+static double env(const char* n,double d){const char*v=getenv(n);return v?atof(v):d;}
+static const double kLook = env("LOOK",0.30), kBreed = env("BREED",0.42), kChoose = env("CHOOSE",.10), kReport = 0.10;
+static const std::size_t kStarts = env("STARTS",1), kFinalists = env("FINAL",16);
+
 // [shots] Per candidate in the first look, and how many more the remaining quarter gets in each round.
-constexpr std::size_t kFirst = 8, kMore = 3, kRounds = 3;
+static const std::size_t kFirst = env("FIRST",8), kMore = env("MORE",3), kRounds = env("ROUNDS",3); static const double kKeep=env("KEEP",4);
 // Generations, the initial distance of descendants from their parents as a fraction of a range, and its
 // factor per generation.
-constexpr int kGenerations = 6;
-constexpr double kNearby = 0.08, kShrink = 0.62;
-constexpr std::size_t kParents = 16;
-constexpr std::size_t kYoung = 24, kGrown = 120;
+static const int kGenerations = env("GEN",6);
+static const double kScales=env("SCALES",0), kNearby = env("NEARBY",0.08), kShrink = env("SHRINK",0.62);
+static const std::size_t kParents = env("PARENTS",16);
+static const std::size_t kYoung = env("YOUNG",24), kGrown = env("GROWN",120);
 // [-] Two shots are of different kind if some input differs by this fraction of its range.
 constexpr double kOtherKind = 0.12;
 // A map: cells per side, its share of the budget, and its half-width in distances at which success halves.
@@ -45,17 +48,29 @@ class Solver {
     Solver(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options)
         : trials_(scene, want, isa, options), options_(options) {}
 
-    std::vector<Solution> run() {
-        std::vector<Candidate> best = look();
-        double nearby = kNearby;
-        // A small budget has fewer generations.
-        const double bred = (kLook + kBreed) * static_cast<double>(options_.shots);
-        for (int generation = 0; generation < kGenerations && static_cast<double>(trials_.played()) < bred;
-             ++generation, nearby *= kShrink)
-            best = breed(std::move(best), nearby);
-        // After 120 shots the best is often only the luckiest.
-        trials_.play(best,
-                     static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) / best.size());
+    std::vector<Solution> run(std::vector<Share>* starts) {
+        // Each search is on its own, from other places, until the choice among the last generations.
+        std::vector<Candidate> best;
+        for (std::size_t start = 0; start < kStarts; ++start) {
+            const double before = static_cast<double>(trials_.played());
+            std::vector<Candidate> found = look(); gen_=0;
+            if (env("CEM",1)>0) { for (std::size_t round = 0; round < kRoundsC; ++round) found = climbed(std::move(found), round); }
+            else {
+            double nearby = kNearby;
+            // A small budget has fewer generations.
+            const double bred = before + (kLook + kBreed) * share();
+            for (int generation = 0;
+                 generation < kGenerations && static_cast<double>(trials_.played()) < bred;
+                 ++generation, nearby *= kShrink)
+                found = breed(std::move(found), nearby);
+            }
+            found.resize(std::min(found.size(), kFinalists));
+            // After 120 shots the best is often only the luckiest.
+            trials_.play(found, static_cast<std::size_t>(kChoose * share()) / found.size());
+            sort(found);
+            if (starts != nullptr) starts->push_back(share_of(found[0].successes, found[0].shots));
+            best.insert(best.end(), found.begin(), found.end());
+        }
         sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not used.
@@ -135,23 +150,26 @@ class Solver {
                          [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
     }
 
+    /// [shots] Of one start.
+    double share() const { return static_cast<double>(options_.shots / kStarts); }
     /// Shots per cost of an error.
     std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
     double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
 
     /// Halton's sequence, shifted by the seed, over the whole space.
     std::vector<Candidate> look() {
-        const auto budget = kLook * static_cast<double>(options_.shots);
+        const double budget = kLook * share();
         double cost = 0.0, share = 1.0, before = 0.0, shots = kFirst;
-        for (std::size_t round = 0; round < kRounds; ++round, share /= 4.0, before = shots, shots *= kMore)
+        for (std::size_t round = 0; round < kRounds; ++round, share /= kKeep, before = shots, shots *= kMore)
             cost += share * (shots - before);
         const auto count = std::max<std::size_t>(64, static_cast<std::size_t>(budget / cost));
-        SplitMix64 random(options_.seed);
+        SplitMix64 random(options_.seed + 0x9e3779b9u * ++looks_);
         std::vector<double> shift(options_.choices.size());
         for (double& s : shift) s = random.uniform();
         constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
         std::vector<Candidate> all(count);
         for (std::size_t i = 0; i < count; ++i) {
+            if (env("LLUCK",1)>0) all[i].luck = i % kLuck;
             for (std::size_t k = 0; k < options_.choices.size(); ++k) {
                 double x = shift[k], part = 1.0;
                 const int base = kPrimes[k % kPrimes.size()];
@@ -165,14 +183,60 @@ class Solver {
         for (std::size_t round = 0; round < kRounds; ++round, each *= kMore) {
             trials_.play(all, each);
             sort(all);
-            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
+            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, static_cast<std::size_t>(all.size() / kKeep)));
         }
-        return different(all, 0.5 * kOtherKind, kParents);
+        return different(all, env("APART",0.5) * kOtherKind, std::size_t(env("P0",32)));
     }
 
+    /// Moves a place to the middle of the successes around it: the cross-entropy method (Rubinstein, 1999).
+    Candidate climb(const Candidate& from, std::size_t shots) {
+        static const std::size_t kSteps = env("STEPS",3);
+        Candidate now{from.values};
+        const std::size_t n = now.values.size();
+        std::vector<double> width(n);
+        SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
+        for (std::size_t step = 0; step < kSteps; ++step) {
+            std::vector<Candidate> around(std::max<std::size_t>(4, shots / kSteps), now);
+            for (std::size_t i = 0; i < around.size(); ++i) {
+                around[i].luck = i % kLuck;
+                for (std::size_t k = 0; k < n; ++k) {
+                    // The size of a success is not known at first.
+                    const double by = step == 0 ? range(k) * std::exp2(-kWide - kScales * random.uniform()) : width[k];
+                    around[i].values[k] = std::clamp(around[i].values[k] + by * standard_normal(random),
+                                                     options_.choices[k].low, options_.choices[k].high);
+                }
+            }
+            trials_.play(around, 1);
+            std::erase_if(around, [](const Candidate& c) { return c.successes == 0; });
+            if (around.size() < 4) {
+                for (std::size_t k = 0; k < n; ++k) width[k] = step == 0 ? range(k) * std::exp2(-kWide - 0.5 * kScales) : 0.5 * width[k];
+                continue;
+            }
+            const double m = static_cast<double>(around.size());
+            for (std::size_t k = 0; k < n; ++k) {
+                double sum = 0.0, squares = 0.0;
+                for (const Candidate& c : around) sum += c.values[k];
+                for (const Candidate& c : around) squares += (c.values[k] - sum / m) * (c.values[k] - sum / m);
+                now.values[k] = sum / m;
+                width[k] = env("WID",1)*std::sqrt(squares / m);
+            }
+        }
+        return now;
+    }
+    std::vector<Candidate> climbed(std::vector<Candidate> list, std::size_t round) {
+        static const std::size_t kMany[] = {(std::size_t)env("P0",32), (std::size_t)env("P1",12), (std::size_t)env("P2",5)};
+        const std::size_t many = std::min(kMany[round], list.size());
+        const double each = kBreed * share() / kRoundsC / static_cast<double>(many);
+        list.resize(many);
+        for (std::size_t i = 0; i < many; ++i) list.push_back(climb(list[i], static_cast<std::size_t>((1.0-kEval) * each)));
+        trials_.play(list, list[0].shots + static_cast<std::size_t>(0.5 * kEval * each));
+        sort(list);
+        return different(list, env("YAPART",.02), list.size());
+    }
+    static inline const std::size_t kRoundsC = 3, kLuck = 61; static inline const double kWide=env("WIDE",2), kEval=env("EVAL",.4);
     /// The best of these and their descendants.
     std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
-        const double budget = kBreed * static_cast<double>(options_.shots) / kGenerations;
+        const double budget = kBreed * share() / kGenerations;
         const auto count = std::max<std::size_t>(
             kParents, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
         std::vector<Candidate> young;
@@ -186,7 +250,7 @@ class Solver {
             Candidate child;
             child.values = parents[std::min(from, parents.size() - 1)].values;
             for (std::size_t k = 0; k < child.values.size(); ++k)
-                child.values[k] = std::clamp(child.values[k] + nearby * range(k) * standard_normal(random),
+                child.values[k] = std::clamp(child.values[k] + nearby * std::exp2(-kScales * random.uniform()) * range(k) * standard_normal(random),
                                              options_.choices[k].low, options_.choices[k].high);
             young.push_back(std::move(child));
         }
@@ -197,7 +261,7 @@ class Solver {
         trials_.play(parents, kGrown);
         young.insert(young.end(), parents.begin(), parents.end());
         sort(young);
-        return different(young, 0.5 * nearby, kParents);
+        return different(young, env("YAPART",0.5) * nearby, std::max<std::size_t>(env("PMIN",3), kParents * std::pow(env("PSHRINK",1), gen_++)));
     }
 
     /// The best, without candidates near to a better one.
@@ -313,7 +377,7 @@ class Solver {
     }
     Trials trials_;
     const SolveOptions& options_;
-    std::uint64_t generation_ = 0;
+    std::uint64_t generation_ = 0, looks_ = 0; int gen_=0;
 };
 
 }  // namespace
@@ -334,8 +398,8 @@ std::vector<Choice> default_choices() {
 }
 
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
-                            const SolveOptions& options) {
-    return Solver(scene, want, isa, options).run();
+                            const SolveOptions& options, std::vector<Share>* starts) {
+    return Solver(scene, want, isa, options).run(starts);
 }
 
 SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
