@@ -188,57 +188,58 @@ class Solver {
         return different(all, env("APART",0.5) * kOtherKind, std::size_t(env("P0",32)));
     }
 
-    /// Moves a place to the middle of the successes around it: the cross-entropy method (Rubinstein, 1999).
-    Candidate climb(const Candidate& from, std::size_t shots) {
-        static const std::size_t kSteps = env("STEPS",3);
-        Candidate now{from.values};
-        const std::size_t n = now.values.size();
-        std::vector<double> width(n);
+    /// Searches around a place: each step has new candidates with the spread of the best of the last one.
+    std::vector<Candidate> climb(const Candidate& from, std::size_t budget) {
+        static const std::size_t kSteps = env("STEPS",4), kElite=env("ELITE",6), kEach=env("EACH",30); static const double kInfl=env("INFL",1.3), kWide=env("WIDE",4);
+        std::vector<Candidate> best = {from};
         SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
+        const std::size_t n = from.values.size();
+        const std::size_t children = std::max<std::size_t>(4, budget / kSteps / kEach);
         for (std::size_t step = 0; step < kSteps; ++step) {
-            std::vector<Candidate> around(std::max<std::size_t>(4, shots / kSteps), now);
-            for (std::size_t i = 0; i < around.size(); ++i) {
-                around[i].luck = i % kLuck;
-                for (std::size_t k = 0; k < n; ++k) {
-                    // The size of a success is not known at first.
-                    const double by = step == 0 ? range(k) * std::exp2(-kWide - kScales * random.uniform()) : width[k];
-                    around[i].values[k] = std::clamp(around[i].values[k] + by * standard_normal(random),
-                                                     options_.choices[k].low, options_.choices[k].high);
+            std::vector<double> mean(n, 0.0);
+            for (const Candidate& c : best)
+                for (std::size_t k = 0; k < n; ++k) mean[k] += c.values[k] / static_cast<double>(best.size());
+            std::vector<Candidate> young;
+            for (std::size_t i = 0; i < children; ++i) {
+                Candidate child{step == 0 ? from.values : mean};
+                for (const Candidate& c : best) {
+                    const double by = kInfl * standard_normal(random) / std::sqrt(static_cast<double>(best.size()));
+                    for (std::size_t k = 0; k < n; ++k) child.values[k] += by * (c.values[k] - mean[k]);
                 }
+                for (std::size_t k = 0; k < n; ++k) {
+                    if (step == 0) child.values[k] += range(k) * std::exp2(-kWide - kScales * random.uniform()) * standard_normal(random);
+                    child.values[k] = std::clamp(child.values[k], options_.choices[k].low, options_.choices[k].high);
+                }
+                young.push_back(std::move(child));
             }
-            trials_.play(around, 1);
-            std::erase_if(around, [](const Candidate& c) { return c.successes == 0; });
-            if (around.size() < 4) {
-                for (std::size_t k = 0; k < n; ++k) width[k] = step == 0 ? range(k) * std::exp2(-kWide - 0.5 * kScales) : 0.5 * width[k];
-                continue;
-            }
-            const double m = static_cast<double>(around.size());
-            for (std::size_t k = 0; k < n; ++k) {
-                double sum = 0.0, squares = 0.0;
-                for (const Candidate& c : around) sum += c.values[k];
-                for (const Candidate& c : around) squares += (c.values[k] - sum / m) * (c.values[k] - sum / m);
-                now.values[k] = sum / m;
-                width[k] = env("WID",1)*std::sqrt(squares / m);
-            }
+            trials_.play(young, kEach);
+            young.insert(young.end(), best.begin(), best.end());
+            trials_.play(young, kEach);
+            sort(young);
+            young.resize(std::min(young.size(), kElite));
+            best = std::move(young);
         }
-        return now;
+        return best;
     }
     std::vector<Candidate> climbed(std::vector<Candidate> list, std::size_t round) {
-        static const std::size_t kMany[] = {(std::size_t)env("P0",32), (std::size_t)env("P1",12), (std::size_t)env("P2",5)};
+        static const std::size_t kMany[] = {(std::size_t)env("P0",10), (std::size_t)env("P1",3)};
         const std::size_t many = std::min(kMany[round], list.size());
         const double each = kBreed * share() / kRoundsC / static_cast<double>(many);
         list.resize(many);
-        for (std::size_t i = 0; i < many; ++i) list.push_back(climb(list[i], static_cast<std::size_t>((1.0-kEval) * each)));
-        trials_.play(list, list[0].shots + static_cast<std::size_t>(0.5 * kEval * each));
-        sort(list);
-        return different(list, env("YAPART",.02), list.size());
+        std::vector<Candidate> all = list;
+        for (std::size_t i = 0; i < many; ++i) { auto more = climb(list[i], static_cast<std::size_t>(.8 * each)); all.insert(all.end(), more.begin(), more.begin()+2); }
+        trials_.play(all, all.back().shots + static_cast<std::size_t>(.2 * each / 2));
+        sort(all);
+        return different(all, env("YAPART",.01), all.size());
     }
-    static inline const std::size_t kRoundsC = 3, kLuck = 61; static inline const double kWide=env("WIDE",2), kEval=env("EVAL",.4);
+    static inline const std::size_t kRoundsC = env("CROUNDS",2), kLuck = 61;
     /// The best of these and their descendants.
     std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
+        const std::size_t np = std::max<std::size_t>(env("PMIN",8), kParents * std::pow(env("PSHRINK",1), gen_));
+        const std::size_t kGrown = env("GROWN",120) * std::pow(env("GG",1), gen_), kYoung = env("YOUNG",24) * std::pow(env("GG",1), gen_);
         const double budget = kBreed * share() / kGenerations;
         const auto count = std::max<std::size_t>(
-            kParents, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
+            np, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
         std::vector<Candidate> young;
         SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
         // The better half has three quarters of the descendants.
@@ -256,12 +257,12 @@ class Solver {
         }
         trials_.play(young, kYoung);
         sort(young);
-        young.resize(std::max<std::size_t>(kParents, young.size() / 4));
+        young.resize(std::max<std::size_t>(np, young.size() / 4));
         trials_.play(young, kGrown);
         trials_.play(parents, kGrown);
         young.insert(young.end(), parents.begin(), parents.end());
         sort(young);
-        return different(young, env("YAPART",0.5) * nearby, std::max<std::size_t>(env("PMIN",3), kParents * std::pow(env("PSHRINK",1), gen_++)));
+        return different(young, env("YAPART",0.5) * nearby, (++gen_, np));
     }
 
     /// The best, without candidates near to a better one.
