@@ -23,20 +23,29 @@ using detail::Trials;
 
 // Shares of the budget: the first look at the whole space, the generations, and the choice among the last
 // generation; the rest is for the figures.
-static double env(const char* n,double d){const char*v=getenv(n);return v?atof(v):d;}
-static const double kLook = env("LOOK",0.30), kBreed = env("BREED",0.42), kChoose = env("CHOOSE",.10), kReport = 0.10;
-static const std::size_t kStarts = env("STARTS",1), kFinalists = env("FINAL",16);
-
-// [shots] Per candidate in the first look, and how many more the remaining quarter gets in each round.
-static const std::size_t kFirst = env("FIRST",8), kMore = env("MORE",3), kRounds = env("ROUNDS",3); static const double kKeep=env("KEEP",4);
-// Generations, the initial distance of descendants from their parents as a fraction of a range, and its
-// factor per generation.
-static const int kGenerations = env("GEN",6);
-static const double kScales=env("SCALES",0), kNearby = env("NEARBY",0.08), kShrink = env("SHRINK",0.62);
-static const std::size_t kParents = env("PARENTS",16);
-static const std::size_t kYoung = env("YOUNG",24), kGrown = env("GROWN",120);
+constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.08, kReport = 0.10;
+// The first look gives each candidate one shot, and in further rounds this many times more to the best twelfth.
+// Many single shots find narrow places: a few percent of them succeed, most of these on the flank of a place.
+constexpr std::size_t kMore = 4, kRounds = 3, kKept = 12;
+// Searches on their own, from other places, and the generations before their best come together.
+constexpr std::size_t kStarts = 2;
+constexpr int kGenerations = 8, kApart = 3;
+// The largest distance of descendants from their parents as a fraction of a range, its factor per generation, and
+// the halvings of it that are drawn: the size of a place is not known.
+constexpr double kNearby = 0.10, kShrink = 0.75, kHalvings = 5.0;
+// [-] Share of descendants that first move along the line through another parent nearby: good shots lie on ridges.
+constexpr double kAlong = 0.3;
+// Parents of all searches, their factor per generation, and the fewest; shots of a descendant, then of the best
+// quarter of them and of the parents, and the factor of both.
+constexpr double kParents = 64.0, kFewer = 0.7;
+constexpr std::size_t kFewest = 8, kFinalists = 16;
+constexpr double kYoung = 8.0, kGrown = 30.0, kLonger = 1.2;
+// [shots] Of the best of each search, to compare them.
+constexpr std::size_t kCompare = 200;
 // [-] Two shots are of different kind if some input differs by this fraction of its range.
 constexpr double kOtherKind = 0.12;
+// [-] Of this, between the places of the first look.
+constexpr double kSamePlace = 0.15;
 // A map: cells per side, its share of the budget, and its half-width in distances at which success halves.
 constexpr std::size_t kSide = 24;
 constexpr double kMap = 0.15, kReach = 3.0;
@@ -49,28 +58,21 @@ class Solver {
         : trials_(scene, want, isa, options), options_(options) {}
 
     std::vector<Solution> run(std::vector<Share>* starts) {
-        // Each search is on its own, from other places, until the choice among the last generations.
         std::vector<Candidate> best;
         for (std::size_t start = 0; start < kStarts; ++start) {
-            const double before = static_cast<double>(trials_.played());
-            std::vector<Candidate> found = look(); gen_=0;
-            if (env("CEM",1)>0) { for (std::size_t round = 0; round < kRoundsC; ++round) found = climbed(std::move(found), round); }
-            else {
-            double nearby = kNearby;
-            // A small budget has fewer generations.
-            const double bred = before + (kLook + kBreed) * share();
-            for (int generation = 0;
-                 generation < kGenerations && static_cast<double>(trials_.played()) < bred;
-                 ++generation, nearby *= kShrink)
-                found = breed(std::move(found), nearby);
-            }
-            found.resize(std::min(found.size(), kFinalists));
-            // After 120 shots the best is often only the luckiest.
-            trials_.play(found, static_cast<std::size_t>(kChoose * share()) / found.size());
-            sort(found);
-            if (starts != nullptr) starts->push_back(share_of(found[0].successes, found[0].shots));
+            std::vector<Candidate> found = look();
+            for (int generation = 0; generation < kApart; ++generation)
+                found = breed(std::move(found), generation, kStarts);
+            std::vector<Candidate> first(found.begin(), found.begin() + 1);
+            trials_.play(first, std::max(first[0].shots, kCompare));
+            if (starts != nullptr) starts->push_back(share_of(first[0].successes, first[0].shots));
             best.insert(best.end(), found.begin(), found.end());
         }
+        for (int generation = kApart; generation < kGenerations; ++generation)
+            best = breed(std::move(best), generation, 1);
+        best.resize(std::min(best.size(), kFinalists));
+        // After 120 shots the best is often only the luckiest.
+        trials_.play(best, best[0].shots + static_cast<std::size_t>(kChoose * budget()) / best.size());
         sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not used.
@@ -150,132 +152,107 @@ class Solver {
                          [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
     }
 
-    /// [shots] Of one start.
-    double share() const { return static_cast<double>(options_.shots / kStarts); }
+    double budget() const { return static_cast<double>(options_.shots); }
     /// Shots per cost of an error.
     std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
     double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
 
     /// Halton's sequence, shifted by the seed, over the whole space.
     std::vector<Candidate> look() {
-        const double budget = kLook * share();
-        double cost = 0.0, share = 1.0, before = 0.0, shots = kFirst;
-        for (std::size_t round = 0; round < kRounds; ++round, share /= kKeep, before = shots, shots *= kMore)
-            cost += share * (shots - before);
-        const auto count = std::max<std::size_t>(64, static_cast<std::size_t>(budget / cost));
-        SplitMix64 random(options_.seed + 0x9e3779b9u * ++looks_);
+        double cost = 0.0, part = 1.0, before = 0.0, shots = 1.0;
+        for (std::size_t round = 0; round < kRounds; ++round, part /= kKept, before = shots, shots *= kMore)
+            cost += part * (shots - before);
+        const auto count = std::max<std::size_t>(
+            64, static_cast<std::size_t>(kLook * budget() / static_cast<double>(kStarts) / cost));
+        SplitMix64 random(options_.seed + 0x9e3779b9u * looks_++);
         std::vector<double> shift(options_.choices.size());
         for (double& s : shift) s = random.uniform();
         constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
         std::vector<Candidate> all(count);
         for (std::size_t i = 0; i < count; ++i) {
-            if (env("LLUCK",1)>0) all[i].luck = i % kLuck;
             for (std::size_t k = 0; k < options_.choices.size(); ++k) {
-                double x = shift[k], part = 1.0;
+                double x = shift[k], digit = 1.0;
                 const int base = kPrimes[k % kPrimes.size()];
                 for (std::size_t n = i + 1; n > 0; n /= static_cast<std::size_t>(base))
-                    x += (part /= base) * static_cast<double>(n % static_cast<std::size_t>(base));
+                    x += (digit /= base) * static_cast<double>(n % static_cast<std::size_t>(base));
                 x -= std::floor(x);
                 all[i].values.push_back(options_.choices[k].low + x * range(k));
             }
         }
-        std::size_t each = kFirst;
+        const std::size_t most = parents(0, kStarts);
+        std::size_t each = 1;
         for (std::size_t round = 0; round < kRounds; ++round, each *= kMore) {
             trials_.play(all, each);
             sort(all);
-            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, static_cast<std::size_t>(all.size() / kKeep)));
+            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(most, all.size() / kKept));
         }
-        return different(all, env("APART",0.5) * kOtherKind, std::size_t(env("P0",32)));
+        return different(all, kSamePlace * kOtherKind, most);
     }
 
-    /// Searches around a place: each step has new candidates with the spread of the best of the last one.
-    std::vector<Candidate> climb(const Candidate& from, std::size_t budget) {
-        static const std::size_t kSteps = env("STEPS",4), kElite=env("ELITE",6), kEach=env("EACH",30); static const double kInfl=env("INFL",1.3), kWide=env("WIDE",4);
-        std::vector<Candidate> best = {from};
-        SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
-        const std::size_t n = from.values.size();
-        const std::size_t children = std::max<std::size_t>(4, budget / kSteps / kEach);
-        for (std::size_t step = 0; step < kSteps; ++step) {
-            std::vector<double> mean(n, 0.0);
-            for (const Candidate& c : best)
-                for (std::size_t k = 0; k < n; ++k) mean[k] += c.values[k] / static_cast<double>(best.size());
-            std::vector<Candidate> young;
-            for (std::size_t i = 0; i < children; ++i) {
-                Candidate child{step == 0 ? from.values : mean};
-                for (const Candidate& c : best) {
-                    const double by = kInfl * standard_normal(random) / std::sqrt(static_cast<double>(best.size()));
-                    for (std::size_t k = 0; k < n; ++k) child.values[k] += by * (c.values[k] - mean[k]);
-                }
-                for (std::size_t k = 0; k < n; ++k) {
-                    if (step == 0) child.values[k] += range(k) * std::exp2(-kWide - kScales * random.uniform()) * standard_normal(random);
-                    child.values[k] = std::clamp(child.values[k], options_.choices[k].low, options_.choices[k].high);
-                }
-                young.push_back(std::move(child));
-            }
-            trials_.play(young, kEach);
-            young.insert(young.end(), best.begin(), best.end());
-            trials_.play(young, kEach);
-            sort(young);
-            young.resize(std::min(young.size(), kElite));
-            best = std::move(young);
-        }
-        return best;
+    static std::size_t parents(int generation, std::size_t searches) {
+        return std::max(kFewest, static_cast<std::size_t>(kParents * std::pow(kFewer, generation)) / searches);
     }
-    std::vector<Candidate> climbed(std::vector<Candidate> list, std::size_t round) {
-        static const std::size_t kMany[] = {(std::size_t)env("P0",10), (std::size_t)env("P1",3)};
-        const std::size_t many = std::min(kMany[round], list.size());
-        const double each = kBreed * share() / kRoundsC / static_cast<double>(many);
-        list.resize(many);
-        std::vector<Candidate> all = list;
-        for (std::size_t i = 0; i < many; ++i) { auto more = climb(list[i], static_cast<std::size_t>(.8 * each)); all.insert(all.end(), more.begin(), more.begin()+2); }
-        trials_.play(all, all.back().shots + static_cast<std::size_t>(.2 * each / 2));
-        sort(all);
-        return different(all, env("YAPART",.01), all.size());
-    }
-    static inline const std::size_t kRoundsC = env("CROUNDS",2), kLuck = 61;
-    /// The best of these and their descendants.
-    std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
-        const std::size_t np = std::max<std::size_t>(env("PMIN",8), kParents * std::pow(env("PSHRINK",1), gen_));
-        const std::size_t kGrown = env("GROWN",120) * std::pow(env("GG",1), gen_), kYoung = env("YOUNG",24) * std::pow(env("GG",1), gen_);
-        const double budget = kBreed * share() / kGenerations;
+
+    /// The best of these and their descendants. @param searches  that share the generation's budget
+    std::vector<Candidate> breed(std::vector<Candidate> old, int generation, std::size_t searches) {
+        const double shots = kBreed * budget() / kGenerations / static_cast<double>(searches);
+        const double longer = std::pow(kLonger, generation), nearby = kNearby * std::pow(kShrink, generation);
+        const auto young_shots = static_cast<std::size_t>(kYoung * longer),
+                   grown_shots = static_cast<std::size_t>(kGrown * longer);
+        const std::size_t most = parents(generation, searches);
         const auto count = std::max<std::size_t>(
-            np, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
+            most, static_cast<std::size_t>(4.0 * shots / static_cast<double>(3 * young_shots + grown_shots)));
         std::vector<Candidate> young;
         SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
         // The better half has three quarters of the descendants.
         for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t half = (parents.size() + 1) / 2;
+            const std::size_t half = (old.size() + 1) / 2;
             const std::size_t from = i % 4 == 3
-                                         ? half + (i / 4) % std::max<std::size_t>(1, parents.size() - half)
+                                         ? half + (i / 4) % std::max<std::size_t>(1, old.size() - half)
                                          : (i - i / 4) % half;
             Candidate child;
-            child.values = parents[std::min(from, parents.size() - 1)].values;
-            for (std::size_t k = 0; k < child.values.size(); ++k)
-                child.values[k] = std::clamp(child.values[k] + nearby * std::exp2(-kScales * random.uniform()) * range(k) * standard_normal(random),
+            child.values = old[std::min(from, old.size() - 1)].values;
+            if (random.uniform() < kAlong) {
+                const Candidate& other =
+                    old[static_cast<std::size_t>(random.below(static_cast<int>(old.size())))];
+                if (apart(child, other) < kOtherKind) {
+                    const double by = standard_normal(random);
+                    for (std::size_t k = 0; k < child.values.size(); ++k)
+                        child.values[k] += by * (child.values[k] - other.values[k]);
+                }
+            }
+            for (std::size_t k = 0; k < child.values.size(); ++k) {
+                const double by = nearby * std::exp2(-kHalvings * random.uniform()) * range(k);
+                child.values[k] = std::clamp(child.values[k] + by * standard_normal(random),
                                              options_.choices[k].low, options_.choices[k].high);
+            }
             young.push_back(std::move(child));
         }
-        trials_.play(young, kYoung);
+        trials_.play(young, young_shots);
         sort(young);
-        young.resize(std::max<std::size_t>(np, young.size() / 4));
-        trials_.play(young, kGrown);
-        trials_.play(parents, kGrown);
-        young.insert(young.end(), parents.begin(), parents.end());
+        young.resize(std::max<std::size_t>(most, young.size() / 4));
+        trials_.play(young, grown_shots);
+        trials_.play(old, grown_shots);
+        young.insert(young.end(), old.begin(), old.end());
         sort(young);
-        return different(young, env("YAPART",0.5) * nearby, (++gen_, np));
+        return different(young, 0.5 * nearby, parents(generation + 1, searches));
+    }
+
+    /// The largest difference of two candidates as a fraction of a range.
+    double apart(const Candidate& one, const Candidate& other) const {
+        double away = 0.0;
+        for (std::size_t k = 0; k < one.values.size(); ++k)
+            if (range(k) > 0.0) away = std::max(away, std::abs(one.values[k] - other.values[k]) / range(k));
+        return away;
     }
 
     /// The best, without candidates near to a better one.
-    std::vector<Candidate> different(const std::vector<Candidate>& sorted, double apart,
+    std::vector<Candidate> different(const std::vector<Candidate>& sorted, double least,
                                      std::size_t most) const {
         std::vector<Candidate> kept;
         for (const Candidate& candidate : sorted) {
             const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
-                double away = 0.0;
-                for (std::size_t k = 0; k < candidate.values.size(); ++k)
-                    if (range(k) > 0.0)
-                        away = std::max(away, std::abs(candidate.values[k] - other.values[k]) / range(k));
-                return away < apart;
+                return apart(candidate, other) < least;
             });
             if (!near) kept.push_back(candidate);
             if (kept.size() == most) break;
@@ -378,7 +355,7 @@ class Solver {
     }
     Trials trials_;
     const SolveOptions& options_;
-    std::uint64_t generation_ = 0, looks_ = 0; int gen_=0;
+    std::uint64_t looks_ = 0, generation_ = 0;
 };
 
 }  // namespace

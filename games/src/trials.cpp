@@ -182,8 +182,7 @@ void Trials::play_rows(std::span<Candidate> candidates, std::size_t shots, std::
     owner.reserve(rows);
     for (std::size_t c = 0; c < candidates.size(); ++c) {
         const std::vector<double> row = meant(candidates[c].values);
-        const std::size_t luck = candidates[c].luck;
-        for (std::size_t i = luck + candidates[c].shots; i < luck + shots; ++i) {
+        for (std::size_t i = candidates[c].shots; i < shots; ++i) {
             const Draw d = draw(i);
             owner.push_back(c);
             columns[0].push_back(row[0] + turned + d.aim);

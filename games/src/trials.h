@@ -15,7 +15,6 @@ namespace carom::games::detail {
 struct Candidate {
     std::vector<double> values;
     std::size_t shots = 0, successes = 0, invalid = 0;
-    std::size_t luck = 0;  ///< number of its first trial
     double score() const {
         return shots == 0 ? 0.0 : static_cast<double>(successes) / static_cast<double>(shots);
     }

@@ -117,7 +117,10 @@ struct SuccessMap {
 SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
                        const Solution& around);
 
-/// The best shots of different kinds, the surest first.
+/// The best shots of different kinds, the surest first. Two searches begin at other places with half of the
+/// shots each; from the fourth generation on, the best of both are searched together.
+/// @param starts  if not null, receives the success of the best of each search before that: far apart, they
+/// warn that there may be a better shot
 /// @throws std::invalid_argument for a key that names no number, an invalid range, or a goal that does not
 /// apply to the shots
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,

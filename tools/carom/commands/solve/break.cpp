@@ -73,7 +73,8 @@ int run(const BreakArgs& args) {
     const std::string& game = args.wanted.game;
     const games::BreakSearch asked = read_break(args);
     const Search what{asked.scene, "break of " + game, asked.want, asked.game, asked.choices, asked.racks};
-    const std::vector<Solution> found = search(what, args.search);
+    std::vector<games::Share> starts;
+    const std::vector<Solution> found = search(what, args.search, starts);
     const std::string title = fmt::format("{} break, {} rack", game, args.wanted.rack);
     plot_best(what, found[0], title, args.search);
     if (!args.search.output.empty()) write_best(args.search.output, found[0], asked.want, args.search);
@@ -96,13 +97,14 @@ int run(const BreakArgs& args) {
                    {"hand", args.search.hand},
                    {"unknown", args.search.unknown},
                    {"seed", args.search.seed},
+                   {"searches", starts_json(starts)},
                    {"solutions", solutions_json(found, asked.choices)}}
                   .dump() +
               "\n");
         return kOk;
     }
     std::string out = fmt::format("{}; wanted: {}; hand: {}\n", title, asked.want, args.search.hand) +
-                      unknown_text(args.search);
+                      lead_text(args.search, starts);
     for (std::size_t i = 0; i < found.size(); ++i)
         out += told(found[i], args, asked.ball_speed, static_cast<int>(i) + 1);
     print(out);

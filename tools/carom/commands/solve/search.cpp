@@ -108,7 +108,8 @@ auto played(const Search& what, const SearchArgs& args, const char* title, Play&
 
 }  // namespace
 
-std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Exact>* exact) {
+std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Share>& starts,
+                             std::vector<games::Exact>* exact) {
     if (!args.plot.empty()) {
         diagram_format(args.plot);
         if (what.choices.size() < 2) throw UsageError("--plot: a map needs two inputs; give two --vary");
@@ -117,7 +118,7 @@ std::vector<Solution> search(const Search& what, const SearchArgs& args, std::ve
         if (exact != nullptr && want.places().empty())
             throw UsageError(
                 "--exact: the goal has no place; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
-        std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options);
+        std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options, &starts);
         for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
             exact->push_back(games::exact(found[i], want, chosen_isa(), options));
         return found;
@@ -141,9 +142,20 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
     write_report(args.plot, draw_plot(plot, diagram_format(args.plot), {shot}, style));
 }
 
-std::string unknown_text(const SearchArgs& args) {
-    if (read_unknown(args.unknown) == games::kExactTable) return "unknown: nothing, exact tables\n";
-    return fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
+std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts) {
+    std::string text = read_unknown(args.unknown) == games::kExactTable
+                           ? "unknown: nothing, exact tables\n"
+                           : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
+    std::vector<std::string> rates;
+    for (const games::Share& share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share.value));
+    return text + fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
+                              rates.size(), fmt::join(rates, " and "));
+}
+
+Json starts_json(const std::vector<games::Share>& starts) {
+    Json rates = Json::array();
+    for (const games::Share& share : starts) rates.push_back(share.value);
+    return rates;
 }
 
 std::string rates_text(const Solution& solution, const char* what, const SearchArgs& args) {

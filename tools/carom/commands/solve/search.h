@@ -32,17 +32,20 @@ struct Search {
     std::vector<games::Choice> choices;
     games::Racks racks;
 };
-/// Searches with a progress bar; with `exact`, refines the found shots and stores the results there.
+/// Searches with a progress bar. @param starts  receives the success of the best of each search, as solve()
+/// @param exact  if not null, the found shots are refined, and the results are stored there
 /// @throws UsageError, Interrupted
 std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
+                                    std::vector<games::Share>& starts,
                                     std::vector<games::Exact>* exact = nullptr);
 
 /// Writes the picture requested by args.plot: the shot, and success over its two strongest inputs.
 void plot_best(const Search& what, const games::Solution& best, const std::string& title,
                const SearchArgs& args);
 
-/// The line on what the shots draw.
-std::string unknown_text(const SearchArgs& args);
+/// The lines on what the shots draw, and on how far apart the searches were.
+std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts);
+nlohmann::ordered_json starts_json(const std::vector<games::Share>& starts);
 /// "77.40 %  (76.32 to 78.44)  of 6000 shots", and the rate on exact tables.
 std::string rates_text(const games::Solution& solution, const char* what, const SearchArgs& args);
 

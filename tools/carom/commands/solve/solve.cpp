@@ -95,8 +95,9 @@ int run(const SolveArgs& args) {
     if (args.exact && racks)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
     std::vector<games::Exact> exact;
+    std::vector<games::Share> starts;
     const Search asked{plan.scene, args.scene, want, game, choices, racks};
-    const std::vector<Solution> found = search(asked, args.search, args.exact ? &exact : nullptr);
+    const std::vector<Solution> found = search(asked, args.search, starts, args.exact ? &exact : nullptr);
     const bool is_exact = !exact.empty() && exact[0].solution;
     if (!args.search.output.empty())
         write_best(args.search.output, is_exact ? *exact[0].solution : found[0], want, args.search);
@@ -106,6 +107,7 @@ int run(const SolveArgs& args) {
                  {"hand", args.search.hand},
                  {"unknown", args.search.unknown},
                  {"seed", args.search.seed},
+                 {"searches", starts_json(starts)},
                  {"solutions", solutions_json(found, choices)}};
         for (const games::Exact& e : exact) {
             Json row{{"miss_m", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
@@ -117,7 +119,7 @@ int run(const SolveArgs& args) {
         print(all.dump() + "\n");
         return kOk;
     }
-    std::string text = fmt::format("wanted: {}\n", harmless(want)) + unknown_text(args.search);
+    std::string text = fmt::format("wanted: {}\n", harmless(want)) + lead_text(args.search, starts);
     for (std::size_t i = 0; i < found.size(); ++i) {
         text += told(found[i], choices, fmt::format("{}. ", i + 1), args.search);
         if (exact.empty()) continue;
