@@ -32,7 +32,7 @@ constexpr std::size_t kStarts = 2;
 constexpr int kGenerations = 8, kApart = 3;
 // The largest distance of descendants from their parents as a fraction of a range, its factor per generation, and
 // the halvings of it that are drawn: the size of a place is not known.
-constexpr double kNearby = 0.10, kShrink = 0.75, kHalvings = 5.0;
+constexpr double kNearby = 0.10, kShrink = 0.75, kOctaves = 5.0;
 // [-] Share of descendants that first move along the line through another parent nearby: good shots lie on ridges.
 constexpr double kAlong = 0.3;
 // Parents of all searches, their factor per generation, and the fewest; shots of a descendant, then of the best
@@ -222,7 +222,7 @@ class Solver {
                 }
             }
             for (std::size_t k = 0; k < child.values.size(); ++k) {
-                const double by = nearby * std::exp2(-kHalvings * random.uniform()) * range(k);
+                const double by = nearby * std::exp2(-kOctaves * random.uniform()) * range(k);
                 child.values[k] = std::clamp(child.values[k] + by * standard_normal(random),
                                              options_.choices[k].low, options_.choices[k].high);
             }

@@ -51,14 +51,15 @@ void Trials::add_table_keys() {
         keys.insert(keys.end(), {"balls.e_c_fit.0", "balls.e_c_fit.1", "balls.e_c_fit.2"});
     else
         keys.emplace_back("balls.e_c");
+    resized_.assign(scene_.ball.size(), false);
     if (options_.racks) {
         const Scene first = options_.racks(0);
         for (std::size_t i = 0; i < scene_.ball.size(); ++i)
-            sizes_ = sizes_ || scene_.ball[i].own != first.ball.at(i).own;
+            resized_[i] = scene_.ball[i].own != first.ball.at(i).own;
     }
-    for (const BallStart& ball : scene_.ball)
+    for (std::size_t i = 0; i < scene_.ball.size(); ++i)
         for (const char* what : {"position.x", "position.y", "radius", "mass"})
-            if (sizes_ || *what == 'p') keys.push_back("ball." + ball.id + "." + what);
+            if (resized_[i] || *what == 'p') keys.push_back("ball." + scene_.ball[i].id + "." + what);
     for (const std::string& key : keys) {
         columns_.push_back(static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin()));
         if (columns_.back() == keys_.size()) keys_.push_back(key);
@@ -71,10 +72,11 @@ std::vector<double> Trials::table_values(const Scene& table) const {
     const BallParams& balls = table.balls;
     std::vector<double> values = {balls.mu_s, balls.mu_r, balls.e_c};
     if (scene_.balls.e_c_fall > 0.0) values.insert(values.end(), {balls.e_c_fall, balls.e_c_above});
-    for (const BallStart& ball : table.ball) {
+    for (std::size_t i = 0; i < table.ball.size(); ++i) {
+        const BallStart& ball = table.ball[i];
         values.insert(values.end(), {ball.position.x(), ball.position.y()});
         const BallSize size = table.size_of(ball);
-        if (sizes_) values.insert(values.end(), {size.R, size.m});
+        if (resized_[i]) values.insert(values.end(), {size.R, size.m});
     }
     return values;
 }

@@ -63,7 +63,7 @@ class Trials {
     std::vector<std::size_t> columns_;
     std::vector<double> usual_;
     std::vector<std::vector<double>> tables_[4];
-    bool sizes_ = false;
+    std::vector<bool> resized_;  // balls whose sizes differ from table to table
     std::size_t chosen_ = 0, played_ = 0;
 };
 
