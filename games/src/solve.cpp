@@ -24,21 +24,23 @@ using detail::Trials;
 // Shares of the budget: the first look at the whole space, the generations, and the choice among the last
 // generation; the rest is for the figures.
 constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.08, kReport = 0.10;
-// The first look gives each candidate one shot, and in further rounds this many times more to the best twelfth.
-// Many single shots find narrow places: a few percent of them succeed, most of these on the flank of a place.
+// The first look gives each candidate one shot, and in further rounds this many times more to the best
+// twelfth. Many single shots find narrow places: a few percent of them succeed, most of these on the flank of
+// a place.
 constexpr std::size_t kMore = 4, kRounds = 3, kKept = 12;
 // Searches on their own, from other places, and the generations before their best come together.
 constexpr std::size_t kStarts = 2;
 constexpr int kGenerations = 8, kApart = 3;
-// The largest distance of descendants from their parents as a fraction of a range, its factor per generation, and
-// the halvings of it that are drawn: the size of a place is not known.
+// The largest distance of descendants from their parents as a fraction of a range, its factor per generation,
+// and the halvings of it that are drawn: the size of a place is not known.
 constexpr double kNearby = 0.10, kShrink = 0.75, kOctaves = 5.0;
-// [-] Share of descendants that first move along the line through another parent nearby: good shots lie on ridges.
+// [-] Share of descendants that first move along the line through another parent nearby: good shots lie on
+// ridges.
 constexpr double kAlong = 0.3;
-// Parents of all searches, their factor per generation, and the fewest; shots of a descendant, then of the best
-// quarter of them and of the parents, and the factor of both.
+// Parents of all searches, their factor per generation, and the fewest; shots of a descendant, then of the
+// best quarter of them and of the parents, and the factor of both.
 constexpr double kParents = 64.0, kFewer = 0.7;
-constexpr std::size_t kFewest = 8, kFinalists = 16;
+constexpr std::size_t kFewest = 8;
 constexpr double kYoung = 8.0, kGrown = 30.0, kLonger = 1.2;
 // [shots] Of the best of each search, to compare them.
 constexpr std::size_t kCompare = 200;
@@ -70,7 +72,6 @@ class Solver {
         }
         for (int generation = kApart; generation < kGenerations; ++generation)
             best = breed(std::move(best), generation, 1);
-        best.resize(std::min(best.size(), kFinalists));
         // After 120 shots the best is often only the luckiest.
         trials_.play(best, best[0].shots + static_cast<std::size_t>(kChoose * budget()) / best.size());
         sort(best);
@@ -190,7 +191,8 @@ class Solver {
     }
 
     static std::size_t parents(int generation, std::size_t searches) {
-        return std::max(kFewest, static_cast<std::size_t>(kParents * std::pow(kFewer, generation)) / searches);
+        return std::max(kFewest,
+                        static_cast<std::size_t>(kParents * std::pow(kFewer, generation)) / searches);
     }
 
     /// The best of these and their descendants. @param searches  that share the generation's budget
@@ -207,9 +209,8 @@ class Solver {
         // The better half has three quarters of the descendants.
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t half = (old.size() + 1) / 2;
-            const std::size_t from = i % 4 == 3
-                                         ? half + (i / 4) % std::max<std::size_t>(1, old.size() - half)
-                                         : (i - i / 4) % half;
+            const std::size_t from = i % 4 == 3 ? half + (i / 4) % std::max<std::size_t>(1, old.size() - half)
+                                                : (i - i / 4) % half;
             Candidate child;
             child.values = old[std::min(from, old.size() - 1)].values;
             if (random.uniform() < kAlong) {
@@ -235,7 +236,13 @@ class Solver {
         trials_.play(old, grown_shots);
         young.insert(young.end(), old.begin(), old.end());
         sort(young);
-        return different(young, 0.5 * nearby, parents(generation + 1, searches));
+        std::vector<Candidate> kept = different(young, 0.5 * nearby, parents(generation + 1, searches));
+        // The best of other kinds remain, too.
+        for (Candidate& kind : different(young, kOtherKind, std::max<std::size_t>(1, options_.best)))
+            if (std::none_of(kept.begin(), kept.end(),
+                             [&](const Candidate& other) { return apart(kind, other) < kOtherKind; }))
+                kept.push_back(std::move(kind));
+        return kept;
     }
 
     /// The largest difference of two candidates as a fraction of a range.

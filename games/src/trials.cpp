@@ -61,7 +61,8 @@ void Trials::add_table_keys() {
         for (const char* what : {"position.x", "position.y", "radius", "mass"})
             if (resized_[i] || *what == 'p') keys.push_back("ball." + scene_.ball[i].id + "." + what);
     for (const std::string& key : keys) {
-        columns_.push_back(static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin()));
+        columns_.push_back(
+            static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin()));
         if (columns_.back() == keys_.size()) keys_.push_back(key);
     }
     usual_ = table_values(scene_);

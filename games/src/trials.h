@@ -58,8 +58,8 @@ class Trials {
     std::size_t struck_ = 0;
     int hit_ = -1;
     std::vector<std::string> keys_;
-    // The column of every key of a table, its values in the scene, and those of each trial: seen by the search,
-    // fresh, and the same two on exact tables.
+    // The column of every key of a table, its values in the scene, and its values per trial: seen by the
+    // search, fresh, and the same two on exact tables.
     std::vector<std::size_t> columns_;
     std::vector<double> usual_;
     std::vector<std::vector<double>> tables_[4];

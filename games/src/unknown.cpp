@@ -59,7 +59,9 @@ Scene drawn_table(const Scene& scene, const Unknown& sd, std::uint64_t seed, std
     constexpr double kMost = 0.9;
     constexpr int kTries = 20;
     SplitMix64 random = draws_of(seed, index, "table");
-    const auto factor = [&](double by) { return 1.0 + std::clamp(by * standard_normal(random), -kMost, kMost); };
+    const auto factor = [&](double by) {
+        return 1.0 + std::clamp(by * standard_normal(random), -kMost, kMost);
+    };
     Scene drawn = scene;
     drawn.balls.mu_s *= factor(sd.cloth);
     drawn.balls.mu_r *= factor(sd.cloth);

@@ -1,4 +1,4 @@
-// Draws what a player does not know of a table.
+// Draws the properties of a table that a player does not know.
 #pragma once
 
 #include <cstdint>

@@ -8,8 +8,8 @@ each time) and carom.simulate_many (one thread). Both play the same positions, a
 seven-foot table with the same coefficients and models: inelastic impacts with Alciatore's friction, Stronge's
 cushion, sequential clusters. The last row compares the same breaks with each program's default models. CPU
 time of the thread, median of five warm runs of either program. The first shots of pooltool, which compile it,
-are not counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared. Needs PyPI;
-neither the build nor a test needs this script.
+are not counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared.
+Needs PyPI; neither the build nor a test needs this script.
 
     lab/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
@@ -75,7 +75,7 @@ def scene_of(shot, text):
 
 
 def warm(run):
-    """Median seconds of the warm runs, and what the last one returned."""
+    """Median seconds of the warm runs, and the last result."""
     times = []
     for i in range(RUNS + 1):
         start = time.thread_time()
@@ -143,7 +143,8 @@ def compare(count):
         rows = [(theirs(shot), one(shot, text)) for shot in shots]
         out.append({"kind": kind, "theirs_ms": 1e3 * statistics.median(t[0] for t, _ in rows),
                     "ours_ms": 1e3 * statistics.median(o[0] for _, o in rows),
-                    "ratio": statistics.median(t[0] / o[0] for t, o in rows), "many_ms": 1e3 * many(shots, text),
+                    "ratio": statistics.median(t[0] / o[0] for t, o in rows),
+                    "many_ms": 1e3 * many(shots, text),
                     "theirs_events": statistics.median(t[1] for t, _ in rows),
                     "ours_events": statistics.median(o[1] for _, o in rows)})
     print(json.dumps(out))

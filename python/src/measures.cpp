@@ -93,12 +93,12 @@ using ChoiceRow = std::tuple<std::string, double, double>;
 /// Shares: NaN if no scene is valid there.
 using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller; the share on exact
-/// tables, and that of the best of each search.
-using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
-                               std::vector<std::tuple<std::string, std::string, double>>,
-                               std::vector<CostRow>, NativeScene,
-                               std::tuple<double, std::string, double, std::vector<double>>>;
+/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller; the share on
+/// exact tables, and the share of the best of each search.
+using SolutionRow =
+    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
+               std::vector<std::tuple<std::string, std::string, double>>, std::vector<CostRow>, NativeScene,
+               std::tuple<double, std::string, double, std::vector<double>>>;
 
 /// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
 using HandRow = std::tuple<double, double, double, double>;
@@ -119,7 +119,8 @@ HandRow standard_hand() {
 games::SolveOptions options_of(const HandRow& hand, const UnknownRow& unknown, std::size_t shots,
                                std::size_t best, std::uint64_t seed, int threads) {
     games::SolveOptions options;
-    std::tie(options.unknown.cloth, options.unknown.rails, options.unknown.places, options.unknown.gaps) = unknown;
+    std::tie(options.unknown.cloth, options.unknown.rails, options.unknown.places, options.unknown.gaps) =
+        unknown;
     std::tie(options.hand.aim_deg, options.hand.speed, options.hand.tip, options.hand.elevation_deg) = hand;
     options.shots = shots;
     options.best = best;
@@ -221,11 +222,11 @@ void add_measures(nb::module_& m) {
     m.def("measured", measured, nb::arg("record"), nb::arg("scene").none(), nb::arg("text"),
           nb::arg("game").none());
     m.def("solve", solve, nb::arg("scene"), nb::arg("want"), nb::arg("game").none(), nb::arg("choices"),
-          nb::arg("hand"), nb::arg("unknown"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
-          nb::arg("threads"), nb::arg("exact"));
+          nb::arg("hand"), nb::arg("unknown"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"),
+          nb::arg("seed"), nb::arg("threads"), nb::arg("exact"));
     m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("rack"), nb::arg("radius_sd"),
-          nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("unknown"), nb::arg("shots"), nb::arg("best"),
-          nb::arg("seed"), nb::arg("threads"));
+          nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("unknown"), nb::arg("shots"),
+          nb::arg("best"), nb::arg("seed"), nb::arg("threads"));
     m.def("standard_hand", standard_hand);
     m.def("standard_unknown", standard_unknown);
     m.def("default_choices", [] {

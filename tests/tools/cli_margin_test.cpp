@@ -132,10 +132,12 @@ TEST_F(CliMargin, TheSummaryIsReadable) {
     const ProcessResult result =
         carom({"margin", scene_, "--size", "160x90", "--fps", "20", "--repeat", "2"});
     ASSERT_EQ(result.status, 0) << result.err;
-    for (const char* part :
-         {" missed\n", "\n  simulate ", "\n    kernel ", "\n    cluster ", "\n  draw ", "\n  readback ",
-          "\n  encode ", "\n  write ", "\n  all ", "Slack: ", "Without encoding", "first run: p50 ", "warm runs: p50 ",
-          "set-up ", "frame 0 ", "Medians of 2 runs", " have no event.\n", " 2 runs: p99 ", " ms add up to ", "Cost of timing: ", "worst frame: "}) {
+    for (const char* part : {" missed\n",         "\n  simulate ", "\n    kernel ",    "\n    cluster ",
+                             "\n  draw ",         "\n  readback ", "\n  encode ",      "\n  write ",
+                             "\n  all ",          "Slack: ",       "Without encoding", "first run: p50 ",
+                             "warm runs: p50 ",   "set-up ",       "frame 0 ",         "Medians of 2 runs",
+                             " have no event.\n", " 2 runs: p99 ", " ms add up to ",   "Cost of timing: ",
+                             "worst frame: "}) {
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     }
 }

@@ -27,12 +27,13 @@ TEST_F(CliSolve, FindsAShotAndWritesIt) {
     const ProcessResult result = carom({"solve", draw_, "--want", "\"1\" in pocketed", "--vary",
                                         "cue.aim_deg=uniform(120,150)", "--shots", "2000", "-o", file});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_TRUE(contains(result.out,
-                         "wanted: \"1\" in pocketed\nunknown: cloth=5%,rails=2%,places=0.1,gaps=20; each shot "
-                         "draws it (standard deviations)\nsearches from 2 places, on their own so far: "))
+    EXPECT_TRUE(
+        contains(result.out,
+                 "wanted: \"1\" in pocketed\nunknown: cloth=5%,rails=2%,places=0.1,gaps=20; each shot "
+                 "draws it (standard deviations)\nsearches from 2 places, on their own so far: "))
         << result.out;
     EXPECT_TRUE(contains(result.out, "\n1. ")) << result.out;
-    EXPECT_TRUE(contains(result.out, " of 200 shots; exact table: ")) << result.out;
+    EXPECT_TRUE(contains(result.out, " of 100 shots; exact table: ")) << result.out;
     EXPECT_TRUE(contains(result.out, "falls 1 into p3")) << result.out;
     EXPECT_NEAR(read_scene(file).cue->aim_deg, 135.0, 2.0);
     EXPECT_TRUE(contains(read_file(file), "# Found by carom for: "));
@@ -42,7 +43,8 @@ TEST_F(CliSolve, FindsAShotAndWritesIt) {
     EXPECT_TRUE(json.at("solutions").at(0).at("success").is_number());
     EXPECT_TRUE(json.at("solutions").at(0).at("exact").is_number());
     EXPECT_EQ(json.at("searches").size(), 2u);
-    const std::string exact = carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--unknown", "none"}).out;
+    const std::string exact =
+        carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--unknown", "none"}).out;
     EXPECT_TRUE(contains(exact, "unknown: nothing, exact tables\n")) << exact;
     EXPECT_FALSE(contains(exact, "; exact table: ")) << exact;
 }

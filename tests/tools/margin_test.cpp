@@ -30,8 +30,8 @@ TEST(Margin, AFrameSumsItsStagesAndIsTheMedianOfItsRuns) {
     // Frames 0 and 1 of the second run; the third has one.
     EXPECT_EQ(margin.all.missed.low, 0.0);
     EXPECT_EQ(margin.all.missed.high, 2.0);
-    EXPECT_EQ(margin.first.max.low, 9.0);
-    EXPECT_EQ(margin.first.max.high, 9.0);
+    EXPECT_EQ(margin.first.max.low, 10.0);
+    EXPECT_EQ(margin.first.max.high, 10.0);
     EXPECT_EQ(margin.warm.max.low, 12.0);
     EXPECT_EQ(margin.warm.max.high, 84.0);
     EXPECT_EQ(margin.warm.missed.low, 1.0);

@@ -202,9 +202,9 @@ std::string totals_text(const std::vector<ValidationRow>& rows) {
     std::string text = "presets as they ship:";
     for (const Total& total : totals)
         if (total.count > 0)
-            text += fmt::format("{} {} {} of {} within, rms {:.2f} uncertainties",
-                                text.ends_with(':') ? "" : ";", total.name, total.within, total.count,
-                                std::sqrt(total.squares / total.count));
+            text +=
+                fmt::format("{} {} {} of {} within, rms {:.2f} uncertainties", text.ends_with(':') ? "" : ";",
+                            total.name, total.within, total.count, std::sqrt(total.squares / total.count));
     return text + "\n";
 }
 
@@ -262,7 +262,8 @@ std::string validation_text(const std::vector<ValidationRow>& rows) {
             const auto row = std::find_if(rows.begin(), rows.end(),
                                           [&](const ValidationRow& r) { return r.variant == &variant; });
             if (!row->differs.empty())
-                text += fmt::format("  {} differs from the shipped preset by {}\n", variant.name, row->differs);
+                text +=
+                    fmt::format("  {} differs from the shipped preset by {}\n", variant.name, row->differs);
         }
         text += table_text(case_table(rows, *of)) + '\n';
     }

@@ -80,7 +80,10 @@ Computed play(const ValidationCase& of, const ValidationShot& shot, const Varian
               const std::string& text, kernel::Isa isa) {
     const Plan plan = make_plan(parse_scene(text, of.file), isa);
     const Record record = simulate(plan, interruptible());
-    Computed out{model_of(of, plan.scene), differences(plan.scene, variant.preset), {}, std::vector<double>(shot.measured.size(), 0.0)};
+    Computed out{model_of(of, plan.scene),
+                 differences(plan.scene, variant.preset),
+                 {},
+                 std::vector<double>(shot.measured.size(), 0.0)};
     for (const Measured& m : shot.measured) out.numbers.push_back(measure(record, m));
     return out;
 }

@@ -39,8 +39,8 @@ void read_deviations(const char* option, const std::string& text, const std::vec
             std::find_if(known.begin(), known.end(), [&](const Deviation& d) { return d.name == name; });
         const bool is_percent = found != known.end() && found->percent();
         if (!read || *read < 0.0 || *read > 100.0 || percent != is_percent)
-            throw UsageError(fmt::format("{} {}: expected {}, each a standard deviation of at least 0", option,
-                                         harmless(text), fmt::join(forms, ",")));
+            throw UsageError(fmt::format("{} {}: expected {}, each a standard deviation of at least 0",
+                                         option, harmless(text), fmt::join(forms, ",")));
         if (found == known.end()) {
             const std::string last = names.back();
             names.pop_back();

@@ -1,4 +1,4 @@
-// The errors of a player's hand, and what the player does not know of the table, from options.
+// The errors of a player's hand, and the unknown properties of a table, from options.
 #pragma once
 
 #include <string>

@@ -163,9 +163,9 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
         spreads.push_back(ms > 0.0 ? (range.high - range.low) / ms : 0.0);
     }
     margin.frame_spread = median(spreads);
-    margin.quiet = static_cast<std::size_t>(
-        std::count_if(runs.front().frames.begin(), runs.front().frames.end(),
-                      [](const FrameCost& frame) { return frame.events.empty(); }));
+    margin.quiet =
+        static_cast<std::size_t>(std::count_if(runs.front().frames.begin(), runs.front().frames.end(),
+                                               [](const FrameCost& frame) { return frame.events.empty(); }));
     for (std::size_t r = 0; r < runs.size(); ++r) {
         std::vector<double> totals;
         for (std::size_t k = 0; k < frames; ++k) totals.push_back(runs[r].total(k));

@@ -35,7 +35,7 @@ struct BreakSearch {
     std::optional<Game> game;
     /// Position of the cue ball, x and y; hit.1; cue.speed; height of the tip.
     std::vector<Choice> choices;
-    Racks racks;  ///< one for each trial
+    Racks racks;              ///< one for each trial
     double ball_speed = 0.0;  ///< of the cue ball, for each m/s of the cue [-]
 };
 

@@ -115,11 +115,12 @@ std::string margin_sentences(const Margin& margin, const MarginRun& last) {
                        text_of(margin.warm, margin.rendered), margin.runs, 100.0 * margin.frame_spread);
     fmt::format_to(line, "{} of {} have no event.\n", margin.quiet, counted(margin.total.size(), "frame"));
     const Accounting& sum = margin.accounting;
-    fmt::format_to(line,
-                   "Start {:.1f}, set-up {:.1f}, frame 0 {:.1f}, other frames {:.1f} and cost of timing {:.1f} "
-                   "ms add up to {:.1f} % of the {:.1f} ms of the process.\n",
-                   sum.start_ms, sum.setup_ms, sum.first_frames_ms, sum.frames_ms, sum.timing_ms,
-                   100.0 * sum.share(), sum.wall_ms);
+    fmt::format_to(
+        line,
+        "Start {:.1f}, set-up {:.1f}, frame 0 {:.1f}, other frames {:.1f} and cost of timing {:.1f} "
+        "ms add up to {:.1f} % of the {:.1f} ms of the process.\n",
+        sum.start_ms, sum.setup_ms, sum.first_frames_ms, sum.frames_ms, sum.timing_ms, 100.0 * sum.share(),
+        sum.wall_ms);
     fmt::format_to(line,
                    "Cost of timing: the simulation takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; "
                    "{:.0f} ns per clock reading). Without profiling, the loop contains no timing.\n",
@@ -191,10 +192,10 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
                    {"first", json_of(margin.first)}};
     if (margin.runs > 1) all["runs"]["warm"] = json_of(margin.warm);
     const Accounting& sum = margin.accounting;
-    all["process"] = {{"wall_ms", sum.wall_ms},       {"start_ms", sum.start_ms},
-                      {"setup_ms", sum.setup_ms},     {"first_frames_ms", sum.first_frames_ms},
-                      {"frames_ms", sum.frames_ms},   {"timing_ms", sum.timing_ms},
-                      {"parts_ms", sum.parts_ms()},   {"share", sum.share()}};
+    all["process"] = {{"wall_ms", sum.wall_ms},     {"start_ms", sum.start_ms},
+                      {"setup_ms", sum.setup_ms},   {"first_frames_ms", sum.first_frames_ms},
+                      {"frames_ms", sum.frames_ms}, {"timing_ms", sum.timing_ms},
+                      {"parts_ms", sum.parts_ms()}, {"share", sum.share()}};
     all["timing"] = {{"clock_ns", margin.timing.clock_ns},
                      {"simulate_ms", margin.timing.plain_ms},
                      {"simulate_timed_ms", margin.timing.profiled_ms},

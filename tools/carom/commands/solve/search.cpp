@@ -46,10 +46,14 @@ Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
         }
         costs.push_back(row);
     }
-    return {{"success", share.value},  {"interval", {share.low, share.high}},
-            {"shots", solution.shots}, {"successes", solution.successes},
-            {"exact", solution.exact}, {"values", values},
-            {"falls", falls},          {"costs", costs},
+    return {{"success", share.value},
+            {"interval", {share.low, share.high}},
+            {"shots", solution.shots},
+            {"successes", solution.successes},
+            {"exact", solution.exact},
+            {"values", values},
+            {"falls", falls},
+            {"costs", costs},
             {"scene", scene_text(solution.scene)}};
 }
 
@@ -59,10 +63,11 @@ void add_search(Options& command, SearchArgs& args) {
     command.option("--hand", &args.hand, "ERRORS",
                    "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
                    "ball radii, elevation in degrees");
-    command.option("--unknown", &args.unknown, "ERRORS",
-                   "Standard deviations of what the player does not know: friction of the cloth and restitution "
-                   "of the rails in percent, places of the balls in mm, gaps of a rack in micrometres; or none, "
-                   "for exact tables");
+    command.option(
+        "--unknown", &args.unknown, "ERRORS",
+        "Standard deviations of properties that the player does not know: friction of the cloth, restitution "
+        "of the rails in percent, places of the balls in mm, gaps of a rack in micrometres; or none, "
+        "for exact tables");
     command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
     command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
@@ -143,13 +148,15 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
 }
 
 std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts) {
-    std::string text = read_unknown(args.unknown) == games::kExactTable
-                           ? "unknown: nothing, exact tables\n"
-                           : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
+    std::string text =
+        read_unknown(args.unknown) == games::kExactTable
+            ? "unknown: nothing, exact tables\n"
+            : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
     std::vector<std::string> rates;
     for (const games::Share& share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share.value));
-    return text + fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
-                              rates.size(), fmt::join(rates, " and "));
+    return text +
+           fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
+                       rates.size(), fmt::join(rates, " and "));
 }
 
 Json starts_json(const std::vector<games::Share>& starts) {
@@ -159,8 +166,8 @@ Json starts_json(const std::vector<games::Share>& starts) {
 }
 
 std::string rates_text(const Solution& solution, const char* what, const SearchArgs& args) {
-    const std::string rate = fmt::format("{}  of {}", share_text(share_of(solution.successes, solution.shots)),
-                                         counted(solution.shots, what));
+    const std::string rate = fmt::format(
+        "{}  of {}", share_text(share_of(solution.successes, solution.shots)), counted(solution.shots, what));
     if (read_unknown(args.unknown) == games::kExactTable) return rate + "\n";
     return fmt::format("{}; exact table: {}\n", rate, share_text(share_of(solution.exact, solution.shots)));
 }
@@ -201,9 +208,10 @@ Json solutions_json(const std::vector<Solution>& solutions, const std::vector<Ch
 
 void write_best(const std::string& path, const Solution& best, const std::string& want,
                 const SearchArgs& args) {
-    write_report(path, fmt::format("# Found by carom for: {}\n# Success with a hand of {}, unknown {}: {}\n{}",
-                                   harmless(want), args.hand, args.unknown,
-                                   share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
+    write_report(path,
+                 fmt::format("# Found by carom for: {}\n# Success with a hand of {}, unknown {}: {}\n{}",
+                             harmless(want), args.hand, args.unknown,
+                             share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
 }
 
 }  // namespace carom::tools

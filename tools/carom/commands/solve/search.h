@@ -43,7 +43,7 @@ std::vector<games::Solution> search(const Search& what, const SearchArgs& args,
 void plot_best(const Search& what, const games::Solution& best, const std::string& title,
                const SearchArgs& args);
 
-/// The lines on what the shots draw, and on how far apart the searches were.
+/// The lines on the drawn properties, and on how far apart the searches were.
 std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts);
 nlohmann::ordered_json starts_json(const std::vector<games::Share>& starts);
 /// "77.40 %  (76.32 to 78.44)  of 6000 shots", and the rate on exact tables.
