@@ -240,7 +240,7 @@ class Solver {
         // The best of other kinds remain, too.
         for (Candidate& kind : different(young, kOtherKind, std::max<std::size_t>(1, options_.best)))
             if (std::none_of(kept.begin(), kept.end(),
-                             [&](const Candidate& other) { return apart(kind, other) < kOtherKind; }))
+                             [&](const Candidate& other) { return apart(kind, other) == 0.0; }))
                 kept.push_back(std::move(kind));
         return kept;
     }
