@@ -65,9 +65,8 @@ void add_search(Options& command, SearchArgs& args) {
                    "ball radii, elevation in degrees");
     command.option(
         "--unknown", &args.unknown, "ERRORS",
-        "Standard deviations of properties that the player does not know: friction of the cloth, restitution "
-        "of the rails in percent, places of the balls in mm, gaps of a rack in micrometres; or none, "
-        "for exact tables");
+        "Standard deviations of the unknown: cloth and rails in percent, places in mm, gaps of a rack in "
+                   "micrometres; or none, for exact tables");
     command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
     command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
