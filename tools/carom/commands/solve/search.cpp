@@ -66,7 +66,7 @@ void add_search(Options& command, SearchArgs& args) {
     command.option(
         "--unknown", &args.unknown, "ERRORS",
         "Standard deviations of the unknown: cloth and rails in percent, places in mm, gaps of a rack in "
-                   "micrometres; or none, for exact tables");
+        "micrometres; or none, for exact tables");
     command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
     command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
