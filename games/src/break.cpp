@@ -78,18 +78,20 @@ Scene without_rack(const BreakOptions& options) {
 
 }  // namespace
 
-std::vector<Scene> racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed) {
-    std::vector<Scene> racks;
+Racks racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed) {
+    if (count == 1) return {};
     try {
         const Variation each =
             Variation::from_text(text, name, {fmt::format("rack.seed=integer(1,{})", kSeeds)}, seed);
-        for (int i = 0; count > 1 && i < count; ++i)
-            if (auto shot = each.shot(static_cast<std::uint64_t>(i)); shot.scene)
-                racks.push_back(std::move(*shot.scene));
+        return [each, count](std::uint64_t i) {
+            auto shot = each.shot(count > 0 ? i % static_cast<std::uint64_t>(count) : i);
+            if (!shot.scene) throw std::invalid_argument(shot.error);
+            return std::move(*shot.scene);
+        };
     } catch (const VariationError&) {
         // There is no rack: the balls lie where they are.
+        return {};
     }
-    return racks;
 }
 
 BreakSearch break_search(const BreakOptions& options) {
@@ -104,11 +106,13 @@ BreakSearch break_search(const BreakOptions& options) {
     search.game = game.game;
     add_rack(search.scene, rack);
     validate(search.scene);
-    for (int i = 0; options.layouts > 1 && i < options.layouts; ++i) {
-        SplitMix64 random = draws_of(options.seed, static_cast<std::uint64_t>(i), "rack.seed");
-        rack.seed = 1 + static_cast<std::uint64_t>(random.below(kSeeds));
-        add_rack(search.layouts.emplace_back(bare), rack);
-    }
+    search.racks = [bare, rack, seed = options.seed](std::uint64_t i) {
+        Rack drawn = rack;
+        drawn.seed = 1 + static_cast<std::uint64_t>(draws_of(seed, i, "rack.seed").below(kSeeds));
+        Scene scene = bare;
+        add_rack(scene, drawn);
+        return scene;
+    };
     const Table& table = bare.table;
     const double side = options.box ? 0.25 * table.width : bare.balls.R;
     search.ball_speed = ball_speed_gain(*bare.cue, bare.size_of(bare.ball[0]));

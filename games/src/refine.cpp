@@ -175,7 +175,7 @@ Exact exact(const Solution& found, const Measure& want, kernel::Isa isa, const S
     once.choices = result.choices;
     for (std::size_t k = 0; k < once.choices.size(); ++k)
         once.choices[k].low = once.choices[k].high = result.refined.values[k];
-    once.layouts.clear();
+    once.racks = {};
     once.best = 1;
     once.shots = static_cast<std::size_t>(kExactShare * static_cast<double>(once.shots));
     result.solution = solve(result.refined.scene, want, isa, once)[0];

@@ -23,17 +23,31 @@ using detail::Trials;
 
 // Shares of the budget: the first look at the whole space, the generations, and the choice among the last
 // generation; the rest is for the figures.
-constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.10, kReport = 0.10;
-// [shots] Per candidate in the first look, and how many more the remaining quarter gets in each round.
-constexpr std::size_t kFirst = 8, kMore = 3, kRounds = 3;
-// Generations, the initial distance of descendants from their parents as a fraction of a range, and its
-// factor per generation.
-constexpr int kGenerations = 6;
-constexpr double kNearby = 0.08, kShrink = 0.62;
-constexpr std::size_t kParents = 16;
-constexpr std::size_t kYoung = 24, kGrown = 120;
+constexpr double kLook = 0.30, kBreed = 0.42, kChoose = 0.08, kReport = 0.10;
+// The first look gives each candidate one shot, and in further rounds this many times more to the best
+// twelfth. Many single shots find narrow places: a few percent of them succeed, most of these on the flank of
+// a place.
+constexpr std::size_t kMore = 4, kRounds = 3, kKept = 12;
+// Searches on their own, from other places, and the generations before their best come together.
+constexpr std::size_t kStarts = 2;
+constexpr int kGenerations = 8, kApart = 3;
+// The largest distance of descendants from their parents as a fraction of a range, its factor per generation,
+// and the halvings of it that are drawn: the size of a place is not known.
+constexpr double kNearby = 0.10, kShrink = 0.75, kOctaves = 5.0;
+// [-] Share of descendants that first move along the line through another parent nearby: good shots lie on
+// ridges.
+constexpr double kAlong = 0.3;
+// Parents of all searches, their factor per generation, and the fewest; shots of a descendant, then of the
+// best quarter of them and of the parents, and the factor of both.
+constexpr double kParents = 64.0, kFewer = 0.7;
+constexpr std::size_t kFewest = 8;
+constexpr double kYoung = 8.0, kGrown = 30.0, kLonger = 1.2;
+// [shots] Of the best of each search, to compare them.
+constexpr std::size_t kCompare = 200;
 // [-] Two shots are of different kind if some input differs by this fraction of its range.
 constexpr double kOtherKind = 0.12;
+// [-] Of this, between the places of the first look.
+constexpr double kSamePlace = 0.15;
 // A map: cells per side, its share of the budget, and its half-width in distances at which success halves.
 constexpr std::size_t kSide = 24;
 constexpr double kMap = 0.15, kReach = 3.0;
@@ -45,17 +59,21 @@ class Solver {
     Solver(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options)
         : trials_(scene, want, isa, options), options_(options) {}
 
-    std::vector<Solution> run() {
-        std::vector<Candidate> best = look();
-        double nearby = kNearby;
-        // A small budget has fewer generations.
-        const double bred = (kLook + kBreed) * static_cast<double>(options_.shots);
-        for (int generation = 0; generation < kGenerations && static_cast<double>(trials_.played()) < bred;
-             ++generation, nearby *= kShrink)
-            best = breed(std::move(best), nearby);
+    std::vector<Solution> run(std::vector<Share>* starts) {
+        std::vector<Candidate> best;
+        for (std::size_t start = 0; start < kStarts; ++start) {
+            std::vector<Candidate> found = look();
+            for (int generation = 0; generation < kApart; ++generation)
+                found = breed(std::move(found), generation, kStarts);
+            std::vector<Candidate> first(found.begin(), found.begin() + 1);
+            trials_.play(first, std::max(first[0].shots, kCompare));
+            if (starts != nullptr) starts->push_back(share_of(first[0].successes, first[0].shots));
+            best.insert(best.end(), found.begin(), found.end());
+        }
+        for (int generation = kApart; generation < kGenerations; ++generation)
+            best = breed(std::move(best), generation, 1);
         // After 120 shots the best is often only the luckiest.
-        trials_.play(best,
-                     static_cast<std::size_t>(kChoose * static_cast<double>(options_.shots)) / best.size());
+        trials_.play(best, best[0].shots + static_cast<std::size_t>(kChoose * budget()) / best.size());
         sort(best);
         std::vector<Candidate> kinds = different(best, kOtherKind, std::max<std::size_t>(1, options_.best));
         // Shots that the search has not used.
@@ -64,7 +82,10 @@ class Solver {
         trials_.fresh = true;
         std::vector<Solution> solutions;
         solutions.reserve(kinds.size());
-        for (const Candidate& kind : kinds) solutions.push_back(improved(solution(kind.values, each), each));
+        for (const Candidate& kind : kinds) {
+            Solution& found = solutions.emplace_back(improved(solution(kind.values, each), each));
+            found.exact = options_.unknown == kExactTable ? found.successes : exact_successes(found);
+        }
         std::stable_sort(solutions.begin(), solutions.end(), [](const Solution& a, const Solution& b) {
             return a.successes * b.shots > b.successes * a.shots;
         });
@@ -132,82 +153,113 @@ class Solver {
                          [](const Candidate& a, const Candidate& b) { return a.score() > b.score(); });
     }
 
+    double budget() const { return static_cast<double>(options_.shots); }
     /// Shots per cost of an error.
     std::size_t detail_shots() const { return std::clamp<std::size_t>(options_.shots / 400, 25, 1000); }
     double range(std::size_t k) const { return options_.choices[k].high - options_.choices[k].low; }
 
     /// Halton's sequence, shifted by the seed, over the whole space.
     std::vector<Candidate> look() {
-        const auto budget = kLook * static_cast<double>(options_.shots);
-        double cost = 0.0, share = 1.0, before = 0.0, shots = kFirst;
-        for (std::size_t round = 0; round < kRounds; ++round, share /= 4.0, before = shots, shots *= kMore)
-            cost += share * (shots - before);
-        const auto count = std::max<std::size_t>(64, static_cast<std::size_t>(budget / cost));
-        SplitMix64 random(options_.seed);
+        double cost = 0.0, part = 1.0, before = 0.0, shots = 1.0;
+        for (std::size_t round = 0; round < kRounds; ++round, part /= kKept, before = shots, shots *= kMore)
+            cost += part * (shots - before);
+        const auto count = std::max<std::size_t>(
+            64, static_cast<std::size_t>(kLook * budget() / static_cast<double>(kStarts) / cost));
+        SplitMix64 random(options_.seed + 0x9e3779b9u * looks_++);
         std::vector<double> shift(options_.choices.size());
         for (double& s : shift) s = random.uniform();
         constexpr std::array<int, 12> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
         std::vector<Candidate> all(count);
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < options_.choices.size(); ++k) {
-                double x = shift[k], part = 1.0;
+                double x = shift[k], digit = 1.0;
                 const int base = kPrimes[k % kPrimes.size()];
                 for (std::size_t n = i + 1; n > 0; n /= static_cast<std::size_t>(base))
-                    x += (part /= base) * static_cast<double>(n % static_cast<std::size_t>(base));
+                    x += (digit /= base) * static_cast<double>(n % static_cast<std::size_t>(base));
                 x -= std::floor(x);
                 all[i].values.push_back(options_.choices[k].low + x * range(k));
             }
         }
-        std::size_t each = kFirst;
+        const std::size_t most = parents(0, kStarts);
+        std::size_t each = 1;
         for (std::size_t round = 0; round < kRounds; ++round, each *= kMore) {
             trials_.play(all, each);
             sort(all);
-            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(kParents, all.size() / 4));
+            if (round + 1 < kRounds) all.resize(std::max<std::size_t>(most, all.size() / kKept));
         }
-        return different(all, 0.5 * kOtherKind, kParents);
+        return different(all, kSamePlace * kOtherKind, most);
     }
 
-    /// The best of these and their descendants.
-    std::vector<Candidate> breed(std::vector<Candidate> parents, double nearby) {
-        const double budget = kBreed * static_cast<double>(options_.shots) / kGenerations;
+    static std::size_t parents(int generation, std::size_t searches) {
+        return std::max(kFewest,
+                        static_cast<std::size_t>(kParents * std::pow(kFewer, generation)) / searches);
+    }
+
+    /// The best of these and their descendants. @param searches  that share the generation's budget
+    std::vector<Candidate> breed(std::vector<Candidate> old, int generation, std::size_t searches) {
+        const double shots = kBreed * budget() / kGenerations / static_cast<double>(searches);
+        const double longer = std::pow(kLonger, generation), nearby = kNearby * std::pow(kShrink, generation);
+        const auto young_shots = static_cast<std::size_t>(kYoung * longer),
+                   grown_shots = static_cast<std::size_t>(kGrown * longer);
+        const std::size_t most = parents(generation, searches);
         const auto count = std::max<std::size_t>(
-            kParents, static_cast<std::size_t>(budget / (kYoung + (kGrown - kYoung) / 4.0)));
+            most, static_cast<std::size_t>(4.0 * shots / static_cast<double>(3 * young_shots + grown_shots)));
         std::vector<Candidate> young;
         SplitMix64 random(options_.seed + 0x5bf03635u * ++generation_);
         // The better half has three quarters of the descendants.
         for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t half = (parents.size() + 1) / 2;
-            const std::size_t from = i % 4 == 3
-                                         ? half + (i / 4) % std::max<std::size_t>(1, parents.size() - half)
-                                         : (i - i / 4) % half;
+            const std::size_t half = (old.size() + 1) / 2;
+            const std::size_t from = i % 4 == 3 ? half + (i / 4) % std::max<std::size_t>(1, old.size() - half)
+                                                : (i - i / 4) % half;
             Candidate child;
-            child.values = parents[std::min(from, parents.size() - 1)].values;
-            for (std::size_t k = 0; k < child.values.size(); ++k)
-                child.values[k] = std::clamp(child.values[k] + nearby * range(k) * standard_normal(random),
+            child.values = old[std::min(from, old.size() - 1)].values;
+            if (random.uniform() < kAlong) {
+                const Candidate& other =
+                    old[static_cast<std::size_t>(random.below(static_cast<int>(old.size())))];
+                if (apart(child, other) < kOtherKind) {
+                    const double by = standard_normal(random);
+                    for (std::size_t k = 0; k < child.values.size(); ++k)
+                        child.values[k] += by * (child.values[k] - other.values[k]);
+                }
+            }
+            for (std::size_t k = 0; k < child.values.size(); ++k) {
+                const double by = nearby * std::exp2(-kOctaves * random.uniform()) * range(k);
+                child.values[k] = std::clamp(child.values[k] + by * standard_normal(random),
                                              options_.choices[k].low, options_.choices[k].high);
+            }
             young.push_back(std::move(child));
         }
-        trials_.play(young, kYoung);
+        trials_.play(young, young_shots);
         sort(young);
-        young.resize(std::max<std::size_t>(kParents, young.size() / 4));
-        trials_.play(young, kGrown);
-        trials_.play(parents, kGrown);
-        young.insert(young.end(), parents.begin(), parents.end());
+        young.resize(std::max<std::size_t>(most, young.size() / 4));
+        trials_.play(young, grown_shots);
+        trials_.play(old, grown_shots);
+        young.insert(young.end(), old.begin(), old.end());
         sort(young);
-        return different(young, 0.5 * nearby, kParents);
+        std::vector<Candidate> kept = different(young, 0.5 * nearby, parents(generation + 1, searches));
+        // The best of other kinds remain, too.
+        for (Candidate& kind : different(young, kOtherKind, std::max<std::size_t>(1, options_.best)))
+            if (std::none_of(kept.begin(), kept.end(),
+                             [&](const Candidate& other) { return apart(kind, other) == 0.0; }))
+                kept.push_back(std::move(kind));
+        return kept;
+    }
+
+    /// The largest difference of two candidates as a fraction of a range.
+    double apart(const Candidate& one, const Candidate& other) const {
+        double away = 0.0;
+        for (std::size_t k = 0; k < one.values.size(); ++k)
+            if (range(k) > 0.0) away = std::max(away, std::abs(one.values[k] - other.values[k]) / range(k));
+        return away;
     }
 
     /// The best, without candidates near to a better one.
-    std::vector<Candidate> different(const std::vector<Candidate>& sorted, double apart,
+    std::vector<Candidate> different(const std::vector<Candidate>& sorted, double least,
                                      std::size_t most) const {
         std::vector<Candidate> kept;
         for (const Candidate& candidate : sorted) {
             const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
-                double away = 0.0;
-                for (std::size_t k = 0; k < candidate.values.size(); ++k)
-                    if (range(k) > 0.0)
-                        away = std::max(away, std::abs(candidate.values[k] - other.values[k]) / range(k));
-                return away < apart;
+                return apart(candidate, other) < least;
             });
             if (!near) kept.push_back(candidate);
             if (kept.size() == most) break;
@@ -271,6 +323,13 @@ class Solver {
         add_costs(candidate, found.costs);
         return found;
     }
+    std::size_t exact_successes(const Solution& found) {
+        std::vector<Candidate> one(1, Candidate{found.values});
+        trials_.exact = true;
+        trials_.play(one, found.shots);
+        trials_.exact = false;
+        return one[0].successes;
+    }
     void add_costs(const Candidate& candidate, std::vector<Solution::Cost>& costs) {
         for (std::size_t k = 0; k < options_.choices.size(); ++k) {
             const std::string& key = options_.choices[k].key;
@@ -303,7 +362,7 @@ class Solver {
     }
     Trials trials_;
     const SolveOptions& options_;
-    std::uint64_t generation_ = 0;
+    std::uint64_t looks_ = 0, generation_ = 0;
 };
 
 }  // namespace
@@ -324,8 +383,8 @@ std::vector<Choice> default_choices() {
 }
 
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
-                            const SolveOptions& options) {
-    return Solver(scene, want, isa, options).run();
+                            const SolveOptions& options, std::vector<Share>* starts) {
+    return Solver(scene, want, isa, options).run(starts);
 }
 
 SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,

@@ -17,6 +17,7 @@
 #include "carom/engine/strike.h"
 #include "carom/kernel/splitmix64.h"
 #include "lines.h"
+#include "unknown.h"
 
 namespace carom::games::detail {
 
@@ -40,22 +41,58 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
             std::find(keys_.begin(), keys_.end(), choice.key) == keys_.end())
             keys_.push_back(choice.key);
     chosen_ = keys_.size();
-    if (!options.layouts.empty()) {
-        for (std::size_t i = 0; i < scene.ball.size(); ++i) {
-            const BallStart& ball = scene.ball[i];
-            const bool same_size = ball.own == options.layouts.front().ball.at(i).own;
-            for (const char* what : {"position.x", "position.y", "radius", "mass"}) {
-                if (same_size && *what != 'p') continue;
-                const std::string key = "ball." + ball.id + "." + what;
-                if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
-            }
-        }
+    if (options.racks || options.unknown != kExactTable) add_table_keys();
+}
+
+/// The keys that differ from table to table.
+void Trials::add_table_keys() {
+    std::vector<std::string> keys = {"balls.mu_s", "balls.mu_r"};
+    if (scene_.balls.e_c_fall > 0.0)
+        keys.insert(keys.end(), {"balls.e_c_fit.0", "balls.e_c_fit.1", "balls.e_c_fit.2"});
+    else
+        keys.emplace_back("balls.e_c");
+    resized_.assign(scene_.ball.size(), false);
+    if (options_.racks) {
+        const Scene first = options_.racks(0);
+        for (std::size_t i = 0; i < scene_.ball.size(); ++i)
+            resized_[i] = scene_.ball[i].own != first.ball.at(i).own;
     }
-    for (const Scene& layout : options.layouts) {
-        std::vector<double>& values = layouts_.emplace_back();
-        for (std::size_t k = chosen_; k < keys_.size(); ++k)
-            values.push_back(SceneNumber(layout, keys_[k]).value(layout));
+    for (std::size_t i = 0; i < scene_.ball.size(); ++i)
+        for (const char* what : {"position.x", "position.y", "radius", "mass"})
+            if (resized_[i] || *what == 'p') keys.push_back("ball." + scene_.ball[i].id + "." + what);
+    for (const std::string& key : keys) {
+        columns_.push_back(
+            static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin()));
+        if (columns_.back() == keys_.size()) keys_.push_back(key);
     }
+    usual_ = table_values(scene_);
+}
+
+/// In the order of add_table_keys().
+std::vector<double> Trials::table_values(const Scene& table) const {
+    const BallParams& balls = table.balls;
+    std::vector<double> values = {balls.mu_s, balls.mu_r, balls.e_c};
+    if (scene_.balls.e_c_fall > 0.0) values.insert(values.end(), {balls.e_c_fall, balls.e_c_above});
+    for (std::size_t i = 0; i < table.ball.size(); ++i) {
+        const BallStart& ball = table.ball[i];
+        values.insert(values.end(), {ball.position.x(), ball.position.y()});
+        const BallSize size = table.size_of(ball);
+        if (resized_[i]) values.insert(values.end(), {size.R, size.m});
+    }
+    return values;
+}
+
+/// The table of a trial, common to all candidates.
+const std::vector<double>& Trials::table(std::size_t trial) {
+    std::vector<std::vector<double>>& known = tables_[(exact ? 2 : 0) + (fresh ? 1 : 0)];
+    while (known.size() <= trial) {
+        const std::uint64_t index = 2 * known.size() + (fresh ? 1 : 0);
+        Scene table = options_.racks ? options_.racks(index) : scene_;
+        if (!exact && options_.unknown != kExactTable)
+            table = drawn_table(table, options_.unknown, options_.seed, index);
+        known.push_back(table_values(table));
+    }
+    return known[trial];
 }
 
 int Trials::ball_of(const std::string& id) const {
@@ -76,8 +113,6 @@ Trials::Draw Trials::draw(std::uint64_t index) const {
     d.side = hand.tip * standard_normal(random);
     d.height = hand.tip * standard_normal(random);
     d.elevation = hand.elevation_deg * standard_normal(random);
-    if (!options_.layouts.empty())
-        d.layout = static_cast<std::size_t>(random.below(static_cast<int>(options_.layouts.size())));
     return d;
 }
 
@@ -165,8 +200,16 @@ void Trials::play_rows(std::span<Candidate> candidates, std::size_t shots, std::
             columns[3].push_back(cue.height);
             columns[4].push_back(cue.elevation_deg);
             for (std::size_t k = 5; k < chosen_; ++k) columns[k].push_back(row[k]);
-            for (std::size_t k = chosen_; k < keys_.size(); ++k)
-                columns[k].push_back(layouts_[d.layout][k - chosen_]);
+            if (columns_.empty()) continue;
+            const std::vector<double>& values = table(i);
+            for (std::size_t k = 0; k < columns_.size(); ++k) {
+                std::vector<double>& column = columns[columns_[k]];
+                // A chosen number differs from the choice as the table's differs from the scene's.
+                if (columns_[k] < chosen_)
+                    column.back() += values[k] - usual_[k];
+                else
+                    column.push_back(values[k]);
+            }
         }
     }
     std::vector<BatchColumn> batch;

@@ -33,18 +33,21 @@ class Trials {
     std::size_t played() const { return played_; }
 
     bool fresh = false;   ///< draws errors that no earlier shot used
+    bool exact = false;   ///< plays exact tables
     double turned = 0.0;  ///< [degrees] added to all aims
 
   private:
-    /// The errors of a stroke, and its layout.
+    /// The errors of a stroke.
     struct Draw {
         double aim, speed, side, height, elevation;
-        std::size_t layout;
     };
     int ball_of(const std::string& id) const;
     double speed_of(std::vector<double> row, double ball_speed) const;
     Draw draw(std::uint64_t index) const;
     std::vector<double> meant(const std::vector<double>& values) const;
+    void add_table_keys();
+    std::vector<double> table_values(const Scene& table) const;
+    const std::vector<double>& table(std::size_t trial);
     void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,
                    const std::function<void(std::size_t, const Record&)>& look);
 
@@ -55,8 +58,12 @@ class Trials {
     std::size_t struck_ = 0;
     int hit_ = -1;
     std::vector<std::string> keys_;
-    // For each layout, the values of the keys after the chosen ones.
-    std::vector<std::vector<double>> layouts_;
+    // The column of every key of a table, its values in the scene, and its values per trial: seen by the
+    // search, fresh, and the same two on exact tables.
+    std::vector<std::size_t> columns_;
+    std::vector<double> usual_;
+    std::vector<std::vector<double>> tables_[4];
+    std::vector<bool> resized_;  // balls whose sizes differ from table to table
     std::size_t chosen_ = 0, played_ = 0;
 };
 

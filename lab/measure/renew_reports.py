@@ -116,7 +116,7 @@ class Renewal:
 
     def margin(self):
         text = ("| size | fps | budget | p50 | p99 | worst | missed | without files | simulate p99 | "
-                "draw p50 | read p50 | encode p50 | write p50 | parts / wall |\n"
+                "draw p50 | read p50 | encode p50 | write p50 | parts / process |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n")
         for size in ("1280x720", "1920x1080"):
             for fps in (60, 120, 240):
@@ -129,7 +129,7 @@ class Renewal:
                          f"{m['missed']} of {m['frames']} | {m['missed_without_files']} | "
                          f"{s['simulate']['p99']:.3f} | {s['draw']['p50']:.2f} | "
                          f"{s['readback']['p50']:.2f} | {s['encode']['p50']:.2f} | "
-                         f"{s['write']['p50']:.2f} | {100 * m['serial']['share']:.1f} % |\n")
+                         f"{s['write']['p50']:.2f} | {100 * m['process']['share']:.1f} % |\n")
         m = json.loads(self.carom("margin", BREAK, "--json", "--no-render", "--repeat", 9, "--plot",
                                   image("margin_simulation.svg")))
         t, s = m["timing"], m["stages"]["simulate"]

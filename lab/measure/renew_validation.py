@@ -55,8 +55,11 @@ def summary(all_rows):
         same_id = ids[0] if ids[0] == ids[1] else f"{ids[0]} to {ids[1]}"
         what = [same_id, title, group[0]["trust"]] if title != last else ["", "", ""]
         last = title
-        free = "yes" if all(r["free_of_fit"] for r in group) else "no"
+        words = sum(r["kind"] == "words" for r in group)
+        free = "in words" if words == len(group) else "yes" if all(r["free_of_fit"] for r in group) else "no"
         within = f"{sum(r['within'] for r in group)} of {len(group)}"
+        if 0 < words < len(group):
+            within += f", {words} in words"
         lines.append(
             "| " + " | ".join([*what, variant, free, within, worst(group)]) + " |")
     return "\n".join(lines) + "\n\n" + "".join(f"* {name}: {what}\n" for name, what in keys)

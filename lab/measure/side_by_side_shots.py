@@ -6,9 +6,10 @@ it requires is not on PyPI) with its imports. Plays breaks and random positions 
 with pooltool.simulate and, from the Python package in the build folder, with carom.simulate (plan and record
 each time) and carom.simulate_many (one thread). Both play the same positions, aims and speeds on the
 seven-foot table with the same coefficients and models: inelastic impacts with Alciatore's friction, Stronge's
-cushion, sequential clusters. CPU time of the thread. The first shots of pooltool, which compile it, are not
-counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared. Needs PyPI;
-neither the build nor a test needs this script.
+cushion, sequential clusters. The last row compares the same breaks with each program's default models. CPU
+time of the thread, median of five warm runs of either program. The first shots of pooltool, which compile it,
+are not counted. FastFiz is not on PyPI (sources: github.com/ekiefl/FastFiz), so it is not compared.
+Needs PyPI; neither the build nor a test needs this script.
 
     lab/measure/side_by_side_shots.py [--package build/release/python] [--shots 10]
 """
@@ -28,6 +29,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 NEEDED = ["numba<0.63", "numpy", "scipy", "attrs", "cattrs", "msgpack", "msgpack-numpy", "pyyaml", "panda3d",
           "h5py", "pillow", "rich", "click", "numpy-quaternion"]
 ALONE = ["pooltool-billiards==0.6.0", "panda3d-simplepbr", "panda3d-gltf", "h11"]
+RUNS = 5
+DEFAULTS = """[table]
+preset = "seven_foot"
+[cue]
+speed = {speed!r}
+aim_deg = {aim!r}
+offset = [0.0, 0.0]
+"""
 SCENE = """[table]
 preset = "seven_foot"
 [balls]
@@ -57,42 +66,47 @@ def positions(count, rng, width, length):
     return {"cue" if i == 0 else str(i): p for i, p in enumerate(places)}
 
 
-def scene_of(shot):
+def scene_of(shot, text):
     import carom
 
     balls = "".join(
         f"[[ball]]\nid = \"{name}\"\nposition = [{x!r}, {y!r}]\n" for name, (x, y) in shot["balls"].items())
-    return carom.Scene.loads(SCENE.format(**shot) + balls, "shot")
+    return carom.Scene.loads(text.format(**shot) + balls, "shot")
 
 
-def one(shot):
-    """Least seconds of five runs, and events."""
+def warm(run):
+    """Median seconds of the warm runs, and the last result."""
+    times = []
+    for i in range(RUNS + 1):
+        start = time.thread_time()
+        result = run()
+        if i > 0:
+            times.append(time.thread_time() - start)
+    return statistics.median(times), result
+
+
+def one(shot, text):
+    """Seconds and events."""
     import carom
 
-    scene, best = scene_of(shot), 1e9
-    for _ in range(5):
-        start = time.thread_time()
-        record = carom.simulate(scene)
-        best = min(best, time.thread_time() - start)
-    return best, len(record.events)
+    scene = scene_of(shot, text)
+    seconds, record = warm(lambda: carom.simulate(scene))
+    return seconds, len(record.events)
 
 
-def many(shots):
-    """Least seconds per shot over five runs of a batch with all of them, repeated forty times."""
+def many(shots, text):
+    """Seconds per shot of a batch with all of them, repeated forty times."""
     import carom
     import numpy as np
 
-    scene, best = scene_of(shots[0]), 1e9
+    scene = scene_of(shots[0], text)
     xy = np.tile([[place for place in s["balls"].values()] for s in shots], (40, 1, 1))
     params = {key: np.tile([s[name] for s in shots], 40) for key,
               name in (("cue.speed", "speed"), ("cue.aim_deg", "aim"))}
-    for _ in range(5):
-        start = time.thread_time()
-        batch = carom.simulate_many(scene, xy=xy, params=params)
-        best = min(best, (time.thread_time() - start) / len(xy))
-        if batch.status.max() > carom.ShotStatus.ENDLESS:
-            raise RuntimeError("a shot of the batch has no result")
-    return best
+    seconds, batch = warm(lambda: carom.simulate_many(scene, xy=xy, params=params))
+    if batch.status.max() > carom.ShotStatus.ENDLESS:
+        raise RuntimeError("a shot of the batch has no result")
+    return seconds / len(xy)
 
 
 def compare(count):
@@ -114,21 +128,28 @@ def compare(count):
             {"balls": balls, "speed": rng.uniform(6, 8), "aim": 90.0 + rng.uniform(-0.5, 0.5)})
 
     def theirs(shot):
-        balls = {name: pt.Ball.create(name, xy=xy) for name, xy in shot["balls"].items()}
-        system = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
-        system.cue.set_state(V0=shot["speed"], phi=shot["aim"])
-        start = time.thread_time()
-        pt.simulate(system, inplace=True)
-        return time.thread_time() - start, len(system.events)
+        def system():
+            balls = {name: pt.Ball.create(name, xy=xy) for name, xy in shot["balls"].items()}
+            made = pt.System(cue=pt.Cue(cue_ball_id="cue"), table=pt.Table.default(), balls=balls)
+            made.cue.set_state(V0=shot["speed"], phi=shot["aim"])
+            return made
+
+        # A copy made by pooltool would count.
+        systems = [system() for _ in range(RUNS + 1)]
+        seconds, played = warm(lambda: pt.simulate(systems.pop(), inplace=True))
+        return seconds, len(played.events)
 
     for shots in kinds.values():
         theirs(shots[0])  # compiles
     out = []
-    for kind, shots in kinds.items():
-        rows = [(theirs(shot), one(shot)) for shot in shots]
+    rows_of = [(kind, shots, SCENE) for kind, shots in kinds.items()]
+    rows_of.append(("break, default models", kinds["eight-ball break"], DEFAULTS))
+    for kind, shots, text in rows_of:
+        rows = [(theirs(shot), one(shot, text)) for shot in shots]
         out.append({"kind": kind, "theirs_ms": 1e3 * statistics.median(t[0] for t, _ in rows),
                     "ours_ms": 1e3 * statistics.median(o[0] for _, o in rows),
-                    "ratio": statistics.median(t[0] / o[0] for t, o in rows), "many_ms": 1e3 * many(shots),
+                    "ratio": statistics.median(t[0] / o[0] for t, o in rows),
+                    "many_ms": 1e3 * many(shots, text),
                     "theirs_events": statistics.median(t[1] for t, _ in rows),
                     "ours_events": statistics.median(o[1] for _, o in rows)})
     print(json.dumps(out))
@@ -162,10 +183,10 @@ def main():
                              capture_output=True, text=True, env={
                                  **os.environ, "PYTHONPATH": args.package,
                                  "CAROM_ISA": os.environ.get("CAROM_ISA", "v3")}).stdout
-    print(f"{'':<18}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, "
+    print(f"{'':<23}{'pooltool':>12}{'carom':>12}{'ratio':>8}{'in a batch':>12}   events, "
           "theirs and ours (medians)")
     for row in json.loads(out.strip().splitlines()[-1]):
-        print(f"{row['kind']:<18}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} "
+        print(f"{row['kind']:<23}{row['theirs_ms']:>9.2f} ms{row['ours_ms']:>9.4f} "
               f"ms{row['ratio']:>8.0f}{row['many_ms']:>9.4f} ms"
               f"   {row['theirs_events']:.0f}, {row['ours_events']:.0f}")
 

@@ -61,6 +61,7 @@ TEST(CliValidate, ASharePlaysTheSameShotsEachTime) {
     const Json row = Json::parse(first.out).at("cases").at(0);
     EXPECT_TRUE(row.at("ball").is_null());
     EXPECT_EQ(row.at("quantity"), "share");
+    EXPECT_EQ(row.at("kind"), "words");
     EXPECT_GT(row.at("uncertainty").get<double>(), 0.25);  // of the count, and of 300 shots
 }
 

@@ -81,6 +81,27 @@ TEST(ValidationCases, HaveTheGamesPresetAndTheClassicOne) {
     }
 }
 
+// A number told in words is not measured; a number of a case is measured only if the case is.
+TEST(ValidationCases, SayHowEachNumberCameAbout) {
+    int words = 0;
+    for (const ValidationCase& of : chosen_cases(""))
+        for (const ValidationShot& shot : of.shots)
+            for (const Measured& m : shot.measured) {
+                words += m.kind == "words" ? 1 : 0;
+                if (m.kind == "measured") EXPECT_EQ(of.trust, "measured") << of.file;
+            }
+    EXPECT_EQ(words, 5);
+}
+
+TEST(ValidationCases, SayWhatDiffersFromTheShippedPreset) {
+    const auto differs = [](const char* id) {
+        const std::vector<ValidationCase> cases = chosen_cases(id);
+        return run_case(cases[0], kernel::Isa::kScalar, [](long) {}).at(0).differs;
+    };
+    EXPECT_EQ(differs("V1"), "mass = 0.1406, mu_s = 0.21, mu_r = 1e-06");
+    EXPECT_EQ(differs("V20"), "");
+}
+
 TEST(ValidationCases, AnUnknownOneIsRefusedWithTheKnownNames) {
     EXPECT_EQ(chosen_cases("V17").at(0).id, "V17");
     try {
@@ -124,6 +145,7 @@ TEST(ValidationCases, AWrongFileIsAnErrorAtItsPlace) {
         {"measured\"\n", "heard\"\n", "heard is none of measured, published, second hand, forum"},
         {"\"speed\"", "\"heat\"", "heat is none of speed, speed_ratio, "},
         {"\"start\"", "\"noon\"", "noon is none of start, hit, "},
+        {"0.1 }", "0.1, kind = \"heard\" }", "heard is none of measured, published, words"},
         {"0.1 }", "0 }", "uncertainty has to be greater than 0"},
         {"value = 1.0, ", "", "value is missing"},
         {"value = 1.0", "value = 9007199254740993", "value = 9007199254740993 has more digits than a number"},
@@ -264,7 +286,7 @@ class ValidationClaims : public testing::Test {
         measured_.uncertainty = 2.0;
     }
     bool holds(Claim claim, double computed) {
-        const ValidationRow row{&case_, nullptr, nullptr, &measured_, "", claim, computed, sampled_, 2.0};
+        const ValidationRow row{&case_, nullptr, nullptr, &measured_, "", "", claim, computed, sampled_, 2.0};
         return row.as_claimed();
     }
 
@@ -304,6 +326,8 @@ TEST_F(ValidationClaims, TheReportListsFailedClaims) {
     const std::string text = validation_text(rows);
     EXPECT_NE(text.find("NOT AS CLAIMED (1.2 deg high)\n"), std::string::npos) << text;
     EXPECT_NE(text.find("; 1 not as claimed\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("presets as they ship: fitted 3 of 3 within, rms 0."), std::string::npos) << text;
+    EXPECT_EQ(text.find("free"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ from carom import games, kernel, plot, scenes, sweep
 from carom._carom import VERSION as __version__
 from carom._errors import SceneError, SceneNotFoundError
 from carom._fit import FitResult, fit
-from carom._measures import Cost, Fall, Hand, Measure, Solution, best_break, measures, solve
+from carom._measures import Cost, Fall, Hand, Measure, Solution, Unknown, best_break, measures, solve
 from carom._program import accuracy, margin, sensitivity
 from carom._record import Event, EventColumn, Hit, Record, TablePlan, event_columns
 from carom._scene import Scene, tables
@@ -59,6 +59,7 @@ __all__ = [
     "SimulationError",
     "Solution",
     "TablePlan",
+    "Unknown",
     "__version__",
     "accuracy",
     "best_break",

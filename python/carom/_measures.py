@@ -45,6 +45,21 @@ class Hand(NamedTuple):
     elevation_deg: float = _carom.standard_hand()[3]
 
 
+class Unknown(NamedTuple):
+    """Standard deviations of a table's properties that a player does not know; all 0 for exact tables.
+
+    cloth: of mu_s and of mu_r, as a fraction
+    rails: of the restitution of the cushions, as a fraction
+    places: of every ball along x and y, except racked ones [m]
+    gaps: between racked balls [m]
+    """
+
+    cloth: float = _carom.standard_unknown()[0]
+    rails: float = _carom.standard_unknown()[1]
+    places: float = _carom.standard_unknown()[2]
+    gaps: float = _carom.standard_unknown()[3]
+
+
 class Fall(NamedTuple):
     """How often a ball fell into a pocket, as a share of the solution's shots."""
 
@@ -77,6 +92,9 @@ class Solution(NamedTuple):
     scene: the shot without errors
     miss: with exact=True, the largest distance of a ball from its place [m], otherwise NaN
     trouble: with exact=True, why it is not smaller, or ""
+    exact_success: share of successes on exact tables
+    searches: the success of the best of each search from other places, half-way; far apart, they warn that
+        there may be a better shot
     """
 
     success: float
@@ -88,6 +106,8 @@ class Solution(NamedTuple):
     scene: Scene
     miss: float = float("nan")
     trouble: str = ""
+    exact_success: float = float("nan")
+    searches: Sequence[float] = ()
 
     def __repr__(self) -> str:
         values = ", ".join(f"{key} {value:.4g}" for key, value in self.values.items())
@@ -116,6 +136,12 @@ def _checked_hand(hand: Hand) -> tuple[float, float, float, float]:
     return hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg
 
 
+def _checked_unknown(unknown: Unknown) -> tuple[float, float, float, float]:
+    if not all(0 <= error <= 1 for error in unknown):
+        raise ValueError(f"unknown={unknown}: expected standard deviations from 0 to 1")
+    return unknown.cloth, unknown.rails, unknown.places, unknown.gaps
+
+
 #: A range as `carom solve --vary` accepts it.
 _UNIFORM = re.compile(r"uniform\(([^,]+),([^,]+)\)")
 
@@ -142,8 +168,9 @@ def solve(
     vary: Mapping[str, Sequence[float] | str] | None = None,
     *,
     hand: Hand = Hand(),
+    unknown: Unknown = Unknown(),
     game: GameName | None = None,
-    layouts: int = 64,
+    layouts: int = 0,
     shots: int = 200_000,
     best: int = 3,
     seed: int = 1,
@@ -156,8 +183,9 @@ def solve(
     vary: the inputs to search, by key: the smallest and the largest value, or "uniform(a,b)". "hit.1"
         aims at ball 1: 0 is full, 1 and -1 its edges. The default is aim, speed and height of the tip
     hand: the errors
+    unknown: the properties of the table that each shot draws
     game: the rules for measures such as "foul"
-    layouts: number of random racks to play the shot on, if the scene has a rack
+    layouts: number of random racks to play the shot on, if the scene has a rack; 0 draws one for each shot
     shots: number of shots that the search plays
     best: number of shots of different kinds to return, the surest first
     threads: 0 uses one thread per core; the result does not depend on it
@@ -167,12 +195,12 @@ def solve(
     Raises ValueError for an expression, key or range that cannot be used.
     """
     _limits(shots, best, seed, threads)
-    if not 1 <= layouts <= 100000:
-        raise ValueError(f"layouts={layouts}: expected 1 to 100000")
+    if not 0 <= layouts <= 100000:
+        raise ValueError(f"layouts={layouts}: expected 0 to 100000")
     choices = _carom.default_choices() if vary is None else []
     choices += [(key, *_range(key, ends)) for key, ends in (vary or {}).items()]
-    rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand), layouts,
-                        shots, best, seed, threads, exact)
+    rows = _carom.solve(as_scene(scene)._native, want, game, choices, _checked_hand(hand),
+                        _checked_unknown(unknown), layouts, shots, best, seed, threads, exact)
     found = _solutions([key for key, _, _ in choices], rows)
     # An exact shot has an aim instead of a hit, and a speed of the cue instead of the ball's.
     return [
@@ -192,6 +220,7 @@ def best_break(
     speed_max: float = 10.0,
     box: bool = False,
     hand: Hand = Hand(),
+    unknown: Unknown = Unknown(),
     shots: int = 200_000,
     best: int = 3,
     seed: int = 1,
@@ -203,12 +232,13 @@ def best_break(
     radius_sd: standard deviation of the radii of the racked balls [m]
     speed_max: maximum speed of the cue ball [m/s]
     box: place the cue ball at least a diamond from either long rail
-    hand, shots, best, seed, threads: as for `solve`
+    hand, unknown, shots, best, seed, threads: as for `solve`
 
     Raises ValueError for a game without a break or a number out of range.
     """
     _limits(shots, best, seed, threads)
     how = rack if isinstance(rack, str) else f"gap={float(rack)!r}"
     keys, _, _, rows = _carom.best_break(game, table, how, float(radius_sd), float(speed_max), box,
-                                         _checked_hand(hand), shots, best, seed, threads)
+                                         _checked_hand(hand), _checked_unknown(unknown), shots, best, seed,
+                                         threads)
     return _solutions(keys, rows)

@@ -93,22 +93,34 @@ using ChoiceRow = std::tuple<std::string, double, double>;
 /// Shares: NaN if no scene is valid there.
 using CostRow = std::tuple<std::string, double, std::string, double, double, std::size_t>;
 /// Share of successes with its interval, shots, values, falls (ball, pocket, per shot), costs (input, by,
-/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller.
-using SolutionRow = std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
-                               std::vector<std::tuple<std::string, std::string, double>>,
-                               std::vector<CostRow>, NativeScene, std::pair<double, std::string>>;
+/// unit, less, more, shots), scene, and of an exact one the miss [m] and why it is not smaller; the share on
+/// exact tables, and the share of the best of each search.
+using SolutionRow =
+    std::tuple<double, std::pair<double, double>, std::size_t, std::vector<double>,
+               std::vector<std::tuple<std::string, std::string, double>>, std::vector<CostRow>, NativeScene,
+               std::tuple<double, std::string, double, std::vector<double>>>;
 
 /// Aim [degrees], speed [-], tip [ball radii], elevation [degrees].
 using HandRow = std::tuple<double, double, double, double>;
+
+/// Cloth [-], rails [-], places [m], gaps [m].
+using UnknownRow = std::tuple<double, double, double, double>;
+
+UnknownRow standard_unknown() {
+    const games::Unknown unknown;
+    return {unknown.cloth, unknown.rails, unknown.places, unknown.gaps};
+}
 
 HandRow standard_hand() {
     const games::Hand hand;
     return {hand.aim_deg, hand.speed, hand.tip, hand.elevation_deg};
 }
 
-games::SolveOptions options_of(const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,
-                               int threads) {
+games::SolveOptions options_of(const HandRow& hand, const UnknownRow& unknown, std::size_t shots,
+                               std::size_t best, std::uint64_t seed, int threads) {
     games::SolveOptions options;
+    std::tie(options.unknown.cloth, options.unknown.rails, options.unknown.places, options.unknown.gaps) =
+        unknown;
     std::tie(options.hand.aim_deg, options.hand.speed, options.hand.tip, options.hand.elevation_deg) = hand;
     options.shots = shots;
     options.best = best;
@@ -120,12 +132,13 @@ games::SolveOptions options_of(const HandRow& hand, std::size_t shots, std::size
 std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, kernel::Isa isa,
                                games::SolveOptions options, bool exact = false) {
     std::vector<games::Refined> refined;
+    std::vector<games::Share> starts;
     const std::vector<games::Solution> solutions = interruptible([&](std::function<bool()> stop) {
         options.stop = std::move(stop);
         if (exact && want.places().empty())
             throw std::invalid_argument(
                 "exact=True: the goal has no place; add one, as in \"cue near (0.6, 1.2, 0.05)\"");
-        std::vector<games::Solution> best = games::solve(scene, want, isa, options);
+        std::vector<games::Solution> best = games::solve(scene, want, isa, options, &starts);
         for (std::size_t i = 0; exact && i < best.size(); ++i) {
             games::Exact moved = games::exact(best[i], want, isa, options);
             if (moved.solution) best[i] = std::move(*moved.solution);
@@ -133,6 +146,8 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         }
         return best;
     });
+    std::vector<double> searches;
+    for (const games::Share& start : starts) searches.push_back(start.value);
     std::vector<SolutionRow> rows;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
         const games::Solution& solution = solutions[i];
@@ -155,20 +170,21 @@ std::vector<SolutionRow> found(const Scene& scene, const games::Measure& want, k
         rows.emplace_back(share.value, std::pair(share.low, share.high), solution.shots, solution.values,
                           falls, costs,
                           NativeScene{std::make_shared<const Scene>(std::move(solution.scene)), text},
-                          exact ? std::pair(refined[i].miss, refined[i].trouble)
-                                : std::pair(std::numeric_limits<double>::quiet_NaN(), std::string()));
+                          std::tuple(exact ? refined[i].miss : std::numeric_limits<double>::quiet_NaN(),
+                                     exact ? refined[i].trouble : "",
+                                     games::share_of(solution.exact, solution.shots).value, searches));
     }
     return rows;
 }
 
 std::vector<SolutionRow> solve(const NativeScene& native, const std::string& want,
                                const std::optional<std::string>& game, const std::vector<ChoiceRow>& choices,
-                               const HandRow& hand, int layouts, std::size_t shots, std::size_t best,
-                               std::uint64_t seed, int threads, bool exact) {
-    games::SolveOptions options = options_of(hand, shots, best, seed, threads);
+                               const HandRow& hand, const UnknownRow& unknown, int layouts, std::size_t shots,
+                               std::size_t best, std::uint64_t seed, int threads, bool exact) {
+    games::SolveOptions options = options_of(hand, unknown, shots, best, seed, threads);
     for (const auto& [key, low, high] : choices) options.choices.push_back({key, low, high});
-    options.layouts = games::racks_of(native.source, native.scene->file, layouts, seed);
-    if (exact && options.layouts.size() > 1)
+    options.racks = games::racks_of(native.source, native.scene->file, layouts, seed);
+    if (exact && options.racks)
         throw nb::value_error("exact=True: the racks differ, so no shot is exact for all; use layouts=1");
     return found(*native.scene, measure_of(want, *native.scene, game), chosen_isa(), std::move(options),
                  exact);
@@ -177,8 +193,8 @@ std::vector<SolutionRow> solve(const NativeScene& native, const std::string& wan
 /// The searched keys, the goal, the speed of the ball for each m/s of the cue, the solutions.
 std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRow>> best_break(
     const std::string& game, const std::string& table, const std::string& rack, double radius_sd,
-    double speed_max, bool box, const HandRow& hand, std::size_t shots, std::size_t best, std::uint64_t seed,
-    int threads) {
+    double speed_max, bool box, const HandRow& hand, const UnknownRow& unknown, std::size_t shots,
+    std::size_t best, std::uint64_t seed, int threads) {
     games::BreakOptions wanted{game, table, rack, radius_sd, speed_max, box, seed};
     games::BreakSearch search;
     try {
@@ -186,9 +202,9 @@ std::tuple<std::vector<std::string>, std::string, double, std::vector<SolutionRo
     } catch (const std::invalid_argument& error) {
         throw nb::value_error(error.what());
     }
-    games::SolveOptions options = options_of(hand, shots, best, seed, threads);
+    games::SolveOptions options = options_of(hand, unknown, shots, best, seed, threads);
     options.choices = search.choices;
-    options.layouts = search.layouts;
+    options.racks = search.racks;
     std::vector<std::string> keys;
     for (const games::Choice& choice : search.choices) keys.push_back(choice.key);
     const games::Measure want(search.want, search.scene, search.game);
@@ -206,12 +222,13 @@ void add_measures(nb::module_& m) {
     m.def("measured", measured, nb::arg("record"), nb::arg("scene").none(), nb::arg("text"),
           nb::arg("game").none());
     m.def("solve", solve, nb::arg("scene"), nb::arg("want"), nb::arg("game").none(), nb::arg("choices"),
-          nb::arg("hand"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"), nb::arg("seed"),
-          nb::arg("threads"), nb::arg("exact"));
+          nb::arg("hand"), nb::arg("unknown"), nb::arg("layouts"), nb::arg("shots"), nb::arg("best"),
+          nb::arg("seed"), nb::arg("threads"), nb::arg("exact"));
     m.def("best_break", best_break, nb::arg("game"), nb::arg("table"), nb::arg("rack"), nb::arg("radius_sd"),
-          nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("shots"), nb::arg("best"),
-          nb::arg("seed"), nb::arg("threads"));
+          nb::arg("speed_max"), nb::arg("box"), nb::arg("hand"), nb::arg("unknown"), nb::arg("shots"),
+          nb::arg("best"), nb::arg("seed"), nb::arg("threads"));
     m.def("standard_hand", standard_hand);
+    m.def("standard_unknown", standard_unknown);
     m.def("default_choices", [] {
         std::vector<ChoiceRow> rows;
         for (const games::Choice& c : games::default_choices()) rows.emplace_back(c.key, c.low, c.high);

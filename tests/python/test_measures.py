@@ -124,6 +124,8 @@ def test_solve_finds_the_pot(draw_scene):
                                     '"1" in pocketed and not scratch', *rules, "--shots", 3000, "--json"))
     assert told["solutions"][0]["values"] == best.values
     assert told["solutions"][0]["interval"] == list(best.interval)
+    assert told["solutions"][0]["exact"] == round(best.exact_success * best.shots)
+    assert told["searches"] == list(best.searches)
     assert len(repr(best).splitlines()) <= 10
     assert sum(fall.share for fall in best.falls if fall.ball == "1") >= best.success - 1e-12
     texts = {"cue.aim_deg": "uniform(120,150)", "cue.speed": "uniform(2, 2.5)"}
@@ -135,7 +137,8 @@ def test_solve_finds_the_pot(draw_scene):
             ({"vary": {"cue.speed": (2, 1)}}, "expected a range from a to b"),
             ({"vary": {"cue.sped": (1, 2)}}, "cue.sped"),
             ({"shots": 10}, "shots=10: expected 1000 to"),
-            ({"hand": carom.Hand(aim_deg=-1)}, "expected standard deviations"))
+            ({"hand": carom.Hand(aim_deg=-1)}, "expected standard deviations"),
+            ({"unknown": carom.Unknown(gaps=-1)}, "expected standard deviations"))
 
 
 def test_solve_moves_a_ball_exactly_to_its_place(draw_scene):

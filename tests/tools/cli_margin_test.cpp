@@ -67,7 +67,16 @@ void expect_margin_json(const Json& json, bool rendered) {
     EXPECT_DOUBLE_EQ(json.at("slack_percent").at("least").get<double>(),
                      100.0 * (1.0 - worst.at("ms").get<double>() / 50.0));
     EXPECT_GT(json.at("timing").at("clock_ns").get<double>(), 0.0);
-    EXPECT_GT(json.at("serial").at("wall_ms").get<double>(), 0.0);
+    // A process cannot last shorter than its parts.
+    const Json& process = json.at("process");
+    double parts = 0.0;
+    for (const char* part : {"start_ms", "setup_ms", "first_frames_ms", "frames_ms", "timing_ms"})
+        parts += process.at(part).get<double>();
+    EXPECT_NEAR(parts, process.at("parts_ms").get<double>(), 1e-9 * parts);
+    EXPECT_LE(parts, process.at("wall_ms").get<double>());
+    EXPECT_EQ(process.at("setup_ms").get<double>() > 0.0, rendered);
+    EXPECT_GT(process.at("first_frames_ms").get<double>(), 0.0);
+    EXPECT_EQ(json.at("runs").at("first").at("max")[0], json.at("runs").at("first").at("max")[1]);
 }
 
 TEST_F(CliMargin, JsonHasTheDocumentedShape) {
@@ -105,12 +114,17 @@ TEST_F(CliMargin, WithoutRenderingCountsEveryEventOnce) {
         lines.at(0),
         "frame,time,events,simulate_ms,detect_ms,resolve_ms,kernel_ms,cluster_ms,total_ms,slack_percent,"
         "missed");
-    int events = 0;
+    int events = 0, quiet = 0;
     for (std::size_t i = 1; i < lines.size(); ++i) {
         int here = -1;
         ASSERT_EQ(std::sscanf(lines[i].c_str(), "%*d,%*f,%d,", &here), 1) << lines[i];
         events += here;
+        quiet += here == 0 ? 1 : 0;
     }
+    const Json json = Json::parse(result.out);
+    EXPECT_EQ(json.at("without_event"), quiet);
+    EXPECT_EQ(json.at("runs").at("count"), 3);
+    EXPECT_EQ(json.at("runs").at("warm").size(), 6u);
     EXPECT_EQ(events, Json::parse(carom({"simulate", scene_, "--json"}).out).at("events").get<int>());
 }
 
@@ -118,10 +132,12 @@ TEST_F(CliMargin, TheSummaryIsReadable) {
     const ProcessResult result =
         carom({"margin", scene_, "--size", "160x90", "--fps", "20", "--repeat", "2"});
     ASSERT_EQ(result.status, 0) << result.err;
-    for (const char* part :
-         {" missed\n", "\n  simulate ", "\n    kernel ", "\n    cluster ", "\n  draw ", "\n  readback ",
-          "\n  encode ", "\n  write ", "\n  all ", "Slack: ", "Without encoding", "Medians of 2 runs",
-          "The stages add up to ", "Cost of timing: ", "worst frame: "}) {
+    for (const char* part : {" missed\n",         "\n  simulate ", "\n    kernel ",    "\n    cluster ",
+                             "\n  draw ",         "\n  readback ", "\n  encode ",      "\n  write ",
+                             "\n  all ",          "Slack: ",       "Without encoding", "first run: p50 ",
+                             "warm runs: p50 ",   "set-up ",       "frame 0 ",         "Medians of 2 runs",
+                             " have no event.\n", " 2 runs: p99 ", " ms add up to ",   "Cost of timing: ",
+                             "worst frame: "}) {
         EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
     }
 }

@@ -1,6 +1,7 @@
 // carom solve and carom break: their output, files and refusals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -27,7 +28,13 @@ TEST_F(CliSolve, FindsAShotAndWritesIt) {
     const ProcessResult result = carom({"solve", draw_, "--want", "\"1\" in pocketed", "--vary",
                                         "cue.aim_deg=uniform(120,150)", "--shots", "2000", "-o", file});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_TRUE(contains(result.out, "wanted: \"1\" in pocketed\n1. ")) << result.out;
+    EXPECT_TRUE(
+        contains(result.out,
+                 "wanted: \"1\" in pocketed\nunknown: cloth=5%,rails=2%,places=0.1,gaps=20; each shot "
+                 "draws it (standard deviations)\nsearches from 2 places, on their own so far: "))
+        << result.out;
+    EXPECT_TRUE(contains(result.out, "\n1. ")) << result.out;
+    EXPECT_TRUE(contains(result.out, " of 100 shots; exact table: ")) << result.out;
     EXPECT_TRUE(contains(result.out, "falls 1 into p3")) << result.out;
     EXPECT_NEAR(read_scene(file).cue->aim_deg, 135.0, 2.0);
     EXPECT_TRUE(contains(read_file(file), "# Found by carom for: "));
@@ -35,6 +42,12 @@ TEST_F(CliSolve, FindsAShotAndWritesIt) {
         carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--json", "--hand", "aim=0"}).out);
     EXPECT_EQ(json.at("solutions").at(0).at("values").size(), 3u);
     EXPECT_TRUE(json.at("solutions").at(0).at("success").is_number());
+    EXPECT_TRUE(json.at("solutions").at(0).at("exact").is_number());
+    EXPECT_EQ(json.at("searches").size(), 2u);
+    const std::string exact =
+        carom({"solve", draw_, "--want", "scratch", "--shots", "2000", "--unknown", "none"}).out;
+    EXPECT_TRUE(contains(exact, "unknown: nothing, exact tables\n")) << exact;
+    EXPECT_FALSE(contains(exact, "; exact table: ")) << exact;
 }
 
 TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
@@ -60,13 +73,14 @@ TEST_F(CliSolve, MovesABallExactlyToItsPlace) {
     EXPECT_TRUE(contains(carom(call).out, "   exactly there, within "));
     // If shots of different kinds lead to one exact shot, it is printed once.
     call[call.size() - 2] = "3";
+    *std::find(call.begin(), call.end(), "cue.speed=uniform(2,3)") = "cue.speed=uniform(2.42,2.5)";
     const auto count = [&](const std::string& text) {
         std::size_t found = 0;
         for (const std::string& line : lines_of(carom(call).out)) found += contains(line, text) ? 1 : 0;
         return found;
     };
-    EXPECT_EQ(count("exactly there, within "), 2u);
-    EXPECT_EQ(count("exactly there: as in 1."), 1u);
+    EXPECT_EQ(count("exactly there, within "), 1u);
+    EXPECT_EQ(count("exactly there: as in 1."), 2u);
 }
 
 TEST_F(CliSolve, DrawsTheShotBesideItsMap) {

@@ -83,20 +83,6 @@ TEST(CostsByFrame, PartsAddUpAndClustersCountSeparately) {
     EXPECT_DOUBLE_EQ(sums[1].simulate_ms(), 1200e-6);
 }
 
-// The times are given: work between frame_done and next_starts belongs to no frame.
-TEST(FrameWalls, ExcludesTheTimeBetweenFrames) {
-    std::vector<double> moments = {10.0, 11.0, 14.5, 20.0, 22.0, 22.5};
-    std::size_t at = 0;
-    FrameWalls walls([&] { return moments.at(at++); });
-    walls.frame_done();   // at 10: the first frame, with unknown start
-    walls.next_starts();  // at 11
-    walls.frame_done();   // at 14.5
-    walls.next_starts();  // at 20
-    walls.frame_done();   // at 22
-    walls.next_starts();
-    EXPECT_EQ(walls.walls(), (std::vector<double>{3.5, 2.0}));
-}
-
 TEST(CostsByFrame, AgreesWithTheRendererOnTheFrames) {
     reference::Generator rng(5);
     for (int i = 0; i < 1000; ++i) {

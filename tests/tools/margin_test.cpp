@@ -27,8 +27,14 @@ TEST(Margin, AFrameSumsItsStagesAndIsTheMedianOfItsRuns) {
     EXPECT_EQ(margin.budget_ms, 10.0);
     EXPECT_EQ(margin.total, (std::vector<double>{2 + 5 + 3, 7 + 3, 7 + 3}));
     EXPECT_EQ(margin.missed, 0);  // exactly in time is in time
-    EXPECT_EQ(margin.missed_runs.low, 0.0);
-    EXPECT_EQ(margin.missed_runs.high, 2.0);  // frames 0 and 1 of the second run; the third has one
+    // Frames 0 and 1 of the second run; the third has one.
+    EXPECT_EQ(margin.all.missed.low, 0.0);
+    EXPECT_EQ(margin.all.missed.high, 2.0);
+    EXPECT_EQ(margin.first.max.low, 10.0);
+    EXPECT_EQ(margin.first.max.high, 10.0);
+    EXPECT_EQ(margin.warm.max.low, 12.0);
+    EXPECT_EQ(margin.warm.max.high, 84.0);
+    EXPECT_EQ(margin.warm.missed.low, 1.0);
     EXPECT_EQ(margin.slack(0), 0.0);
     EXPECT_DOUBLE_EQ(margin.frame_spread, 0.3);  // (12 - 9) / 10 is the median
 }
@@ -49,14 +55,17 @@ TEST(Margin, WithoutRenderingAFrameIsItsSimulation) {
     EXPECT_TRUE(margin.has(kCluster));
 }
 
-TEST(Accounting, OmitsTheFirstFrameWhoseStartIsUnknown) {
+TEST(Accounting, ContainsSetUpAndTheFirstFrameOfEveryRun) {
     MarginRun run = run_of({1, 2, 3}, {100, 10, 20});
-    run.simulate_wall_ms = 6.5;
-    run.frame_walls = {13.5, 23.0};
-    const Accounting sum = account(run);
-    EXPECT_DOUBLE_EQ(sum.parts_ms, 6 + 10 + 20 + 2 * 3);
-    EXPECT_DOUBLE_EQ(sum.wall_ms, 6.5 + 13.5 + 23.0);
-    EXPECT_DOUBLE_EQ(sum.share(), 42.0 / 43.0);
+    run.setup_ms = 50.0;
+    run.frames[1].events = {0, 1};
+    Accounting sum = combine({run, run}, 100.0, true).accounting;
+    EXPECT_DOUBLE_EQ(sum.setup_ms, 2 * 50);
+    EXPECT_DOUBLE_EQ(sum.first_frames_ms, 2 * (1 + 100 + 3));
+    EXPECT_DOUBLE_EQ(sum.frames_ms, 2 * (5 + 30 + 2 * 3));
+    sum.start_ms = 6.0, sum.timing_ms = 4.0, sum.wall_ms = 500.0;
+    EXPECT_DOUBLE_EQ(sum.share(), (100 + 208 + 82 + 10) / 500.0);
+    EXPECT_EQ(combine({run}, 100.0, true).quiet, 2u);
 }
 
 }  // namespace

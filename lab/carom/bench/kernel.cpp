@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string_view>
 
 #include "base/clock.h"
 #include "base/console.h"
@@ -211,11 +213,18 @@ KernelBench measure_kernel(const BenchKernelArgs& options) {
              f(i.ball1, i.ball2, i.params, n, out);
          },
          {}});
+    const std::size_t subjects = list.size();
     list.push_back(baseline);
+    // A user of the published loop may compile it with the paper's flags.
+    for (const kernel::Variant& variant : kernel::ladder())
+        if (std::string_view(variant.name) == "paper flags" && variant.isa == baseline_isa)
+            list.emplace_back(call_of(variant));
     time_all(list, five, random, options.repeats);
-    bench.baseline_ns = minimum(list.back().five_ns);
-    bench.baseline_random_ns = minimum(list.back().random_ns);
-    list.pop_back();
+    bench.baseline_ns = bench.baseline_random_ns = INFINITY;
+    for (; list.size() > subjects; list.pop_back()) {
+        bench.baseline_ns = std::min(bench.baseline_ns, minimum(list.back().five_ns));
+        bench.baseline_random_ns = std::min(bench.baseline_random_ns, minimum(list.back().random_ns));
+    }
 
     const Judge judge(baseline, five, random);
     ProgressLine judging("bench kernel, errors");

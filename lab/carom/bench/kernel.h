@@ -19,9 +19,9 @@ struct BenchKernelArgs {
     std::vector<std::string> only;  ///< names, or their first whole words; empty: all
 };
 
-/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's time in the same run divided by
-/// this time; differences (from the baseline) and errors (from the converged solution) are fractions of the
-/// approach speed.
+/// One row at N = 1000. Times are per impact [ns]; ratios are the baseline's time in the same run (the
+/// published loop, with the faster of the usual and the paper's flags) divided by this time; differences
+/// (from the baseline) and errors (from the converged solution) are fractions of the approach speed.
 struct KernelRow {
     std::string name, section, kind;
     kernel::Isa isa;

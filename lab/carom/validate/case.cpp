@@ -107,8 +107,8 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     std::vector<const char*> names;
     for (const QuantityInfo& quantity : kQuantities) names.push_back(quantity.name);
     const Reader in(table, file,
-                    {"quantity", "when", "after", "ball", "value", "uncertainty", "place", "name", "of",
-                     "among", "note"});
+                    {"quantity", "when", "after", "ball", "value", "uncertainty", "place", "kind", "name",
+                     "of", "among", "note"});
     Measured m;
     m.quantity = in.one_of<Quantity>("quantity", names);
     const bool many = is_of_many(m.quantity), place = m.quantity == Quantity::kPlace;
@@ -124,6 +124,7 @@ Measured read_measured(const toml::table& table, const std::string& file) {
     } else {
         m.value = in.value<double>("value");
     }
+    if (in.has("kind")) m.kind = kKinds[in.one_of<std::size_t>("kind", kKinds)];
     m.name = in.value("name", std::string());
     if (many) m.of = in.value<std::string>("of");
     m.among = in.value("among", std::string());
@@ -228,6 +229,9 @@ ValidationCase read_case(const CaseFile& file) {
     }
     in.tables("shot",
               [&](const toml::table& each) { c.shots.push_back(read_validation_shot(each, c.file)); });
+    for (ValidationShot& shot : c.shots)
+        for (Measured& m : shot.measured)
+            if (m.kind.empty()) m.kind = kKinds[c.trust == kTrust[0] ? 0 : 1];
     in.tables("variant", [&](const toml::table& each) {
         c.variants.push_back(read_variant(each, c.file));
         check_claims(c, c.variants.back(), place_of(each.source()));

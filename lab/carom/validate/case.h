@@ -58,6 +58,9 @@ enum class Instant : std::uint8_t { kStart, kHit, kCushion, kRolled, kRest };
 /// first impact with a cushion, when it rolls (again) after its first impact, and when everything is at rest.
 inline constexpr const char* kInstants[] = {"start", "hit", "cushion", "rolled", "rest"};
 
+/// How a number came about: only the first two count as measured.
+inline constexpr const char* kKinds[] = {"measured", "published", "words"};
+
 struct Measured {
     Quantity quantity = Quantity::kSpeed;
     Instant when = Instant::kStart;
@@ -67,6 +70,7 @@ struct Measured {
     /// in the same unit; uncertainty of the number, including unknowns of the shot
     double uncertainty = 0.0;
     Vec2 place = Vec2::Zero();
+    std::string kind;   ///< of kKinds; by default, measured if the case is, and published if not
     std::string name;   ///< in reports; empty: the quantity
     std::string of;     ///< of many shots: a truth or a number of each (carom/games/measures.h)
     std::string among;  ///< the same: only shots for which this holds; empty: all
@@ -90,9 +94,10 @@ struct Variant {
     std::string preset;            ///< of the balls
     std::string keys;              ///< more lines of [balls]
     std::string physics;           ///< lines of [physics]
-    bool free_of_fit = false;      ///< no parameter was fitted to these measurements
+    bool free_of_fit = false;      ///< no parameter was fitted to these measurements or to their like
     std::vector<Claim> claims;     ///< one per number, in the order of the shots
     std::string own_keys() const;  ///< keys and physics on one line
+    bool is_shipped() const { return own_keys().empty() && !preset.ends_with("_classic"); }
 };
 
 /// The model that a case is about, for the reports.

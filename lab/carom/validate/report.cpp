@@ -185,6 +185,29 @@ Plot overview(const std::vector<ValidationRow>& rows) {
     return plot;
 }
 
+/// "presets as they ship: 14 of 14 free numbers within (rms 0.6), ..."
+std::string totals_text(const std::vector<ValidationRow>& rows) {
+    struct Total {
+        const char* name;
+        int within = 0, count = 0;
+        double squares = 0.0;
+    } totals[] = {{"free"}, {"fitted"}, {"in words"}};
+    for (const ValidationRow& row : rows) {
+        if (!row.variant->is_shipped()) continue;
+        Total& total = totals[row.measured->kind == kKinds[2] ? 2 : row.variant->free_of_fit ? 0 : 1];
+        ++total.count;
+        total.within += row.within() ? 1 : 0;
+        total.squares += row.deviation() * row.deviation();
+    }
+    std::string text = "presets as they ship:";
+    for (const Total& total : totals)
+        if (total.count > 0)
+            text +=
+                fmt::format("{} {} {} of {} within, rms {:.2f} uncertainties", text.ends_with(':') ? "" : ";",
+                            total.name, total.within, total.count, std::sqrt(total.squares / total.count));
+    return text + "\n";
+}
+
 }  // namespace
 
 Table validation_table(const std::vector<ValidationRow>& rows) {
@@ -205,6 +228,7 @@ Table validation_table(const std::vector<ValidationRow>& rows) {
         {"preset", [](const Row& r) { return Cell(r.variant->preset); }},
         {"model", [](const Row& r) { return Cell(r.model); }},
         {"keys", [](const Row& r) { return Cell(r.variant->own_keys()); }},
+        {"differs", [](const Row& r) { return Cell(r.differs); }},
         {"measured", [](const Row& r) { return Cell(r.measured->value); }},
         {"uncertainty", [](const Row& r) { return Cell(r.uncertainty); }},
         {"computed", [](const Row& r) { return Cell(r.computed); }},
@@ -212,6 +236,7 @@ Table validation_table(const std::vector<ValidationRow>& rows) {
         {"within", [](const Row& r) { return Cell(r.within()); }},
         {"claim", [](const Row& r) { return r.claim ? Cell(*r.claim) : Cell("within"); }},
         {"as_claimed", [](const Row& r) { return Cell(r.as_claimed()); }},
+        {"kind", [](const Row& r) { return Cell(r.measured->kind); }},
         {"free_of_fit", [](const Row& r) { return Cell(r.variant->free_of_fit); }},
         {"trust", [](const Row& r) { return Cell(r.of->trust); }},
         {"source", [](const Row& r) { return Cell(r.of->source); }},
@@ -231,9 +256,15 @@ std::string validation_text(const std::vector<ValidationRow>& rows) {
     for (const ValidationCase* of : cases_of(rows)) {
         text += fmt::format("{}  {}\n  {} ({})\n", of->id, of->title, of->source, of->trust);
         if (!of->note.empty()) text += fmt::format("  {}\n", of->note);
-        for (const Variant& variant : of->variants)
+        for (const Variant& variant : of->variants) {
             if (const std::string keys = variant.own_keys(); !keys.empty())
                 text += fmt::format("  {} is {} with {}\n", variant.name, variant.preset, keys);
+            const auto row = std::find_if(rows.begin(), rows.end(),
+                                          [&](const ValidationRow& r) { return r.variant == &variant; });
+            if (!row->differs.empty())
+                text +=
+                    fmt::format("  {} differs from the shipped preset by {}\n", variant.name, row->differs);
+        }
         text += table_text(case_table(rows, *of)) + '\n';
     }
     const auto count = [&rows](auto&& is) { return std::count_if(rows.begin(), rows.end(), is); };
@@ -242,7 +273,8 @@ std::string validation_text(const std::vector<ValidationRow>& rows) {
     text += fmt::format("{} of {} within the uncertainty; * is not, and known; ", within,
                         counted(rows.size(), "number"));
     const auto other = static_cast<long>(rows.size()) - claimed;
-    return text + (other == 0 ? "all as claimed\n" : fmt::format("{} not as claimed\n", other));
+    return text + (other == 0 ? "all as claimed\n" : fmt::format("{} not as claimed\n", other)) +
+           totals_text(rows);
 }
 
 std::string validation_json(const std::vector<ValidationRow>& rows) {

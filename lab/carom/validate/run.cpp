@@ -45,9 +45,21 @@ std::string model_of(const ValidationCase& of, const Scene& scene) {
     return kAbout[static_cast<std::size_t>(of.about)];
 }
 
+std::string differences(const Scene& scene, const std::string& preset) {
+    Scene shipped = scene;
+    shipped.balls = make_ball_params(preset);
+    std::string text;
+    for (const char* key : {"radius", "mass", "mu_s", "mu_r", "mu_sp", "mu_b", "e_b", "e_c", "f_c"}) {
+        const SceneNumber number(scene, std::string("balls.") + key);
+        if (const double value = number.value(scene); value != number.value(shipped))
+            text += fmt::format("{}{} = {:g}", text.empty() ? "" : ", ", key, value);
+    }
+    return text;
+}
+
 /// The model and the computed numbers of one shot with one variant, and their standard deviations.
 struct Computed {
-    std::string model;
+    std::string model, differs;
     std::vector<double> numbers, sampled;
 };
 
@@ -64,11 +76,14 @@ struct Mean {
     double deviation() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / count); }
 };
 
-Computed play(const ValidationCase& of, const ValidationShot& shot, const std::string& text,
-              kernel::Isa isa) {
+Computed play(const ValidationCase& of, const ValidationShot& shot, const Variant& variant,
+              const std::string& text, kernel::Isa isa) {
     const Plan plan = make_plan(parse_scene(text, of.file), isa);
     const Record record = simulate(plan, interruptible());
-    Computed out{model_of(of, plan.scene), {}, std::vector<double>(shot.measured.size(), 0.0)};
+    Computed out{model_of(of, plan.scene),
+                 differences(plan.scene, variant.preset),
+                 {},
+                 std::vector<double>(shot.measured.size(), 0.0)};
     for (const Measured& m : shot.measured) out.numbers.push_back(measure(record, m));
     return out;
 }
@@ -95,7 +110,7 @@ Computed play_sweep(const ValidationCase& of, const ValidationShot& shot, const 
                                  : std::get<double>(wanted[k].of(record)));
         progress();
     }
-    Computed out{model_of(of, variation.base()), {}, {}};
+    Computed out{model_of(of, variation.base()), differences(variation.base(), variant.preset), {}, {}};
     for (const Mean& mean : means) {
         out.numbers.push_back(mean.value());
         out.sampled.push_back(mean.deviation());
@@ -108,7 +123,7 @@ Computed computed(const ValidationCase& of, const ValidationShot& shot, const Va
     const std::string text = filled_in(of, shot, variant, of.scene);
     try {
         if (of.sweep) return play_sweep(of, shot, variant, text, isa, progress);
-        Computed out = play(of, shot, text, isa);
+        Computed out = play(of, shot, variant, text, isa);
         progress();
         return out;
     } catch (const SceneError& error) {
@@ -156,7 +171,7 @@ std::vector<ValidationRow> run_case(const ValidationCase& of, kernel::Isa isa,
             for (std::size_t v = 0; v < of.variants.size(); ++v) {
                 const Measured& m = shot.measured[k];
                 const double sampled = all[v].sampled[k];
-                rows.push_back({&of, &shot, &of.variants[v], &m, all[v].model,
+                rows.push_back({&of, &shot, &of.variants[v], &m, all[v].model, all[v].differs,
                                 of.variants[v].claims.at(first + k), all[v].numbers[k], sampled,
                                 std::hypot(m.uncertainty, kNinetyFive * sampled)});
             }

@@ -16,7 +16,8 @@ struct ValidationRow {
     const ValidationShot* shot;
     const Variant* variant;
     const Measured* measured;
-    std::string model;  ///< that the case is about, as in the plan
+    std::string model;    ///< that the case is about, as in the plan
+    std::string differs;  ///< "mu_r = 1e-06": numbers of the balls that the shipped preset sets otherwise
     Claim claim;
     double computed;
     double sampled;  ///< standard deviation of `computed` for the number of shots that were played

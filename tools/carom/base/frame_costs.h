@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <utility>
 #include <vector>
 
 #include "carom/engine/record.h"
@@ -33,28 +31,5 @@ std::vector<FrameCost> costs_by_frame(const Record& record, double from, double 
 /// it.
 /// @param sorted ascending, not empty @param p 0..100
 double percentile(const std::vector<double>& sorted, double p);
-
-/// Measures the wall time of frames made one after the other. Work of the caller between them (progress
-/// bar, removing files) does not count. The caller supplies the clock, so that a test can replace it.
-class FrameWalls {
-  public:
-    explicit FrameWalls(std::function<double()> now_ms) : now_ms_(std::move(now_ms)) {}
-    void frame_done() {
-        const double now = now_ms_();
-        if (started_) walls_.push_back(now - mark_);
-    }
-    void next_starts() {
-        mark_ = now_ms_();
-        started_ = true;
-    }
-    /// One for every frame except the first, whose start is unknown.
-    const std::vector<double>& walls() const { return walls_; }
-
-  private:
-    std::function<double()> now_ms_;
-    bool started_ = false;
-    double mark_ = 0.0;
-    std::vector<double> walls_;
-};
 
 }  // namespace carom::tools

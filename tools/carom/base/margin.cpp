@@ -24,6 +24,9 @@ double wall_ms() {
     return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
 }
 
+/// When the process had loaded its libraries.
+const double kProcessStart = wall_ms();
+
 render::SequenceOptions draw_options(const Record& record, const FrameSettings& drawn, double fps) {
     const RenderSettings& settings = record.render;
     render::SequenceOptions options;
@@ -41,18 +44,17 @@ void draw(MarginRun& run, const FrameSettings& drawn, double fps, const std::str
     const TemporaryFolder folder;
     render::SequenceOptions options = draw_options(run.record, drawn, fps);
     options.pattern = folder.file("%d.png");
-    FrameWalls walls(wall_ms);
+    const double start = wall_ms();
+    double first_done = start;
     ProgressLine line(title);
     options.progress = [&](long done, long total) {
-        walls.frame_done();
+        if (done == 1) first_done = wall_ms();
         throw_if_interrupted();
         std::remove(render::frame_path(options.pattern, done - 1).c_str());
         line.show_bar(done, total);
-        walls.next_starts();
     };
     options.table_progress = [](int, int) { throw_if_interrupted(); };
     const std::vector<render::FrameTiming> timings = render::render_sequence(run.record, options);
-    run.frame_walls = walls.walls();
     for (const render::FrameTiming& t : timings) {
         run.stage[kDraw].push_back(t.draw_ms);
         run.stage[kReadback].push_back(t.readback_ms);
@@ -60,6 +62,7 @@ void draw(MarginRun& run, const FrameSettings& drawn, double fps, const std::str
         run.stage[kWrite].push_back(t.write_ms);
         run.encoded_share.push_back(t.encoded_share);
     }
+    run.setup_ms = first_done - start - (run.total(0) - run.stage[kSimulate][0]);
 }
 
 /// The cost of a frame that is shown but not written.
@@ -107,9 +110,7 @@ MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, cons
     MarginRun run;
     SimulateOptions options = interruptible();
     options.profile = true;
-    const double start = wall_ms();
     run.record = simulate(plan, options);
-    run.simulate_wall_ms = wall_ms() - start;
     const long frames = checked_frame_count(0.0, run.record.duration, fps);
     run.frames = costs_by_frame(run.record, 0.0, fps, frames);
     for (const FrameCost& frame : run.frames) add_simulation(run, frame);
@@ -118,14 +119,14 @@ MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, cons
     return run;
 }
 
-Accounting account(const MarginRun& run) {
-    Accounting sum;
-    sum.wall_ms = run.simulate_wall_ms;
-    for (const double ms : run.stage[kSimulate]) sum.parts_ms += ms;
-    for (const double ms : run.frame_walls) sum.wall_ms += ms;
-    for (std::size_t s = kDraw; s < kMarginStages; ++s)
-        for (std::size_t k = 1; k < run.stage[s].size(); ++k) sum.parts_ms += run.stage[s][k];
-    return sum;
+void account(const MarginRun& run, Accounting& sum) {
+    sum.setup_ms += run.setup_ms;
+    sum.first_frames_ms += run.total(0);
+    for (std::size_t k = 1; k < run.frames.size(); ++k) sum.frames_ms += run.total(k);
+}
+
+double process_ms() {
+    return wall_ms() - kProcessStart;
 }
 
 Spread spread(std::vector<double> values) {
@@ -162,18 +163,26 @@ Margin combine(const std::vector<MarginRun>& runs, double fps, bool rendered) {
         spreads.push_back(ms > 0.0 ? (range.high - range.low) / ms : 0.0);
     }
     margin.frame_spread = median(spreads);
+    margin.quiet =
+        static_cast<std::size_t>(std::count_if(runs.front().frames.begin(), runs.front().frames.end(),
+                                               [](const FrameCost& frame) { return frame.events.empty(); }));
     for (std::size_t r = 0; r < runs.size(); ++r) {
         std::vector<double> totals;
         for (std::size_t k = 0; k < frames; ++k) totals.push_back(runs[r].total(k));
         const auto missed = std::count_if(totals.begin(), totals.end(),
                                           [&margin](double ms) { return ms > margin.budget_ms; });
         const Spread s = spread(totals);
-        widen(margin.p50_runs, s.p50, r == 0);
-        widen(margin.p99_runs, s.p99, r == 0);
-        widen(margin.missed_runs, static_cast<double>(missed), r == 0);
-        const Accounting part = account(runs[r]);
-        margin.accounting.wall_ms += part.wall_ms;
-        margin.accounting.parts_ms += part.parts_ms;
+        const auto add = [&](RunTotals& to, bool is_first) {
+            widen(to.p50, s.p50, is_first);
+            widen(to.p99, s.p99, is_first);
+            widen(to.max, s.max, is_first);
+            widen(to.missed, static_cast<double>(missed), is_first);
+            widen(to.setup_ms, runs[r].setup_ms, is_first);
+            widen(to.frame_0_ms, totals[0], is_first);
+        };
+        add(margin.all, r == 0);
+        add(r == 0 ? margin.first : margin.warm, r <= 1);
+        account(runs[r], margin.accounting);
     }
     return margin;
 }

@@ -42,12 +42,10 @@ struct MarginRun {
     Record record;
     std::vector<FrameCost> frames;
     std::vector<double> stage[kMarginStages];
-    // Wall time of the same work [ms], done one frame after the other.
-    double simulate_wall_ms = 0.0;
+    /// Wall time from the end of the simulation to the first picture [ms]: OpenGL, the table.
+    double setup_ms = 0.0;
     /// Per frame: the share of the picture that was encoded anew; empty if nothing was drawn.
     std::vector<double> encoded_share;
-    /// From drawing to writing [ms], for every frame except the first.
-    std::vector<double> frame_walls;
     double total(std::size_t frame) const;
 };
 /// Appends the cost of simulating one frame.
@@ -55,13 +53,19 @@ void add_simulation(MarginRun& run, const FrameCost& frame);
 /// Simulates once with timing on. @param drawn how to draw the frames; null: not drawn
 MarginRun one_run(const Plan& plan, const FrameSettings* drawn, double fps, const std::string& title);
 
-/// Compares the sum of the parts with the wall time, over all frames except the first, whose start is
-/// unknown.
+/// The wall time of the process and its parts [ms], over all runs.
 struct Accounting {
-    double wall_ms = 0.0, parts_ms = 0.0;
-    double share() const { return wall_ms > 0.0 ? parts_ms / wall_ms : 1.0; }
+    double start_ms = 0.0;  ///< until the first run: the program, the scene, its plan
+    double setup_ms = 0.0, first_frames_ms = 0.0, frames_ms = 0.0;
+    double timing_ms = 0.0;  ///< to measure the cost of timing
+    double wall_ms = 0.0;
+    double parts_ms() const { return start_ms + setup_ms + first_frames_ms + frames_ms + timing_ms; }
+    double share() const { return wall_ms > 0.0 ? parts_ms() / wall_ms : 1.0; }
 };
-Accounting account(const MarginRun& run);
+/// Adds a run, whose frame 0 stays apart.
+void account(const MarginRun& run, Accounting& sum);
+/// Wall time since the process began [ms].
+double process_ms();
 
 struct Spread {
     double p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
@@ -71,6 +75,11 @@ Spread spread(std::vector<double> values);  ///< not empty
 /// Smallest and largest of the runs.
 struct Range {
     double low = 0.0, high = 0.0;
+};
+
+/// Frames of one run, or of several: a range over the runs.
+struct RunTotals {
+    Range p50, p99, max, missed, setup_ms, frame_0_ms;
 };
 
 /// The cost of the measurement itself, from alternating runs with and without it.
@@ -92,10 +101,11 @@ struct Margin {
     long missed = 0;
     long missed_shown = 0;  ///< if only simulate, draw and readback counted, and no file were written
     std::size_t worst = 0;
-    Range p50_runs, p99_runs, missed_runs;  ///< over the runs
-    double frame_spread = 0.0;              ///< median over the frames of (max - min) / median over the runs
+    RunTotals first, warm, all;  ///< the first run, the others (if there are any), and all of them
+    std::size_t quiet = 0;       ///< frames without an event
+    double frame_spread = 0.0;   ///< median over the frames of (max - min) / median over the runs
     int runs = 0;
-    Accounting accounting;  ///< over all runs
+    Accounting accounting;
     TimingCost timing;
 
     bool has(std::size_t s) const { return rendered || s <= kCluster; }

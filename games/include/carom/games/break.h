@@ -26,7 +26,6 @@ struct BreakOptions {
     double speed_max = 10.0;  ///< maximum speed of the cue ball [m/s], 1 to 20
     bool box = false;         ///< place the cue ball at least a diamond from either long rail
     std::uint64_t seed = 1;   ///< of the racks
-    int layouts = 64;         ///< number of racks to play each break on
 };
 
 /// The arguments of solve().
@@ -36,14 +35,16 @@ struct BreakSearch {
     std::optional<Game> game;
     /// Position of the cue ball, x and y; hit.1; cue.speed; height of the tip.
     std::vector<Choice> choices;
-    std::vector<Scene> layouts;
+    Racks racks;              ///< one for each trial
     double ball_speed = 0.0;  ///< of the cue ball, for each m/s of the cue [-]
 };
 
 /// @throws std::invalid_argument for a game or number that is not allowed; SceneError for another table
 BreakSearch break_search(const BreakOptions& options);
 
-/// The scene of a file with many seeds of its rack; empty if it has no rack. @throws SceneError
-std::vector<Scene> racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed);
+/// The scene of a file with other seeds of its rack; empty if it has no rack.
+/// @param count  after this many racks the first one comes again; 0: all differ; 1: the rack of the file
+/// @throws SceneError
+Racks racks_of(const std::string& text, const std::string& name, int count, std::uint64_t seed);
 
 }  // namespace carom::games

@@ -33,6 +33,16 @@ struct Hand {
     bool operator==(const Hand&) const = default;
 };
 
+/// Standard deviations of a table's properties that a player does not know. Every trial draws them anew.
+struct Unknown {
+    double cloth = 0.05;   ///< of mu_s and of mu_r [-]
+    double rails = 0.02;   ///< of the restitution of cushions [-]
+    double places = 1e-4;  ///< of every ball along x and y, except racked ones [m]
+    double gaps = 2e-5;    ///< between racked balls [m]
+    bool operator==(const Unknown&) const = default;
+};
+inline constexpr Unknown kExactTable{0.0, 0.0, 0.0, 0.0};
+
 /// The key of a choice that sets the speed of the struck ball instead of the cue's [m/s].
 inline constexpr const char* kBallSpeed = "cue.ball_speed";
 
@@ -47,15 +57,18 @@ struct Choice {
 /// Aim, speed and height of the tip.
 std::vector<Choice> default_choices();
 
+/// Scene number i, which differs from the others only in the places and sizes of its balls; or empty.
+using Racks = std::function<Scene(std::uint64_t)>;
+
 struct SolveOptions {
     std::vector<Choice> choices;
     Hand hand;
+    Unknown unknown;
     std::uint64_t seed = 1;
     std::size_t shots = 200000;  ///< of the whole search
     int threads = 0;             ///< 0: one for each core
     std::size_t best = 3;        ///< number of shots of different kinds
-    /// Scenes that differ from `scene` only in the places of their balls, such as racks; or empty.
-    std::vector<Scene> layouts;
+    Racks racks;
     std::function<void(std::size_t done)> progress;
     std::function<bool()> stop;
 };
@@ -70,6 +83,7 @@ struct Solution {
     std::vector<double> values;  ///< in the order of the choices
     Scene scene;                 ///< the shot without errors
     std::size_t shots = 0, successes = 0;
+    std::size_t exact = 0;  ///< successes of as many shots on exact tables (kExactTable)
     /// The number of these shots in which each ball fell into each pocket, the most frequent first.
     struct Fall {
         int ball, pocket;
@@ -103,10 +117,13 @@ struct SuccessMap {
 SuccessMap success_map(const Scene& scene, const Measure& want, kernel::Isa isa, const SolveOptions& options,
                        const Solution& around);
 
-/// The best shots of different kinds, the surest first.
+/// The best shots of different kinds, the surest first. Two searches begin at other places with half of the
+/// shots each; from the fourth generation on, the best of both are searched together.
+/// @param starts  if not null, receives the success of the best of each search before that: far apart, they
+/// warn that there may be a better shot
 /// @throws std::invalid_argument for a key that names no number, an invalid range, or a goal that does not
 /// apply to the shots
 std::vector<Solution> solve(const Scene& scene, const Measure& want, kernel::Isa isa,
-                            const SolveOptions& options);
+                            const SolveOptions& options, std::vector<Share>* starts = nullptr);
 
 }  // namespace carom::games

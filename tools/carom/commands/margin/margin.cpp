@@ -16,6 +16,7 @@ namespace carom::tools {
 
 MeasuredMargin measure_margin(const Plan& plan, const MarginArgs& args) {
     const double fps = chosen_fps(args.fps, plan.scene.render);
+    const double start_ms = process_ms();
     std::vector<MarginRun> runs;
     for (int run = 0; run < args.repeat; ++run) {
         runs.push_back(
@@ -25,7 +26,11 @@ MeasuredMargin measure_margin(const Plan& plan, const MarginArgs& args) {
     }
     Margin margin = combine(runs, fps, !args.no_render);
     if (margin.rendered) margin.size = args.drawn.size.value_or(plan.scene.render.size());
+    const double before_ms = process_ms();
     margin.timing = cost_of_timing(plan);
+    margin.accounting.start_ms = start_ms;
+    margin.accounting.timing_ms = process_ms() - before_ms;
+    margin.accounting.wall_ms = process_ms();
     return {std::move(margin), std::move(runs.back())};
 }
 

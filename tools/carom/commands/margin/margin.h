@@ -16,7 +16,7 @@ struct MarginArgs {
     std::string scene;
     std::optional<double> fps;
     std::string size;
-    int repeat = 1;
+    int repeat = 3;
     bool no_render = false;
     FrameSettings drawn;
     /// File names; empty: not written.

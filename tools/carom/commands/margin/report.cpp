@@ -22,6 +22,29 @@ Json spread_json(const std::vector<double>& values) {
     return {{"p50", v.p50}, {"p95", v.p95}, {"p99", v.p99}, {"max", v.max}};
 }
 
+Json json_of(const Range& range) {
+    return {range.low, range.high};
+}
+
+/// "0.101 to 0.113", or "0.101" of a single run.
+std::string text_of(const Range& range) {
+    return range.low == range.high ? fmt::format("{:.3f}", range.low)
+                                   : fmt::format("{:.3f} to {:.3f}", range.low, range.high);
+}
+
+std::string text_of(const RunTotals& runs, bool rendered) {
+    std::string text = fmt::format("p50 {}, p99 {}, max {} ms; missed {:.0f} to {:.0f}; ", text_of(runs.p50),
+                                   text_of(runs.p99), text_of(runs.max), runs.missed.low, runs.missed.high);
+    if (rendered) text += fmt::format("set-up {} ms; ", text_of(runs.setup_ms));
+    return text + fmt::format("frame 0 {} ms\n", text_of(runs.frame_0_ms));
+}
+
+Json json_of(const RunTotals& runs) {
+    return {{"p50", json_of(runs.p50)},           {"p99", json_of(runs.p99)},
+            {"max", json_of(runs.max)},           {"missed", json_of(runs.missed)},
+            {"setup_ms", json_of(runs.setup_ms)}, {"frame_0_ms", json_of(runs.frame_0_ms)}};
+}
+
 std::vector<double> slacks(const Margin& margin) {
     std::vector<double> list;
     for (std::size_t k = 0; k < margin.total.size(); ++k) list.push_back(margin.slack(k));
@@ -55,15 +78,19 @@ Table stages_table(const Margin& margin) {
     Table stages(Column("stage", "", "<14"), Column("p50", "p50", ">10.4f"), Column("p95", "p95", ">10.4f"),
                  Column("p99", "p99", ">10.4f"), Column("max", "max", ">10.4f"),
                  Column("", "   ms per frame", "<"));
-    const auto add = [&stages](const std::string& title, const std::vector<double>& values) {
+    const auto add = [&stages](const std::string& title, const std::vector<double>& values,
+                               const std::string& note = "") {
         const Spread v = spread(values);
-        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max});
+        stages.add({"  " + title, v.p50, v.p95, v.p99, v.max}, note);
     };
     for (std::size_t s = 0; s < kMarginStages; ++s) {
         const std::string title = name(static_cast<MarginStage>(s));
         if (margin.has(s)) add(is_part_of_simulate(s) ? "  " + title : title, margin.stage[s]);
     }
-    add("all", margin.total);
+    add("all", margin.total,
+        margin.runs > 1 ? fmt::format("   {} runs: p99 {}, max {}", margin.runs, text_of(margin.all.p99),
+                                      text_of(margin.all.max))
+                        : "");
     return stages;
 }
 
@@ -82,15 +109,18 @@ std::string margin_sentences(const Margin& margin, const MarginRun& last) {
                        "anew (median; p99 {:.1f} %).\n",
                        counted(static_cast<std::size_t>(margin.missed_shown), "frame"),
                        100.0 * spread(margin.encoded_share).p50, 100.0 * spread(margin.encoded_share).p99);
+    fmt::format_to(line, "first run: {}", text_of(margin.first, margin.rendered));
     if (margin.runs > 1)
-        fmt::format_to(line,
-                       "Medians of {} runs; over the runs, p50 is {:.3f} to {:.3f} ms, p99 {:.3f} to {:.3f} "
-                       "ms, missed {:.0f} to {:.0f}; a frame varies by {:.0f} % (median).\n",
-                       margin.runs, margin.p50_runs.low, margin.p50_runs.high, margin.p99_runs.low,
-                       margin.p99_runs.high, margin.missed_runs.low, margin.missed_runs.high,
-                       100.0 * margin.frame_spread);
-    fmt::format_to(line, "The stages add up to {:.1f} % of the {:.1f} ms of wall time.\n",
-                   100.0 * margin.accounting.share(), margin.accounting.wall_ms);
+        fmt::format_to(line, "warm runs: {}Medians of {} runs; a frame varies by {:.0f} % (median).\n",
+                       text_of(margin.warm, margin.rendered), margin.runs, 100.0 * margin.frame_spread);
+    fmt::format_to(line, "{} of {} have no event.\n", margin.quiet, counted(margin.total.size(), "frame"));
+    const Accounting& sum = margin.accounting;
+    fmt::format_to(
+        line,
+        "Start {:.1f}, set-up {:.1f}, frame 0 {:.1f}, other frames {:.1f} and cost of timing {:.1f} "
+        "ms add up to {:.1f} % of the {:.1f} ms of the process.\n",
+        sum.start_ms, sum.setup_ms, sum.first_frames_ms, sum.frames_ms, sum.timing_ms, 100.0 * sum.share(),
+        sum.wall_ms);
     fmt::format_to(line,
                    "Cost of timing: the simulation takes {:.3f} ms with it, {:.3f} ms without ({:+.1f} %; "
                    "{:.0f} ns per clock reading). Without profiling, the loop contains no timing.\n",
@@ -139,7 +169,8 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
     Json all = {{"fps", margin.fps},
                 {"budget_ms", margin.budget_ms},
                 {"frames", margin.total.size()},
-                {"missed", margin.missed}};
+                {"missed", margin.missed},
+                {"without_event", margin.quiet}};
     if (margin.rendered) {
         all["size"] = {margin.size.width, margin.size.height};
         all["missed_without_files"] = margin.missed_shown;
@@ -153,13 +184,18 @@ std::string margin_json(const Margin& margin, const MarginRun& last) {
                     {"ms", margin.total[margin.worst]},
                     {"events", events}};
     all["runs"] = {{"count", margin.runs},
-                   {"p50", {margin.p50_runs.low, margin.p50_runs.high}},
-                   {"p99", {margin.p99_runs.low, margin.p99_runs.high}},
-                   {"missed", {margin.missed_runs.low, margin.missed_runs.high}},
-                   {"frame_spread", margin.frame_spread}};
-    all["serial"] = {{"wall_ms", margin.accounting.wall_ms},
-                     {"parts_ms", margin.accounting.parts_ms},
-                     {"share", margin.accounting.share()}};
+                   {"p50", json_of(margin.all.p50)},
+                   {"p99", json_of(margin.all.p99)},
+                   {"max", json_of(margin.all.max)},
+                   {"missed", json_of(margin.all.missed)},
+                   {"frame_spread", margin.frame_spread},
+                   {"first", json_of(margin.first)}};
+    if (margin.runs > 1) all["runs"]["warm"] = json_of(margin.warm);
+    const Accounting& sum = margin.accounting;
+    all["process"] = {{"wall_ms", sum.wall_ms},     {"start_ms", sum.start_ms},
+                      {"setup_ms", sum.setup_ms},   {"first_frames_ms", sum.first_frames_ms},
+                      {"frames_ms", sum.frames_ms}, {"timing_ms", sum.timing_ms},
+                      {"parts_ms", sum.parts_ms()}, {"share", sum.share()}};
     all["timing"] = {{"clock_ns", margin.timing.clock_ns},
                      {"simulate_ms", margin.timing.plain_ms},
                      {"simulate_timed_ms", margin.timing.profiled_ms},

@@ -41,8 +41,7 @@ std::string told(const Solution& best, const BreakArgs& args, double per_cue, in
     const Units units = units_of(args.units);
     const Unit length = length_unit(units);
     const double x = best.values[0], y = best.values[1], hit = best.values[2];
-    std::string text = fmt::format("{}. {}  of {}\n", rank, share_text(share_of(best.successes, best.shots)),
-                                   counted(best.shots, "break"));
+    std::string text = fmt::format("{}. {}", rank, rates_text(best, "break", args.search));
     text += fmt::format(
         "   cue ball {:.2f} diamonds from the left rail and {:.2f} from the head rail ({:.3f}, {:.3f} {})\n",
         4.0 * (x - table.corner.x()) / table.width, 8.0 * (y - table.corner.y()) / table.length,
@@ -73,8 +72,9 @@ games::BreakSearch read_break(const BreakArgs& args) {
 int run(const BreakArgs& args) {
     const std::string& game = args.wanted.game;
     const games::BreakSearch asked = read_break(args);
-    const Search what{asked.scene, "break of " + game, asked.want, asked.game, asked.choices, asked.layouts};
-    const std::vector<Solution> found = search(what, args.search);
+    const Search what{asked.scene, "break of " + game, asked.want, asked.game, asked.choices, asked.racks};
+    std::vector<games::Share> starts;
+    const std::vector<Solution> found = search(what, args.search, starts);
     const std::string title = fmt::format("{} break, {} rack", game, args.wanted.rack);
     plot_best(what, found[0], title, args.search);
     if (!args.search.output.empty()) write_best(args.search.output, found[0], asked.want, args.search);
@@ -95,13 +95,16 @@ int run(const BreakArgs& args) {
         print(Json{{"game", game},
                    {"want", asked.want},
                    {"hand", args.search.hand},
+                   {"unknown", args.search.unknown},
                    {"seed", args.search.seed},
+                   {"searches", starts_json(starts)},
                    {"solutions", solutions_json(found, asked.choices)}}
                   .dump() +
               "\n");
         return kOk;
     }
-    std::string out = fmt::format("{}; wanted: {}; hand: {}\n", title, asked.want, args.search.hand);
+    std::string out = fmt::format("{}; wanted: {}; hand: {}\n", title, asked.want, args.search.hand) +
+                      lead_text(args.search, starts);
     for (std::size_t i = 0; i < found.size(); ++i)
         out += told(found[i], args, asked.ball_speed, static_cast<int>(i) + 1);
     print(out);

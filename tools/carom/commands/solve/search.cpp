@@ -46,10 +46,15 @@ Json as_json(const Solution& solution, const std::vector<Choice>& choices) {
         }
         costs.push_back(row);
     }
-    return {{"success", share.value},  {"interval", {share.low, share.high}},
-            {"shots", solution.shots}, {"successes", solution.successes},
-            {"values", values},        {"falls", falls},
-            {"costs", costs},          {"scene", scene_text(solution.scene)}};
+    return {{"success", share.value},
+            {"interval", {share.low, share.high}},
+            {"shots", solution.shots},
+            {"successes", solution.successes},
+            {"exact", solution.exact},
+            {"values", values},
+            {"falls", falls},
+            {"costs", costs},
+            {"scene", scene_text(solution.scene)}};
 }
 
 }  // namespace
@@ -58,6 +63,10 @@ void add_search(Options& command, SearchArgs& args) {
     command.option("--hand", &args.hand, "ERRORS",
                    "Standard deviations of the player's errors: aim in degrees, speed in percent, tip in "
                    "ball radii, elevation in degrees");
+    command.option(
+        "--unknown", &args.unknown, "ERRORS",
+        "Standard deviations of the unknown: cloth and rails in percent, places in mm, gaps of a rack in "
+        "micrometres; or none, for exact tables");
     command.option("--shots", &args.shots, "N", "Number of shots that the search plays").in(1000, 1e10);
     command.option("--best", &args.best, "N", "Number of shots of different kinds to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the search");
@@ -78,8 +87,9 @@ template <class Play>
 auto played(const Search& what, const SearchArgs& args, const char* title, Play&& play) {
     games::SolveOptions options;
     options.choices = what.choices;
-    options.layouts = what.layouts;
+    options.racks = what.racks;
     options.hand = read_hand(args.hand);
+    options.unknown = read_unknown(args.unknown);
     options.seed = args.seed;
     options.shots = static_cast<std::size_t>(args.shots);
     options.threads = args.jobs;
@@ -102,7 +112,8 @@ auto played(const Search& what, const SearchArgs& args, const char* title, Play&
 
 }  // namespace
 
-std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Exact>* exact) {
+std::vector<Solution> search(const Search& what, const SearchArgs& args, std::vector<games::Share>& starts,
+                             std::vector<games::Exact>* exact) {
     if (!args.plot.empty()) {
         diagram_format(args.plot);
         if (what.choices.size() < 2) throw UsageError("--plot: a map needs two inputs; give two --vary");
@@ -111,7 +122,7 @@ std::vector<Solution> search(const Search& what, const SearchArgs& args, std::ve
         if (exact != nullptr && want.places().empty())
             throw UsageError(
                 "--exact: the goal has no place; add one, as in --want 'cue near (0.6, 1.2, 0.05)'");
-        std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options);
+        std::vector<Solution> found = games::solve(what.scene, want, chosen_isa(), options, &starts);
         for (std::size_t i = 0; exact != nullptr && i < found.size(); ++i)
             exact->push_back(games::exact(found[i], want, chosen_isa(), options));
         return found;
@@ -133,6 +144,31 @@ void plot_best(const Search& what, const Solution& best, const std::string& titl
     style.diamond_numbers = true;
     const DiagramShot shot{title, simulate(make_plan(best.scene, chosen_isa())), best.scene.cue};
     write_report(args.plot, draw_plot(plot, diagram_format(args.plot), {shot}, style));
+}
+
+std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& starts) {
+    std::string text =
+        read_unknown(args.unknown) == games::kExactTable
+            ? "unknown: nothing, exact tables\n"
+            : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
+    std::vector<std::string> rates;
+    for (const games::Share& share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share.value));
+    return text +
+           fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
+                       rates.size(), fmt::join(rates, " and "));
+}
+
+Json starts_json(const std::vector<games::Share>& starts) {
+    Json rates = Json::array();
+    for (const games::Share& share : starts) rates.push_back(share.value);
+    return rates;
+}
+
+std::string rates_text(const Solution& solution, const char* what, const SearchArgs& args) {
+    const std::string rate = fmt::format(
+        "{}  of {}", share_text(share_of(solution.successes, solution.shots)), counted(solution.shots, what));
+    if (read_unknown(args.unknown) == games::kExactTable) return rate + "\n";
+    return fmt::format("{}; exact table: {}\n", rate, share_text(share_of(solution.exact, solution.shots)));
 }
 
 std::string falls_text(const Solution& solution) {
@@ -171,9 +207,10 @@ Json solutions_json(const std::vector<Solution>& solutions, const std::vector<Ch
 
 void write_best(const std::string& path, const Solution& best, const std::string& want,
                 const SearchArgs& args) {
-    write_report(path, fmt::format("# Found by carom for: {}\n# Success with a hand of {}: {}\n{}",
-                                   harmless(want), args.hand,
-                                   share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
+    write_report(path,
+                 fmt::format("# Found by carom for: {}\n# Success with a hand of {}, unknown {}: {}\n{}",
+                             harmless(want), args.hand, args.unknown,
+                             share_text(share_of(best.successes, best.shots)), scene_text(best.scene)));
 }
 
 }  // namespace carom::tools

@@ -32,7 +32,7 @@ using games::Solution;
 struct SolveArgs {
     std::string scene, game;
     std::vector<std::string> want, vary;
-    int layouts = 64;
+    int layouts = 0;
     bool exact = false;
     SearchArgs search;
 };
@@ -57,10 +57,9 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 /// @param rank  "1. ", or "   " below the solution of that rank
-std::string told(const Solution& solution, const std::vector<Choice>& choices, const std::string& rank) {
-    std::string text =
-        fmt::format("{}{}  of {}\n", rank, share_text(share_of(solution.successes, solution.shots)),
-                    counted(solution.shots, "shot"));
+std::string told(const Solution& solution, const std::vector<Choice>& choices, const std::string& rank,
+                 const SearchArgs& args) {
+    std::string text = rank + rates_text(solution, "shot", args);
     for (std::size_t k = 0; k < choices.size(); ++k)
         text += fmt::format("     {:<24}{:.6g}\n", choices[k].key, solution.values[k]);
     return text + falls_text(solution) + costs_text(solution);
@@ -91,13 +90,14 @@ int run(const SolveArgs& args) {
     std::optional<games::Game> game;
     if (!args.game.empty()) game = game_of(args.game);
     const std::string want = joined(args.want);
-    const std::vector<Scene> layouts =
+    const games::Racks racks =
         games::racks_of(read_scene_text(args.scene), args.scene, args.layouts, args.search.seed);
-    if (args.exact && layouts.size() > 1)
+    if (args.exact && racks)
         throw UsageError("--exact: the racks differ, so no shot is exact for all; use --layouts 1");
     std::vector<games::Exact> exact;
-    const Search asked{plan.scene, args.scene, want, game, choices, layouts};
-    const std::vector<Solution> found = search(asked, args.search, args.exact ? &exact : nullptr);
+    std::vector<games::Share> starts;
+    const Search asked{plan.scene, args.scene, want, game, choices, racks};
+    const std::vector<Solution> found = search(asked, args.search, starts, args.exact ? &exact : nullptr);
     const bool is_exact = !exact.empty() && exact[0].solution;
     if (!args.search.output.empty())
         write_best(args.search.output, is_exact ? *exact[0].solution : found[0], want, args.search);
@@ -105,7 +105,9 @@ int run(const SolveArgs& args) {
     if (args.search.json) {
         Json all{{"want", want},
                  {"hand", args.search.hand},
+                 {"unknown", args.search.unknown},
                  {"seed", args.search.seed},
+                 {"searches", starts_json(starts)},
                  {"solutions", solutions_json(found, choices)}};
         for (const games::Exact& e : exact) {
             Json row{{"miss_m", std::isfinite(e.refined.miss) ? Json(e.refined.miss) : Json()},
@@ -117,9 +119,9 @@ int run(const SolveArgs& args) {
         print(all.dump() + "\n");
         return kOk;
     }
-    std::string text = fmt::format("wanted: {}\n", harmless(want));
+    std::string text = fmt::format("wanted: {}\n", harmless(want)) + lead_text(args.search, starts);
     for (std::size_t i = 0; i < found.size(); ++i) {
-        text += told(found[i], choices, fmt::format("{}. ", i + 1));
+        text += told(found[i], choices, fmt::format("{}. ", i + 1), args.search);
         if (exact.empty()) continue;
         const games::Refined& refined = exact[i].refined;
         if (const auto first = same_before(exact, i))
@@ -127,7 +129,7 @@ int run(const SolveArgs& args) {
         else if (exact[i].solution)
             text += fmt::format("   exactly there, within {:.1g} mm after {}:\n", 1e3 * refined.miss,
                                 counted(static_cast<std::size_t>(refined.shots), "shot")) +
-                    told(*exact[i].solution, exact[i].choices, "   ");
+                    told(*exact[i].solution, exact[i].choices, "   ", args.search);
         else
             text += fmt::format("   no exact shot near it: {}\n", refined.trouble);
     }
@@ -154,8 +156,9 @@ void add_solve(Options& program) {
         .one_of(game_names());
     command
         .option("--layouts", &args.layouts, "N",
-                "Number of random racks to play the shot on, if the scene has a rack")
-        .in(1, 100000);
+                "Number of random racks to play the shot on, if the scene has a rack; 0: a new one for each "
+                "shot")
+        .in(0, 100000);
     add_search(command, args.search);
 }
 
