@@ -273,7 +273,7 @@ std::vector<Kind> kinds() {
         if (t != nullptr) t->pocket = -1;
         return t != nullptr;
     });
-    add("a ball is pocketed without reason", "U6", [](Record& r, Generator& random) {
+    add("a ball is pocketed without reason", "U5 U6", [](Record& r, Generator& random) {
         if (r.table.pockets.empty()) return false;
         const auto p = segment(r, random, [](const BallTrack& t, std::size_t k) {
             return k > 0 && (is(MotionState::kRolling)(t, k) || is(MotionState::kSliding)(t, k));

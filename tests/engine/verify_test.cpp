@@ -126,7 +126,7 @@ TEST(Verify, ChecksTheLawsOfLastingClusters) {
         const char *law, *says;
         std::function<void(Record&)> spoil;
     } cases[] = {
-        {"U5", "changes the momentum of its balls", [&](Record& r) { after(r, 1).v *= 0.9; }},
+        {"U5", "the hits of the cluster leave", [&](Record& r) { after(r, 1).v *= 0.9; }},
         {"U4", "energy rises",
          [&](Record& r) {
              Segment& s = after(r, 2);

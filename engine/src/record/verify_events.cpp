@@ -615,10 +615,12 @@ class Events {
     // What the hits of a cluster give a ball, in units of the mass in [balls].
     struct Given {
         Vec3 change = Vec3::Zero(), expected = change;  // [m/s]
-        double sum = 0.0, slack = 0.0;                  // [m/s] of its impulses; of what they leave open
-        Vec3 from = change, path = change;              // [m]
-        double mass = 0.0;                              // 0: no member
-        double speeds = 0.0, fast = 0.0;                // with spins, and without
+        // [m/s] The impulses, what the turning of their normals leaves open, and what cushions and the cloth
+        // do.
+        double sum = 0.0, slack = 0.0, open = 0.0;
+        Vec3 from = change, path = change;  // [m]
+        double mass = 0.0;                  // 0: no member
+        double speeds = 0.0, fast = 0.0;    // with spins, and without
     };
 
     // The hits of a cluster explain what its balls do: each impulse acts along the line of centres of its
@@ -666,24 +668,22 @@ class Events {
         // Meanwhile the balls slide, fly, and pass each other.
         const double time = lasts > 0.0 ? lasts : kInstant * contact_time(closing);
         if (!give(e, lasts, time, level, given) || !known) return;
-        if (lasts > 0.0) {
-            for (const int member : members)
-                check_given(static_cast<std::size_t>(member), given[member], level, time);
-            return;
-        }
-        // The course of an instant is not known: together the balls keep their momentum, and one that nobody
-        // hit keeps its own.
+        // Together they keep their momentum, and one that nobody hit keeps its own. What else each does is
+        // known from the course of a cluster that lasts.
         Given all;
         for (const int member : members) {
             const Given& g = given[static_cast<std::size_t>(member)];
-            if (g.sum == 0.0) check_given(static_cast<std::size_t>(member), g, level, time);
+            if (lasts > 0.0 || g.sum == 0.0)
+                check_given(static_cast<std::size_t>(member), g, g.slack + most_friction() * g.sum, level,
+                            time);
             all.change += g.change;
             all.expected += g.expected;
-            all.sum += g.sum;
+            all.sum += 0.5 * g.sum;
+            all.open += g.open;
             all.mass += g.mass;
             all.speeds += g.speeds;
         }
-        check_given(a, all, level, time);
+        check_given(a, all, 0.0, level, time);
     }
 
     // Adds up the hits. @param unseen  [s] duration of a cluster that the record shows as an instant
@@ -693,6 +693,7 @@ class Events {
         // A record before version 4 tells only which balls met first.
         if (hits.size() == 1 && hits[0].impulse == 0.0) return false;
         double before = now_;
+        std::vector<std::size_t> at_cushion;
         for (const Hit& hit : hits) {
             const auto i = static_cast<std::size_t>(hit.a), j = static_cast<std::size_t>(hit.b);
             const bool pair = hit.partner == Partner::kBall;
@@ -726,29 +727,36 @@ class Events {
                 two.slack += open * J;
             } else if (hit.partner == Partner::kNone) {
                 one.expected.z() += J;
-                one.slack += record_.balls.mu_s * J;
+                one.open += record_.balls.mu_s * J;
             } else {
                 const Vec2 n = cushion_point(record_.table, hit.partner, hit.b, planar(here)).normal;
                 one.expected += J * Vec3(n.x(), n.y(), 0.0);
-                // Along the cushion its friction acts; in the air the normal is tilted.
-                one.slack += one.mass * one.speeds + (level ? 0.0 : J);
+                // Along the cushion its friction acts, at any speed that the hits gave; in the air the normal
+                // is tilted.
+                one.open += one.mass * one.speeds + (level ? 0.0 : J);
+                at_cushion.push_back(i);
             }
         }
+        for (const std::size_t ball : at_cushion) given[ball].open += given[ball].sum;
         return true;
     }
 
-    void check_given(std::size_t ball, const Given& g, bool level, double time) {
+    double most_friction() const {
         const bool friction = plan_.clusters == ClusterModel::kCompliant && plan_.in_force(Effect::kThrow);
-        const double mu_b = friction ? plan_.ball_ball->friction(plan_.balls).most() : 0.0;
+        return friction ? plan_.ball_ball->friction(plan_.balls).most() : 0.0;
+    }
+
+    // @param inside  [m/s] what the balls of the cluster exchange beside the expected
+    void check_given(std::size_t ball, const Given& g, double inside, bool level, double time) {
         // The line of centres of unlike balls is tilted, and presses one of them on the cloth.
         const auto [least, most] =
             std::minmax_element(plan_.sizes.begin(), plan_.sizes.end(),
                                 [](const BallSize& p, const BallSize& q) { return p.R < q.R; });
         const double tilt = (most->R - least->R) / (most->R + least->R);
-        const double share = mu_b + plan_.balls.mu_s * (mu_b + tilt) + (level ? 0.0 : tilt);
+        const double cloth = 2.0 * plan_.balls.mu_s * (most_friction() + tilt) + (level ? 0.0 : tilt);
         Vec3 off = g.change - g.expected;
-        double allowed =
-            g.slack + share * g.sum + g.mass * (kSameShare * g.speeds + plan_.motion[ball].slide * time);
+        double allowed = inside + g.open + cloth * g.sum +
+                         g.mass * (kSameShare * g.speeds + plan_.motion[ball].slide * time);
         if (level)
             off.z() = 0.0;
         else
