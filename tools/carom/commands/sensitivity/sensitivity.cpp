@@ -19,9 +19,10 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/statistics.h"
+#include "carom/engine/derivatives.h"
 #include "carom/engine/printable.h"
-#include "carom/engine/tangents.h"
 #include "carom/games/noise.h"
+#include "order_margin.h"
 #include "report/diagram.h"
 #include "report/table.h"
 
@@ -33,6 +34,8 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
+// [nudges] The smallest change that is tried for a margin.
+constexpr double kFirstChange = 1e-3;
 
 struct SensitivityArgs {
     std::string scene, hand = kHand, plot;
@@ -127,9 +130,9 @@ double window_end(const Plan& plan, const BallResult& result, int pocket, double
 
 struct Sensitivity {
     std::vector<Nudge> nudges;
-    std::vector<carom::Margin> margins;
+    std::vector<double> errors;  ///< relative, of the derivatives by each
+    std::vector<OrderMargin> margins;
     std::vector<BallResult> balls;
-    double impact_error = 0.0;        ///< as in Tangents
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
@@ -179,26 +182,39 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     result.nudges = nudges_of(plan.scene, struck_ball(plan.scene), hand);
     std::vector<std::string> inputs;
     for (const Nudge& nudge : result.nudges) inputs.push_back(nudge.key);
-    const Tangents tangents(plan, record, inputs);
-    result.margins = tangents.margins();
-    result.impact_error = tangents.impact_error();
+    std::vector<std::size_t> falls;
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
         const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
         if (track.segments.size() == 1 || track.segments.back().state == MotionState::kOut) continue;
         BallResult& row = result.balls.emplace_back();
         row.ball = ball;
         row.fall = fall_of(record, ball);
+        if (row.fall) falls.push_back(*row.fall);
+    }
+    const Derivatives by(plan, record, inputs, {record.duration}, falls);
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+        const Nudge& nudge = result.nudges[k];
+        // A place may have no derivative, such as that of a ball at a rail.
+        if (const std::string why = by.refusal(k); !why.empty() && nudge.hand > 0.0) throw DerivativeError(why);
+        result.errors.push_back(by.error(k));
+        result.margins.push_back(order_margin(plan, record, nudge.key, kFirstChange * nudge.size));
+    }
+    std::size_t fallen = 0;
+    for (BallResult& row : result.balls) {
         Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
         for (std::size_t k = 0; k < inputs.size(); ++k) {
             const Vec2 d =
-                row.fall ? tangents.event_place(*row.fall, k) : planar(tangents.at_end(ball, k).position);
-            row.moves.push_back(d * result.nudges[k].size);
-            covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
+                row.fall ? by.event_place(fallen, k) : planar(by.state(0, row.ball, k).position);
+            row.moves.push_back(by.refusal(k).empty() ? Vec2(d * result.nudges[k].size)
+                                                      : Vec2::Constant(std::nan("")));
+            if (result.nudges[k].hand > 0.0)
+                covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
         }
         row.expected = ellipse_of(covariance);
+        const int pocket = record.tracks[static_cast<std::size_t>(row.ball)].pocket;
         if (row.fall)
-            row.window = {window_end(plan, row, track.pocket, -1.0),
-                          window_end(plan, row, track.pocket, 1.0)};
+            row.window = {window_end(plan, row, pocket, -1.0), window_end(plan, row, pocket, 1.0)};
+        fallen += row.fall ? 1 : 0;
     }
     play(plan, record, hand, args, result);
     return result;
@@ -219,14 +235,16 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const Nudge& nudge = s.nudges[k];
         std::vector<Cell> cells{nudge.words};
         for (const BallResult& ball : s.balls)
-            cells.push_back(fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
+            cells.push_back(std::isnan(ball.moves[k].x()) ? "none"
+                                                          : fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(),
+                                                                        1e3 * ball.moves[k].y()));
         cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k].down * nudge.scale),
                                     bound_text(s.margins[k].up * nudge.scale), nudge.unit));
         table.add(cells);
     }
     std::string text = table_text(table);
     const auto nearest = [&](std::size_t k) {
-        const carom::Margin& m = s.margins[k];
+        const OrderMargin& m = s.margins[k];
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
     text += "\nx and y, to first order. ";
@@ -272,9 +290,10 @@ Json ellipse_json(const Ellipse& e) {
 Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
     Json inputs = Json::array(), balls = Json::array();
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
-        const carom::Margin& m = s.margins[k];
+        const OrderMargin& m = s.margins[k];
         inputs.push_back({{"input", s.nudges[k].key},
                           {"nudge", s.nudges[k].size},
+                          {"error", number_json(s.errors[k])},
                           {"down", number_json(m.down)},
                           {"down_why", m.down_why},
                           {"up", number_json(m.up)},
@@ -283,7 +302,8 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
     for (const BallResult& ball : s.balls) {
         Json moves = Json::array();
         for (std::size_t k = 0; k < s.nudges.size(); ++k)
-            moves.push_back({ball.moves[k].x() / s.nudges[k].size, ball.moves[k].y() / s.nudges[k].size});
+            moves.push_back({number_json(ball.moves[k].x() / s.nudges[k].size),
+                             number_json(ball.moves[k].y() / s.nudges[k].size)});
         Json row{{"ball", record.tracks[static_cast<std::size_t>(ball.ball)].id},
                  {"falls", ball.fall.has_value()},
                  {"derivatives", moves},
@@ -295,8 +315,8 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
         }
         balls.push_back(row);
     }
-    return {{"hand", hand},   {"inputs", inputs}, {"impact_error", s.impact_error},
-            {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+    return {
+        {"hand", hand}, {"inputs", inputs}, {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
 }
 
 /// The shot, with the ellipse and the played ends of each ball.

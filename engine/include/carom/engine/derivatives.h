@@ -1,0 +1,86 @@
+// The derivatives of a shot by numbers of its scene: how each of them moves every ball. They are central
+// differences of whole shots, so every effect that the engine simulates has them.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "carom/engine/plan.h"
+#include "carom/engine/record.h"
+
+namespace carom {
+
+/// A shot or an input without derivatives. what() is one sentence.
+class DerivativeError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Derivatives of a ball's state by one input.
+struct StateDerivative {
+    Vec3 position = Vec3::Zero();  ///< of the centre [m]
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    Vec3 spin = Vec3::Zero();      ///< [rad/s]
+};
+
+/// [-] A column whose relative error may be larger than this is refused.
+inline constexpr double kMostDerivativeError = 1e-3;
+
+/// Columns of derivatives, each by one input in its own unit: cue.aim_deg gives m per degree. They belong to
+/// the shot with physics.tolerance = 1e-12, whatever the scene's tolerance.
+class Derivatives {
+  public:
+    /// @param record  of this plan
+    /// @param inputs  keys of numbers as in SceneNumber: cue.speed, ball.1.position.x, balls.mu_s; or a
+    /// number of a fit, such as balls.mu_b_fit.0
+    /// @param times  [s] of the states; from the end of the record on, the state in which a shot ends
+    /// @param events  of the record, whose times and places are differentiated
+    /// @throws std::invalid_argument for an input that is no number of the scene, or a record of another one;
+    /// DerivativeError for an input at the end of its range; SimulationError
+    Derivatives(const Plan& plan, const Record& record, const std::vector<std::string>& inputs,
+                const std::vector<double>& times, const std::vector<std::size_t>& events = {});
+
+    /// Why a column is refused, a sentence that names the input; "" if its error() is at most
+    /// kMostDerivativeError.
+    std::string refusal(std::size_t input) const;
+    /// @throws DerivativeError with the first refusal
+    void check() const;
+
+    /// Of a ball at times[time]. 0 if it is out of play.
+    const StateDerivative& state(std::size_t time, int ball, std::size_t input) const {
+        return columns_[input].states[time * balls_ + static_cast<std::size_t>(ball)];
+    }
+    /// Of the time of events[event] [s]. NaN if the shot with the tighter tolerance lacks this event.
+    double event_time(std::size_t event, std::size_t input) const {
+        return columns_[input].events[event].time;
+    }
+    /// Of the position of ball `Event::a` at events[event], including the shift of the event in time [m].
+    const Vec2& event_place(std::size_t event, std::size_t input) const {
+        return columns_[input].events[event].place;
+    }
+    /// [-] Estimated error of a column: the largest one of any ball, relative to the largest derivative of
+    /// the same kind (position, velocity, spin, event). Infinite if no shots could be compared.
+    double error(std::size_t input) const { return columns_[input].error; }
+    /// Number of shots played.
+    int shots() const { return shots_; }
+
+  private:
+    struct EventDerivative {
+        double time;
+        Vec2 place;
+    };
+    struct Column {
+        std::string input, why;  ///< `why` it is refused; "" if only the error says so
+        std::vector<StateDerivative> states;
+        std::vector<EventDerivative> events;
+        double error;
+    };
+    friend class Differences;
+    std::vector<Column> columns_;
+    std::size_t balls_ = 0;
+    int shots_ = 0;
+};
+
+}  // namespace carom
