@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/derivatives.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/scene_number.h"
-#include "carom/engine/tangents.h"
 #include "carom/engine/variation.h"
 #include "contact/detect.h"
 #include "reference/random_impacts.h"
@@ -263,7 +263,7 @@ TEST(Arcs, HaveDerivatives) {
     EXPECT_GE(count(record, EventType::kBallJaw), 2);
     const std::vector<std::string> keys = {"ball.1.position.x", "ball.1.velocity.1", "table.arc.a1.radius",
                                            "table.arc.a2.center.x"};
-    const Tangents tangents(plan, record, keys);
+    const Derivatives by(plan, record, keys, {record.duration});
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const SceneNumber number(scene, keys[k]);
         const double at = number.value(scene);
@@ -275,37 +275,11 @@ TEST(Arcs, HaveDerivatives) {
             const Record one = simulate(plan_of(moved));
             end[side] = one.state_at(0, one.duration).position;
         }
-        const Vec3 difference = (end[1] - end[0]) / (2.0 * kStep), exact = tangents.at_end(0, k).position;
+        const Vec3 difference = (end[1] - end[0]) / (2.0 * kStep), exact = by.state(0, 0, k).position;
         for (int i = 0; i < 2; ++i)
             EXPECT_NEAR(exact[i], difference[i], 1e-5 * (1.0 + std::abs(difference[i])))
                 << keys[k] << " " << i;
     }
-    for (const Margin& margin : tangents.margins()) EXPECT_GT(margin.up, 0.0);
-}
-
-TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
-    const auto why_not = [](Scene scene) {
-        const Plan plan = plan_of(scene);
-        const Record record = simulate(plan);
-        try {
-            Tangents(plan, record, {"ball.1.velocity.0"});
-        } catch (const TangentError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    Scene scene = lossless();
-    scene.stop.time = 0.1;
-    scene.balls.disc = true;
-    add_ball(scene, "1", 0.0, 0.0, 1.0, 0.5);
-    EXPECT_EQ(why_not(scene), "");
-    add_ball(scene, "2", 0.5, 0.0);
-    scene.ball.back().own = BallSize{0.04, scene.balls.m};
-    scene.ball.back().position.z() = 0.04;
-    EXPECT_EQ(why_not(scene), "discs of different size have no derivatives here");
-    scene.ball.pop_back();
-    scene.balls.slides = true;
-    EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");
 }
 
 // Code that draws tables receives arcs as short cushions.

@@ -10,7 +10,6 @@
 
 #include "contact/touch.h"
 #include "reference/random_impacts.h"
-#include "tangent/dual.h"
 
 namespace carom {
 namespace {
@@ -147,45 +146,6 @@ TEST(Touch, SpeedAndAccelerationMatchTheGap) {
             EXPECT_NEAR(touch.pressing(planar(a)) + touch.n.z() * a.z(), -bend, 1e-6)
                 << kind.name << " " << k;
         }
-    }
-}
-
-TEST(Touch, DualNumbersYieldTheGradient) {
-    using tangent::Dual, tangent::Dual3;
-    struct Line {
-        tangent::Dual2 from, direction;
-        Dual height, inset;
-    };
-    struct Round {
-        tangent::Dual2 center;
-        Dual radius, height, inset;
-    };
-    const Line line{{kLine.from.x(), kLine.from.y()}, {0.6, 0.8}, kHeight, kInset};
-    for (const bool flies : {false, true}) {
-        const Vec3 r(0.2, 0.1, 0.09), other(0.3, 0.2, 0.05);
-        BallAt<Dual3> ball{{r.x(), r.y(), r.z()}, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
-        for (int i = 0; i < 3; ++i) ball.r[i].d[i] = 1.0;
-        ball.R.d[3] = 1.0;
-        const Ball numbers{r, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
-        const auto compare = [&](const Touch<Dual3>& dual, const Touch<Vec3>& touch) {
-            EXPECT_NEAR(dual.gap.x, touch.gap, 1e-16);
-            EXPECT_NEAR(dual.closing.x, touch.closing, 1e-16);
-            EXPECT_NEAR(dual.bend.x, touch.bend, 1e-15);
-            // The gap shrinks by the motion along the normal.
-            for (int i = 0; i < 3; ++i) EXPECT_NEAR(dual.gap.d[i], -touch.n[i], 1e-15) << i;
-        };
-        compare(touch_line(line, ball), touch_line(kLine, numbers));
-        for (const double radius : {0.02, 0.0, -0.3}) {
-            if (flies && radius < 0.0) continue;
-            const Round round{{0.3, -0.1}, radius, kHeight, kInset};
-            compare(touch_round(round, ball), touch_round(nose(radius), numbers));
-        }
-        const BallAt<Dual3> dual_other{{other.x(), other.y(), other.z()}, {}, 0.02};
-        const Touch<Dual3> pair = flies ? touch_ball(ball, dual_other) : touch_level(ball, dual_other, false);
-        compare(pair, flies ? touch_ball(numbers, ball_at(other, false, 0.02))
-                            : touch_level(numbers, ball_at(other, false, 0.02), false));
-        // Unlike balls on the cloth: 2 sqrt(R1 R2).
-        EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kTouchR), 1e-15);
     }
 }
 

@@ -47,6 +47,17 @@ double largest(const Vec3& v) {
     return v.cwiseAbs().maxCoeff();
 }
 
+/// What identifies an event in another shot: its kind, its partners, and how often they have met before.
+/// `past` is everything that happened before to the balls that meet.
+struct Mark {
+    std::uint64_t id, past;
+};
+std::uint64_t mix(std::initializer_list<std::uint64_t> numbers) {
+    Fnv hash;
+    for (const std::uint64_t number : numbers) hash.add(number);
+    return hash.value();
+}
+
 /// What happened to each ball, with everything that happened before to the balls that it met: two shots in
 /// which this is equal have the same causes in the same order. Rolling, stopping and the end of spin are left
 /// out: they do not push anything.
@@ -56,52 +67,53 @@ class Pasts {
 
     std::uint64_t of(std::size_t ball) const { return balls_[ball].past; }
 
-    /// Adds an event. @return what identifies it in other shots
-    std::uint64_t add(const Event& event) {
+    Mark add(const Event& event) {
         const EventKind& what = kind(event.type);
         Ball& a = balls_[static_cast<std::size_t>(event.a)];
+        const bool pair = what.partner == Partner::kBall;
         const auto type = static_cast<std::uint64_t>(event.type);
-        if (what.phase == EventPhase::kTransition && what.partner == Partner::kNone &&
-            event.type != EventType::kBallOut)
-            return mix({a.past, type, static_cast<std::uint64_t>(event.a), ++a.transitions[event.type]});
+        const auto one = static_cast<std::uint64_t>(pair ? std::min(event.a, event.b) : event.a),
+                   two = static_cast<std::uint64_t>(pair ? std::max(event.a, event.b) : event.b);
+        const bool pushes = what.phase != EventPhase::kTransition || what.partner != Partner::kNone ||
+                            event.type == EventType::kBallOut;
+        if (!pushes) {
+            const std::uint64_t id = mix({type, one, a.pushes});
+            return {mix({id, ++times_[id]}), mix({id, a.past})};
+        }
         std::vector<int> met{event.a};
         if (event.type == EventType::kBallCluster)
             met = record_.clusters[static_cast<std::size_t>(event.detail)];
-        else if (what.partner == Partner::kBall)
+        else if (pair)
             met.push_back(event.b);
         std::uint64_t all = 0;  // in any order
         for (const int ball : met)
             all += mix({balls_[static_cast<std::size_t>(ball)].past, static_cast<std::uint64_t>(ball)});
-        const bool part = what.partner != Partner::kBall;
-        const std::uint64_t past = mix({all, type, part ? static_cast<std::uint64_t>(event.b) : 0u});
-        for (const int ball : met) balls_[static_cast<std::size_t>(ball)] = {past, {}};
-        return past;
+        const std::uint64_t past = mix({all, type, pair ? 0 : two}), id = mix({type, one, two});
+        for (const int ball : met) {
+            balls_[static_cast<std::size_t>(ball)].past = past;
+            ++balls_[static_cast<std::size_t>(ball)].pushes;
+        }
+        return {mix({id, ++times_[id]}), past};
     }
 
   private:
-    static std::uint64_t mix(std::initializer_list<std::uint64_t> numbers) {
-        Fnv hash;
-        for (const std::uint64_t number : numbers) hash.add(number);
-        return hash.value();
-    }
     struct Ball {
-        std::uint64_t past = 0;
-        std::map<EventType, std::uint64_t> transitions;  // since then
+        std::uint64_t past = 1, pushes = 0;
     };
     const Record& record_;
     std::vector<Ball> balls_;
+    std::map<std::uint64_t, std::uint64_t> times_;
 };
 
 /// A result of a shot: three numbers, and the past on which they depend.
 struct Result {
     Vec3 x;
-    std::uint64_t past;
+    std::uint64_t past;  ///< 0: the shot lacks this result
 };
 /// A pair of shots at the input plus and minus a step.
 struct Pair {
     double step;
     std::vector<Result> low, high;  ///< empty: not played
-    bool played() const { return !low.empty() && !high.empty(); }
 };
 struct Slope {
     Vec3 x = Vec3::Zero();
@@ -116,8 +128,10 @@ Slope slope_of(const std::vector<Pair>& pairs, std::size_t which, const Result& 
     std::vector<Vec3> last;
     Vec3 last_bend = Vec3::Zero();
     for (const Pair& pair : pairs) {
-        const bool use = pair.played() && (!same || (pair.low[which].past == middle.past &&
-                                                     pair.high[which].past == middle.past));
+        const auto comparable = [&](const std::vector<Result>& shot) {
+            return !shot.empty() && (same ? shot[which].past == middle.past : shot[which].past != 0);
+        };
+        const bool use = comparable(pair.low) && comparable(pair.high);
         if (!use) {
             last.clear();
             continue;
@@ -176,7 +190,7 @@ class Differences {
         if (!rests) scene_.stop.events.reset();
         Pasts pasts(record);
         std::vector<std::uint64_t> ids;
-        for (const Event& event : record.events) ids.push_back(pasts.add(event));
+        for (const Event& event : record.events) ids.push_back(pasts.add(event).id);
         for (const std::size_t event : events) ids_.push_back(ids[event]);
         middle_ = results_of(simulate(make_plan(scene_, isa_), options_));
         ++out_.shots_;
@@ -252,29 +266,30 @@ class Differences {
                                     {Vec3::Zero(), 0});
         Pasts pasts(record);
         auto event = record.events.begin();
-        std::vector<std::uint64_t> ids;
+        std::vector<Mark> marks;
         for (const std::size_t k : order_) {
             for (; event != record.events.end() && event->time <= times_[k]; ++event)
-                ids.push_back(pasts.add(*event));
+                marks.push_back(pasts.add(*event));
             const double time = std::min(times_[k], record.duration);
             for (std::size_t ball = 0; ball < out_.balls_; ++ball) {
                 const BallState state = record.state_at(static_cast<int>(ball), time);
                 if (is_gone(state.state)) continue;
                 Result* to = &results[3 * (k * out_.balls_ + ball)];
-                to[0] = {state.position, pasts.of(ball) + 1};
+                to[0] = {state.position, pasts.of(ball)};
                 to[1] = {state.velocity, to[0].past};
                 to[2] = {radii_[ball] * state.spin, to[0].past};
             }
         }
         if (events_.empty()) return results;
-        for (; event != record.events.end(); ++event) ids.push_back(pasts.add(*event));
+        for (; event != record.events.end(); ++event) marks.push_back(pasts.add(*event));
         for (std::size_t e = 0; e < events_.size(); ++e) {
-            const auto found = std::find(ids.begin(), ids.end(), ids_[e]);
-            if (found == ids.end()) continue;
-            const Event& same = record.events[static_cast<std::size_t>(found - ids.begin())];
+            const auto found = std::find_if(marks.begin(), marks.end(),
+                                            [&](const Mark& mark) { return mark.id == ids_[e]; });
+            if (found == marks.end()) continue;
+            const Event& same = record.events[static_cast<std::size_t>(found - marks.begin())];
             Result* to = &results[3 * times_.size() * out_.balls_ + 2 * e];
-            to[0] = {{same.time, 0.0, 0.0}, *found};
-            to[1] = {record.state_at(same.a, same.time).position, *found};
+            to[0] = {{same.time, 0.0, 0.0}, found->past};
+            to[1] = {record.state_at(same.a, same.time).position, found->past};
             to[1].x.z() = 0.0;
         }
         return results;
