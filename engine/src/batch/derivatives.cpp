@@ -203,17 +203,19 @@ class Differences {
             throw DerivativeError(fmt::format("{} is not a real number that the scene sets", key));
         const Interval& range = number.row().range;
         double size = std::abs(value);
-        if (std::string_view(range.unit) == "degrees") size = kAngle;
-        else if (range.low < 0.0) size = std::max(1.0, size);
+        if (std::string_view(range.unit) == "degrees")
+            size = kAngle;
+        else if (range.low < 0.0)
+            size = std::max(1.0, size);
         const auto fits = [&](int k) {
             return contains(range, value - step(size, k)) && contains(range, value + step(size, k));
         };
         int least = 0;
         while (least < kSteps - 2 && size > 0.0 && !fits(least)) ++least;
         if (!(size > 0.0) || !fits(least))
-            throw DerivativeError(fmt::format(
-                "{} = {} is at the end of its range, where it has no derivative; move it inwards", key,
-                value));
+            throw DerivativeError(
+                fmt::format("{} = {} is at the end of its range, where it has no derivative; move it inwards",
+                            key, value));
         Derivatives::Column column{key, "", {}, {}, kNone};
         int first = std::max(least, first_), next = first + 2;
         std::vector<Pair> pairs = play(key, value, size, first, 2, column.why);
@@ -223,12 +225,15 @@ class Differences {
             if (column.error <= kEnough) break;
             worse = column.error < 0.5 * best ? 0 : worse + 1;
             best = std::min(best, column.error);
-            const bool shorter = next < kSteps && (best > kMostDerivativeError || worse < (best > kFair ? 2 : 1));
+            const bool shorter =
+                next < kSteps && (best > kMostDerivativeError || worse < (best > kFair ? 2 : 1));
             if (!shorter && (first == least || best <= kFair)) break;
             const std::vector<Pair> more = play(key, value, size, shorter ? next : first - 1, 1, column.why);
             pairs.insert(shorter ? pairs.end() : pairs.begin(), more.begin(), more.end());
-            if (shorter) ++next;
-            else --first;
+            if (shorter)
+                ++next;
+            else
+                --first;
         }
         first_ = std::max(0, next - 3);
         out_.columns_.push_back(std::move(column));
@@ -262,8 +267,7 @@ class Differences {
 
     /// States of every ball at every time (position, velocity, R spin), then times and places of events.
     std::vector<Result> results_of(const Record& record) const {
-        std::vector<Result> results(3 * times_.size() * out_.balls_ + 2 * events_.size(),
-                                    {Vec3::Zero(), 0});
+        std::vector<Result> results(3 * times_.size() * out_.balls_ + 2 * events_.size(), {Vec3::Zero(), 0});
         Pasts pasts(record);
         auto event = record.events.begin();
         std::vector<Mark> marks;

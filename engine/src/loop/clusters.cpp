@@ -25,10 +25,10 @@ constexpr double kClosesStill = 1e-12;
 
 /// For balls on the cloth, ignores the height at which the fall of one began; unlike balls touch above or
 /// below their equators.
-Touch<Vec3> touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
+Touch touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
     const auto at = [&](const ClusterBall& b) {
-        if (in_space) return BallAt<Vec3>{b.r, b.v, b.R};
-        return BallAt<Vec3>{{b.r.x(), b.r.y(), discs ? 0.0 : b.R}, {b.v.x(), b.v.y(), 0.0}, b.R};
+        if (in_space) return BallAt{b.r, b.v, b.R};
+        return BallAt{{b.r.x(), b.r.y(), discs ? 0.0 : b.R}, {b.v.x(), b.v.y(), 0.0}, b.R};
     };
     return touch_ball(at(p), at(q));
 }
@@ -103,9 +103,9 @@ void Clusters::collect_at(int a, int b, double v_n) {
                                                                 {plan_.balls.R, plan_.balls.m})
                             : 0.0;
     contact_time_ = time;
-    const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
+    const auto reach = [&](const Touch& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
-        Touch<Vec3> near = touch_of(p, q, flights_, plan_.balls.discs());
+        Touch near = touch_of(p, q, flights_, plan_.balls.discs());
         // Only here is it decided whether balls touch: a gap within the rounding of the positions counts as
         // touching.
         if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;
@@ -126,7 +126,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
             if (is_member(q) || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
-            const Touch<Vec3> near = gap_of(here, candidate);
+            const Touch near = gap_of(here, candidate);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
@@ -143,7 +143,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     });
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
-            const Touch<Vec3> near = gap_of(members_[i], members_[j]);
+            const Touch near = gap_of(members_[i], members_[j]);
             if (!passes(members_[i].ball, members_[j].ball) && near.gap <= kListed * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});

@@ -5,7 +5,7 @@
 namespace carom {
 
 ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two) {
-    const Touch<Vec3> touch = touch_level(balls.at(one), balls.at(two), plan.balls.discs());
+    const Touch touch = touch_level(balls.at(one), balls.at(two), plan.balls.discs());
     return {{one, With::kBall, two},
             planar(touch.n),
             touch.closing,

@@ -337,7 +337,7 @@ void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const
 }
 
 void RestingContacts::refresh_normal(RestingContact& c) const {
-    const BallAt<Vec3> ball = balls_.at(c.contact.ball);
+    const BallAt ball = balls_.at(c.contact.ball);
     c.n = planar(c.contact.with == With::kBall
                      ? touch_level(ball, balls_.at(c.contact.other), plan_.balls.discs()).n
                      : touch_part(plan_.geometry, c.contact, ball).n);

@@ -43,8 +43,8 @@ std::string first_change(const Record& meant, const Record& other) {
         first = event.time;
         const std::string partner = record.partner_id(event);
         what = fmt::format("the {} of {}{}{} at {:.3f} s is {}", name(event.type),
-                           record.tracks[static_cast<std::size_t>(event.a)].id, partner.empty() ? "" : " and ",
-                           partner, event.time, is_new ? "new" : "missing");
+                           record.tracks[static_cast<std::size_t>(event.a)].id,
+                           partner.empty() ? "" : " and ", partner, event.time, is_new ? "new" : "missing");
     }
     return what;
 }

@@ -195,7 +195,8 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     for (std::size_t k = 0; k < inputs.size(); ++k) {
         const Nudge& nudge = result.nudges[k];
         // A place may have no derivative, such as that of a ball at a rail.
-        if (const std::string why = by.refusal(k); !why.empty() && nudge.hand > 0.0) throw DerivativeError(why);
+        if (const std::string why = by.refusal(k); !why.empty() && nudge.hand > 0.0)
+            throw DerivativeError(why);
         result.errors.push_back(by.error(k));
         result.margins.push_back(order_margin(plan, record, nudge.key, kFirstChange * nudge.size));
     }
@@ -203,8 +204,7 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     for (BallResult& row : result.balls) {
         Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
         for (std::size_t k = 0; k < inputs.size(); ++k) {
-            const Vec2 d =
-                row.fall ? by.event_place(fallen, k) : planar(by.state(0, row.ball, k).position);
+            const Vec2 d = row.fall ? by.event_place(fallen, k) : planar(by.state(0, row.ball, k).position);
             row.moves.push_back(by.refusal(k).empty() ? Vec2(d * result.nudges[k].size)
                                                       : Vec2::Constant(std::nan("")));
             if (result.nudges[k].hand > 0.0)
@@ -212,8 +212,7 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
         }
         row.expected = ellipse_of(covariance);
         const int pocket = record.tracks[static_cast<std::size_t>(row.ball)].pocket;
-        if (row.fall)
-            row.window = {window_end(plan, row, pocket, -1.0), window_end(plan, row, pocket, 1.0)};
+        if (row.fall) row.window = {window_end(plan, row, pocket, -1.0), window_end(plan, row, pocket, 1.0)};
         fallen += row.fall ? 1 : 0;
     }
     play(plan, record, hand, args, result);
@@ -235,9 +234,10 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const Nudge& nudge = s.nudges[k];
         std::vector<Cell> cells{nudge.words};
         for (const BallResult& ball : s.balls)
-            cells.push_back(std::isnan(ball.moves[k].x()) ? "none"
-                                                          : fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(),
-                                                                        1e3 * ball.moves[k].y()));
+            cells.push_back(
+                std::isnan(ball.moves[k].x())
+                    ? "none"
+                    : fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
         cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k].down * nudge.scale),
                                     bound_text(s.margins[k].up * nudge.scale), nudge.unit));
         table.add(cells);
