@@ -42,7 +42,7 @@ void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector
         for (std::size_t k = 0; k < times.size(); ++k)
             for (int ball = 0; ball < static_cast<int>(r.record->tracks.size()); ++ball) {
                 for (std::size_t i = 0; i < inputs.size(); ++i) {
-                    const StateDerivative& slope = by.state(k, ball, i);
+                    const StateDerivative slope = by.state(k, ball, i);
                     for (std::size_t axis = 0; axis < 3; ++axis) {
                         const auto a = static_cast<Eigen::Index>(axis);
                         at[axis * inputs.size() + i] = slope.position[a];

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "carom/engine/derivatives.h"
 #include "carom/engine/event_details.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/variation.h"
@@ -245,41 +244,6 @@ TEST(Arcs, ABallRunsAlongARoundWall) {
     EXPECT_NEAR(end.velocity.y(), 0.0, 1e-3);
     EXPECT_NEAR(end.position.y(), 0.5, 1e-3);
     EXPECT_NEAR(end.position.x(), -(3.0 - 0.5 - 0.5 * std::numbers::pi), 1e-3);
-}
-
-// Derivatives of a ball's place after six bounces, with respect to its start and to the wall, against
-// differences.
-TEST(Arcs, HaveDerivatives) {
-    const std::string text =
-        "[balls]\nradius = 0.03\nmu_b = 0\n[physics]\nball_ball = \"elastic\"\n[[table.arc]]\ncenter = [0, "
-        "0]\n"
-        "radius = 1\nfrom_deg = 30\nto_deg = 330\n[[table.arc]]\ncenter = [1.6, 0]\nradius = 0.8\nfrom_deg = "
-        "120\n"
-        "to_deg = 240\nside = \"outside\"\n[[ball]]\nid = \"1\"\nposition = [0.1, 0.3]\nvelocity = [1.5, "
-        "0.8]\n";
-    const Scene scene = parse_scene(text, "s.toml");
-    const Plan plan = plan_of(scene);
-    const Record record = simulate(plan);
-    EXPECT_GE(count(record, EventType::kBallJaw), 2);
-    const std::vector<std::string> keys = {"ball.1.position.x", "ball.1.velocity.1", "table.arc.a1.radius",
-                                           "table.arc.a2.center.x"};
-    const Derivatives by(plan, record, keys, {record.duration});
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        const SceneNumber number(scene, keys[k]);
-        const double at = number.value(scene);
-        std::array<Vec3, 2> end;
-        constexpr double kStep = 1e-6;
-        for (const int side : {0, 1}) {
-            Scene moved = scene;
-            number.put(moved, at + (side == 0 ? -kStep : kStep));
-            const Record one = simulate(plan_of(moved));
-            end[side] = one.state_at(0, one.duration).position;
-        }
-        const Vec3 difference = (end[1] - end[0]) / (2.0 * kStep), exact = by.state(0, 0, k).position;
-        for (int i = 0; i < 2; ++i)
-            EXPECT_NEAR(exact[i], difference[i], 1e-5 * (1.0 + std::abs(difference[i])))
-                << keys[k] << " " << i;
-    }
 }
 
 // Code that draws tables receives arcs as short cushions.

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
-#include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/fnv.h"
@@ -47,11 +47,6 @@ double largest(const Vec3& v) {
     return v.cwiseAbs().maxCoeff();
 }
 
-/// What identifies an event in another shot: its kind, its partners, and how often they have met before.
-/// `past` is everything that happened before to the balls that meet.
-struct Mark {
-    std::uint64_t id, past;
-};
 std::uint64_t mix(std::initializer_list<std::uint64_t> numbers) {
     Fnv hash;
     for (const std::uint64_t number : numbers) hash.add(number);
@@ -63,45 +58,47 @@ std::uint64_t mix(std::initializer_list<std::uint64_t> numbers) {
 /// out: they do not push anything.
 class Pasts {
   public:
-    explicit Pasts(const Record& record) : record_(record), balls_(record.tracks.size()) {}
+    struct Mark {
+        std::uint64_t id;    ///< of an event in other shots: its kind and partners, and how often they met
+        std::uint64_t past;  ///< of the balls that meet
+    };
+    std::vector<Mark> marks;  ///< of all events
 
-    std::uint64_t of(std::size_t ball) const { return balls_[ball].past; }
-
-    Mark add(const Event& event) {
-        const EventKind& what = kind(event.type);
-        Ball& a = balls_[static_cast<std::size_t>(event.a)];
-        const bool pair = what.partner == Partner::kBall;
-        const auto type = static_cast<std::uint64_t>(event.type);
-        const auto one = static_cast<std::uint64_t>(pair ? std::min(event.a, event.b) : event.a),
-                   two = static_cast<std::uint64_t>(pair ? std::max(event.a, event.b) : event.b);
-        const bool pushes = what.phase != EventPhase::kTransition || what.partner != Partner::kNone ||
-                            event.type == EventType::kBallOut;
-        if (!pushes) {
-            const std::uint64_t id = mix({type, one, a.pushes});
-            return {mix({id, ++times_[id]}), mix({id, a.past})};
+    explicit Pasts(const Record& record)
+        : balls_(record.tracks.size(), {{-std::numeric_limits<double>::infinity(), 1}}) {
+        for (const Event& event : record.events) {
+            const EventKind& what = kind(event.type);
+            const bool pair = what.partner == Partner::kBall;
+            const auto number = [](auto x) { return static_cast<std::uint64_t>(x); };
+            const auto type = number(event.type), one = number(pair ? std::min(event.a, event.b) : event.a),
+                       two = number(pair ? std::max(event.a, event.b) : event.b);
+            if (what.phase == EventPhase::kTransition && what.partner == Partner::kNone &&
+                event.type != EventType::kBallOut) {
+                const auto& before = balls_[one];
+                const std::uint64_t id = mix({type, one, before.size()});
+                marks.push_back({mix({id, ++times_[id]}), mix({id, before.back().second})});
+                continue;
+            }
+            std::vector<int> met{event.a};
+            if (event.type == EventType::kBallCluster)
+                met = record.clusters[number(event.detail)];
+            else if (pair)
+                met.push_back(event.b);
+            std::uint64_t all = 0;  // in any order
+            for (const int ball : met) all += mix({balls_[number(ball)].back().second, number(ball)});
+            const std::uint64_t past = mix({all, type, pair ? 0 : two}), id = mix({type, one, two});
+            for (const int ball : met) balls_[number(ball)].emplace_back(event.time, past);
+            marks.push_back({mix({id, ++times_[id]}), past});
         }
-        std::vector<int> met{event.a};
-        if (event.type == EventType::kBallCluster)
-            met = record_.clusters[static_cast<std::size_t>(event.detail)];
-        else if (pair)
-            met.push_back(event.b);
-        std::uint64_t all = 0;  // in any order
-        for (const int ball : met)
-            all += mix({balls_[static_cast<std::size_t>(ball)].past, static_cast<std::uint64_t>(ball)});
-        const std::uint64_t past = mix({all, type, pair ? 0 : two}), id = mix({type, one, two});
-        for (const int ball : met) {
-            balls_[static_cast<std::size_t>(ball)].past = past;
-            ++balls_[static_cast<std::size_t>(ball)].pushes;
-        }
-        return {mix({id, ++times_[id]}), past};
+    }
+    std::uint64_t at(std::size_t ball, double time) const {
+        const auto after = std::upper_bound(balls_[ball].begin(), balls_[ball].end(), time,
+                                            [](double t, const auto& entry) { return t < entry.first; });
+        return after[-1].second;
     }
 
   private:
-    struct Ball {
-        std::uint64_t past = 1, pushes = 0;
-    };
-    const Record& record_;
-    std::vector<Ball> balls_;
+    std::vector<std::vector<std::pair<double, std::uint64_t>>> balls_;
     std::map<std::uint64_t, std::uint64_t> times_;
 };
 
@@ -125,35 +122,36 @@ struct Slope {
 /// @param same  use only shots in which the result has the same past
 Slope slope_of(const std::vector<Pair>& pairs, std::size_t which, const Result& middle, bool same) {
     Slope best;
-    std::vector<Vec3> last;
+    std::array<Vec3, kSteps> row, last;
+    row.fill(Vec3::Zero());
     Vec3 last_bend = Vec3::Zero();
+    std::size_t known = 0;  // entries of `last`
     for (const Pair& pair : pairs) {
         const auto comparable = [&](const std::vector<Result>& shot) {
             return !shot.empty() && (same ? shot[which].past == middle.past : shot[which].past != 0);
         };
-        const bool use = comparable(pair.low) && comparable(pair.high);
-        if (!use) {
-            last.clear();
+        if (!comparable(pair.low) || !comparable(pair.high)) {
+            known = 0;
             continue;
         }
         const Vec3 &low = pair.low[which].x, &high = pair.high[which].x;
-        std::vector<Vec3> row{(high - low) / (2.0 * pair.step)};
+        row[0] = (high - low) / (2.0 * pair.step);
         const Vec3 bend = ((high - middle.x) + (low - middle.x)) / (2.0 * pair.step);
-        // In proportion to the step, unless the derivative jumps here or rounding decides.
-        const double jump = largest(bend - last_bend / kRatio) / (1.0 - 1.0 / kRatio);
         double power = 1.0;
-        for (std::size_t k = 0; k < last.size(); ++k) {
+        for (std::size_t k = 0; k < known; ++k) {
             power *= kRatio * kRatio;
-            row.push_back(row[k] + (row[k] - last[k]) / (power - 1.0));
+            row[k + 1] = row[k] + (row[k] - last[k]) / (power - 1.0);
             const double change = largest(row[k + 1] - row[k]), size = largest(row[k + 1]);
             double error = change;
             // The terms of Taylor's series shrink by a constant factor: that of the next one is known.
             if (k == 0 && same && change < 0.2 * size) error = 5.0 * change * change / size;
-            error = std::max(error, kJump * jump);
+            // The bend is in proportion to the step, unless the derivative jumps here or rounding decides.
+            error = std::max(error, kJump * largest(bend - last_bend / kRatio) / (1.0 - 1.0 / kRatio));
             if (error < best.error) best = {row[k + 1], error};
         }
-        last = std::move(row);
+        last = row;
         last_bend = bend;
+        ++known;
     }
     return best;
 }
@@ -164,10 +162,11 @@ class Differences {
   public:
     Differences(Derivatives& out, const Plan& plan, const Record& record, const std::vector<double>& times,
                 const std::vector<std::size_t>& events)
-        : out_(out), scene_(plan.scene), record_(record), isa_(plan.isa), events_(events) {
+        : out_(out), scene_(plan.scene), isa_(plan.isa) {
         if (plan.sizes.size() != record.tracks.size())
             throw std::invalid_argument("the record is not of this plan: it has another number of balls");
         out_.balls_ = plan.sizes.size();
+        out_.states_ = 3 * times.size() * out_.balls_;
         for (const BallSize& size : plan.sizes) radii_.push_back(size.R);
         scene_.physics.tolerance = kTolerance;
         scene_.physics.substeps.reset();
@@ -180,18 +179,15 @@ class Differences {
         const bool rests = record.stopped == StopReason::kAtRest;
         for (const double time : times)
             times_.push_back(time < record.duration ? std::max(time, 0.0) : rests ? kNone : record.duration);
-        order_.resize(times.size());
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        std::sort(order_.begin(), order_.end(),
-                  [this](std::size_t a, std::size_t b) { return times_[a] < times_[b]; });
-        double until = times.empty() ? 0.0 : times_[order_.back()];
-        for (const std::size_t event : events) until = std::max(until, record.events[event].time + kAfter);
+        double until = 0.0;
+        for (const double time : times_) until = std::max(until, time);
+        const Pasts pasts(record);
+        for (const std::size_t event : events) {
+            until = std::max(until, record.events[event].time + kAfter);
+            ids_.push_back(pasts.marks[event].id);
+        }
         if (until < kNone) options_.until = until;
         if (!rests) scene_.stop.events.reset();
-        Pasts pasts(record);
-        std::vector<std::uint64_t> ids;
-        for (const Event& event : record.events) ids.push_back(pasts.add(event).id);
-        for (const std::size_t event : events) ids_.push_back(ids[event]);
         middle_ = results_of(simulate(make_plan(scene_, isa_), options_));
         ++out_.shots_;
     }
@@ -216,7 +212,7 @@ class Differences {
             throw DerivativeError(
                 fmt::format("{} = {} is at the end of its range, where it has no derivative; move it inwards",
                             key, value));
-        Derivatives::Column column{key, "", {}, {}, kNone};
+        Derivatives::Column column{key, "", {}, kNone};
         int first = std::max(least, first_), next = first + 2;
         std::vector<Pair> pairs = play(key, value, size, first, 2, column.why);
         double best = kNone;
@@ -228,12 +224,8 @@ class Differences {
             const bool shorter =
                 next < kSteps && (best > kMostDerivativeError || worse < (best > kFair ? 2 : 1));
             if (!shorter && (first == least || best <= kFair)) break;
-            const std::vector<Pair> more = play(key, value, size, shorter ? next : first - 1, 1, column.why);
+            const auto more = play(key, value, size, shorter ? next++ : --first, 1, column.why);
             pairs.insert(shorter ? pairs.end() : pairs.begin(), more.begin(), more.end());
-            if (shorter)
-                ++next;
-            else
-                --first;
         }
         first_ = std::max(0, next - 3);
         out_.columns_.push_back(std::move(column));
@@ -244,6 +236,7 @@ class Differences {
 
     std::vector<Pair> play(const std::string& key, double value, double size, int first, int count,
                            std::string& why) {
+        why.clear();
         std::vector<double> values;
         for (int k = first; k < first + count; ++k)
             for (const double sign : {-1.0, 1.0}) values.push_back(value + sign * step(size, k));
@@ -267,67 +260,52 @@ class Differences {
 
     /// States of every ball at every time (position, velocity, R spin), then times and places of events.
     std::vector<Result> results_of(const Record& record) const {
-        std::vector<Result> results(3 * times_.size() * out_.balls_ + 2 * events_.size(), {Vec3::Zero(), 0});
-        Pasts pasts(record);
-        auto event = record.events.begin();
-        std::vector<Mark> marks;
-        for (const std::size_t k : order_) {
-            for (; event != record.events.end() && event->time <= times_[k]; ++event)
-                marks.push_back(pasts.add(*event));
-            const double time = std::min(times_[k], record.duration);
-            for (std::size_t ball = 0; ball < out_.balls_; ++ball) {
-                const BallState state = record.state_at(static_cast<int>(ball), time);
-                if (is_gone(state.state)) continue;
-                Result* to = &results[3 * (k * out_.balls_ + ball)];
-                to[0] = {state.position, pasts.of(ball)};
-                to[1] = {state.velocity, to[0].past};
-                to[2] = {radii_[ball] * state.spin, to[0].past};
-            }
+        std::vector<Result> results(out_.states_ + 2 * ids_.size(), {Vec3::Zero(), 0});
+        const Pasts pasts(record);
+        for (std::size_t i = 0; i < out_.states_; i += 3) {
+            const std::size_t ball = i / 3 % out_.balls_;
+            const double time = std::min(times_[i / 3 / out_.balls_], record.duration);
+            const BallState state = record.state_at(static_cast<int>(ball), time);
+            if (is_gone(state.state)) continue;
+            const std::uint64_t past = pasts.at(ball, time);
+            results[i] = {state.position, past};
+            results[i + 1] = {state.velocity, past};
+            results[i + 2] = {radii_[ball] * state.spin, past};
         }
-        if (events_.empty()) return results;
-        for (; event != record.events.end(); ++event) marks.push_back(pasts.add(*event));
-        for (std::size_t e = 0; e < events_.size(); ++e) {
-            const auto found = std::find_if(marks.begin(), marks.end(),
-                                            [&](const Mark& mark) { return mark.id == ids_[e]; });
-            if (found == marks.end()) continue;
-            const Event& same = record.events[static_cast<std::size_t>(found - marks.begin())];
-            Result* to = &results[3 * times_.size() * out_.balls_ + 2 * e];
+        for (std::size_t e = 0; e < ids_.size(); ++e) {
+            const auto found = std::find_if(pasts.marks.begin(), pasts.marks.end(),
+                                            [&](const Pasts::Mark& mark) { return mark.id == ids_[e]; });
+            if (found == pasts.marks.end()) continue;
+            const Event& same = record.events[static_cast<std::size_t>(found - pasts.marks.begin())];
+            Result* to = &results[out_.states_ + 2 * e];
             to[0] = {{same.time, 0.0, 0.0}, found->past};
             to[1] = {record.state_at(same.a, same.time).position, found->past};
-            to[1].x.z() = 0.0;
         }
         return results;
     }
 
     /// The derivatives from these pairs, and their error.
     void read(const std::vector<Pair>& pairs, double size, Derivatives::Column& column) const {
-        const std::size_t states = 3 * times_.size() * out_.balls_;
-        std::vector<Slope> slopes;
         // By kind: position, velocity, spin, time and place.
         std::array<double, 5> most, errors{};
         most.fill(kUnmoved / size);
+        column.slopes.assign(middle_.size(), Vec3::Zero());
         for (std::size_t i = 0; i < middle_.size(); ++i) {
-            Slope slope{Vec3::Zero(), 0.0};
-            if (middle_[i].past != 0) {
-                slope = slope_of(pairs, i, middle_[i], true);
-                if (!(slope.error < kNone)) slope = slope_of(pairs, i, middle_[i], false);
-            } else if (i >= states) {
-                slope.x.setConstant(std::numeric_limits<double>::quiet_NaN());
+            const bool state = i < out_.states_;
+            const std::size_t kind = state ? i % 3 : 3 + (i - out_.states_) % 2;
+            if (middle_[i].past == 0) {
+                if (!state) column.slopes[i].setConstant(std::numeric_limits<double>::quiet_NaN());
+                continue;
             }
-            const std::size_t kind = i < states ? i % 3 : 3 + (i - states) % 2;
-            if (middle_[i].past != 0) most[kind] = std::max(most[kind], largest(slope.x));
+            Slope slope = slope_of(pairs, i, middle_[i], true);
+            if (!(slope.error < kNone)) slope = slope_of(pairs, i, middle_[i], false);
+            most[kind] = std::max(most[kind], largest(slope.x));
             errors[kind] = std::max(errors[kind], slope.error);
-            slopes.push_back(slope);
+            column.slopes[i] = kind == 2 ? Vec3(slope.x / radii_[i / 3 % out_.balls_]) : slope.x;
         }
         column.error = 0.0;
         for (std::size_t kind = 0; kind < most.size(); ++kind)
             column.error = std::max(column.error, errors[kind] / most[kind]);
-        column.states.clear(), column.events.clear();
-        for (std::size_t i = 0; i < states; i += 3)
-            column.states.push_back(
-                {slopes[i].x, slopes[i + 1].x, slopes[i + 2].x / radii_[i / 3 % out_.balls_]});
-        for (std::size_t i = states; i < slopes.size(); i += 2)
-            column.events.push_back({slopes[i].x.x(), planar(slopes[i + 1].x)});
     }
 
     // [s] Shots continue for this long after the last event that is wanted.
@@ -335,12 +313,9 @@ class Differences {
 
     Derivatives& out_;
     Scene scene_;
-    const Record& record_;
     kernel::Isa isa_;
-    const std::vector<std::size_t>& events_;
-    std::vector<std::uint64_t> ids_;  // of these events
+    std::vector<std::uint64_t> ids_;  // of the events
     std::vector<double> times_;       // infinite: at rest
-    std::vector<std::size_t> order_;  // of the times
     std::vector<double> radii_;
     SimulateOptions options_;
     std::vector<Result> middle_;

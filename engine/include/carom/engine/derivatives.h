@@ -49,16 +49,17 @@ class Derivatives {
     void check() const;
 
     /// Of a ball at times[time]. 0 if it is out of play.
-    const StateDerivative& state(std::size_t time, int ball, std::size_t input) const {
-        return columns_[input].states[time * balls_ + static_cast<std::size_t>(ball)];
+    StateDerivative state(std::size_t time, int ball, std::size_t input) const {
+        const Vec3* slopes = &columns_[input].slopes[3 * (time * balls_ + static_cast<std::size_t>(ball))];
+        return {slopes[0], slopes[1], slopes[2]};
     }
     /// Of the time of events[event] [s]. NaN if the shot with the tighter tolerance lacks this event.
     double event_time(std::size_t event, std::size_t input) const {
-        return columns_[input].events[event].time;
+        return columns_[input].slopes[states_ + 2 * event].x();
     }
     /// Of the position of ball `Event::a` at events[event], including the shift of the event in time [m].
-    const Vec2& event_place(std::size_t event, std::size_t input) const {
-        return columns_[input].events[event].place;
+    Vec2 event_place(std::size_t event, std::size_t input) const {
+        return planar(columns_[input].slopes[states_ + 2 * event + 1]);
     }
     /// [-] Estimated error of a column: the largest one of any ball, relative to the largest derivative of
     /// the same kind (position, velocity, spin, event). Infinite if no shots could be compared.
@@ -67,19 +68,14 @@ class Derivatives {
     int shots() const { return shots_; }
 
   private:
-    struct EventDerivative {
-        double time;
-        Vec2 place;
-    };
     struct Column {
-        std::string input, why;  ///< `why` it is refused; "" if only the error says so
-        std::vector<StateDerivative> states;
-        std::vector<EventDerivative> events;
+        std::string input, why;    ///< `why` shots have no result; "" if all have one
+        std::vector<Vec3> slopes;  ///< position, velocity and spin of every ball at every time, then events
         double error;
     };
     friend class Differences;
     std::vector<Column> columns_;
-    std::size_t balls_ = 0;
+    std::size_t balls_ = 0, states_ = 0;  ///< the number of slopes before those of events
     int shots_ = 0;
 };
 

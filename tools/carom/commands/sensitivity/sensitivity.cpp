@@ -19,10 +19,10 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/statistics.h"
+#include "carom/engine/batch.h"
 #include "carom/engine/derivatives.h"
 #include "carom/engine/printable.h"
 #include "carom/games/noise.h"
-#include "order_margin.h"
 #include "report/diagram.h"
 #include "report/table.h"
 
@@ -34,8 +34,8 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
-// [nudges] The smallest change that is tried for a margin.
-constexpr double kFirstChange = 1e-3;
+// [nudges] The smallest and largest change that is tried for a margin.
+constexpr double kLeastChange = 1e-3, kMostChange = 1e3;
 
 struct SensitivityArgs {
     std::string scene, hand = kHand, plot;
@@ -104,45 +104,87 @@ std::optional<std::size_t> fall_of(const Record& record, int ball) {
     return record.tracks[static_cast<std::size_t>(ball)].pocket >= 0 ? found : std::nullopt;
 }
 
-/// The last aim on this side, going outwards, at which the ball falls into the same pocket.
+/// The last change on one side, going outwards, at which something holds; infinite if it holds up to `most`.
+/// @param step  the first change; the next ones are twice as large, or this much larger
+template <class Holds>
+double last_change(double step, bool doubles, double most, const Holds& holds) {
+    double inside = 0.0, outside = step;
+    for (; holds(outside); outside += doubles ? outside : step) {
+        inside = outside;
+        if (std::abs(outside) > most) return std::numeric_limits<double>::infinity();
+    }
+    for (int k = 0; k < kHalvings; ++k) {
+        const double middle = 0.5 * (inside + outside);
+        (holds(middle) ? inside : outside) = middle;
+    }
+    return inside;
+}
+
+/// The last aim on this side at which the ball falls into the same pocket.
 double window_end(const Plan& plan, const BallResult& result, int pocket, double way) {
     Planner planner(plan.scene, plan.isa);
     RunBuffers buffers;
     Outcome outcome;
     const double aim = plan.scene.cue->aim_deg;
-    const auto falls = [&](double by) {
+    const double end = last_change(way * kAimStep, false, kAimMost, [&](double by) {
         planner.scene().cue->aim_deg = aim + by;
         simulate(planner.plan(true), buffers, outcome, interruptible());
         return outcome.balls[static_cast<std::size_t>(result.ball)].pocket == pocket;
-    };
-    double inside = 0.0, outside = way * kAimStep;
-    while (falls(outside)) {
-        inside = outside;
-        outside += way * kAimStep;
-        if (std::abs(outside) > kAimMost) return inside;
-    }
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (inside + outside);
-        (falls(middle) ? inside : outside) = middle;
-    }
-    return inside;
+    });
+    return std::isfinite(end) ? end : way * kAimMost;
 }
+
+/// The change of one input up to which the shot has the same events; infinite if none was found.
+struct Margin {
+    double down, up;               ///< >= 0, in the unit of the input
+    std::string down_why, up_why;  ///< what differs beyond it; "" if nothing
+};
 
 struct Sensitivity {
     std::vector<Nudge> nudges;
     std::vector<double> errors;  ///< relative, of the derivatives by each
-    std::vector<OrderMargin> margins;
+    std::vector<Margin> margins;
     std::vector<BallResult> balls;
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// Equal for two shots with the same events: cushions and pocket of each ball, and all events.
-bool same_kind(const Outcome& one, const Outcome& two) {
-    if (one.events != two.events) return false;
-    for (std::size_t i = 0; i < one.balls.size(); ++i)
-        if (one.balls[i].pocket != two.balls[i].pocket || one.balls[i].cushions != two.balls[i].cushions)
-            return false;
-    return true;
+/// What differs between the events of two shots: the pocket or the cushions of a ball, or their number; "" if
+/// nothing does.
+std::string difference(const Scene& scene, const Outcome& one, const Outcome& two) {
+    for (std::size_t i = 0; i < one.balls.size(); ++i) {
+        const BallOutcome &before = one.balls[i], &after = two.balls[i];
+        const std::string& id = scene.ball[i].id;
+        if (before.pocket != after.pocket)
+            return id + (after.pocket == kOffTable ? " leaves the table"
+                         : after.pocket < 0        ? " does not fall"
+                                                   : " falls into " + scene.table.pockets[after.pocket].id);
+        if (before.cushions != after.cushions)
+            return fmt::format("{} meets {} cushions instead of {}", id, after.cushions, before.cushions);
+    }
+    if (one.events == two.events) return "";
+    return fmt::format("{} events instead of {}", two.events, one.events);
+}
+
+Margin margin_of(const Plan& plan, const Outcome& meant, const Nudge& nudge) {
+    Simulator simulator(plan.scene, plan.isa);
+    const SceneNumber number(plan.scene, nudge.key);
+    const double value = number.value(plan.scene);
+    const auto bound = [&](double way) {
+        std::string why;
+        const double change =
+            last_change(way * kLeastChange * nudge.size, true, kMostChange * nudge.size, [&](double by) {
+                const Change what = number.put(simulator.scene(), value + by);
+                const std::string differs = has_result(simulator.play(what, interruptible()))
+                                                ? difference(plan.scene, meant, simulator.outcome())
+                                                : simulator.message();
+                if (!differs.empty()) why = differs;
+                return differs.empty();
+            });
+        return std::pair{std::abs(change), why};
+    };
+    const auto [down, down_why] = bound(-1.0);
+    const auto [up, up_why] = bound(1.0);
+    return {down, up, down_why, up_why};
 }
 
 /// Plays the shot with the errors of the hand.
@@ -157,7 +199,7 @@ void play(const Plan& plan, const Record& record, const games::Hand& hand, const
     for (result.shots = 0; result.shots < static_cast<std::size_t>(args.shots); ++result.shots) {
         planner.scene().cue = games::with_noise(cue, noise, args.seed, result.shots);
         simulate(planner.plan(true), buffers, outcome, interruptible());
-        result.same += same_kind(meant, outcome) ? 1 : 0;
+        result.same += difference(plan.scene, meant, outcome).empty() ? 1 : 0;
         for (BallResult& row : result.balls) {
             const auto ball = static_cast<std::size_t>(row.ball);
             const BallOutcome& end = outcome.balls[ball];
@@ -192,13 +234,16 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
         if (row.fall) falls.push_back(*row.fall);
     }
     const Derivatives by(plan, record, inputs, {record.duration}, falls);
+    RunBuffers buffers;
+    Outcome meant;
+    simulate(plan, buffers, meant, interruptible());
     for (std::size_t k = 0; k < inputs.size(); ++k) {
         const Nudge& nudge = result.nudges[k];
         // A place may have no derivative, such as that of a ball at a rail.
         if (const std::string why = by.refusal(k); !why.empty() && nudge.hand > 0.0)
             throw DerivativeError(why);
         result.errors.push_back(by.error(k));
-        result.margins.push_back(order_margin(plan, record, nudge.key, kFirstChange * nudge.size));
+        result.margins.push_back(margin_of(plan, meant, nudge));
     }
     std::size_t fallen = 0;
     for (BallResult& row : result.balls) {
@@ -244,7 +289,7 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
     }
     std::string text = table_text(table);
     const auto nearest = [&](std::size_t k) {
-        const OrderMargin& m = s.margins[k];
+        const Margin& m = s.margins[k];
         return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
     };
     text += "\nx and y, to first order. ";
@@ -290,7 +335,7 @@ Json ellipse_json(const Ellipse& e) {
 Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
     Json inputs = Json::array(), balls = Json::array();
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
-        const OrderMargin& m = s.margins[k];
+        const Margin& m = s.margins[k];
         inputs.push_back({{"input", s.nudges[k].key},
                           {"nudge", s.nudges[k].size},
                           {"error", number_json(s.errors[k])},
