@@ -200,7 +200,7 @@ class Fitter {
         std::sort(times.begin(), times.end());
         times.erase(std::unique(times.begin(), times.end()), times.end());
         const Derivatives by(trial.plan, trial.record, keys_, times);
-        by.check();
+        by.check(kRoughDerivativeError);
         MatrixXd slopes = MatrixXd::Zero(trial.residuals.size(), static_cast<Eigen::Index>(count()));
         const auto at = [&slopes](std::size_t point, std::size_t k) {
             return slopes.block<2, 1>(static_cast<Eigen::Index>(2 * point), static_cast<Eigen::Index>(k));

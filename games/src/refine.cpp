@@ -129,7 +129,7 @@ class Refiner {
         std::vector<std::string> keys;
         for (const Choice& choice : choices_) keys.push_back(choice.key);
         const Derivatives by(shot.plan, shot.record, keys, {shot.record.duration});
-        by.check();
+        by.check(kRoughDerivativeError);
         MatrixXd slopes(shot.off.size(), static_cast<Eigen::Index>(keys.size()));
         for (std::size_t i = 0; i < places_.size(); ++i)
             for (std::size_t k = 0; k < keys.size(); ++k)

@@ -389,6 +389,17 @@ TEST(Derivatives, WhereTheyWereRefused) {
     EXPECT_EQ(shot.by.refusal(0), "");
 }
 
+// The ball rolls from the stroke on: with side it slides first, so the derivatives of both sides differ.
+TEST(Derivatives, AtACorner) {
+    const Shot shot(scene_of("follow"), {"cue.offset.side", "cue.speed"});
+    EXPECT_GT(shot.by.error(0), kMostDerivativeError);
+    EXPECT_LT(shot.by.error(1), kMostDerivativeError);
+    const Plan plan = plan_of(scene_of("follow"));
+    const Derivatives end(plan, shot.record, {"cue.offset.side"}, {kEnd});
+    EXPECT_EQ(end.refusal(0, kRoughDerivativeError), "");
+    EXPECT_NEAR(end.error(0), 0.0055 / 0.262 * 0.3, 1e-3);
+}
+
 // A stop ends a shot at a time, or at an event whose time does not move.
 TEST(Derivatives, OfShotsThatAreStopped) {
     Scene scene = scene_of("draw");

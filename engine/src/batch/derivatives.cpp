@@ -37,7 +37,7 @@ constexpr double kEnough = 1e-6, kFair = 1e-4;
 // [-] One difference is a sample of its rounding errors: others are larger by up to this.
 constexpr double kJump = 3.0;
 // [m], [m/s] or [s] An input that changes a result by less than this over its whole size does not change it.
-constexpr double kUnmoved = 1e-6;
+constexpr double kUnmoved = 1e-3;
 // From this many balls on, the shots are long enough for threads.
 constexpr std::size_t kManyBalls = 4;
 
@@ -286,13 +286,13 @@ class Differences {
 
     /// The derivatives from these pairs, and their error.
     void read(const std::vector<Pair>& pairs, double size, Derivatives::Column& column) const {
-        // By kind: position, velocity, spin, time and place.
-        std::array<double, 5> most, errors{};
+        // By kind: position, velocity, spin and events.
+        std::array<double, 4> most, errors{};
         most.fill(kUnmoved / size);
         column.slopes.assign(middle_.size(), Vec3::Zero());
         for (std::size_t i = 0; i < middle_.size(); ++i) {
             const bool state = i < out_.states_;
-            const std::size_t kind = state ? i % 3 : 3 + (i - out_.states_) % 2;
+            const std::size_t kind = state ? i % 3 : 3;
             if (middle_[i].past == 0) {
                 if (!state) column.slopes[i].setConstant(std::numeric_limits<double>::quiet_NaN());
                 continue;
@@ -328,17 +328,17 @@ Derivatives::Derivatives(const Plan& plan, const Record& record, const std::vect
     for (const std::string& input : inputs) differences.add(input);
 }
 
-std::string Derivatives::refusal(std::size_t input) const {
+std::string Derivatives::refusal(std::size_t input, double most) const {
     const Column& column = columns_[input];
-    if (column.error <= kMostDerivativeError) return "";
+    if (column.error <= most) return "";
     return fmt::format("{} has no derivative here: {} (estimated error {:.2g})", column.input,
                        column.why.empty() ? "an event begins or ends within the smallest step" : column.why,
                        column.error);
 }
 
-void Derivatives::check() const {
+void Derivatives::check(double most) const {
     for (std::size_t input = 0; input < columns_.size(); ++input)
-        if (const std::string why = refusal(input); !why.empty()) throw DerivativeError(why);
+        if (const std::string why = refusal(input, most); !why.empty()) throw DerivativeError(why);
 }
 
 }  // namespace carom

@@ -25,8 +25,10 @@ struct StateDerivative {
     Vec3 spin = Vec3::Zero();      ///< [rad/s]
 };
 
-/// [-] A column whose relative error may be larger than this is refused.
-inline constexpr double kMostDerivativeError = 1e-3;
+/// [-] A column whose relative error may be larger than this is refused; and the same for steps that a shot
+/// checks afterwards, and for figures to two digits. At a corner of the shot, such as a ball that rolls from
+/// the stroke on, the derivative is the mean of both sides, and the error half their difference.
+inline constexpr double kMostDerivativeError = 1e-3, kRoughDerivativeError = 0.1;
 
 /// Columns of derivatives, each by one input in its own unit: cue.aim_deg gives m per degree. They belong to
 /// the shot with physics.tolerance = 1e-12, whatever the scene's tolerance.
@@ -42,11 +44,10 @@ class Derivatives {
     Derivatives(const Plan& plan, const Record& record, const std::vector<std::string>& inputs,
                 const std::vector<double>& times, const std::vector<std::size_t>& events = {});
 
-    /// Why a column is refused, a sentence that names the input; "" if its error() is at most
-    /// kMostDerivativeError.
-    std::string refusal(std::size_t input) const;
+    /// Why a column is refused, a sentence that names the input; "" if its error() is at most `most`.
+    std::string refusal(std::size_t input, double most = kMostDerivativeError) const;
     /// @throws DerivativeError with the first refusal
-    void check() const;
+    void check(double most = kMostDerivativeError) const;
 
     /// Of a ball at times[time]. 0 if it is out of play.
     StateDerivative state(std::size_t time, int ball, std::size_t input) const {

@@ -240,7 +240,7 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     for (std::size_t k = 0; k < inputs.size(); ++k) {
         const Nudge& nudge = result.nudges[k];
         // A place may have no derivative, such as that of a ball at a rail.
-        if (const std::string why = by.refusal(k); !why.empty() && nudge.hand > 0.0)
+        if (const std::string why = by.refusal(k, kRoughDerivativeError); !why.empty() && nudge.hand > 0.0)
             throw DerivativeError(why);
         result.errors.push_back(by.error(k));
         result.margins.push_back(margin_of(plan, meant, nudge));
@@ -250,8 +250,8 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
         Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
         for (std::size_t k = 0; k < inputs.size(); ++k) {
             const Vec2 d = row.fall ? by.event_place(fallen, k) : planar(by.state(0, row.ball, k).position);
-            row.moves.push_back(by.refusal(k).empty() ? Vec2(d * result.nudges[k].size)
-                                                      : Vec2::Constant(std::nan("")));
+            const bool usable = by.error(k) <= kRoughDerivativeError;
+            row.moves.push_back(usable ? Vec2(d * result.nudges[k].size) : Vec2::Constant(std::nan("")));
             if (result.nudges[k].hand > 0.0)
                 covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
         }
