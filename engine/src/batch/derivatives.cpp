@@ -53,8 +53,8 @@ std::uint64_t mix(std::initializer_list<std::uint64_t> numbers) {
     return hash.value();
 }
 
-/// What happened to each ball, with everything that happened before to the balls that it met: two shots in
-/// which this is equal have the same causes in the same order. Rolling, stopping and the end of spin are left
+/// The past of each ball: its events, and the past of every ball that it met. Two shots in which this is
+/// equal have the same causes in the same order. Rolling, stopping and the end of spin are left
 /// out: they do not push anything.
 class Pasts {
   public:
@@ -67,12 +67,12 @@ class Pasts {
     explicit Pasts(const Record& record)
         : balls_(record.tracks.size(), {{-std::numeric_limits<double>::infinity(), 1}}) {
         for (const Event& event : record.events) {
-            const EventKind& what = kind(event.type);
-            const bool pair = what.partner == Partner::kBall;
+            const EventKind& type_of = kind(event.type);
+            const bool pair = type_of.partner == Partner::kBall;
             const auto number = [](auto x) { return static_cast<std::uint64_t>(x); };
             const auto type = number(event.type), one = number(pair ? std::min(event.a, event.b) : event.a),
                        two = number(pair ? std::max(event.a, event.b) : event.b);
-            if (what.phase == EventPhase::kTransition && what.partner == Partner::kNone &&
+            if (type_of.phase == EventPhase::kTransition && type_of.partner == Partner::kNone &&
                 event.type != EventType::kBallOut) {
                 const auto& before = balls_[one];
                 const std::uint64_t id = mix({type, one, before.size()});

@@ -28,7 +28,7 @@ struct StateDerivative {
 /// [-] A column whose relative error may be larger than this is refused; and the same for steps that a shot
 /// checks afterwards, and for figures to two digits. At a corner of the shot, such as a ball that rolls from
 /// the stroke on, the derivative is the mean of both sides, and the error half their difference.
-inline constexpr double kMostDerivativeError = 1e-3, kRoughDerivativeError = 0.1;
+inline constexpr double kMostDerivativeError = 1e-3, kRoughDerivativeError = 0.3;
 
 /// Columns of derivatives, each by one input in its own unit: cue.aim_deg gives m per degree. They belong to
 /// the shot with physics.tolerance = 1e-12, whatever the scene's tolerance.

@@ -137,7 +137,7 @@ double window_end(const Plan& plan, const BallResult& result, int pocket, double
 /// The change of one input up to which the shot has the same events; infinite if none was found.
 struct Margin {
     double down, up;               ///< >= 0, in the unit of the input
-    std::string down_why, up_why;  ///< what differs beyond it; "" if nothing
+    std::string down_why, up_why;  ///< the difference beyond it; "" if none
 };
 
 struct Sensitivity {
@@ -148,8 +148,8 @@ struct Sensitivity {
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// What differs between the events of two shots: the pocket or the cushions of a ball, or their number; "" if
-/// nothing does.
+/// The first difference between the events of two shots: the pocket or the cushions of a ball, or the number
+/// of events; "" if there is none.
 std::string difference(const Scene& scene, const Outcome& one, const Outcome& two) {
     for (std::size_t i = 0; i < one.balls.size(); ++i) {
         const BallOutcome &before = one.balls[i], &after = two.balls[i];
@@ -173,8 +173,8 @@ Margin margin_of(const Plan& plan, const Outcome& meant, const Nudge& nudge) {
         std::string why;
         const double change =
             last_change(way * kLeastChange * nudge.size, true, kMostChange * nudge.size, [&](double by) {
-                const Change what = number.put(simulator.scene(), value + by);
-                const std::string differs = has_result(simulator.play(what, interruptible()))
+                const Change checks = number.put(simulator.scene(), value + by);
+                const std::string differs = has_result(simulator.play(checks, interruptible()))
                                                 ? difference(plan.scene, meant, simulator.outcome())
                                                 : simulator.message();
                 if (!differs.empty()) why = differs;
