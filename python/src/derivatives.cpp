@@ -43,12 +43,9 @@ void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector
             for (int ball = 0; ball < static_cast<int>(r.record->tracks.size()); ++ball) {
                 for (std::size_t i = 0; i < inputs.size(); ++i) {
                     const StateDerivative slope = by.state(k, ball, i);
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        const auto a = static_cast<Eigen::Index>(axis);
-                        at[axis * inputs.size() + i] = slope.position[a];
-                        at[(3 + axis) * inputs.size() + i] = slope.velocity[a];
-                        at[(6 + axis) * inputs.size() + i] = slope.spin[a];
-                    }
+                    std::size_t row = 0;
+                    for (const Vec3& vector : {slope.position, slope.velocity, slope.spin})
+                        for (const double x : vector) at[row++ * inputs.size() + i] = x;
                 }
                 at += 9 * inputs.size();
             }

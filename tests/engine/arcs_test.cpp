@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "carom/engine/event_details.h"
-#include "carom/engine/scene_number.h"
 #include "carom/engine/variation.h"
 #include "contact/detect.h"
 #include "reference/random_impacts.h"

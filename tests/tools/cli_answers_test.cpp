@@ -1,12 +1,8 @@
 // Wrong answers that outside users found: refusals, figures that disagree, clocks.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,13 +14,6 @@ namespace carom::test {
 namespace {
 
 using Json = nlohmann::json;
-
-std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> words;
-    std::istringstream in(line);
-    for (std::string word; std::getline(in, word, ',');) words.push_back(word);
-    return words;
-}
 
 class CliAnswers : public ::testing::Test {
   protected:

@@ -22,7 +22,7 @@
 #include "carom/engine/simulate.h"
 
 namespace carom {
-namespace {
+namespace differences {
 
 // physics.tolerance of the shots that are compared.
 constexpr double kTolerance = 1e-12;
@@ -127,7 +127,7 @@ Slope slope_of(const std::vector<Pair>& pairs, std::size_t which, const Result& 
     Vec3 last_bend = Vec3::Zero();
     std::size_t known = 0;  // entries of `last`
     for (const Pair& pair : pairs) {
-        const auto comparable = [&](const std::vector<Result>& shot) {
+        const auto comparable = [&](const auto& shot) {
             return !shot.empty() && (same ? shot[which].past == middle.past : shot[which].past != 0);
         };
         if (!comparable(pair.low) || !comparable(pair.high)) {
@@ -156,26 +156,23 @@ Slope slope_of(const std::vector<Pair>& pairs, std::size_t which, const Result& 
     return best;
 }
 
-}  // namespace
+}  // namespace differences
+
+using namespace differences;
 
 class Differences {
   public:
     Differences(Derivatives& out, const Plan& plan, const Record& record, const std::vector<double>& times,
                 const std::vector<std::size_t>& events)
-        : out_(out), scene_(plan.scene), isa_(plan.isa) {
+        : out_(out), plan_(plan), scene_(plan.scene) {
         if (plan.sizes.size() != record.tracks.size())
             throw std::invalid_argument("the record is not of this plan: it has another number of balls");
         out_.balls_ = plan.sizes.size();
         out_.states_ = 3 * times.size() * out_.balls_;
-        for (const BallSize& size : plan.sizes) radii_.push_back(size.R);
         scene_.physics.tolerance = kTolerance;
         scene_.physics.substeps.reset();
         scene_.effects.clear();  // other shots may need one that this one excludes
-        try {
-            validate(scene_);
-        } catch (const SceneError& error) {
-            throw DerivativeError(error.message());
-        }
+        validate(scene_);
         const bool rests = record.stopped == StopReason::kAtRest;
         for (const double time : times)
             times_.push_back(time < record.duration ? std::max(time, 0.0) : rests ? kNone : record.duration);
@@ -188,7 +185,7 @@ class Differences {
         }
         if (until < kNone) options_.until = until;
         if (!rests) scene_.stop.events.reset();
-        middle_ = results_of(simulate(make_plan(scene_, isa_), options_));
+        middle_ = results_of(simulate(make_plan(scene_, plan_.isa), options_));
         ++out_.shots_;
     }
 
@@ -198,11 +195,9 @@ class Differences {
         if (std::isnan(value))
             throw DerivativeError(fmt::format("{} is not a real number that the scene sets", key));
         const Interval& range = number.row().range;
-        double size = std::abs(value);
-        if (std::string_view(range.unit) == "degrees")
-            size = kAngle;
-        else if (range.low < 0.0)
-            size = std::max(1.0, size);
+        const double size = std::string_view(range.unit) == "degrees"
+                                ? kAngle
+                                : std::max(range.low < 0.0 ? 1.0 : 0.0, std::abs(value));
         const auto fits = [&](int k) {
             return contains(range, value - step(size, k)) && contains(range, value + step(size, k));
         };
@@ -249,7 +244,7 @@ class Differences {
         };
         const BatchColumn column{key, values};
         for (const Batch::Message& message :
-             simulate_many(scene_, values.size(), {&column, 1}, isa_, options, {}))
+             simulate_many(scene_, values.size(), {&column, 1}, plan_.isa, options, {}))
             why = message.text;
         out_.shots_ += static_cast<int>(values.size());
         std::vector<Pair> pairs;
@@ -270,7 +265,7 @@ class Differences {
             const std::uint64_t past = pasts.at(ball, time);
             results[i] = {state.position, past};
             results[i + 1] = {state.velocity, past};
-            results[i + 2] = {radii_[ball] * state.spin, past};
+            results[i + 2] = {plan_.sizes[ball].R * state.spin, past};
         }
         for (std::size_t e = 0; e < ids_.size(); ++e) {
             const auto found = std::find_if(pasts.marks.begin(), pasts.marks.end(),
@@ -301,7 +296,7 @@ class Differences {
             if (!(slope.error < kNone)) slope = slope_of(pairs, i, middle_[i], false);
             most[kind] = std::max(most[kind], largest(slope.x));
             errors[kind] = std::max(errors[kind], slope.error);
-            column.slopes[i] = kind == 2 ? Vec3(slope.x / radii_[i / 3 % out_.balls_]) : slope.x;
+            column.slopes[i] = kind == 2 ? Vec3(slope.x / plan_.sizes[i / 3 % out_.balls_].R) : slope.x;
         }
         column.error = 0.0;
         for (std::size_t kind = 0; kind < most.size(); ++kind)
@@ -312,11 +307,10 @@ class Differences {
     static constexpr double kAfter = 0.1;
 
     Derivatives& out_;
+    const Plan& plan_;
     Scene scene_;
-    kernel::Isa isa_;
     std::vector<std::uint64_t> ids_;  // of the events
     std::vector<double> times_;       // infinite: at rest
-    std::vector<double> radii_;
     SimulateOptions options_;
     std::vector<Result> middle_;
     int first_ = 0;  // step of the next column

@@ -43,6 +43,14 @@ bool touches(const RestingContact& c, int ball) {
 
 }  // namespace
 
+ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two) {
+    const Touch touch = touch_level(balls.at(one), balls.at(two), plan.balls.discs());
+    return {{one, With::kBall, two},
+            planar(touch.n),
+            touch.closing,
+            touch.pressing(balls.segment(one).a - balls.segment(two).a)};
+}
+
 RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
     : Borrowed(memory), plan_(plan), balls_(balls), log_(log), lossless_(loses_nothing(plan)) {
     contacts_.clear();

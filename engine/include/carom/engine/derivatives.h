@@ -18,11 +18,9 @@ class DerivativeError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Derivatives of a ball's state by one input.
+/// Derivatives of a ball's state by one input: of its centre [m], velocity [m/s] and spin [rad/s].
 struct StateDerivative {
-    Vec3 position = Vec3::Zero();  ///< of the centre [m]
-    Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    Vec3 spin = Vec3::Zero();      ///< [rad/s]
+    Vec3 position, velocity, spin;
 };
 
 /// [-] A column whose relative error may be larger than this is refused; and the same for steps that a shot
@@ -31,7 +29,7 @@ struct StateDerivative {
 inline constexpr double kMostDerivativeError = 1e-3, kRoughDerivativeError = 0.3;
 
 /// Columns of derivatives, each by one input in its own unit: cue.aim_deg gives m per degree. They belong to
-/// the shot with physics.tolerance = 1e-12, whatever the scene's tolerance.
+/// the shot with physics.tolerance = 1e-12, for any tolerance of the scene.
 class Derivatives {
   public:
     /// @param record  of this plan
@@ -40,7 +38,8 @@ class Derivatives {
     /// @param times  [s] of the states; from the end of the record on, the state in which a shot ends
     /// @param events  of the record, whose times and places are differentiated
     /// @throws std::invalid_argument for an input that is no number of the scene, or a record of another one;
-    /// DerivativeError for an input at the end of its range; SimulationError
+    /// DerivativeError for an input at the end of its range; SceneError for friction that no impact with a
+    /// tolerance accepts; SimulationError
     Derivatives(const Plan& plan, const Record& record, const std::vector<std::string>& inputs,
                 const std::vector<double>& times, const std::vector<std::size_t>& events = {});
 
@@ -65,8 +64,7 @@ class Derivatives {
     /// [-] Estimated error of a column: the largest one of any ball, relative to the largest derivative of
     /// the same kind (position, velocity, spin, event). Infinite if no shots could be compared.
     double error(std::size_t input) const { return columns_[input].error; }
-    /// Number of shots played.
-    int shots() const { return shots_; }
+    int shots() const { return shots_; }  ///< played
 
   private:
     struct Column {

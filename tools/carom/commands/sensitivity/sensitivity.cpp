@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -104,46 +105,39 @@ std::optional<std::size_t> fall_of(const Record& record, int ball) {
     return record.tracks[static_cast<std::size_t>(ball)].pocket >= 0 ? found : std::nullopt;
 }
 
-/// The last change on one side, going outwards, at which something holds; infinite if it holds up to `most`.
-/// @param step  the first change; the next ones are twice as large, or this much larger
-template <class Holds>
-double last_change(double step, bool doubles, double most, const Holds& holds) {
-    double inside = 0.0, outside = step;
-    for (; holds(outside); outside += doubles ? outside : step) {
-        inside = outside;
-        if (std::abs(outside) > most) return std::numeric_limits<double>::infinity();
-    }
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (inside + outside);
-        (holds(middle) ? inside : outside) = middle;
-    }
+/// A change of an input, and the difference that it makes; "" for none.
+struct Bound {
+    double change;
+    std::string why;
+};
+
+/// The last change on one side, going outwards, that makes no difference.
+/// @param step  the first change; the next ones are twice as large, or this much larger, up to `most`
+template <class Difference>
+Bound last_change(const Plan& plan, const std::string& input, double step, bool doubles, double most,
+                  const Difference& difference) {
+    Simulator simulator(plan.scene, plan.isa);
+    const SceneNumber number(plan.scene, input);
+    const double value = number.value(plan.scene);
+    Bound inside{0.0, ""};
+    double outside = 0.0;
+    const auto holds = [&](double by) {
+        const Change checks = number.put(simulator.scene(), value + by);
+        const bool played = has_result(simulator.play(checks, interruptible()));
+        const std::string differs = played ? difference(simulator.outcome()) : simulator.message();
+        (differs.empty() ? inside.change : outside) = by;
+        if (!differs.empty()) inside.why = differs;
+        return differs.empty();
+    };
+    for (double by = step; std::abs(by) <= most && holds(by);) by += doubles ? by : step;
+    for (int k = 0; k < kHalvings && !inside.why.empty(); ++k) holds(0.5 * (inside.change + outside));
     return inside;
 }
 
-/// The last aim on this side at which the ball falls into the same pocket.
-double window_end(const Plan& plan, const BallResult& result, int pocket, double way) {
-    Planner planner(plan.scene, plan.isa);
-    RunBuffers buffers;
-    Outcome outcome;
-    const double aim = plan.scene.cue->aim_deg;
-    const double end = last_change(way * kAimStep, false, kAimMost, [&](double by) {
-        planner.scene().cue->aim_deg = aim + by;
-        simulate(planner.plan(true), buffers, outcome, interruptible());
-        return outcome.balls[static_cast<std::size_t>(result.ball)].pocket == pocket;
-    });
-    return std::isfinite(end) ? end : way * kAimMost;
-}
-
-/// The change of one input up to which the shot has the same events; infinite if none was found.
-struct Margin {
-    double down, up;               ///< >= 0, in the unit of the input
-    std::string down_why, up_why;  ///< the difference beyond it; "" if none
-};
-
 struct Sensitivity {
     std::vector<Nudge> nudges;
-    std::vector<double> errors;  ///< relative, of the derivatives by each
-    std::vector<Margin> margins;
+    std::vector<double> errors;                 ///< relative, of the derivatives by each
+    std::vector<std::array<Bound, 2>> margins;  ///< of each, downwards and upwards
     std::vector<BallResult> balls;
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
@@ -163,28 +157,6 @@ std::string difference(const Scene& scene, const Outcome& one, const Outcome& tw
     }
     if (one.events == two.events) return "";
     return fmt::format("{} events instead of {}", two.events, one.events);
-}
-
-Margin margin_of(const Plan& plan, const Outcome& meant, const Nudge& nudge) {
-    Simulator simulator(plan.scene, plan.isa);
-    const SceneNumber number(plan.scene, nudge.key);
-    const double value = number.value(plan.scene);
-    const auto bound = [&](double way) {
-        std::string why;
-        const double change =
-            last_change(way * kLeastChange * nudge.size, true, kMostChange * nudge.size, [&](double by) {
-                const Change checks = number.put(simulator.scene(), value + by);
-                const std::string differs = has_result(simulator.play(checks, interruptible()))
-                                                ? difference(plan.scene, meant, simulator.outcome())
-                                                : simulator.message();
-                if (!differs.empty()) why = differs;
-                return differs.empty();
-            });
-        return std::pair{std::abs(change), why};
-    };
-    const auto [down, down_why] = bound(-1.0);
-    const auto [up, up_why] = bound(1.0);
-    return {down, up, down_why, up_why};
 }
 
 /// Plays the shot with the errors of the hand.
@@ -243,7 +215,12 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
         if (const std::string why = by.refusal(k, kRoughDerivativeError); !why.empty() && nudge.hand > 0.0)
             throw DerivativeError(why);
         result.errors.push_back(by.error(k));
-        result.margins.push_back(margin_of(plan, meant, nudge));
+        const auto margin = [&](double way) {
+            return last_change(plan, nudge.key, way * kLeastChange * nudge.size, true,
+                               kMostChange * nudge.size,
+                               [&](const Outcome& other) { return difference(plan.scene, meant, other); });
+        };
+        result.margins.push_back({margin(-1.0), margin(1.0)});
     }
     std::size_t fallen = 0;
     for (BallResult& row : result.balls) {
@@ -257,15 +234,24 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
         }
         row.expected = ellipse_of(covariance);
         const int pocket = record.tracks[static_cast<std::size_t>(row.ball)].pocket;
-        if (row.fall) row.window = {window_end(plan, row, pocket, -1.0), window_end(plan, row, pocket, 1.0)};
+        const auto window_end = [&](double way) {
+            return last_change(plan, "cue.aim_deg", way * kAimStep, false, kAimMost,
+                               [&](const Outcome& other) {
+                                   return other.balls[static_cast<std::size_t>(row.ball)].pocket == pocket
+                                              ? ""
+                                              : "misses";
+                               })
+                .change;
+        };
+        if (row.fall) row.window = {window_end(-1.0), window_end(1.0)};
         fallen += row.fall ? 1 : 0;
     }
     play(plan, record, hand, args, result);
     return result;
 }
 
-std::string bound_text(double bound) {
-    return std::isfinite(bound) ? fmt::format("{:.3g}", bound) : "any";
+std::string bound_text(const Bound& bound, double scale) {
+    return bound.why.empty() ? "any" : fmt::format("{:.3g}", std::abs(bound.change * scale));
 }
 
 std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record, const std::string& hand) {
@@ -283,22 +269,19 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
                 std::isnan(ball.moves[k].x())
                     ? "none"
                     : fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
-        cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k].down * nudge.scale),
-                                    bound_text(s.margins[k].up * nudge.scale), nudge.unit));
+        cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k][0], nudge.scale),
+                                    bound_text(s.margins[k][1], nudge.scale), nudge.unit));
         table.add(cells);
     }
     std::string text = table_text(table);
-    const auto nearest = [&](std::size_t k) {
-        const Margin& m = s.margins[k];
-        return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
-    };
     text += "\nx and y, to first order. ";
     text += "The events change first if\n";
     for (std::size_t k = 0; k < 2; ++k) {
-        const auto [by, why] = nearest(k);
-        if (std::isfinite(by))
-            text += fmt::format("  {} changes by {:+.3g} {}: {}\n", s.nudges[k].key, by * s.nudges[k].scale,
-                                s.nudges[k].unit, why);
+        const auto& [down, up] = s.margins[k];
+        const Bound& nearest = up.why.empty() || (!down.why.empty() && -down.change < up.change) ? down : up;
+        if (!nearest.why.empty())
+            text += fmt::format("  {} changes by {:+.3g} {}: {}\n", s.nudges[k].key,
+                                nearest.change * s.nudges[k].scale, s.nudges[k].unit, nearest.why);
     }
     text += fmt::format("\nwith the hand {} (standard deviations)\n", harmless(hand));
     for (const BallResult& ball : s.balls) {
@@ -335,14 +318,17 @@ Json ellipse_json(const Ellipse& e) {
 Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
     Json inputs = Json::array(), balls = Json::array();
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
-        const Margin& m = s.margins[k];
+        const auto& [down, up] = s.margins[k];
+        const auto size = [](const Bound& bound) {
+            return bound.why.empty() ? Json() : Json(std::abs(bound.change));
+        };
         inputs.push_back({{"input", s.nudges[k].key},
                           {"nudge", s.nudges[k].size},
                           {"error", number_json(s.errors[k])},
-                          {"down", number_json(m.down)},
-                          {"down_why", m.down_why},
-                          {"up", number_json(m.up)},
-                          {"up_why", m.up_why}});
+                          {"down", size(down)},
+                          {"down_why", down.why},
+                          {"up", size(up)},
+                          {"up_why", up.why}});
     }
     for (const BallResult& ball : s.balls) {
         Json moves = Json::array();
