@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/derivatives.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
-#include "carom/engine/tangents.h"
 #include "fit_doubts.h"
 
 namespace carom::games {
@@ -99,7 +99,7 @@ class Fitter {
             if (helps) {
                 try {
                     slopes = slopes_of(*trial);
-                } catch (const TangentError& error) {
+                } catch (const DerivativeError& error) {
                     // Such as at the end of a range: a shorter step may do.
                     result.trouble = error.what();
                     helps = false;
@@ -194,16 +194,23 @@ class Fitter {
     }
 
     MatrixXd slopes_of(const Trial& trial) const {
-        const Tangents tangents(trial.plan, trial.record, keys_);
+        std::vector<double> times;
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            if (trial.counted[i]) times.push_back(time_of(trial, i));
+        std::sort(times.begin(), times.end());
+        times.erase(std::unique(times.begin(), times.end()), times.end());
+        const Derivatives by(trial.plan, trial.record, keys_, times);
+        by.check(kRoughDerivativeError);
         MatrixXd slopes = MatrixXd::Zero(trial.residuals.size(), static_cast<Eigen::Index>(count()));
         const auto at = [&slopes](std::size_t point, std::size_t k) {
             return slopes.block<2, 1>(static_cast<Eigen::Index>(2 * point), static_cast<Eigen::Index>(k));
         };
         for (std::size_t i = 0; i < points_.size(); ++i) {
             if (!trial.counted[i]) continue;
+            const auto time = static_cast<std::size_t>(
+                std::lower_bound(times.begin(), times.end(), time_of(trial, i)) - times.begin());
             for (std::size_t k = 0; k < numbers_.size(); ++k)
-                at(i, place_of(k)) =
-                    planar(tangents.state_at(points_[i].ball, time_of(trial, i), k).position);
+                at(i, place_of(k)) = planar(by.state(time, points_[i].ball, k).position);
             if (clock_) at(i, *clock_) = -velocity_of(trial, i);
         }
         return slopes;

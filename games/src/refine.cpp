@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "carom/engine/derivatives.h"
 #include "carom/engine/plan.h"
 #include "carom/engine/scene_number.h"
 #include "carom/engine/simulate.h"
-#include "carom/engine/tangents.h"
 
 namespace carom::games {
 namespace {
@@ -60,7 +60,7 @@ class Refiner {
             VectorXd move;
             try {
                 move = newton(*now);
-            } catch (const TangentError& error) {
+            } catch (const DerivativeError& error) {
                 trouble = error.what();
                 break;
             }
@@ -128,12 +128,13 @@ class Refiner {
     VectorXd newton(const Try& shot) const {
         std::vector<std::string> keys;
         for (const Choice& choice : choices_) keys.push_back(choice.key);
-        const Tangents tangents(shot.plan, shot.record, keys);
+        const Derivatives by(shot.plan, shot.record, keys, {shot.record.duration});
+        by.check(kRoughDerivativeError);
         MatrixXd slopes(shot.off.size(), static_cast<Eigen::Index>(keys.size()));
         for (std::size_t i = 0; i < places_.size(); ++i)
             for (std::size_t k = 0; k < keys.size(); ++k)
                 slopes.block<2, 1>(static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(k)) =
-                    range(k) * planar(tangents.at_end(places_[i].ball, k).position);
+                    range(k) * planar(by.state(0, places_[i].ball, k).position);
         Eigen::JacobiSVD<MatrixXd> svd(slopes, Eigen::ComputeThinU | Eigen::ComputeThinV);
         svd.setThreshold(kWeak);
         VectorXd move = -svd.solve(shot.off);

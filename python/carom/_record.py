@@ -250,15 +250,16 @@ class Record:
     def jacobian(
         self, inputs: Sequence[str], t: ArrayLike | None = None, *, scene: SceneLike | None = None
     ) -> NDArray[np.float64]:
-        """How the states of the balls depend on numbers of the scene, exact through every impact.
+        """How the states of the balls depend on numbers of the scene, by differences of whole shots.
 
         inputs: keys as in a sweep: "cue.speed", "ball.1.position.x", "balls.mu_s"
         t: times [s] of any shape; None for the end, at rest
         scene: the scene that was played; needed if the record was loaded from a file, which holds no physics
 
         Returns t.shape + (balls, 3, 3, inputs): position, velocity and spin as in `states`, by each input in
-        its own unit. A ball that is out of play has zeros. Raises ValueError if an input is no number of the
-        scene, or if an event has no derivative, such as a resting contact.
+        its own unit, for the shot with a tolerance of 1e-12. A ball that is out of play has zeros. Raises
+        ValueError if an input is no number of the scene, or naming an input whose derivatives may be wrong by
+        more than 1e-3 of the largest, because an event begins or ends there.
         """
         times, shape = self._times(self.duration if t is None else t)
         slopes = np.empty((*shape, self._native.balls, 3, 3, len(inputs)))

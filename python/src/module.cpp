@@ -68,5 +68,5 @@ NB_MODULE(_carom, m) {
     add_arrays(m);
     add_judged(m);
     add_games_rules(m);
-    add_tangents(m);
+    add_derivatives(m);
 }

@@ -91,6 +91,6 @@ void add_games(nb::module_& m);
 void add_arrays(nb::module_& m);
 void add_judged(nb::module_& m);
 void add_games_rules(nb::module_& m);
-void add_tangents(nb::module_& m);
+void add_derivatives(nb::module_& m);
 
 }  // namespace carom::python

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -10,8 +9,6 @@
 #include <vector>
 
 #include "carom/engine/event_details.h"
-#include "carom/engine/scene_number.h"
-#include "carom/engine/tangents.h"
 #include "carom/engine/variation.h"
 #include "contact/detect.h"
 #include "reference/random_impacts.h"
@@ -245,67 +242,6 @@ TEST(Arcs, ABallRunsAlongARoundWall) {
     EXPECT_NEAR(end.velocity.y(), 0.0, 1e-3);
     EXPECT_NEAR(end.position.y(), 0.5, 1e-3);
     EXPECT_NEAR(end.position.x(), -(3.0 - 0.5 - 0.5 * std::numbers::pi), 1e-3);
-}
-
-// Derivatives of a ball's place after six bounces, with respect to its start and to the wall, against
-// differences.
-TEST(Arcs, HaveDerivatives) {
-    const std::string text =
-        "[balls]\nradius = 0.03\nmu_b = 0\n[physics]\nball_ball = \"elastic\"\n[[table.arc]]\ncenter = [0, "
-        "0]\n"
-        "radius = 1\nfrom_deg = 30\nto_deg = 330\n[[table.arc]]\ncenter = [1.6, 0]\nradius = 0.8\nfrom_deg = "
-        "120\n"
-        "to_deg = 240\nside = \"outside\"\n[[ball]]\nid = \"1\"\nposition = [0.1, 0.3]\nvelocity = [1.5, "
-        "0.8]\n";
-    const Scene scene = parse_scene(text, "s.toml");
-    const Plan plan = plan_of(scene);
-    const Record record = simulate(plan);
-    EXPECT_GE(count(record, EventType::kBallJaw), 2);
-    const std::vector<std::string> keys = {"ball.1.position.x", "ball.1.velocity.1", "table.arc.a1.radius",
-                                           "table.arc.a2.center.x"};
-    const Tangents tangents(plan, record, keys);
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        const SceneNumber number(scene, keys[k]);
-        const double at = number.value(scene);
-        std::array<Vec3, 2> end;
-        constexpr double kStep = 1e-6;
-        for (const int side : {0, 1}) {
-            Scene moved = scene;
-            number.put(moved, at + (side == 0 ? -kStep : kStep));
-            const Record one = simulate(plan_of(moved));
-            end[side] = one.state_at(0, one.duration).position;
-        }
-        const Vec3 difference = (end[1] - end[0]) / (2.0 * kStep), exact = tangents.at_end(0, k).position;
-        for (int i = 0; i < 2; ++i)
-            EXPECT_NEAR(exact[i], difference[i], 1e-5 * (1.0 + std::abs(difference[i])))
-                << keys[k] << " " << i;
-    }
-    for (const Margin& margin : tangents.margins()) EXPECT_GT(margin.up, 0.0);
-}
-
-TEST(Pucks, AndUnlikeDiscsHaveNoDerivatives) {
-    const auto why_not = [](Scene scene) {
-        const Plan plan = plan_of(scene);
-        const Record record = simulate(plan);
-        try {
-            Tangents(plan, record, {"ball.1.velocity.0"});
-        } catch (const TangentError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    Scene scene = lossless();
-    scene.stop.time = 0.1;
-    scene.balls.disc = true;
-    add_ball(scene, "1", 0.0, 0.0, 1.0, 0.5);
-    EXPECT_EQ(why_not(scene), "");
-    add_ball(scene, "2", 0.5, 0.0);
-    scene.ball.back().own = BallSize{0.04, scene.balls.m};
-    scene.ball.back().position.z() = 0.04;
-    EXPECT_EQ(why_not(scene), "discs of different size have no derivatives here");
-    scene.ball.pop_back();
-    scene.balls.slides = true;
-    EXPECT_EQ(why_not(scene), "pucks (balls.rolls = false) have no derivatives here");
 }
 
 // Code that draws tables receives arcs as short cushions.

@@ -10,12 +10,11 @@
 
 #include "contact/touch.h"
 #include "reference/random_impacts.h"
-#include "tangent/dual.h"
 
 namespace carom {
 namespace {
 
-using Ball = BallAt<Vec3>;
+using Ball = BallAt;
 
 constexpr double kTouchR = 0.03, kHeight = 0.04, kInset = 0.001;
 // Along (0.6, 0.8), from (0.1, 0.2): its left is (-0.8, 0.6).
@@ -34,13 +33,13 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-15) {
 }
 
 TEST(Touch, BallsInSpaceAndOnTheCloth) {
-    const Touch<Vec3> space = touch_ball(ball_at({0.1, 0.2, 0.3}), ball_at({0.3, 0.3, 0.5}, true, 0.02));
+    const Touch space = touch_ball(ball_at({0.1, 0.2, 0.3}), ball_at({0.3, 0.3, 0.5}, true, 0.02));
     expect_near(space.n, Vec3(2.0, 1.0, 2.0) / 3.0);
     EXPECT_NEAR(space.gap, 0.3 - 0.05, 1e-15);
     // On the cloth unlike balls touch at 2 sqrt(R1 R2), discs at R1 + R2; heights are not read.
     const Ball small = ball_at({0.1, 0.2, 0.7}, false, 0.01), large = ball_at({0.4, 0.6, 0.1}, false, 0.04);
     for (const bool discs : {false, true}) {
-        const Touch<Vec3> level = touch_level(small, large, discs);
+        const Touch level = touch_level(small, large, discs);
         expect_near(level.n, {0.6, 0.8, 0.0});
         EXPECT_NEAR(level.gap, 0.5 - (discs ? 0.05 : 0.04), 1e-15);
     }
@@ -49,12 +48,12 @@ TEST(Touch, BallsInSpaceAndOnTheCloth) {
 TEST(Touch, StraightNoses) {
     for (const double side : {1.0, -1.0}) {
         const Vec2 place = kLine.from + 0.2 * kLine.direction + side * 0.05 * Vec2(-0.8, 0.6);
-        const Touch<Vec3> level = touch_line(kLine, ball_at({place.x(), place.y(), 9.0}));
+        const Touch level = touch_line(kLine, ball_at({place.x(), place.y(), 9.0}));
         expect_near(level.n, side * Vec3(0.8, -0.6, 0.0));
         EXPECT_NEAR(level.gap, 0.05 - (kTouchR - kInset), 1e-15);
         EXPECT_EQ(level.bend, 0.0);
         // From above: 0.05 aside and 0.12 up, 0.13 away.
-        const Touch<Vec3> space = touch_line(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
+        const Touch space = touch_line(kLine, ball_at({place.x(), place.y(), kHeight + 0.12}, true));
         expect_near(space.n, Vec3(side * 0.8 * 5.0, side * -0.6 * 5.0, -12.0) / 13.0);
         EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
     }
@@ -65,18 +64,18 @@ TEST(Touch, RoundNosesFromOutsideAndInside) {
     const auto at = [&](double z, bool flies) { return ball_at({place.x(), place.y(), z}, flies); };
     for (const double radius : {0.02, 0.0, -0.3}) {
         const double sign = radius < 0.0 ? -1.0 : 1.0;
-        const Touch<Vec3> level = touch_round(nose(radius), at(0.0, false));
+        const Touch level = touch_round(nose(radius), at(0.0, false));
         expect_near(level.n, -sign * Vec3(0.6, 0.8, 0.0));
         EXPECT_NEAR(level.gap, sign * 0.1 - radius - (kTouchR - kInset), 1e-15) << radius;
     }
     // 0.05 outside the circle and 0.12 above it, 0.13 away.
-    const Touch<Vec3> space = touch_round(nose(0.05), at(kHeight + 0.12, true));
+    const Touch space = touch_round(nose(0.05), at(kHeight + 0.12, true));
     expect_near(space.n, Vec3(-0.6 * 5.0, -0.8 * 5.0, -12.0) / 13.0);
     EXPECT_NEAR(space.gap, 0.13 - std::hypot(kTouchR - kInset, kHeight - kTouchR), 1e-15);
 }
 
 TEST(Touch, TheCloth) {
-    const Touch<Vec3> touch = touch_cloth(Ball{{1.0, 2.0, 0.05}, {0.3, 0.0, -0.7}, kTouchR, true});
+    const Touch touch = touch_cloth(Ball{{1.0, 2.0, 0.05}, {0.3, 0.0, -0.7}, kTouchR, true});
     expect_near(touch.n, -Vec3::UnitZ());
     EXPECT_NEAR(touch.gap, 0.02, 1e-16);
     EXPECT_EQ(touch.closing, 0.7);
@@ -85,7 +84,7 @@ TEST(Touch, TheCloth) {
 struct Kind {
     std::string name;
     bool flies;
-    std::function<Touch<Vec3>(const Ball&)> touch;
+    std::function<Touch(const Ball&)> touch;
 };
 
 std::vector<Kind> kinds() {
@@ -128,10 +127,10 @@ TEST(Touch, SpeedAndAccelerationMatchTheGap) {
             if (!kind.flies) ball.v.z() = a.z() = 0.0;
             // On the cloth the second derivative is for a touching ball, so move it there.
             for (int i = 0; i < 100; ++i) {
-                const Touch<Vec3> touch = kind.touch(ball);
+                const Touch touch = kind.touch(ball);
                 ball.r += touch.gap * touch.n;
             }
-            const Touch<Vec3> touch = kind.touch(ball);
+            const Touch touch = kind.touch(ball);
             ASSERT_NEAR(touch.gap, 0.0, 1e-14) << kind.name << " " << k;
             ASSERT_NEAR(touch.n.norm(), 1.0, 1e-15) << kind.name;
             const auto gap = [&](double t) {
@@ -147,45 +146,6 @@ TEST(Touch, SpeedAndAccelerationMatchTheGap) {
             EXPECT_NEAR(touch.pressing(planar(a)) + touch.n.z() * a.z(), -bend, 1e-6)
                 << kind.name << " " << k;
         }
-    }
-}
-
-TEST(Touch, DualNumbersYieldTheGradient) {
-    using tangent::Dual, tangent::Dual3;
-    struct Line {
-        tangent::Dual2 from, direction;
-        Dual height, inset;
-    };
-    struct Round {
-        tangent::Dual2 center;
-        Dual radius, height, inset;
-    };
-    const Line line{{kLine.from.x(), kLine.from.y()}, {0.6, 0.8}, kHeight, kInset};
-    for (const bool flies : {false, true}) {
-        const Vec3 r(0.2, 0.1, 0.09), other(0.3, 0.2, 0.05);
-        BallAt<Dual3> ball{{r.x(), r.y(), r.z()}, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
-        for (int i = 0; i < 3; ++i) ball.r[i].d[i] = 1.0;
-        ball.R.d[3] = 1.0;
-        const Ball numbers{r, {0.1, 0.2, flies ? 0.3 : 0.0}, kTouchR, flies};
-        const auto compare = [&](const Touch<Dual3>& dual, const Touch<Vec3>& touch) {
-            EXPECT_NEAR(dual.gap.x, touch.gap, 1e-16);
-            EXPECT_NEAR(dual.closing.x, touch.closing, 1e-16);
-            EXPECT_NEAR(dual.bend.x, touch.bend, 1e-15);
-            // The gap shrinks by the motion along the normal.
-            for (int i = 0; i < 3; ++i) EXPECT_NEAR(dual.gap.d[i], -touch.n[i], 1e-15) << i;
-        };
-        compare(touch_line(line, ball), touch_line(kLine, numbers));
-        for (const double radius : {0.02, 0.0, -0.3}) {
-            if (flies && radius < 0.0) continue;
-            const Round round{{0.3, -0.1}, radius, kHeight, kInset};
-            compare(touch_round(round, ball), touch_round(nose(radius), numbers));
-        }
-        const BallAt<Dual3> dual_other{{other.x(), other.y(), other.z()}, {}, 0.02};
-        const Touch<Dual3> pair = flies ? touch_ball(ball, dual_other) : touch_level(ball, dual_other, false);
-        compare(pair, flies ? touch_ball(numbers, ball_at(other, false, 0.02))
-                            : touch_level(numbers, ball_at(other, false, 0.02), false));
-        // Unlike balls on the cloth: 2 sqrt(R1 R2).
-        EXPECT_NEAR(pair.gap.d[3], flies ? -1.0 : -std::sqrt(0.02 / kTouchR), 1e-15);
     }
 }
 

@@ -41,7 +41,7 @@ struct Rooms {
 };
 const std::array<Rooms, 5> kRooms = {{
     {"kernel/src", {"unlike"}, {"march", "tolerance", "contact_phase"}},
-    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch", "tangent"}},
+    {"engine/src", {"base", "physics", "contact"}, {"scene", "plan", "loop", "record", "batch"}},
     {"render/src", {"font", "gl"}, {"stage", "draw", "frames"}},
     // Inner rooms precede the rooms that contain them.
     {"tools/carom/commands",

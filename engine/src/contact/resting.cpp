@@ -46,15 +46,13 @@ Link link_of(const Group& g, const RestingContact& c) {
         return static_cast<int>(std::find_if(g.group.balls.begin(), g.group.balls.end(), is_it) -
                                 g.group.balls.begin());
     };
-    const auto at = [&](int body) {
-        return BallAt<Vec3>{g.group.balls[body].r, Vec3::Zero(), g.bodies[body].R};
-    };
+    const auto at = [&](int body) { return BallAt{g.group.balls[body].r, Vec3::Zero(), g.bodies[body].R}; };
     const bool discs = g.around.balls.discs();
     Link link{.i = body_of(c.contact.ball), .j = -1, .first = c.n, .n = c.n, .contact = c.contact};
-    const BallAt<Vec3> ball = at(link.i);
+    const BallAt ball = at(link.i);
     if (c.contact.with == With::kBall) {
         link.j = body_of(c.contact.other);
-        const BallAt<Vec3> other = at(link.j);
+        const BallAt other = at(link.j);
         link.distance = contact_distance(ball.R, other.R, discs);
         link.tilt = discs ? 0.0 : (other.R - ball.R) / link.distance;
         link.gap = touch_level(ball, other, discs).gap;

@@ -29,22 +29,22 @@ Vec2 nearest_point(const Nose& nose, const Vec2& place) {
     return nose.center + radius * (first ? nose.span.from : nose.span.to);
 }
 
-bool beside(const CushionLine& line, const BallAt<Vec3>& ball) {
+bool beside(const CushionLine& line, const BallAt& ball) {
     return between_ends(dot(line.direction, planar(ball.r) - line.from), 0.0, 0.0, line.length, 0.0);
 }
 
-bool beside(const Nose& nose, const BallAt<Vec3>& ball, double slack) {
+bool beside(const Nose& nose, const BallAt& ball, double slack) {
     if (nose.span.whole && !ball.flies) return true;
     const Vec2 place = planar(ball.r);
     return !behind(nose, place) && nose.span.holds(place - nose.center, slack);
 }
 
-bool beside(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball) {
+bool beside(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
     return contact.with == With::kNose ? beside(geometry.noses[contact.other], ball)
                                        : beside(geometry.cushions[contact.other], ball);
 }
 
-bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball) {
+bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
     if (touch_part(geometry, contact, ball).gap > kTouchTolerance) return false;
     const Vec2 here = planar(ball.r);
     if (contact.with == With::kNose)

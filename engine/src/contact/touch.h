@@ -1,12 +1,10 @@
 // The geometry of a contact: its direction, its gap, and how fast the gap closes. One function per kind of
 // part: another ball, a straight nose, a round nose (a point if its radius is 0, a wall around the balls if
 // it is negative), the cloth. A new kind of part needs a function here, its time in detect.h, and its keys in
-// the reader. For derivatives the functions accept dual numbers (tangent/dual.h).
+// the reader.
 #pragma once
 
 #include <cmath>
-#include <type_traits>
-#include <utility>
 
 #include "carom/engine/ball_ball.h"
 #include "carom/engine/geometry.h"
@@ -17,120 +15,100 @@
 
 namespace carom {
 
-/// The scalar, and the plane vector, that belong to a vector in space.
-template <class Space>
-using Number = std::remove_cvref_t<decltype(std::declval<const Space&>()[0])>;
-template <class Space>
-using Plane = decltype(planar(std::declval<const Space&>()));
-
-template <class Space>
 struct BallAt {
-    Space r, v;
-    Number<Space> R;
+    Vec3 r, v;
+    double R;
     /// Whether it meets noses in space; on the cloth it meets them in the plane, whatever r.z and v.z are.
     bool flies = false;
 };
 
-template <class Space>
 struct Touch {
-    Space n;                ///< unit, from the ball into what it touches; level for balls on the cloth
-    Number<Space> gap;      ///< [m] negative: overlap
-    Number<Space> closing;  ///< [m/s] the rate at which the gap closes
-    Number<Space> bend;     ///< [m/s^2] deceleration of the closing by motion along a curved part
+    Vec3 n;          ///< unit, from the ball into what it touches; level for balls on the cloth
+    double gap;      ///< [m] negative: overlap
+    double closing;  ///< [m/s] the rate at which the gap closes
+    double bend;     ///< [m/s^2] deceleration of the closing by motion along a curved part
 
     /// [m/s^2] Closing acceleration of a ball with the (for two balls, relative) level acceleration `a`.
-    Number<Space> pressing(const Plane<Space>& a) const { return dot(planar(n), a) - bend; }
+    double pressing(const Vec2& a) const { return dot(planar(n), a) - bend; }
 };
 
 /// [m] Distance of a touching ball's centre from a nose: horizontally, or in space if it flies.
-template <class Part, class T>
-T reach_of(const Part& part, const T& R, bool flies) {
-    return flies ? nose_reach(R, part.height, part.inset) : T(R - part.inset);
+template <class Part>
+double reach_of(const Part& part, double R, bool flies) {
+    return flies ? nose_reach(R, part.height, part.inset) : R - part.inset;
 }
 /// [m] Path radius of a touching ball around a round nose on the cloth; negative inside a wall.
-template <class Round, class T>
-T turn_around(const Round& nose, const T& R) {
+inline double turn_around(const Nose& nose, double R) {
     return R + nose.radius - nose.inset;
 }
 
 namespace detail {
 
-template <class Space>
-Touch<Space> touch_spheres(const Space& apart, const Space& v, const Number<Space>& reach) {
-    const Number<Space> d = length3(apart);
-    const Space n{apart[0] / d, apart[1] / d, apart[2] / d}, across = cross3(n, v);
+inline Touch touch_spheres(const Vec3& apart, const Vec3& v, double reach) {
+    const double d = length3(apart);
+    const Vec3 n{apart[0] / d, apart[1] / d, apart[2] / d}, across = cross3(n, v);
     return {n, d - reach, dot3(n, v), dot3(across, across) / reach};
 }
 
 /// A nose in space.
 /// @param out  level, from the centre of a round nose or from the foot on a straight one
-template <class Space, class Part>
-Touch<Space> touch_rim(const Plane<Space>& out, const Number<Space>& radius, bool round, const Part& nose,
-                       const BallAt<Space>& ball) {
-    using T = Number<Space>;
-    const T distance = length(out), level = distance - radius, up = ball.r[2] - nose.height;
-    const Plane<Space> v = planar(ball.v);
-    Plane<Space> away{0.0, 0.0};
-    if (T(0.0) < distance) away = Plane<Space>{out[0] / distance, out[1] / distance};
-    const Space apart{level * away[0], level * away[1], up};
-    const T d = length3(apart);
-    const Space n{-(apart[0] / d), -(apart[1] / d), -(apart[2] / d)};
-    const T across = (level * ball.v[2] - up * dot(away, v)) / d, around = cross(away, v);
-    T bend = across * across / d;
-    if (round && T(0.0) < distance) bend = bend + level / d * (around * around / distance);
+template <class Part>
+Touch touch_rim(const Vec2& out, double radius, bool round, const Part& nose, const BallAt& ball) {
+    const double distance = length(out), level = distance - radius, up = ball.r[2] - nose.height;
+    const Vec2 v = planar(ball.v);
+    Vec2 away{0.0, 0.0};
+    if (distance > 0.0) away = Vec2{out[0] / distance, out[1] / distance};
+    const Vec3 apart{level * away[0], level * away[1], up};
+    const double d = length3(apart);
+    const Vec3 n{-(apart[0] / d), -(apart[1] / d), -(apart[2] / d)};
+    const double across = (level * ball.v[2] - up * dot(away, v)) / d, around = cross(away, v);
+    double bend = across * across / d;
+    if (round && distance > 0.0) bend = bend + level / d * (around * around / distance);
     return {n, d - reach_of(nose, ball.R, true), dot3(n, ball.v), bend};
 }
 
 }  // namespace detail
 
 /// Two balls in space.
-template <class Space>
-Touch<Space> touch_ball(const BallAt<Space>& ball, const BallAt<Space>& other) {
-    return detail::touch_spheres<Space>(other.r - ball.r, ball.v - other.v, ball.R + other.R);
+inline Touch touch_ball(const BallAt& ball, const BallAt& other) {
+    return detail::touch_spheres(other.r - ball.r, ball.v - other.v, ball.R + other.R);
 }
 
 /// Two balls on the cloth, or discs; ignores their heights.
-template <class Space>
-Touch<Space> touch_level(const BallAt<Space>& ball, const BallAt<Space>& other, bool discs) {
-    const Space apart{other.r[0] - ball.r[0], other.r[1] - ball.r[1], 0.0};
-    const Space v{ball.v[0] - other.v[0], ball.v[1] - other.v[1], 0.0};
-    return detail::touch_spheres<Space>(apart, v, contact_distance(ball.R, other.R, discs));
+inline Touch touch_level(const BallAt& ball, const BallAt& other, bool discs) {
+    const Vec3 apart{other.r[0] - ball.r[0], other.r[1] - ball.r[1], 0.0};
+    const Vec3 v{ball.v[0] - other.v[0], ball.v[1] - other.v[1], 0.0};
+    return detail::touch_spheres(apart, v, contact_distance(ball.R, other.R, discs));
 }
 
 /// A ball and a straight nose, on either side of it.
-template <class Line, class Space>
-Touch<Space> touch_line(const Line& line, const BallAt<Space>& ball) {
-    using T = Number<Space>;
-    const Plane<Space> from = planar(ball.r) - line.from;
-    const T &x = line.direction[0], &y = line.direction[1];
+inline Touch touch_line(const CushionLine& line, const BallAt& ball) {
+    const Vec2 from = planar(ball.r) - line.from;
+    const double &x = line.direction[0], &y = line.direction[1];
     if (ball.flies) {
-        const T along = dot(line.direction, from);
-        const Plane<Space> out{ball.r[0] - (line.from[0] + x * along),
-                               ball.r[1] - (line.from[1] + y * along)};
-        return detail::touch_rim<Space>(out, 0.0, false, line, ball);
+        const double along = dot(line.direction, from);
+        const Vec2 out{ball.r[0] - (line.from[0] + x * along), ball.r[1] - (line.from[1] + y * along)};
+        return detail::touch_rim(out, 0.0, false, line, ball);
     }
-    const T side = cross(line.direction, from), level = reach_of(line, ball.R, false);
-    const bool right = side < T(0.0);
-    const Space n = right ? Space{-y, x, 0.0} : Space{y, -x, 0.0};
-    return {n, (right ? T(-side) : side) - level, dot3(n, ball.v), 0.0};
+    const double side = cross(line.direction, from), level = reach_of(line, ball.R, false);
+    const bool right = side < 0.0;
+    const Vec3 n = right ? Vec3{-y, x, 0.0} : Vec3{y, -x, 0.0};
+    return {n, (right ? -side : side) - level, dot3(n, ball.v), 0.0};
 }
 
 /// A ball and a round nose; inside a wall the normal points outwards.
-template <class Round, class Space>
-Touch<Space> touch_round(const Round& nose, const BallAt<Space>& ball) {
-    using T = Number<Space>;
-    const Plane<Space> out = planar(ball.r) - nose.center;
-    if (ball.flies) return detail::touch_rim<Space>(out, nose.radius, true, nose, ball);
-    const T level = (nose.radius < T(0.0) ? -1.0 : 1.0) * length(out), turn = turn_around(nose, ball.R);
-    const Space n{-(out[0] / level), -(out[1] / level), 0.0};
-    const T around = cross(planar(n), planar(ball.v));
+inline Touch touch_round(const Nose& nose, const BallAt& ball) {
+    const Vec2 out = planar(ball.r) - nose.center;
+    if (ball.flies) return detail::touch_rim(out, nose.radius, true, nose, ball);
+    const double level = (nose.radius < 0.0 ? -1.0 : 1.0) * length(out), turn = turn_around(nose, ball.R);
+    const Vec3 n{-(out[0] / level), -(out[1] / level), 0.0};
+    const double around = cross(planar(n), planar(ball.v));
     return {n, level - turn, dot3(n, ball.v), around * around / turn};
 }
 
 /// A ball above the cloth.
-template <class Space>
-Touch<Space> touch_cloth(const BallAt<Space>& ball) {
-    return {Space{0.0, 0.0, -1.0}, ball.r[2] - ball.R, -ball.v[2], 0.0};
+inline Touch touch_cloth(const BallAt& ball) {
+    return {Vec3{0.0, 0.0, -1.0}, ball.r[2] - ball.R, -ball.v[2], 0.0};
 }
 
 /// Components of a vector along a line, and across it to its left.
@@ -166,21 +144,19 @@ inline bool behind(const Nose& nose, const Vec2& place) {
 /// Whether the ball can touch the part where it is: between the ends of a cushion or an arc, on the side on
 /// which an arc acts, and not over the disc of a jaw.
 /// @param slack [m] rounding of the direction from an arc's centre
-bool beside(const CushionLine& line, const BallAt<Vec3>& ball);
-bool beside(const Nose& nose, const BallAt<Vec3>& ball, double slack = 0.0);
+bool beside(const CushionLine& line, const BallAt& ball);
+bool beside(const Nose& nose, const BallAt& ball, double slack = 0.0);
 
 // By the part of a contact.
 
 /// A ball and its part of the table: a cushion or a nose.
-/// @param parts  a Geometry, or its dual numbers
-template <class Parts, class Space>
-Touch<Space> touch_part(const Parts& parts, const Contact& contact, const BallAt<Space>& ball) {
-    return contact.with == With::kNose ? touch_round(parts.noses[contact.other], ball)
-                                       : touch_line(parts.cushions[contact.other], ball);
+inline Touch touch_part(const Geometry& geometry, const Contact& contact, const BallAt& ball) {
+    return contact.with == With::kNose ? touch_round(geometry.noses[contact.other], ball)
+                                       : touch_line(geometry.cushions[contact.other], ball);
 }
-bool beside(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball);
+bool beside(const Geometry& geometry, const Contact& contact, const BallAt& ball);
 /// Whether the ball touches the part now, within kTouchTolerance and the rounding of the part's ends.
-bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt<Vec3>& ball);
+bool touches_part(const Geometry& geometry, const Contact& contact, const BallAt& ball);
 /// [m] Height of the nose.
 double part_height(const Geometry& geometry, const Contact& contact);
 /// [m] Path radius of a touching ball around the part: 0 for a straight one, negative inside a wall.

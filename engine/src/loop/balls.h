@@ -85,7 +85,7 @@ class Balls : private Borrowed<BallsMemory> {
     }
 
     /// The ball in the plane of the cloth, for contacts there.
-    BallAt<Vec3> at(int ball) const { return {position(ball), velocity(ball), radius(ball)}; }
+    BallAt at(int ball) const { return {position(ball), velocity(ball), radius(ball)}; }
     double radius(int ball) const { return plan_.sizes[ball].R; }
     const MotionParams& motion(int ball) const { return plan_.motion[ball]; }
 

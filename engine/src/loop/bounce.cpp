@@ -18,7 +18,7 @@ constexpr double kOneNormal = 1.0 - 1e-6;
 }  // namespace
 
 TableTouch table_touch(const Plan& plan, const Balls& balls, const Contact& contact) {
-    const Touch<Vec3> met = touch_part(plan.geometry, contact, balls.at(contact.ball));
+    const Touch met = touch_part(plan.geometry, contact, balls.at(contact.ball));
     TableTouch touch{{.normal = -planar(met.n),
                       .height = part_height(plan.geometry, contact),
                       .model = is_jaw(contact, plan.geometry) ? plan.jaw : plan.cushion},

@@ -10,7 +10,6 @@
 #include "carom/engine/vec.h"
 #include "contact/contact.h"
 #include "loop/balls.h"
-#include "loop/contact_kinematics.h"
 #include "loop/detector.h"
 #include "loop/resting_contacts.h"
 #include "physics/cushion/bounce.h"

@@ -52,11 +52,11 @@ bool NearSurfaces::lies(int ball, const Placed& at) const {
 
 template <class F>
 void NearSurfaces::each_beside(std::size_t member, const Placed& at, F&& f) const {
-    BallAt<Vec3> ball{at.position, at.velocity, R(member), !lies(m_.ball_[member], at)};
+    BallAt ball{at.position, at.velocity, R(member), !lies(m_.ball_[member], at)};
     for (const ClusterSurfacesMemory::Part& part : m_.parts_) {
         if (part.member != member) continue;
-        const Touch<Vec3> touch = touch_part(plan_.geometry, part.contact, ball);
-        BallAt<Vec3> there = ball;
+        const Touch touch = touch_part(plan_.geometry, part.contact, ball);
+        BallAt there = ball;
         const double time = touch.gap > 0.0 && touch.closing > 0.0 ? touch.gap / touch.closing : 0.0;
         there.r += time * there.v;
         if (beside(plan_.geometry, part.contact, there)) f(part.contact, touch, time);
@@ -66,7 +66,7 @@ void NearSurfaces::each_beside(std::size_t member, const Placed& at, F&& f) cons
 NearSurfaces::Reached NearSurfaces::find(std::size_t member, const Placed& at, const Vec3& spin) const {
     Reached first{nullptr, kNever};
     const double noise = std::max(kCreeps, closing_noise(R(member), {at.velocity, spin}));
-    each_beside(member, at, [&](const Contact& part, const Touch<Vec3>& touch, double time) {
+    each_beside(member, at, [&](const Contact& part, const Touch& touch, double time) {
         if (!(touch.closing > noise)) return;
         if (touch.gap <= kTouches * R(member)) time = 0.0;
         if (time < first.time || (time == first.time && touch.closing > first.closing))
@@ -106,7 +106,7 @@ void NearSurfaces::hit(std::size_t member, double time, const Vec3& r, Velocitie
     }
     const Contact& part = *met.part;
     const bool jaw = is_jaw(part, plan_.geometry), flies = !lies(index, at);
-    const Vec3 n = -touch_part(plan_.geometry, part, BallAt<Vec3>{r, ball.v, R(member), flies}).n;
+    const Vec3 n = -touch_part(plan_.geometry, part, BallAt{r, ball.v, R(member), flies}).n;
     const CushionModelInfo* const model = jaw ? plan_.jaw : plan_.cushion;
     const Vec3 before = ball.v;
     bool solved = true;
@@ -127,7 +127,7 @@ void NearSurfaces::hit(std::size_t member, double time, const Vec3& r, Velocitie
 
 double NearSurfaces::out(std::size_t member, const Placed& at) const {
     double longest = 0.0;
-    each_beside(member, at, [&](const Contact&, const Touch<Vec3>& touch, double) {
+    each_beside(member, at, [&](const Contact&, const Touch& touch, double) {
         const double time = touch.closing < 0.0 ? touch.gap / touch.closing : 0.0;
         if (touch.gap < -kTouches * R(member) && time <= longest_)
             longest = std::max(longest, time * (1.0 + kTouches));
@@ -142,8 +142,8 @@ std::optional<Vec3> NearSurfaces::outside(std::size_t member, const Vec3& from, 
     bool inside = true, through = false;
     for (int round = 0; round < kRounds && inside; ++round) {
         inside = false;
-        each_beside(member, there, [&](const Contact& part, const Touch<Vec3>& touch, double) {
-            const BallAt<Vec3> ball{from, at.velocity, R(member), false};
+        each_beside(member, there, [&](const Contact& part, const Touch& touch, double) {
+            const BallAt ball{from, at.velocity, R(member), false};
             through = through || touch.n.dot(touch_part(plan_.geometry, part, ball).n) < 0.0 ||
                       touch.gap < -kDeepest * R(member);
             if (touch.gap >= -kTouchUlp * R(member)) return;

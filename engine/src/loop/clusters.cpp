@@ -30,10 +30,10 @@ constexpr double kPushes = 1e-9;
 
 /// For balls on the cloth, ignores the height at which the fall of one began; unlike balls touch above or
 /// below their equators.
-Touch<Vec3> touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
+Touch touch_of(const ClusterBall& p, const ClusterBall& q, bool in_space, bool discs) {
     const auto at = [&](const ClusterBall& b) {
-        if (in_space) return BallAt<Vec3>{b.r, b.v, b.R};
-        return BallAt<Vec3>{{b.r.x(), b.r.y(), discs ? 0.0 : b.R}, {b.v.x(), b.v.y(), 0.0}, b.R};
+        if (in_space) return BallAt{b.r, b.v, b.R};
+        return BallAt{{b.r.x(), b.r.y(), discs ? 0.0 : b.R}, {b.v.x(), b.v.y(), 0.0}, b.R};
     };
     return touch_ball(at(p), at(q));
 }
@@ -108,9 +108,9 @@ void Clusters::collect_at(int a, int b, double v_n) {
                                                                 {plan_.balls.R, plan_.balls.m})
                             : 0.0;
     contact_time_ = time;
-    const auto reach = [&](const Touch<Vec3>& near) { return time * (std::max(0.0, near.closing) + v_n); };
+    const auto reach = [&](const Touch& near) { return time * (std::max(0.0, near.closing) + v_n); };
     const auto gap_of = [this](const ClusterBall& p, const ClusterBall& q) {
-        Touch<Vec3> near = touch_of(p, q, flights_, plan_.balls.discs());
+        Touch near = touch_of(p, q, flights_, plan_.balls.discs());
         // Only here is it decided whether balls touch: a gap within the rounding of the positions counts as
         // touching.
         if (near.gap <= kTouchUlp * std::max(p.R, q.R)) near.gap = 0.0;
@@ -132,7 +132,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
             if (is_member(q) || balls_.collides(q) || passes(here.ball, q)) return;
             ++looks_;
             const ClusterBall candidate = member(q);
-            const Touch<Vec3> near = gap_of(here, candidate);
+            const Touch near = gap_of(here, candidate);
             if (near.gap <= reach(near)) members_.push_back(candidate);
         });
     }
@@ -149,7 +149,7 @@ void Clusters::collect_at(int a, int b, double v_n) {
     });
     for (std::size_t i = 0; i < members_.size(); ++i) {
         for (std::size_t j = i + 1; j < members_.size(); ++j) {
-            const Touch<Vec3> near = gap_of(members_[i], members_[j]);
+            const Touch near = gap_of(members_[i], members_[j]);
             if (!passes(members_[i].ball, members_[j].ball) && near.gap <= kListed * reach(near))
                 contacts_.push_back({static_cast<int>(i), static_cast<int>(j), near.n, near.gap,
                                      nearness(near.gap, reach(near))});
@@ -208,7 +208,7 @@ double Clusters::overlap_ends() const {
             ClusterBall p = members_[i], q = members_[j];
             p.r += paths_[i];
             q.r += paths_[j];
-            const Touch<Vec3> ends = touch_of(p, q, in_space_, plan_.balls.discs());
+            const Touch ends = touch_of(p, q, in_space_, plan_.balls.discs());
             if (ends.gap >= -kTouchUlp * std::max(p.R, q.R)) continue;
             if (!(ends.closing < 0.0)) return kNever;
             longest = std::max(longest, ends.gap / ends.closing * (1.0 + kBoxShare));

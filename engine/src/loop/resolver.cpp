@@ -158,7 +158,7 @@ bool Resolver::hold_in_cluster(Pressed when) {
             return start_segment(balls_.now(), b.r, b.v, b.w, balls_.motion(b.ball));
         };
         const Segment one = segment(p), two = segment(q);
-        return touch_level<Vec3>({one.r, one.v, p.R}, {two.r, two.v, q.R}, plan_.balls.discs())
+        return touch_level({one.r, one.v, p.R}, {two.r, two.v, q.R}, plan_.balls.discs())
             .pressing(one.a - two.a);
     };
     for (const ClusterContact& c : clusters_.contacts()) {

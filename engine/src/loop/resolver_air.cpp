@@ -68,8 +68,8 @@ void Resolver::free_balls(int a, int b) {
         if (resting_.try_hold(approach, plan_.balls.e_b)) return;
     }
     FreePair pair{plan_.sizes[one], plan_.sizes[two], plan_.ball_ball->friction(plan_.balls), plan_.e_b()};
-    const Touch<Vec3> touch =
-        touch_ball<Vec3>({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
+    const Touch touch =
+        touch_ball({p1.position, p1.velocity, pair.size1.R}, {p2.position, p2.velocity, pair.size2.R});
     const Vec3& n = touch.n;
     const double v_n = touch.closing;
     Velocities ball1{p1.velocity, balls_.spin(one)}, ball2{p2.velocity, balls_.spin(two)};
@@ -107,7 +107,7 @@ void Resolver::cushion_in_air(const Contact& contact) {
     const bool jaw = is_jaw(contact, plan_.geometry);
     const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
     const double R = balls_.radius(ball);
-    const Vec3 n = -touch_part(plan_.geometry, contact, BallAt<Vec3>{at.position, at.velocity, R, true}).n;
+    const Vec3 n = -touch_part(plan_.geometry, contact, BallAt{at.position, at.velocity, R, true}).n;
     Velocities after{at.velocity, balls_.spin(ball)};
     const bool slow = hit_nose(plan_.balls, R, model, n, parting_speed(R, plan_.gravity), after);
     if (cost_ != nullptr) cost_->method = model.name;

@@ -43,6 +43,14 @@ bool touches(const RestingContact& c, int ball) {
 
 }  // namespace
 
+ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two) {
+    const Touch touch = touch_level(balls.at(one), balls.at(two), plan.balls.discs());
+    return {{one, With::kBall, two},
+            planar(touch.n),
+            touch.closing,
+            touch.pressing(balls.segment(one).a - balls.segment(two).a)};
+}
+
 RestingContacts::RestingContacts(const Plan& plan, const Balls& balls, Log& log, RestingMemory& memory)
     : Borrowed(memory), plan_(plan), balls_(balls), log_(log), lossless_(loses_nothing(plan)) {
     contacts_.clear();
@@ -337,7 +345,7 @@ void RestingContacts::sort_by_place(std::vector<RestingContact>& contacts) const
 }
 
 void RestingContacts::refresh_normal(RestingContact& c) const {
-    const BallAt<Vec3> ball = balls_.at(c.contact.ball);
+    const BallAt ball = balls_.at(c.contact.ball);
     c.n = planar(c.contact.with == With::kBall
                      ? touch_level(ball, balls_.at(c.contact.other), plan_.balls.discs()).n
                      : touch_part(plan_.geometry, c.contact, ball).n);

@@ -5,13 +5,22 @@
 #include <span>
 #include <vector>
 
+#include "contact/contact.h"
 #include "contact/resting.h"
 #include "loop/balls.h"
-#include "loop/contact_kinematics.h"
 #include "loop/log.h"
 #include "loop/memory.h"
 
 namespace carom {
+
+/// The motion of a ball relative to its partner in a contact.
+struct ContactKinematics {
+    Contact contact;
+    Vec2 n;            ///< unit, from the ball to the other one or into the part
+    double v_n = 0.0;  ///< [m/s] closing speed
+    double a_c = 0.0;  ///< [m/s^2] closing acceleration
+};
+ContactKinematics kinematics_of(const Plan& plan, const Balls& balls, int one, int two);
 
 struct RestingMemory {
     struct Struck {

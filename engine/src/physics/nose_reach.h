@@ -10,11 +10,9 @@ inline constexpr double kNoseReach = 1.5;
 
 /// [m] Distance of the centre from the line of a nose at this height, in the plane perpendicular to it. The
 /// nose is a cylinder about its line that a ball on the cloth touches at the horizontal distance R - inset.
-template <class T>
-T nose_reach(const T& R, const T& height, const T& inset) {
-    using std::sqrt;
-    const T level = R - inset, up = height - R;
-    return sqrt(level * level + up * up);
+inline double nose_reach(double R, double height, double inset) {
+    const double level = R - inset, up = height - R;
+    return std::sqrt(level * level + up * up);
 }
 
 }  // namespace carom

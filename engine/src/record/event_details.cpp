@@ -67,7 +67,7 @@ void place_contact(const Record& record, const Event& event, EventDetails& d) {
     switch (kind(event.type).partner) {
         case Partner::kBall: {
             const BallState& b = d.balls[1].after;
-            const BallAt<Vec3> ball{a.position, a.velocity, R},
+            const BallAt ball{a.position, a.velocity, R},
                 other{b.position, b.velocity, record.size(event.b).R};
             d.normal = (record.balls.discs() ? touch_level(other, ball, true) : touch_ball(other, ball)).n;
             d.point = a.position - R * d.normal;

@@ -12,7 +12,7 @@ namespace carom {
 
 namespace {
 
-BallAt<Vec3> at(const SeenBall& ball) {
+BallAt at(const SeenBall& ball) {
     return {ball.r, Vec3::Zero(), ball.R, ball.flies};
 }
 

@@ -411,7 +411,7 @@ class Events {
                    name(e.type));
     }
 
-    BallAt<Vec3> body(std::size_t ball, bool level) const {
+    BallAt body(std::size_t ball, bool level) const {
         const Placed& at = changed_[ball].at;
         if (!level) return {at.position, at.velocity, R(ball), true};
         return {Vec3(at.position.x(), at.position.y(), 0.0), Vec3(at.velocity.x(), at.velocity.y(), 0.0),
@@ -452,8 +452,8 @@ class Events {
         const SeenBall one = seen(a), two = seen(b);
         const bool space = in_space(one, two), free_bodies = flights() && (plan_.ball_ball->free || space);
         const bool level = !free_bodies || (!space && (falls(a) || falls(b)));
-        BallAt<Vec3> ball1 = body(a, level), ball2 = body(b, level);
-        const Touch<Vec3> met =
+        BallAt ball1 = body(a, level), ball2 = body(b, level);
+        const Touch met =
             free_bodies ? touch_ball(ball1, ball2) : touch_level(ball1, ball2, plan_.balls.discs());
         const double noise = kSameShare * (p.speeds(R(a)) + q.speeds(R(b)));
         if (!meets(a, "ball " + id(b), gap_between(one, two), met.closing, noise)) return;
@@ -523,8 +523,8 @@ class Events {
         for (;; involve(record_.events[event_])) {
             const Event& e = record_.events[event_];
             const Contact contact = contact_of(e);
-            const BallAt<Vec3> at = body(ball, !in_air);
-            const Touch<Vec3> met = touch_part(plan_.geometry, contact, at);
+            const BallAt at = body(ball, !in_air);
+            const Touch met = touch_part(plan_.geometry, contact, at);
             const bool jaw = is_jaw(contact, plan_.geometry);
             const CushionModelInfo& model = jaw ? *plan_.jaw : *plan_.cushion;
             double gap = met.gap;

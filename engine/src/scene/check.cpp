@@ -65,11 +65,11 @@ void check_reach(const Section& top, const Scene& scene) {
     for (const BallStart& ball : scene.ball) {
         const Vec2 p = planar(ball.position);
         const double touch = touch_tolerance(p), R = scene.size_of(ball).R;
-        const BallAt<Vec3> at{ball.position, Vec3::Zero(), R, ball.height != 0.0};
+        const BallAt at{ball.position, Vec3::Zero(), R, ball.height != 0.0};
         const auto depth_in = [&](Nose nose) {
             nose.inset = nose_inset(scene.physics.cushion_touch, R, nose.height);
             // No cloth lies inside the circle of a jaw, however high the ball starts.
-            BallAt<Vec3> there = at;
+            BallAt there = at;
             there.flies = at.flies && !behind(nose, p);
             return -touch_round(nose, there).gap;
         };

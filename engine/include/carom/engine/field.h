@@ -90,8 +90,6 @@ struct Field : Key {
     bool (*fits)(const T&, const Key&) = nullptr;
     /// The k-th number of a list in the struct itself; null if the struct does not store the list.
     double* (*element)(T&, std::size_t k) = nullptr;
-    /// The number that the row sets first; null if it sets none.
-    double T::*number = nullptr;
 
     FieldValue value(const T& object) const {
         FieldValue value = get(object);
@@ -243,15 +241,6 @@ void put(V& v, const FieldValue& value) {
     }
 }
 
-/// The member itself if it is a number, otherwise null.
-template <auto kMember>
-constexpr double ClassOf<kMember>::*number_of() {
-    if constexpr (std::is_same_v<ValueOf<kMember>, double>)
-        return kMember;
-    else
-        return nullptr;
-}
-
 }  // namespace detail
 
 /// A row of one member: a number, an integer, a text, a vector, or a choice. A choice is an enumeration whose
@@ -269,8 +258,7 @@ constexpr Field<detail::ClassOf<kMember>> field(const char* key, const Interval&
             [](const T& object) { return detail::get(object.*kMember); },
             [](T& object, const FieldValue& value) { detail::put(object.*kMember, value); },
             [](const T& object, const Key& row) { return detail::fits(object.*kMember, row); },
-            detail::element<kMember>,
-            detail::number_of<kMember>()};
+            detail::element<kMember>};
 }
 template <auto kMember>
 constexpr Field<detail::ClassOf<kMember>> field(const char* key, const char* meaning,
@@ -337,10 +325,7 @@ constexpr Field<detail::ClassOf<kFirst>> number_or_fit(const char* key, const In
             [](T& object, const FieldValue& value) {
                 object.*kFirst = std::get<double>(value);
                 ((object.*kOthers = 0.0), ...);
-            },
-            nullptr,
-            nullptr,
-            kFirst};
+            }};
 }
 template <auto kFirst, auto kSecond, auto kThird>
 constexpr Field<detail::ClassOf<kFirst>> fit(const char* key, const Interval& range, const char* meaning,

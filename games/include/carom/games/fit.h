@@ -1,5 +1,5 @@
 // Fits numbers of a scene to tracked positions of its balls: Gauss-Newton with the derivatives of the shot
-// (carom/engine/tangents.h), Levenberg-Marquardt damping, and Huber's loss against outliers.
+// (carom/engine/derivatives.h), Levenberg-Marquardt damping, and Huber's loss against outliers.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ struct TrackPoint {
 struct FitOptions {
     /// Keys as SceneNumber accepts them, and clock: the time of the stroke in the tracks [s].
     std::vector<std::string> vary;
-    int most_shots = 100;  ///< simulated before giving up
+    int most_shots = 100;  ///< compared with the tracks before giving up
 };
 
 struct Fit {
@@ -36,7 +36,7 @@ struct Fit {
     double rms = 0.0;          ///< [m] of all residuals
     std::size_t points = 0;    ///< that count: not of a ball in a pocket
     std::size_t outliers = 0;  ///< coordinates farther away than three times the noise
-    int shots = 0;             ///< simulated
+    int shots = 0;             ///< compared with the tracks; derivatives need more
     /// Whether the fit converged and its residuals are noise.
     bool converged = false;
     /// Why not.
@@ -50,7 +50,7 @@ struct Fit {
 /// @param scene  the start of the fit; its balls should meet the same things in the same order as in the
 /// tracks
 /// @throws std::invalid_argument for a key that names no number, no points, or more values than coordinates;
-/// TangentError if the first shot or a number has no derivatives; SimulationError
+/// DerivativeError if the first shot or a number has no derivatives; SimulationError
 Fit fit(const Scene& scene, const std::vector<TrackPoint>& points, const FitOptions& options,
         kernel::Isa isa);
 

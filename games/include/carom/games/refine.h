@@ -1,5 +1,5 @@
 // Moves a shot until its balls come to rest at given places: Newton's method on the derivatives of the shot
-// (carom/engine/tangents.h), with minimum-norm steps that are halved until they help.
+// (carom/engine/derivatives.h), with minimum-norm steps that are halved until they help.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct Refined {
     std::vector<double> values;  ///< in the order of the choices
     Scene scene;                 ///< with these values
     double miss = 0.0;           ///< [m] largest distance of a ball from its place
-    int shots = 0;               ///< simulated
+    int shots = 0;               ///< tried; derivatives need more
     std::string trouble;         ///< why it stopped there; "" if `miss` is at most kRefined
 };
 inline constexpr double kRefined = 1e-6;  ///< [m]

@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,9 @@
 #include "base/options.h"
 #include "base/setup.h"
 #include "base/statistics.h"
+#include "carom/engine/batch.h"
+#include "carom/engine/derivatives.h"
 #include "carom/engine/printable.h"
-#include "carom/engine/tangents.h"
 #include "carom/games/noise.h"
 #include "report/diagram.h"
 #include "report/table.h"
@@ -33,6 +35,8 @@ using Json = nlohmann::ordered_json;
 // [degrees] Steps and ends of the search for the aims at which a pot still falls; a step is then halved.
 constexpr double kAimStep = 0.02, kAimMost = 10.0;
 constexpr int kHalvings = 20;
+// [nudges] The smallest and largest change that is tried for a margin.
+constexpr double kLeastChange = 1e-3, kMostChange = 1e3;
 
 struct SensitivityArgs {
     std::string scene, hand = kHand, plot;
@@ -101,45 +105,58 @@ std::optional<std::size_t> fall_of(const Record& record, int ball) {
     return record.tracks[static_cast<std::size_t>(ball)].pocket >= 0 ? found : std::nullopt;
 }
 
-/// The last aim on this side, going outwards, at which the ball falls into the same pocket.
-double window_end(const Plan& plan, const BallResult& result, int pocket, double way) {
-    Planner planner(plan.scene, plan.isa);
-    RunBuffers buffers;
-    Outcome outcome;
-    const double aim = plan.scene.cue->aim_deg;
-    const auto falls = [&](double by) {
-        planner.scene().cue->aim_deg = aim + by;
-        simulate(planner.plan(true), buffers, outcome, interruptible());
-        return outcome.balls[static_cast<std::size_t>(result.ball)].pocket == pocket;
+/// A change of an input, and the difference that it makes; "" for none.
+struct Bound {
+    double change;
+    std::string why;
+};
+
+/// The last change on one side, going outwards, that makes no difference.
+/// @param step  the first change; the next ones are twice as large, or this much larger, up to `most`
+template <class Difference>
+Bound last_change(const Plan& plan, const std::string& input, double step, bool doubles, double most,
+                  const Difference& difference) {
+    Simulator simulator(plan.scene, plan.isa);
+    const SceneNumber number(plan.scene, input);
+    const double value = number.value(plan.scene);
+    Bound inside{0.0, ""};
+    double outside = 0.0;
+    const auto holds = [&](double by) {
+        const Change checks = number.put(simulator.scene(), value + by);
+        const bool played = has_result(simulator.play(checks, interruptible()));
+        const std::string differs = played ? difference(simulator.outcome()) : simulator.message();
+        (differs.empty() ? inside.change : outside) = by;
+        if (!differs.empty()) inside.why = differs;
+        return differs.empty();
     };
-    double inside = 0.0, outside = way * kAimStep;
-    while (falls(outside)) {
-        inside = outside;
-        outside += way * kAimStep;
-        if (std::abs(outside) > kAimMost) return inside;
-    }
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (inside + outside);
-        (falls(middle) ? inside : outside) = middle;
-    }
+    for (double by = step; std::abs(by) <= most && holds(by);) by += doubles ? by : step;
+    for (int k = 0; k < kHalvings && !inside.why.empty(); ++k) holds(0.5 * (inside.change + outside));
     return inside;
 }
 
 struct Sensitivity {
     std::vector<Nudge> nudges;
-    std::vector<carom::Margin> margins;
+    std::vector<double> errors;                 ///< relative, of the derivatives by each
+    std::vector<std::array<Bound, 2>> margins;  ///< of each, downwards and upwards
     std::vector<BallResult> balls;
-    double impact_error = 0.0;        ///< as in Tangents
     std::size_t shots = 0, same = 0;  ///< of the sweep; of them, with the same events
 };
 
-/// Equal for two shots with the same events: cushions and pocket of each ball, and all events.
-bool same_kind(const Outcome& one, const Outcome& two) {
-    if (one.events != two.events) return false;
-    for (std::size_t i = 0; i < one.balls.size(); ++i)
-        if (one.balls[i].pocket != two.balls[i].pocket || one.balls[i].cushions != two.balls[i].cushions)
-            return false;
-    return true;
+/// The first difference between the events of two shots: the pocket or the cushions of a ball, or the number
+/// of events; "" if there is none.
+std::string difference(const Scene& scene, const Outcome& one, const Outcome& two) {
+    for (std::size_t i = 0; i < one.balls.size(); ++i) {
+        const BallOutcome &before = one.balls[i], &after = two.balls[i];
+        const std::string& id = scene.ball[i].id;
+        if (before.pocket != after.pocket)
+            return id + (after.pocket == kOffTable ? " leaves the table"
+                         : after.pocket < 0        ? " does not fall"
+                                                   : " falls into " + scene.table.pockets[after.pocket].id);
+        if (before.cushions != after.cushions)
+            return fmt::format("{} meets {} cushions instead of {}", id, after.cushions, before.cushions);
+    }
+    if (one.events == two.events) return "";
+    return fmt::format("{} events instead of {}", two.events, one.events);
 }
 
 /// Plays the shot with the errors of the hand.
@@ -154,7 +171,7 @@ void play(const Plan& plan, const Record& record, const games::Hand& hand, const
     for (result.shots = 0; result.shots < static_cast<std::size_t>(args.shots); ++result.shots) {
         planner.scene().cue = games::with_noise(cue, noise, args.seed, result.shots);
         simulate(planner.plan(true), buffers, outcome, interruptible());
-        result.same += same_kind(meant, outcome) ? 1 : 0;
+        result.same += difference(plan.scene, meant, outcome).empty() ? 1 : 0;
         for (BallResult& row : result.balls) {
             const auto ball = static_cast<std::size_t>(row.ball);
             const BallOutcome& end = outcome.balls[ball];
@@ -179,33 +196,62 @@ Sensitivity measure(const Plan& plan, const Record& record, const SensitivityArg
     result.nudges = nudges_of(plan.scene, struck_ball(plan.scene), hand);
     std::vector<std::string> inputs;
     for (const Nudge& nudge : result.nudges) inputs.push_back(nudge.key);
-    const Tangents tangents(plan, record, inputs);
-    result.margins = tangents.margins();
-    result.impact_error = tangents.impact_error();
+    std::vector<std::size_t> falls;
     for (int ball = 0; ball < static_cast<int>(record.tracks.size()); ++ball) {
         const BallTrack& track = record.tracks[static_cast<std::size_t>(ball)];
         if (track.segments.size() == 1 || track.segments.back().state == MotionState::kOut) continue;
         BallResult& row = result.balls.emplace_back();
         row.ball = ball;
         row.fall = fall_of(record, ball);
+        if (row.fall) falls.push_back(*row.fall);
+    }
+    const Derivatives by(plan, record, inputs, {record.duration}, falls);
+    RunBuffers buffers;
+    Outcome meant;
+    simulate(plan, buffers, meant, interruptible());
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+        const Nudge& nudge = result.nudges[k];
+        // A place may have no derivative, such as that of a ball at a rail.
+        if (const std::string why = by.refusal(k, kRoughDerivativeError); !why.empty() && nudge.hand > 0.0)
+            throw DerivativeError(why);
+        result.errors.push_back(by.error(k));
+        const auto margin = [&](double way) {
+            return last_change(plan, nudge.key, way * kLeastChange * nudge.size, true,
+                               kMostChange * nudge.size,
+                               [&](const Outcome& other) { return difference(plan.scene, meant, other); });
+        };
+        result.margins.push_back({margin(-1.0), margin(1.0)});
+    }
+    std::size_t fallen = 0;
+    for (BallResult& row : result.balls) {
         Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
         for (std::size_t k = 0; k < inputs.size(); ++k) {
-            const Vec2 d =
-                row.fall ? tangents.event_place(*row.fall, k) : planar(tangents.at_end(ball, k).position);
-            row.moves.push_back(d * result.nudges[k].size);
-            covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
+            const Vec2 d = row.fall ? by.event_place(fallen, k) : planar(by.state(0, row.ball, k).position);
+            const bool usable = by.error(k) <= kRoughDerivativeError;
+            row.moves.push_back(usable ? Vec2(d * result.nudges[k].size) : Vec2::Constant(std::nan("")));
+            if (result.nudges[k].hand > 0.0)
+                covariance += result.nudges[k].hand * result.nudges[k].hand * d * d.transpose();
         }
         row.expected = ellipse_of(covariance);
-        if (row.fall)
-            row.window = {window_end(plan, row, track.pocket, -1.0),
-                          window_end(plan, row, track.pocket, 1.0)};
+        const int pocket = record.tracks[static_cast<std::size_t>(row.ball)].pocket;
+        const auto window_end = [&](double way) {
+            return last_change(plan, "cue.aim_deg", way * kAimStep, false, kAimMost,
+                               [&](const Outcome& other) {
+                                   return other.balls[static_cast<std::size_t>(row.ball)].pocket == pocket
+                                              ? ""
+                                              : "misses";
+                               })
+                .change;
+        };
+        if (row.fall) row.window = {window_end(-1.0), window_end(1.0)};
+        fallen += row.fall ? 1 : 0;
     }
     play(plan, record, hand, args, result);
     return result;
 }
 
-std::string bound_text(double bound) {
-    return std::isfinite(bound) ? fmt::format("{:.3g}", bound) : "any";
+std::string bound_text(const Bound& bound, double scale) {
+    return bound.why.empty() ? "any" : fmt::format("{:.3g}", std::abs(bound.change * scale));
 }
 
 std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record, const std::string& hand) {
@@ -219,23 +265,23 @@ std::string text_of(const Sensitivity& s, const Plan& plan, const Record& record
         const Nudge& nudge = s.nudges[k];
         std::vector<Cell> cells{nudge.words};
         for (const BallResult& ball : s.balls)
-            cells.push_back(fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
-        cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k].down * nudge.scale),
-                                    bound_text(s.margins[k].up * nudge.scale), nudge.unit));
+            cells.push_back(
+                std::isnan(ball.moves[k].x())
+                    ? "none"
+                    : fmt::format("{:+.1f} {:+.1f}", 1e3 * ball.moves[k].x(), 1e3 * ball.moves[k].y()));
+        cells.push_back(fmt::format("-{} and +{} {}", bound_text(s.margins[k][0], nudge.scale),
+                                    bound_text(s.margins[k][1], nudge.scale), nudge.unit));
         table.add(cells);
     }
     std::string text = table_text(table);
-    const auto nearest = [&](std::size_t k) {
-        const carom::Margin& m = s.margins[k];
-        return m.down < m.up ? std::pair{-m.down, m.down_why} : std::pair{m.up, m.up_why};
-    };
     text += "\nx and y, to first order. ";
     text += "The events change first if\n";
     for (std::size_t k = 0; k < 2; ++k) {
-        const auto [by, why] = nearest(k);
-        if (std::isfinite(by))
-            text += fmt::format("  {} changes by {:+.3g} {}: {}\n", s.nudges[k].key, by * s.nudges[k].scale,
-                                s.nudges[k].unit, why);
+        const auto& [down, up] = s.margins[k];
+        const Bound& nearest = up.why.empty() || (!down.why.empty() && -down.change < up.change) ? down : up;
+        if (!nearest.why.empty())
+            text += fmt::format("  {} changes by {:+.3g} {}: {}\n", s.nudges[k].key,
+                                nearest.change * s.nudges[k].scale, s.nudges[k].unit, nearest.why);
     }
     text += fmt::format("\nwith the hand {} (standard deviations)\n", harmless(hand));
     for (const BallResult& ball : s.balls) {
@@ -272,18 +318,23 @@ Json ellipse_json(const Ellipse& e) {
 Json json_of(const Sensitivity& s, const Record& record, const std::string& hand) {
     Json inputs = Json::array(), balls = Json::array();
     for (std::size_t k = 0; k < s.nudges.size(); ++k) {
-        const carom::Margin& m = s.margins[k];
+        const auto& [down, up] = s.margins[k];
+        const auto size = [](const Bound& bound) {
+            return bound.why.empty() ? Json() : Json(std::abs(bound.change));
+        };
         inputs.push_back({{"input", s.nudges[k].key},
                           {"nudge", s.nudges[k].size},
-                          {"down", number_json(m.down)},
-                          {"down_why", m.down_why},
-                          {"up", number_json(m.up)},
-                          {"up_why", m.up_why}});
+                          {"error", number_json(s.errors[k])},
+                          {"down", size(down)},
+                          {"down_why", down.why},
+                          {"up", size(up)},
+                          {"up_why", up.why}});
     }
     for (const BallResult& ball : s.balls) {
         Json moves = Json::array();
         for (std::size_t k = 0; k < s.nudges.size(); ++k)
-            moves.push_back({ball.moves[k].x() / s.nudges[k].size, ball.moves[k].y() / s.nudges[k].size});
+            moves.push_back({number_json(ball.moves[k].x() / s.nudges[k].size),
+                             number_json(ball.moves[k].y() / s.nudges[k].size)});
         Json row{{"ball", record.tracks[static_cast<std::size_t>(ball.ball)].id},
                  {"falls", ball.fall.has_value()},
                  {"derivatives", moves},
@@ -295,8 +346,8 @@ Json json_of(const Sensitivity& s, const Record& record, const std::string& hand
         }
         balls.push_back(row);
     }
-    return {{"hand", hand},   {"inputs", inputs}, {"impact_error", s.impact_error},
-            {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
+    return {
+        {"hand", hand}, {"inputs", inputs}, {"balls", balls}, {"shots", s.shots}, {"same_events", s.same}};
 }
 
 /// The shot, with the ellipse and the played ends of each ball.

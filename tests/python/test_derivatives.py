@@ -30,10 +30,12 @@ def test_the_jacobian_matches_differences():
     assert (end[1] == 0).all()  # it has fallen
 
 
-def test_shots_without_derivatives_are_refused():
-    broken = carom.simulate(SOURCE / "scenes/snooker_break.toml")
-    with pytest.raises(ValueError, match="it is a resting contact"):
-        broken.jacobian(["cue.speed"])
+def test_columns_without_derivatives_are_refused():
+    resting = carom.simulate(SOURCE / "scenes/snooker_break.toml")
+    assert np.isfinite(resting.jacobian(["cue.speed"])).all()
+    # It rolls from the stroke on, and slides with any side.
+    with pytest.raises(ValueError, match="cue.offset.side has no derivative here"):
+        carom.simulate(SOURCE / "scenes/follow.toml").jacobian(["cue.offset.side"])
     with pytest.raises(ValueError, match="cue.spede"):
         carom.simulate(DRAW).jacobian(["cue.spede"])
 

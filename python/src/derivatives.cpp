@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "carom/engine/derivatives.h"
 #include "carom/engine/plan.h"
-#include "carom/engine/tangents.h"
 #include "carom/games/fit.h"
 #include "native.h"
 
@@ -24,7 +24,7 @@ auto without_gil(Work&& work) {
     try {
         const nb::gil_scoped_release no_gil;
         return work();
-    } catch (const TangentError& error) {
+    } catch (const DerivativeError& error) {
         throw nb::value_error(error.what());
     }
 }
@@ -36,17 +36,16 @@ void jacobian(const NativeRecord& r, const NativeScene* other, const std::vector
     const kernel::Isa isa = chosen_isa();
     double* at = out.data();
     without_gil([&] {
-        const Tangents tangents(make_plan(scene, isa), *r.record, inputs);
+        const Derivatives by(make_plan(scene, isa), *r.record, inputs,
+                             {times.data(), times.data() + times.size()});
+        by.check();
         for (std::size_t k = 0; k < times.size(); ++k)
             for (int ball = 0; ball < static_cast<int>(r.record->tracks.size()); ++ball) {
                 for (std::size_t i = 0; i < inputs.size(); ++i) {
-                    const StateTangent slope = tangents.state_at(ball, times.data()[k], i);
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        const auto a = static_cast<Eigen::Index>(axis);
-                        at[axis * inputs.size() + i] = slope.position[a];
-                        at[(3 + axis) * inputs.size() + i] = slope.velocity[a];
-                        at[(6 + axis) * inputs.size() + i] = slope.spin[a];
-                    }
+                    const StateDerivative slope = by.state(k, ball, i);
+                    std::size_t row = 0;
+                    for (const Vec3& vector : {slope.position, slope.velocity, slope.spin})
+                        for (const double x : vector) at[row++ * inputs.size() + i] = x;
                 }
                 at += 9 * inputs.size();
             }
@@ -76,7 +75,7 @@ std::vector<double> residuals(const games::Fit& f) {
 
 }  // namespace
 
-void add_tangents(nb::module_& m) {
+void add_derivatives(nb::module_& m) {
     m.def("jacobian", jacobian, nb::arg("record"), nb::arg("scene").none(), nb::arg("inputs"),
           nb::arg("times"), nb::arg("out").noconvert());
     nb::class_<games::Fit>(m, "Fit")
