@@ -671,6 +671,11 @@ class Events {
         // Together they keep their momentum, and one that nobody hit keeps its own. What else each does is
         // known from the course of a cluster that lasts.
         Given all;
+        // What the integration may err by.
+        double fastest = 0.0;
+        for (const int member : members)
+            fastest = std::max(fastest, given[static_cast<std::size_t>(member)].fast);
+        const double error = 2.0 * plan_.cluster_tolerance * fastest;
         for (const int member : members) {
             const Given& g = given[static_cast<std::size_t>(member)];
             if (lasts > 0.0 || g.sum == 0.0)
@@ -683,7 +688,7 @@ class Events {
             all.mass += g.mass;
             all.speeds += g.speeds;
         }
-        check_given(a, all, 0.0, level, time);
+        check_given(a, all, all.mass * error, level, time);
     }
 
     // Adds up the hits. @param unseen  [s] duration of a cluster that the record shows as an instant
