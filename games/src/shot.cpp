@@ -44,7 +44,8 @@ Shot shot_of(const Record& record) {
         if (event.type == EventType::kBallOut) shot.out.push_back(event.a);
         each_hit(event, record.hits(event), [&](const Hit& hit) {
             if (hit.partner == Partner::kCushion || hit.partner == Partner::kJaw) {
-                const std::vector<Segment>& segments = record.tracks[static_cast<std::size_t>(hit.a)].segments;
+                const std::vector<Segment>& segments =
+                    record.tracks[static_cast<std::size_t>(hit.a)].segments;
                 shot.touches.push_back(
                     {hit.time, hit.a, -1, !still_frozen(record.table, hit, segments, record.size(hit.a).R)});
             }

@@ -95,6 +95,17 @@ bool in_group(const Record& record, const Event& e) {
     return false;
 }
 
+/// Whether a ball of a cluster is above the cloth.
+bool in_air(const Record& record, const Event& e) {
+    const std::vector<int>& balls = record.clusters[static_cast<std::size_t>(e.detail)].balls;
+    return std::any_of(balls.begin(), balls.end(), [&](int ball) {
+        const BallTrack& t = record.tracks[static_cast<std::size_t>(ball)];
+        const std::size_t k = t.segment_at(e.time);
+        return is_off_cloth(t.segments[k == 0 ? 0 : k - 1].state) || t.segments[k].v.z() != 0.0 ||
+               t.segments[k].r.z() != record.size(ball).R;
+    });
+}
+
 using Spoil = std::function<bool(Record&, Generator&)>;
 struct Kind {
     const char *name, *laws;  ///< the laws that may find it
@@ -103,13 +114,16 @@ struct Kind {
 
 /// Whether the record contradicts the absence of an event: not if another event of its instant leaves the
 /// velocities open (a cluster in the air, an impact in a group), or if a contact that never ends begins
-/// together with another one.
+/// beside another one.
 bool is_needed(const Record& record, const Event& event) {
     const EventPhase phase = kind(event.type).phase;
     if (phase == EventPhase::kImpact && kind(event.type).partner != Partner::kPocket &&
         in_group(record, event))
         return false;
     bool released = false, alone = true, cluster = false;
+    const BallTrack& track = record.tracks[static_cast<std::size_t>(event.a)];
+    const std::size_t now = track.segment_at(event.time);
+    const bool rested = now > 0 && track.segments[now - 1].held;
     for (const Event& e : record.events) {
         if (&e == &event) continue;
         released |= kind(e.type).phase == EventPhase::kRelease && e.time > event.time && e.a == event.a &&
@@ -117,7 +131,8 @@ bool is_needed(const Record& record, const Event& event) {
         alone &= e.time != event.time;
         cluster |= e.time == event.time && e.type == EventType::kBallCluster;
     }
-    return phase == EventPhase::kHold ? released || alone : !cluster || event.type == EventType::kBallCluster;
+    return phase == EventPhase::kHold ? released || (alone && !rested)
+                                      : !cluster || event.type == EventType::kBallCluster;
 }
 
 Spoil without(EventType type) {
@@ -327,6 +342,8 @@ std::vector<Kind> kinds() {
     const auto hit = [](const auto& change) {
         return event([](const Event& e) { return e.type == EventType::kBallCluster; },
                      [change](Record& r, Event& e, Generator& random) {
+                         if (in_air(r, e) || r.state_at(e.a, e.time).state != MotionState::kColliding)
+                             return false;
                          std::vector<Hit>& hits = r.clusters[static_cast<std::size_t>(e.detail)].hits;
                          double strongest = 0.0;
                          for (const Hit& h : hits) strongest = std::max(strongest, h.impulse);

@@ -56,7 +56,7 @@ TEST(WhoHitWhom, AFrozenBallThatIsNotPushedIsNotHit) {
     games::State state = games::new_game(games::Game::kNineBall);
     state.opening = false;
     EXPECT_FALSE(games::judge(state, record, {}).fouls.empty());
-    EXPECT_EQ(met(played(std::string(kFrozen) + "aim_deg = 130\n")), "9 1 ");
+    EXPECT_EQ(met(played(std::string(kFrozen) + "aim_deg = 130\n")), "1 9 ");
 }
 
 TEST(WhoHitWhom, OutcomesAgreeWithRecords) {

@@ -162,7 +162,7 @@ struct Work {
           out(arrays) {
         simulate.hash = false;
         simulate.profile = false;
-        // A crowded shot may take seconds.
+        // A crowded shot may last for seconds.
         simulate.progress = nullptr;
         if (options.stop) simulate.progress = [this](std::size_t, double) { check_stop(); };
         hashed = simulate;

@@ -1,5 +1,4 @@
-// What the balls of a cluster may run into meanwhile: cushions and jaws by the scene's own law, and the cloth
-// under balls in space.
+// Cushions and jaws near a cluster, which act by the scene's own law, and the cloth under its balls in space.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +25,7 @@ class NearSurfaces : public ClusterSurfaces {
   public:
     NearSurfaces(const Plan& plan, ClusterSurfacesMemory& memory) : plan_(plan), m_(memory) {}
 
-    /// Forgets the last cluster. @param longest  [s] a ball that takes longer to come out stays inside
+    /// Forgets the last cluster. @param longest  [s] a ball that would need more to come out stays inside
     void begin(const std::vector<ClusterBall>& members, bool in_space, double longest);
     void add(std::size_t member, const Contact& part) { m_.parts_.push_back({member, part}); }
     bool any() const { return in_space_ || !m_.parts_.empty(); }

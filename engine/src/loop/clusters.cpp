@@ -23,6 +23,8 @@ constexpr double kLongest = 20.0;
 // [contact time] A ball that was pushed into a cushion is waited for as long; a slower one is put at its
 // edge.
 constexpr double kWaits = 4.0;
+// [-] Prolongations until no two balls overlap.
+constexpr int kRounds = 8;
 // [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
 // [strongest impulse] A weaker one is rounding: the balls did not touch.
@@ -188,9 +190,10 @@ bool Clusters::find_paths() {
     };
     if (!place()) return false;
     const double longest = kLongest * contact_time_;
-    while (const double more = overlap_ends()) {
+    for (int round = 0; const double more = overlap_ends(); ++round) {
         duration += more;
-        if (!(duration <= longest)) break;
+        // A cushion may bring them together again.
+        if (!(duration <= longest) || round == kRounds) return false;
         for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * members_[k].v;
         if (!place()) return false;
     }
@@ -358,7 +361,7 @@ void Clusters::add_pushes() {
     }
 }
 
-// A contact that changed no speed by more than rounding did not take place.
+// If a contact changed no speed by more than rounding, the balls did not touch.
 const std::vector<Hit>& Clusters::hits() {
     double strongest = 0.0;
     for (const ClusterPush& push : pushes_) strongest = std::max(strongest, push.impulse);
@@ -375,9 +378,12 @@ const std::vector<Hit>& Clusters::hits() {
         hit.time += balls_.now();
         hits_.push_back(hit);
     }
-    // Of simultaneous ones the order of contacts_ stays.
-    std::stable_sort(hits_.begin(), hits_.end(),
-                     [](const Hit& one, const Hit& two) { return one.time < two.time; });
+    // Of simultaneous ones the order stays. Insertion sort is stable and allocates no memory.
+    for (auto here = hits_.begin(); here != hits_.end(); ++here) {
+        const auto to = std::upper_bound(hits_.begin(), here, *here,
+                                         [](const Hit& p, const Hit& q) { return p.time < q.time; });
+        std::rotate(to, here, here + 1);
+    }
     return hits_;
 }
 

@@ -79,8 +79,18 @@ kernel::HertzLaw law_of(const ClusterSettings& s, double V) {
     const int p = law_exponent(s.e_b);
     const double b = std::min(1.0, (1.0 - s.e_b * s.e_b) * 0.4 / (0.4 - 1.0 / (2.5 + p)));
     const double slide = s.slide * contact_length(V) / (V * V);
-    return {1.0 - b,         b,     p, s.mu_b, s.mu_s, s.epsilon, s.published_cloth_slip, s.mu_b_more,
-            s.mu_b_fall * V, slide, s.gravity * contact_length(V) / (V * V), s.hop * s.hop / (V * V)};
+    return {1.0 - b,
+            b,
+            p,
+            s.mu_b,
+            s.mu_s,
+            s.epsilon,
+            s.published_cloth_slip,
+            s.mu_b_more,
+            s.mu_b_fall * V,
+            slide,
+            s.gravity * contact_length(V) / (V * V),
+            s.hop * s.hop / (V * V)};
 }
 
 // The integration reads and writes four numbers at once. With cache-line alignment, no such group crosses two

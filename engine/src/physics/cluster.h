@@ -116,7 +116,7 @@ class ClusterMap {
     Vec3 moved(std::size_t k) const { return {moved_[3 * k], moved_[3 * k + 1], moved_[3 * k + 2]}; }
 
   private:
-    /// What the kernel's surfaces need.
+    /// The owner of the kernel's surfaces.
     struct Reached {
         const std::vector<ClusterBall>* balls;
         const ClusterSettings* settings;

@@ -191,9 +191,8 @@ Event read_event(const JsonObject& all, Record& record) {
         });
         // Records before version 4 tell only which pair met first.
         if (all.has("hits"))
-            all.at("hits").each([&](const JsonValue& hit, std::size_t) {
-                cluster.hits.push_back(read_hit(hit, record));
-            });
+            all.at("hits").each(
+                [&](const JsonValue& hit, std::size_t) { cluster.hits.push_back(read_hit(hit, record)); });
         else
             cluster.hits.push_back({event.time, event.a, Partner::kBall, event.b});
         event.detail = static_cast<int>(record.clusters.size());

@@ -30,10 +30,10 @@ namespace {
 constexpr int kPile = 3;
 // [m/s], [of the speeds] Jump of the velocity of a ball in a resting contact between two of its intervals.
 constexpr double kHeldJump = 1e-3, kHeldShare = 1e-2;
-// [-] The normal of a hit turns by less than this times what the balls can move, over their distance. [-]
-// Error of the impulse of a hit.
-constexpr double kTurns = 0.5, kHistory = 0.02;
-// [contact time] A cluster that takes no time lasts for this long in its integration.
+// [-] The normal of a hit turns by less than this times the possible motion of the balls, over their
+// distance. [-] Error of the impulse of a hit.
+constexpr double kTurns = 1.0, kHistory = 0.02;
+// [contact time] A cluster without duration lasts for this long in its integration.
 constexpr double kInstant = 20.0;
 // [-] Balls whose radii differ by this fraction are alike, but the kernel has another solver for unlike
 // balls.
@@ -612,10 +612,10 @@ class Events {
         c.at.position.z() = R(ball);
     }
 
-    // What the hits of a cluster give a ball, in units of the mass in [balls].
+    // The momentum that the hits of a cluster give a ball, in units of the mass in [balls].
     struct Given {
         Vec3 change = Vec3::Zero(), expected = change;  // [m/s]
-        // [m/s] The impulses, what the turning of their normals leaves open, and what cushions and the cloth
+        // [m/s] The impulses, the uncertainty of their normals, and of cushions and the cloth
         // do.
         double sum = 0.0, slack = 0.0, open = 0.0;
         Vec3 from = change, path = change;  // [m]
@@ -623,8 +623,8 @@ class Events {
         double speeds = 0.0, fast = 0.0;    // with spins, and without
     };
 
-    // The hits of a cluster explain what its balls do: each impulse acts along the line of centres of its
-    // first touch, friction adds at most its share, and a ball that nobody hit keeps its velocity.
+    // The hits of a cluster explain the motion of its balls: each impulse acts along the line of centres of
+    // its first touch, friction adds at most its share, and a ball that nobody hit keeps its velocity.
     void cluster(const Event& e) {
         const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)].balls;
         const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
@@ -668,17 +668,17 @@ class Events {
         // Meanwhile the balls slide, fly, and pass each other.
         const double time = lasts > 0.0 ? lasts : kInstant * contact_time(closing);
         if (!give(e, lasts, time, level, given) || !known) return;
-        // Together they keep their momentum, and one that nobody hit keeps its own. What else each does is
-        // known from the course of a cluster that lasts.
+        // Together they keep their momentum, and one that nobody hit keeps its own. The course of
+        // a cluster on the cloth that lasts gives the rest.
         Given all;
-        // What the integration may err by.
+        // The error of the integration.
         double fastest = 0.0;
         for (const int member : members)
             fastest = std::max(fastest, given[static_cast<std::size_t>(member)].fast);
         const double error = 2.0 * plan_.cluster_tolerance * fastest;
         for (const int member : members) {
             const Given& g = given[static_cast<std::size_t>(member)];
-            if (lasts > 0.0 || g.sum == 0.0)
+            if ((lasts > 0.0 && level) || g.sum == 0.0)
                 check_given(static_cast<std::size_t>(member), g, g.slack + most_friction() * g.sum, level,
                             time);
             all.change += g.change;
@@ -695,7 +695,7 @@ class Events {
     // @return whether they are known, and of these balls and this time
     bool give(const Event& e, double lasts, double unseen, bool level, std::vector<Given>& given) {
         const std::span<const Hit> hits = record_.hits(e);
-        // A record before version 4 tells only which balls met first.
+        // A record before version 4 shows only which balls met first.
         if (hits.size() == 1 && hits[0].impulse == 0.0) return false;
         double before = now_;
         std::vector<std::size_t> at_cushion;
@@ -726,7 +726,7 @@ class Events {
                 // The normal turns while they move past each other.
                 const double past = (lasts > 0.0 ? lasts : unseen) * (one.fast + two.fast);
                 const double turn = std::min(1.0, kTurns * past / distance) + kHistory;
-                // A rigid cluster pushes balls on the cloth in the plane, whatever the tilt of their normals.
+                // A rigid cluster pushes balls on the cloth in the plane, at any tilt of their normals.
                 const double open = turn + (level ? tilted : 0.0);
                 one.slack += open * J;
                 two.slack += open * J;
@@ -751,7 +751,7 @@ class Events {
         return friction ? plan_.ball_ball->friction(plan_.balls).most() : 0.0;
     }
 
-    // @param inside  [m/s] what the balls of the cluster exchange beside the expected
+    // @param inside  [m/s] uncertainty of the impulses between the balls of the cluster
     void check_given(std::size_t ball, const Given& g, double inside, bool level, double time) {
         // The line of centres of unlike balls is tilted, and presses one of them on the cloth.
         const auto [least, most] =

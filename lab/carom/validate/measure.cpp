@@ -25,9 +25,8 @@ int index_of(const Record& record, const std::string& id) {
 
 bool involves(const Record& record, const Event& event, int ball) {
     bool hit = event.a == ball && event.type != EventType::kBallCluster;
-    each_hit(event, record.hits(event), [&](const Hit& h) {
-        hit = hit || h.a == ball || (h.b == ball && h.partner == Partner::kBall);
-    });
+    each_hit(event, record.hits(event),
+             [&](const Hit& h) { hit = hit || h.a == ball || (h.b == ball && h.partner == Partner::kBall); });
     return hit;
 }
 

@@ -60,7 +60,10 @@ export function stateAt(record, ball, t) {
   const tau = Math.min(t - s.start, s.duration === null ? Infinity : s.duration, floor);
   const along = (k) => s.r[k] + tau * (s.v[k] + 0.5 * tau * s.a[k]), r = [along(0), along(1), s.r[2]];
   const v = velocityAt(s, tau), g = record.gravity;
-  if (s.state === "airborne" || s.state === "out") {
+  if (s.state === "colliding") {
+    r[2] += tau * s.v[2];
+    v[2] = s.v[2];
+  } else if (s.state === "airborne" || s.state === "out") {
     r[2] = s.r[2] + tau * (s.v[2] - 0.5 * g * tau);
     v[2] = s.v[2] - g * tau;
   } else if (s.state === "falling") {

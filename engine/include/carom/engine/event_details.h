@@ -56,9 +56,9 @@ std::optional<Vec2> diamond_place(const Table& table, std::string_view rail, dou
 
 /// Where a ball at `center` touches a cushion or a jaw.
 struct CushionPoint {
-    Vec3 point;                              ///< [m] at the height of the nose
-    Vec2 normal;                             ///< unit, out of the cushion
-    double diamond = EventDetails::kNone;    ///< as EventDetails::diamond
+    Vec3 point;                            ///< [m] at the height of the nose
+    Vec2 normal;                           ///< unit, out of the cushion
+    double diamond = EventDetails::kNone;  ///< as EventDetails::diamond
 };
 CushionPoint cushion_point(const Table& table, Partner partner, int part, const Vec2& center);
 

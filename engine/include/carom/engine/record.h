@@ -175,7 +175,7 @@ struct Hit {
     bool operator==(const Hit&) const = default;
 };
 
-/// What a ball_cluster event resolved.
+/// The balls and contacts that a ball_cluster event resolved.
 struct Cluster {
     std::vector<int> balls;  ///< ordered by position
     std::vector<Hit> hits;   ///< ordered by time

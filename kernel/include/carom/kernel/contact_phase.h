@@ -37,13 +37,14 @@ struct HertzLaw {
 
 /// The course of one contact.
 struct HertzHistory {
-    double first;    ///< [L/V] when the balls touched for the first time; negative: never
-    double impulse;  ///< [m V] along the normal, positive if they pushed each other; of order 4, as the method
+    double first;  ///< [L/V] when the balls touched for the first time; negative: never
+    double
+        impulse;  ///< [m V] along the normal, positive if they pushed each other; of order 4, as the method
 };
 
-/// Cushions, and the cloth under free balls. They react ten times as slowly as contacts between balls, so they
-/// act only on a ball that touches no other one. A state is the place relative to the start (3 numbers) [L],
-/// v (3) and R w (3) [V].
+/// Cushions, and the cloth under free balls. They react ten times as slowly as contacts between balls, so
+/// they act only on a ball that touches no other one. A state is the place relative to the start (3 numbers)
+/// [L], v (3) and R w (3) [V].
 struct ContactSurfaces {
     void* owner;
     /// @return [L/V] time until the ball hits one; 0: it does so now; infinite: never
@@ -65,7 +66,8 @@ struct ContactPhase {
     /// All balls stay on the cloth, which exerts friction; false: all are free, and the cloth is a surface.
     bool held = true;
     const ContactSurfaces* surfaces = nullptr;
-    const double* lies = nullptr;  ///< per free ball: z relative to the start at which it lies on the cloth [L]
+    const double* lies =
+        nullptr;  ///< per free ball: z relative to the start at which it lies on the cloth [L]
     const double* inverse_mass = nullptr;  ///< per ball; null: all have the mass 1
     double* moved = nullptr;               ///< receives the displacement of each ball (3 numbers) [L]
     double* time = nullptr;                ///< receives the duration [L/V]
