@@ -24,7 +24,7 @@ constexpr double kLongest = 20.0;
 // edge.
 constexpr double kWaits = 4.0;
 // [-] Prolongations until no two balls overlap.
-constexpr int kRounds = 8;
+constexpr int kProlongations = 8;
 // [approach speed] After a cluster, slower closing is rounding.
 constexpr double kClosesStill = 1e-12;
 // [strongest impulse] A weaker one is rounding: the balls did not touch.
@@ -193,7 +193,7 @@ bool Clusters::find_paths() {
     for (int round = 0; const double more = overlap_ends(); ++round) {
         duration += more;
         // A cushion may bring them together again.
-        if (!(duration <= longest) || round == kRounds) return false;
+        if (!(duration <= longest) || round == kProlongations) return false;
         for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * members_[k].v;
         if (!place()) return false;
     }
