@@ -126,8 +126,8 @@ class Release(unittest.TestCase):
         self.one_fault('the bits of "draw" changed')
 
     def test_a_changed_record_version_is_a_fault(self):
-        self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)3', r"\g<1>4")
-        self.one_fault("records have version 4 instead of 3")
+        self.change("docs/reference/record.schema.json", r'("version":\s*\{[^}]*"const":\s*)4', r"\g<1>5")
+        self.one_fault("records have version 5 instead of 4")
 
     def test_a_cut_release_has_no_fault(self):
         date = datetime.datetime(2030, 1, 2, 3, 4, 5, tzinfo=datetime.timezone.utc)
