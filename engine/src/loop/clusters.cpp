@@ -194,7 +194,12 @@ bool Clusters::find_paths() {
         duration += more;
         // A cushion may bring them together again.
         if (!(duration <= longest) || round == kProlongations) return false;
-        for (std::size_t k = 0; k < members_.size(); ++k) paths_[k] += more * members_[k].v;
+        for (std::size_t k = 0; k < members_.size(); ++k) {
+            ClusterBall& m = members_[k];
+            const double pull = near_.lies(m.ball, {m.r + paths_[k], m.v}) ? 0.0 : plan_.gravity;
+            paths_[k] += more * m.v - Vec3(0.0, 0.0, 0.5 * pull * more * more);
+            m.v.z() -= pull * more;
+        }
         if (!place()) return false;
     }
     if (!(duration <= longest)) return false;
@@ -233,7 +238,7 @@ int Clusters::find_obstacle() const {
             };
             if (found == kColliding || is_member(q) || passes(ball.ball, q) || has_room(ball, path, q))
                 return;
-            if (balls_.collides(q))
+            if (balls_.collides(q) || balls_.sinks(q))
                 found = kColliding;
             else if (found == kNone || is_before(q, found))
                 found = q;
@@ -295,10 +300,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .unlike = unlike_};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
     settings.surfaces = &near_;
-    // A ball that falls into a pocket would move down during the cluster. Unlike balls in space gain energy
-    // at surfaces, for a reason not yet found.
-    may_last &= !(in_space_ && unlike_) &&
-                std::none_of(members_.begin(), members_.end(),
+    // A ball that falls into a pocket would move down during the cluster.
+    may_last &= std::none_of(members_.begin(), members_.end(),
                              [this](const ClusterBall& m) { return balls_.sinks(m.ball); });
     std::int64_t steps = may_last ? integrate(settings, v_n) : -1;
     // A ball that is hit meanwhile joins.
@@ -307,7 +310,6 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         if (obstacle_ == kColliding) break;
         joined_.push_back(obstacle_);
         collect_at(first_, second_, v_n);
-        if (in_space_ && unlike_) break;
         settings.unlike = unlike_;
         settings.R = unlike_ ? p.R : balls_.radius(members_.front().ball);
         const std::int64_t more = integrate(settings, v_n);

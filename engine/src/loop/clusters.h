@@ -80,7 +80,7 @@ class Clusters : private Borrowed<ClustersMemory> {
     int first_ = -1, second_ = -1;  // the pair that met
     double contact_time_ = 0.0;     // [s] of their contact
     double duration_ = 0.0;
-    // A ball that a member hits on its path, or one of these two: none, or one of another cluster.
+    // A ball that a member hits on its path; kColliding: one that cannot join.
     static constexpr int kNone = -1, kColliding = -2;
     int obstacle_ = kNone;
     NearSurfaces near_{plan_, surfaces_};
