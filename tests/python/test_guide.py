@@ -32,7 +32,7 @@ def blocks(page):
 
 def test_there_are_pages():
     assert [page.name for page in PAGES] == [
-        "README.md", "clusters.md", "find.md", "games.md", "learning.md", "player.md", "python.md",
+        "README.md", "clusters.md", "games.md", "learning.md", "player.md", "python.md",
         "teaching.md"]
 
 

@@ -771,9 +771,9 @@ class Events {
     const BallBallModelInfo model_;
     std::vector<Changed> changed_;
     std::vector<Contact> resting_;
-    std::vector<std::pair<double, std::size_t>> begun_;        // when segments begin, and of which ball
-    std::size_t ball_ = 0, event_ = 0, first_ = 0, last_ = 0;  // first_ to last_ - 1 are of this instant
-    bool calm_ = true;                                         // nothing but transitions happens
+    std::vector<std::pair<double, std::size_t>> begun_;  // when segments begin, and of which ball
+    std::size_t event_ = 0, first_ = 0, last_ = 0;       // first_ to last_ - 1 are of this instant
+    bool calm_ = true;                                   // nothing but transitions happens
     double now_ = 0.0;
     std::optional<Violation> found_;
 };
