@@ -257,9 +257,10 @@ class Record:
         scene: the scene that was played; needed if the record was loaded from a file, which holds no physics
 
         Returns t.shape + (balls, 3, 3, inputs): position, velocity and spin as in `states`, by each input in
-        its own unit, for the shot with a tolerance of 1e-12. A ball that is out of play has zeros. Raises
-        ValueError if an input is no number of the scene, or naming an input whose derivatives may be wrong by
-        more than 1e-3 of the largest, because an event begins or ends there.
+        its own unit, for the shot with a tolerance of 1e-12. A ball that is out of play has zeros.
+
+        Raises ValueError for an input that is not a number of the scene, and for one whose derivatives may be
+        wrong by more than 1e-3 of the largest, because an event begins or ends there.
         """
         times, shape = self._times(self.duration if t is None else t)
         slopes = np.empty((*shape, self._native.balls, 3, 3, len(inputs)))

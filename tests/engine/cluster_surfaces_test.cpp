@@ -119,5 +119,18 @@ TEST(ClusterSurfaces, AgreeWithAnotherIntegration) {
     expect_small("at a rail", frozen);
 }
 
+// The memory of one run serves the next one, of another model.
+TEST(ClusterSurfaces, ARigidClusterHasNoHitsOfAnEarlierRun) {
+    reference::Generator rng(74);
+    RunBuffers buffers;
+    Scene scene = frozen_to_rail(rng);
+    Record record = simulate(plan_of(scene), buffers);
+    ASSERT_FALSE(record.clusters.empty());
+    scene.physics.clusters = ClusterModel::kRigid;
+    const Plan rigid = plan_of(scene);
+    record = simulate(rigid, buffers);
+    EXPECT_EQ(record.clusters, simulate(rigid).clusters);
+}
+
 }  // namespace
 }  // namespace carom

@@ -33,9 +33,9 @@ namespace {
 using namespace test;
 
 #ifdef CAROM_SANITIZED
-constexpr int kShots = 8, kBreaks = 1, kOfEach = 2;
+constexpr int kShots = 8, kRacks = 1, kOfEach = 2;
 #else
-constexpr int kShots = 200, kBreaks = 20, kOfEach = 12;
+constexpr int kShots = 200, kRacks = 20, kOfEach = 12;
 #endif
 constexpr double kEnd = std::numeric_limits<double>::infinity();
 const std::vector<std::string> kStroke{"cue.speed", "cue.aim_deg", "cue.offset.side", "cue.offset.height"};
@@ -288,10 +288,10 @@ TEST(Derivatives, TwoAndFiveBalls) {
 TEST(Derivatives, NineBallBreaks) {
     Tally tally;
     reference::Generator rng(81);
-    for (int k = 0; k < kBreaks; ++k) tally.add(drawn_break("nine_ball", rng), kStroke, 3e-6, 1e-3, 2);
+    for (int k = 0; k < kRacks; ++k) tally.add(drawn_break("nine_ball", rng), kStroke, 3e-6, 1e-3, 2);
     tally.print("nine-ball breaks");
     report("nine-ball breaks: with all columns", tally.whole);
-    EXPECT_GE(20 * tally.whole, 17 * kBreaks);
+    EXPECT_GE(20 * tally.whole, 17 * kRacks);
     EXPECT_LT(share_of(tally.errors, 0.9), 1e-3);
     EXPECT_LE(tally.mean_shots(), 60.0);
 }

@@ -285,8 +285,9 @@ bool Clusters::closes_still(double v_n) const {
 std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
     duration_ = 0.0;
     const BallParams& p = plan_.balls;
+    near_.forget();
     ClusterSettings settings{
-        .R = unlike_ ? p.R : balls_.radius(members_.front().ball),
+        .R = p.R,
         .mu_s = plan_.ball_ball->reads_cloth ? p.mu_s : 0.0,
         .mu_b = friction ? p.mu_b : 0.0,
         .e_b = plan_.e_b(),
@@ -296,10 +297,8 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         .integrate = plan_.contact_phase,
         .mu_b_more = friction ? p.mu_b_more : 0.0,
         .mu_b_fall = p.mu_b_fall,
-        .slide = p.rolls() ? plan_.motion.front().slide : 0.0,
-        .unlike = unlike_};
+        .slide = p.rolls() ? plan_.motion.front().slide : 0.0};
     if (plan_.clusters == ClusterModel::kRigid) return rigid(settings);
-    settings.surfaces = &near_;
     // A ball that falls into a pocket would move down during the cluster.
     may_last &= std::none_of(members_.begin(), members_.end(),
                              [this](const ClusterBall& m) { return balls_.sinks(m.ball); });
@@ -310,18 +309,14 @@ std::int64_t Clusters::resolve(double v_n, bool friction, bool may_last) {
         if (obstacle_ == kColliding) break;
         joined_.push_back(obstacle_);
         collect_at(first_, second_, v_n);
-        settings.unlike = unlike_;
-        settings.R = unlike_ ? p.R : balls_.radius(members_.front().ball);
         const std::int64_t more = integrate(settings, v_n);
         steps = more < 0 ? more : steps + more;
     }
     // Without time the balls stay in place, and nothing else joins.
     duration_ = 0.0;
     joined_.clear();
-    collect_at(first_, second_, v_n);
-    settings.unlike = unlike_;
+    if (may_last) collect_at(first_, second_, v_n);
     near_.forget();
-    settings.surfaces = nullptr;
     settings.slide = 0.0;  // the weight needs time
     steps = compliant(settings, v_n);
     if (steps >= 0 && closes_still(v_n)) {
@@ -349,12 +344,19 @@ std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
         with.gravity = plan_.gravity;
         with.hop = bounce_end(plan_.balls.R, plan_.gravity);
     }
-    if (!near_.any()) with.surfaces = nullptr;
+    if (near_.any()) with.surfaces = &near_;
     return compliant(with, v_n);
 }
 
+// The settings for the balls of the last collect_at().
+ClusterSettings Clusters::of_members(ClusterSettings settings) const {
+    settings.unlike = unlike_;
+    if (!unlike_) settings.R = balls_.radius(members_.front().ball);
+    return settings;
+}
+
 std::int64_t Clusters::compliant(const ClusterSettings& settings, double v_n) {
-    const std::int64_t steps = map_.compliant(members_, contacts_, settings, v_n, !in_space_);
+    const std::int64_t steps = map_.compliant(members_, contacts_, of_members(settings), v_n, !in_space_);
     if (steps >= 0) add_pushes();
     return steps;
 }
@@ -396,7 +398,7 @@ const std::vector<Hit>& Clusters::hits() {
 
 // Balls on the cloth push each other in the plane, whatever the tilt of their normals.
 std::int64_t Clusters::rigid(const ClusterSettings& settings) {
-    ClusterSettings without = settings;
+    ClusterSettings without = of_members(settings);
     without.e_b = plan_.balls.e_b;
     if (unlike_ && !in_space_) {
         for (ClusterContact& c : contacts_) {

@@ -59,6 +59,7 @@ class Clusters : private Borrowed<ClustersMemory> {
   private:
     void collect_at(int a, int b, double v_n);
     std::int64_t rigid(const ClusterSettings& settings);
+    ClusterSettings of_members(ClusterSettings settings) const;
     std::int64_t compliant(const ClusterSettings& settings, double v_n);
     void add_pushes();
     std::int64_t integrate(const ClusterSettings& settings, double v_n);

@@ -289,8 +289,9 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     const std::int64_t evaluations =
         settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, slow * longest);
     if (evaluations < 0) return evaluations;
-    // A surface may also drive balls apart (a hop, a slow contact in the air).
-    if (settings.surfaces == nullptr) keep_energy(before);
+    double risen = 0.0;
+    for (std::size_t b = 0; b < balls.size(); ++b) risen += mass_[b] * law.gravity * moved_[3 * b + 2];
+    keep_energy(before - risen);
     unload(settings, V, balls);
     pushes_.clear();
     for (const kernel::HertzHistory& h : history_)

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "carom/engine/airborne.h"
-#include "carom/engine/event_details.h"
 #include "carom/engine/tolerances.h"
 #include "contact/pocket_edge.h"
 #include "contact/touch.h"
@@ -21,6 +20,7 @@
 #include "physics/motion.h"
 #include "physics/touch_tolerance.h"
 #include "record/gaps.h"
+#include "record/verify_hits.h"
 #include "record/verify_motion.h"
 
 namespace carom {
@@ -30,11 +30,6 @@ namespace {
 constexpr int kPile = 3;
 // [m/s], [of the speeds] Jump of the velocity of a ball in a resting contact between two of its intervals.
 constexpr double kHeldJump = 1e-3, kHeldShare = 1e-2;
-// [-] The normal of a hit turns by less than this times the possible motion of the balls, over their
-// distance. [-] Error of the impulse of a hit.
-constexpr double kTurns = 0.5, kHistory = 0.02;
-// [V] A fainter touch may leave no hit.
-constexpr double kFaint = 1e-7;
 // [contact time] A cluster without duration lasts for this long in its integration.
 constexpr double kInstant = 20.0;
 // [-] Balls whose radii differ by this fraction are alike, but the kernel has another solver for unlike
@@ -614,27 +609,14 @@ class Events {
         c.at.position.z() = R(ball);
     }
 
-    // The momentum that the hits of a cluster give a ball, in units of the mass in [balls].
-    struct Given {
-        Vec3 change = Vec3::Zero(), expected = change;  // [m/s]
-        // [m/s] The impulses, the uncertainty of their normals, and of cushions and the cloth
-        // do.
-        double sum = 0.0, slack = 0.0, open = 0.0;
-        Vec3 from = change, path = change;  // [m]
-        double mass = 0.0;                  // 0: no member
-        double speeds = 0.0, fast = 0.0;    // with spins, and without
-    };
-
-    // The hits of a cluster explain the motion of its balls: each impulse acts along the line of centres of
-    // its first touch, friction adds at most its share, and a ball that nobody hit keeps its velocity.
     void cluster(const Event& e) {
         const std::vector<int>& members = record_.clusters[static_cast<std::size_t>(e.detail)].balls;
         const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
         if (!meets(a, "ball " + id(b), gap_between(seen(a), seen(b)), 0.0, kNever)) return;
         const double closing = touch_ball(body(a, false), body(b, false)).closing;
-        std::vector<Given> given(record_.tracks.size());
+        std::vector<ClusterMove> moves;
         double lasts = -1.0;
-        bool known = true, level = true;
+        bool known = true;
         const bool calm = std::none_of(members.begin(), members.end(),
                                        [this](int m) { return changed_[static_cast<std::size_t>(m)].held; });
         for (const int member : members) {
@@ -647,123 +629,24 @@ class Events {
             const Segment& s = segments[k];
             const bool collides = s.state == MotionState::kColliding;
             const double duration = collides ? s.duration : 0.0;
-            // Among the motions of a group that begin now, this one may be another's.
-            known = known && (lasts < 0.0 || duration == lasts);
             if (lasts >= 0.0 && duration != lasts && calm)
                 return report("U6", "the balls of a cluster collide for {:.3g} and {:.3g} s", lasts,
                               duration);
+            // Among the motions of a group that begin now, this one may be another's.
+            known = known && (lasts < 0.0 || duration == lasts);
             lasts = duration;
             const Placed end = placed_at(collides ? segments[k + 1] : s, 0.0, record_.gravity);
-            Given& g = given[ball];
-            g.mass = plan_.sizes[ball].m / record_.balls.m;
-            g.change = g.mass * (end.velocity - c.at.velocity);
-            g.from = c.at.position;
-            if (collides) g.path = end.position - c.at.position;
-            g.fast = length3(c.at.velocity) + length3(end.velocity);
-            g.speeds = c.speeds(R(ball)) + length3(end.velocity);
-            known = known && !c.loose && !s.held && !rests(ball) && !before(ball).held &&
+            const bool level = c.at.position.z() == R(ball) && end.velocity.z() == 0.0 &&
+                               (!collides || end.position.z() == R(ball));
+            known = known && level && !c.loose && !s.held && !rests(ball) && !before(ball).held &&
                     before(ball).state != MotionState::kFalling;
-            level = level && g.from.z() == R(ball) && g.path.z() == 0.0 && end.velocity.z() == 0.0;
+            moves.push_back({member, c.at, end, R(ball) * length3(c.w)});
             c.loose = true;
         }
         for (const int member : members) step(static_cast<std::size_t>(member), event_ + 1);
-        // Meanwhile the balls slide, fly, and pass each other.
         const double time = lasts > 0.0 ? lasts : kInstant * contact_time(closing);
-        if (!give(e, lasts, time, given) || !known || !level) return;
-        // Together they keep their momentum, and one that nobody hit keeps its own. The course of
-        // a cluster on the cloth that lasts gives the rest.
-        Given all;
-        // The error of the integration.
-        double fastest = 0.0;
-        for (const int member : members)
-            fastest = std::max(fastest, given[static_cast<std::size_t>(member)].fast);
-        const double error = (2.0 * plan_.cluster_tolerance + kFaint) * fastest;
-        for (const int member : members) {
-            const Given& g = given[static_cast<std::size_t>(member)];
-            if (lasts > 0.0 || g.sum == 0.0)
-                check_given(static_cast<std::size_t>(member), g,
-                            g.slack + most_friction() * g.sum + g.mass * error, time);
-            all.change += g.change;
-            all.expected += g.expected;
-            all.sum += 0.5 * g.sum;
-            all.open += g.open;
-            all.mass += g.mass;
-            all.speeds += g.speeds;
-        }
-        check_given(a, all, all.mass * error, time);
-    }
-
-    // Adds up the hits. @param unseen  [s] duration of a cluster that the record shows as an instant
-    // @return whether they are known, and of these balls and this time
-    bool give(const Event& e, double lasts, double unseen, std::vector<Given>& given) {
-        const std::span<const Hit> hits = record_.hits(e);
-        // A record before version 4 shows only which balls met first.
-        if (hits.size() == 1 && hits[0].impulse == 0.0) return false;
-        double before = now_;
-        std::vector<std::size_t> at_cushion;
-        for (const Hit& hit : hits) {
-            const auto i = static_cast<std::size_t>(hit.a), j = static_cast<std::size_t>(hit.b);
-            const bool pair = hit.partner == Partner::kBall;
-            const auto is_member = [&](std::size_t ball) { return given[ball].mass > 0.0; };
-            if (!(hit.time >= before) || hit.time > now_ + lasts + same_time(now_) || !is_member(i) ||
-                (pair && (i == j || !is_member(j)))) {
-                report("U6", "a hit of the cluster is of another ball or another time");
-                return false;
-            }
-            before = hit.time;
-            const double J = hit.impulse / record_.balls.m,
-                         share = lasts > 0.0 ? (hit.time - now_) / lasts : 0.0;
-            Given& one = given[i];
-            const Vec3 here = one.from + share * one.path;
-            one.sum += J;
-            if (pair) {
-                Given& two = given[j];
-                Vec3 apart = two.from + share * two.path - here;
-                if (record_.balls.discs()) apart.z() = 0.0;
-                const double distance = length3(apart), tilted = 1.0 - length(planar(apart)) / distance;
-                const Vec3 push = J / distance * apart;
-                one.expected -= push;
-                two.expected += push;
-                two.sum += J;
-                // The normal turns while they move past each other.
-                const double past = (lasts > 0.0 ? lasts : unseen) * (one.fast + two.fast);
-                const double turn = std::min(1.0, kTurns * past / distance) + kHistory;
-                // A rigid cluster pushes balls on the cloth in the plane, at any tilt of their normals.
-                const double open = turn + tilted;
-                one.slack += open * J;
-                two.slack += open * J;
-            } else if (hit.partner != Partner::kNone) {
-                const Vec2 n = cushion_point(record_.table, hit.partner, hit.b, planar(here)).normal;
-                one.expected += J * Vec3(n.x(), n.y(), 0.0);
-                // Along the cushion its friction acts, at any speed that the hits gave.
-                one.open += one.mass * one.speeds;
-                at_cushion.push_back(i);
-            }
-        }
-        for (const std::size_t ball : at_cushion) given[ball].open += given[ball].sum;
-        return true;
-    }
-
-    double most_friction() const {
-        const bool friction = plan_.clusters == ClusterModel::kCompliant && plan_.in_force(Effect::kThrow);
-        return friction ? plan_.ball_ball->friction(plan_.balls).most() : 0.0;
-    }
-
-    // @param inside  [m/s] uncertainty of the impulses between the balls of the cluster
-    void check_given(std::size_t ball, const Given& g, double inside, double time) {
-        // The line of centres of unlike balls is tilted, and presses one of them on the cloth.
-        const auto [least, most] =
-            std::minmax_element(plan_.sizes.begin(), plan_.sizes.end(),
-                                [](const BallSize& p, const BallSize& q) { return p.R < q.R; });
-        const double tilt = (most->R - least->R) / (most->R + least->R);
-        const double cloth = 2.0 * plan_.balls.mu_s * (most_friction() + tilt);
-        const double off = length(planar(g.change - g.expected));
-        const double allowed = inside + g.open + cloth * g.sum +
-                               g.mass * (kSameShare * g.speeds + plan_.motion[ball].slide * time);
-        if (off > allowed)
-            report("U5",
-                   "the hits of the cluster leave {:.3g} m/s of ball {} unexplained (allowed: {:.3g} m/s)",
-                   off / g.mass, id(ball), allowed / g.mass);
+        if (const auto fault = verify_hits(record_, plan_, e, moves, lasts, time, known))
+            report(fault->law, "{}", fault->message);
     }
 
     const Record& record_;

@@ -152,6 +152,7 @@ std::string lead_text(const SearchArgs& args, const std::vector<games::Share>& s
             ? "unknown: nothing, exact tables\n"
             : fmt::format("unknown: {}; each shot draws it (standard deviations)\n", args.unknown);
     std::vector<std::string> rates;
+    rates.reserve(starts.size());
     for (const games::Share& share : starts) rates.push_back(fmt::format("{:.0f}", 100.0 * share.value));
     return text +
            fmt::format("searches from {} places, on their own so far: {} %; there may be a better shot\n",
