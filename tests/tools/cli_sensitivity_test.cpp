@@ -74,7 +74,8 @@ TEST(CliSensitivity, ABreakHasDerivatives) {
             carom({"sensitivity", CAROM_SOURCE_DIR "/scenes/" + std::string(scene) + ".toml", "--shots", "1",
                    "--json"});
         ASSERT_EQ(result.status, 0) << result.err;
-        for (const Json& input : Json::parse(result.out).at("inputs"))
+        const Json report = Json::parse(result.out);
+        for (const Json& input : report.at("inputs"))
             EXPECT_LT(input.at("error").get<double>(), 1e-3) << scene << input;
     }
 }
