@@ -33,7 +33,7 @@ namespace {
 using namespace test;
 
 #ifdef CAROM_SANITIZED
-constexpr int kShots = 8, kRacks = 1, kOfEach = 2;
+constexpr int kShots = 8, kRacks = 1, kOfEach = 4;
 #else
 constexpr int kShots = 200, kRacks = 20, kOfEach = 12;
 #endif
