@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "carom/engine/event_details.h"
 #include "carom/engine/simulate.h"
@@ -207,6 +208,28 @@ carom_status carom_record_event_details(const carom_record* record, size_t index
                     d.lost,    d.diamond};
         std::copy_n(d.point.data(), 3, details->point);
         std::copy_n(d.normal.data(), 3, details->normal);
+    });
+}
+
+size_t carom_record_hit_count(const carom_record* record) {
+    size_t count = 0;
+    if (record)
+        for (const carom::Event& e : record->record.events)
+            carom::each_hit(e, record->record.hits(e), [&](const carom::Hit&) { ++count; });
+    return count;
+}
+
+carom_status carom_record_hits(const carom_record* record, carom_hit* hits) {
+    return guarded([&] {
+        need({record});
+        const std::vector<carom::Event>& events = record->record.events;
+        if (carom_record_hit_count(record) > 0) need({hits});
+        for (std::size_t k = 0; k < events.size(); ++k)
+            carom::each_hit(events[k], record->record.hits(events[k]), [&](const carom::Hit& hit) {
+                *hits++ = {
+                    hit.time, hit.impulse, static_cast<int32_t>(k), hit.a, static_cast<int32_t>(hit.partner),
+                    hit.b};
+            });
     });
 }
 

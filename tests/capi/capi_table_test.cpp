@@ -1,10 +1,13 @@
 // libcarom.so: the data that a game draws and queries, by closed forms and against the library.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "carom/engine/record.h"
 #include "owned.h"
@@ -73,6 +76,34 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     ASSERT_EQ(carom_scene_spot(shot.scene, "head", place), CAROM_OK);
     EXPECT_DOUBLE_EQ(place[1], 2.54 / 4.0);
     EXPECT_EQ(carom_scene_spot(shot.scene, "middle", place), CAROM_BAD_ARGUMENT);
+}
+
+// A ball hits two frozen ones and nothing else: the cluster is three hits or two, and nobody hits the fourth.
+TEST(CApiTable, WhoHitWhom) {
+    const PlayedShot shot(
+        "[stop]\ntime = 1\n[[ball]]\nid = \"cue\"\nposition = [0.3, 0.6]\nvelocity = [2, 0]\n"
+        "[[ball]]\nid = \"1\"\nposition = [0.6, 0.6]\n"
+        "[[ball]]\nid = \"2\"\nposition = [0.65715, 0.6]\n"
+        "[[ball]]\nid = \"3\"\nposition = [0.6, 1.2]\n");
+    std::vector<carom_hit> hits(carom_record_hit_count(shot.record));
+    ASSERT_GE(hits.size(), 2u);
+    ASSERT_EQ(carom_record_hits(shot.record, hits.data()), CAROM_OK);
+    for (const carom_hit& hit : hits) {
+        carom_event_details event;
+        ASSERT_EQ(carom_record_event_details(shot.record, static_cast<std::size_t>(hit.event), &event),
+                  CAROM_OK);
+        EXPECT_GE(hit.time, event.time);
+        EXPECT_NE(hit.a, 3);
+        EXPECT_TRUE(hit.partner != CAROM_BALL || hit.b != 3);
+    }
+    EXPECT_EQ(std::minmax(hits[0].a, hits[0].b), std::minmax(0, 1));
+    EXPECT_EQ(std::minmax(hits[1].a, hits[1].b), std::minmax(1, 2));
+    EXPECT_LT(hits[0].time, hits[1].time);
+    // The middle ball passes on nine tenths of its impulse, or more.
+    EXPECT_NEAR(hits[1].impulse, hits[0].impulse, 0.1 * hits[0].impulse);
+    EXPECT_EQ(carom_record_hits(shot.record, nullptr), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_record_hits(nullptr, hits.data()), CAROM_BAD_ARGUMENT);
+    EXPECT_EQ(carom_record_hit_count(nullptr), 0u);
 }
 
 TEST(CApiTable, AnEventHasItsNumbers) {

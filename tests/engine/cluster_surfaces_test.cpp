@@ -38,6 +38,18 @@ Scene raised_break(reference::Generator& rng, double least, double most) {
         "s.toml");
 }
 
+/// Its racked balls are up to 3 % smaller, and lighter or heavier.
+Scene unlike_break(reference::Generator& rng) {
+    Scene scene = raised_break(rng, 2.0, 10.0);
+    for (BallStart& ball : scene.ball) {
+        if (ball.id == "cue") continue;
+        const double R = rng.uniform(0.97, 1.0) * scene.balls.R;
+        ball.own = BallSize{R, rng.uniform(0.8, 1.2) * scene.balls.m};
+        ball.position.z() = R;
+    }
+    return scene;
+}
+
 /// Two balls frozen to each other and to the left rail, hit by a third from any side.
 Scene frozen_to_rail(reference::Generator& rng) {
     const double R = kPoolR, side = rng.uniform(-75.0, 75.0) / 180.0 * M_PI, away = 0.2;
@@ -118,10 +130,12 @@ TEST(ClusterSurfaces, FrozenBallsTakeTime) {
 
 TEST(ClusterSurfaces, AgreeWithAnotherIntegration) {
     reference::Generator breaks(73), rails(75);
-    std::vector<double> raised, frozen;
+    std::vector<double> raised, unlike, frozen;
     for (int k = 0; k < kBreaksInTheAir; ++k) raised.push_back(error_of(raised_break(breaks, 2.0, 10.0)));
+    for (int k = 0; k < kBreaksInTheAir; ++k) unlike.push_back(error_of(unlike_break(breaks)));
     for (int k = 0; k < 40; ++k) frozen.push_back(error_of(frozen_to_rail(rails)));
     expect_small("raised", raised);
+    expect_small("unlike balls, raised", unlike);
     expect_small("at a rail", frozen);
 }
 

@@ -36,6 +36,11 @@ TEST(OddBreaks, Few) {
     come_to_rest(from, to);
 }
 
+// The march has a set number of steps, and the event names the other ball first.
+TEST(OddBreaks, AMarchIsCheckedInTheOrderOfTheLoop) {
+    come_to_rest(12532, 12533);
+}
+
 class ManyOddBreaks : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(ManyOddBreaks, ComeToRest) {

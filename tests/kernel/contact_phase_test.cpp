@@ -36,7 +36,7 @@ struct Outcome {
 };
 
 Outcome run(Isa isa, const Cluster& c, const HertzLaw& law, double tolerance, double look_ahead = kLookAhead,
-            double time_limit = kTimeLimit) {
+            double time_limit = kTimeLimit, std::int64_t most = kMostEvaluations) {
     Outcome out;
     out.motion = c.motion;
     out.moved.resize(3 * c.balls());
@@ -55,7 +55,8 @@ Outcome run(Isa isa, const Cluster& c, const HertzLaw& law, double tolerance, do
                              .inverse_mass = c.inverse_mass.empty() ? nullptr : c.inverse_mass.data(),
                              .moved = out.moved.data(),
                              .time = &out.time,
-                             .history = out.history.data()};
+                             .history = out.history.data(),
+                             .most = most};
     out.evaluations = contact_phase_function(isa)(phase, law, tolerance, look_ahead, time_limit);
     EXPECT_EQ(numbers.back(), 7.0);
     EXPECT_EQ(places.back(), 7);
@@ -318,8 +319,15 @@ TEST(ContactPhase, EndsWhenNoContactIsLeft) {
     EXPECT_NEAR(out.motion[7], 0.5, 0.03);
 }
 
-TEST(ContactPhase, ReportsItsTimeLimit) {
-    EXPECT_EQ(run(best_isa(), small_rack(), pool_law(), 1e-6, kLookAhead, 1.0).evaluations, -1);
+TEST(ContactPhase, ReportsItsLimits) {
+    const auto evaluations = [](double time_limit, std::int64_t most) {
+        return run(best_isa(), small_rack(), pool_law(), 1e-6, kLookAhead, time_limit, most).evaluations;
+    };
+    const std::int64_t all = evaluations(kTimeLimit, kMostEvaluations);
+    EXPECT_GT(all, 0);
+    EXPECT_EQ(evaluations(1.0, all), -1);
+    EXPECT_EQ(evaluations(kTimeLimit, all + 1), all);
+    EXPECT_EQ(evaluations(kTimeLimit, all / 2), -1);
 }
 
 }  // namespace

@@ -53,6 +53,18 @@ test("with() makes another scene and keeps the first", () => {
   assert.throws(() => scene.with({"cue.speed": -1}), CaromError);
 });
 
+test("a record is checked against its scene", () => {
+  const scene = Scene.parse(sceneText("eight_ball_break.toml")), shot = simulate(scene);
+  assert.equal(scene.verify(shot.recordJson), null);
+  // One ball rests 20 cm from where its motion ended.
+  const record = JSON.parse(shot.recordJson);
+  record.tracks[3].segments.at(-1).r[0] += 0.2;
+  assert.match(scene.verify(JSON.stringify(record)), /\d m\b/);
+  assert.throws(() => draw().verify(shot.recordJson), CaromError);
+  const cluster = shot.events.find((event) => event.type === "ball_cluster");
+  assert.ok(cluster.hits.length >= 15);
+});
+
 test("a wrong type is a TypeError that names the argument", () => {
   const scene = draw(), shot = simulate(scene), state = games.start("nine_ball");
   const carambole = Scene.parse(sceneText("nine_ball_break.toml"));

@@ -460,6 +460,19 @@ typedef struct carom_event_details {
 CAROM_API carom_status carom_record_event_details(const carom_record* record, size_t index,
                                                   carom_event_details* details);
 
+/* A contact that pushed: the pair of an impact, or one contact of a cluster. */
+typedef struct carom_hit {
+    double time;     /* [s] of its first touch */
+    double impulse;  /* along the normal [N s]; 0 unless it belongs to a cluster */
+    int32_t event;   /* index of its event */
+    int32_t a;       /* index of the ball */
+    int32_t partner; /* a carom_partner: the kind of b */
+    int32_t b;       /* index of the other ball or of the part; -1: the cloth */
+} carom_hit;
+/* Who pushed whom, in order of the events: `hits` receives carom_record_hit_count of them. */
+CAROM_API size_t carom_record_hit_count(const carom_record* record);
+CAROM_API carom_status carom_record_hits(const carom_record* record, carom_hit* hits);
+
 /* Records as JSON, in files and as text (as carom_scene_text). A file contains no physics, so reading needs
  * the played scene, with the same balls. On failure *record is NULL. */
 CAROM_API carom_status carom_record_write(const carom_record* record, const char* path);

@@ -340,6 +340,7 @@ std::int64_t Clusters::integrate(const ClusterSettings& settings, double v_n) {
         });
     near_.sort();
     ClusterSettings with = settings;
+    with.longest = longest;
     if (in_space_) {
         with.gravity = plan_.gravity;
         with.hop = bounce_end(plan_.balls.R, plan_.gravity);

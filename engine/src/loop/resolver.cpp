@@ -101,10 +101,8 @@ void Resolver::ball_ball(int a, int b) {
         free_balls(a, b);
         return;
     }
-    // Ball 1 is the one with the smaller x, then y, so that the ids do not affect the result, to the last
-    // bit.
     const Vec3 ra = balls_.position(a), rb = balls_.position(b);
-    const bool swap = rb.x() < ra.x() || (rb.x() == ra.x() && rb.y() < ra.y());
+    const bool swap = comes_first(rb, ra);
     const int one = swap ? b : a, two = swap ? a : b;
     const Vec3 &r1 = swap ? rb : ra, &r2 = swap ? ra : rb;
 

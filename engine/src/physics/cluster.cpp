@@ -213,6 +213,10 @@ double overlap_of(double mass) {
     return mass > 1.0 ? fifth_root(mass * mass) : 1.0;
 }
 
+std::int64_t most_evaluations(double tolerance) {
+    return static_cast<std::int64_t>(kClusterEvaluations / fifth_root(std::min(1.0, 1e6 * tolerance)));
+}
+
 }  // namespace
 
 std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
@@ -266,28 +270,32 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
                    (at.V / at.L);
         }};
     const double before = energy();
-    const kernel::ContactPhase phase{.balls = m,
-                                     .contacts = n,
-                                     .motion = motion_.data(),
-                                     .contact = contacts_.data(),
-                                     .numbers = on_cache_line(numbers_),
-                                     .places = places_.data(),
-                                     .held = held,
-                                     .surfaces = settings.surfaces != nullptr ? &surfaces : nullptr,
-                                     .lies = held || settings.surfaces == nullptr ? nullptr : lies_.data(),
-                                     .inverse_mass = settings.unlike ? inverse_mass_.data() : nullptr,
-                                     .moved = moved_.data(),
-                                     .time = &duration_,
-                                     .history = history_.data()};
+    const double tolerance = std::max(kClusterTightest, share * settings.tolerance);
+    const kernel::ContactPhase phase{
+        .balls = m,
+        .contacts = n,
+        .motion = motion_.data(),
+        .contact = contacts_.data(),
+        .numbers = on_cache_line(numbers_),
+        .places = places_.data(),
+        .held = held,
+        .surfaces = settings.surfaces != nullptr ? &surfaces : nullptr,
+        .lies = held || settings.surfaces == nullptr ? nullptr : lies_.data(),
+        .inverse_mass = settings.unlike ? inverse_mass_.data() : nullptr,
+        .moved = moved_.data(),
+        .time = &duration_,
+        .history = history_.data(),
+        .most = settings.longest > 0.0 ? most_evaluations(settings.tolerance) : kernel::kMostEvaluations};
     // Heavy balls compress each other for longer.
-    const double longest = kClusterTimeLimit * overlap_of(*std::max_element(mass_.begin(), mass_.end()));
+    const double heaviest = overlap_of(*std::max_element(mass_.begin(), mass_.end()));
     kernel::HertzLaw law = law_of(settings, V);
     law.epsilon *= share;
     // A slow contact lasts longer in this unit of time.
     const double slow = contact_length(approach) / (approach * (L / V));
-    const double tolerance = std::max(kClusterTightest, share * settings.tolerance);
+    double limit = slow * kClusterTimeLimit * heaviest;
+    if (settings.longest > 0.0) limit = std::min(limit, settings.longest / (L / V));
     const std::int64_t evaluations =
-        settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, slow * longest);
+        settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, limit);
     if (evaluations < 0) return evaluations;
     double risen = 0.0;
     for (std::size_t b = 0; b < balls.size(); ++b) risen += mass_[b] * law.gravity * moved_[3 * b + 2];

@@ -488,6 +488,7 @@ class Events {
     // Where the two solvers disagree (the one for unlike balls erred by up to six tolerances, in 8 of 20 000
     // random scenes), the solver of the loop decides, with a tenth of the tolerance.
     void hit_again(std::size_t a, std::size_t b, double error, Velocities& m1, Velocities& m2) const {
+        if (comes_first(body(b, true).r, body(a, true).r)) return hit_again(b, a, error, m2, m1);
         BallBallSettings settings = plan_.impact;
         settings.tolerance = std::max(kernel::kTightestTolerance, 0.1 * settings.tolerance);
         const auto solve = [&](const BallBallModelInfo& model, Velocities& v1, Velocities& v2) {

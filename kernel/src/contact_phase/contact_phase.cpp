@@ -146,7 +146,8 @@ class Phase {
         double h = kFirstStep, longest = kFirstStep;
         examine(0.0);
         bool known = false;  // the slopes of the active balls
-        for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit; ++steps) {
+        for (std::int64_t steps = 0; steps < kMostSteps && time_ < time_limit && evaluations_ < phase_.most;
+             ++steps) {
             known = gather() && known;
             if (phase_.surfaces != nullptr && hit_surfaces()) {
                 examine(0.0);

@@ -90,6 +90,12 @@ struct PairImpact {
     bool grazes = false;
 };
 
+/// Whether `q` is ball 1 of an impact, so that the ids do not affect the result, to the last bit: the ball
+/// with the smaller x, then y. From the other ball, a march with a set number of steps has another error.
+inline bool comes_first(const Vec3& q, const Vec3& p) {
+    return q.x() < p.x() || (q.x() == p.x() && q.y() < p.y());
+}
+
 /// Replaces the velocities of two colliding balls on the cloth, unless the status is an error. The friction
 /// between them is that of their slip before the impact.
 /// @param r1, r2  centres; their heights differ by the difference of the radii

@@ -55,6 +55,8 @@ struct ContactSurfaces {
     double (*out)(void* owner, int ball, const double* state) noexcept;
 };
 
+inline constexpr std::int64_t kMostEvaluations = 10'000'000;
+
 /// Input and output of one call. `numbers` and `places` are scratch memory of contact_phase_numbers() and
 /// contact_phase_places() elements.
 struct ContactPhase {
@@ -72,6 +74,7 @@ struct ContactPhase {
     double* moved = nullptr;               ///< receives the displacement of each ball (3 numbers) [L]
     double* time = nullptr;                ///< receives the duration [L/V]
     HertzHistory* history = nullptr;       ///< per contact, unless null
+    std::int64_t most = kMostEvaluations;  ///< evaluations of the forces; more are a failure
 };
 
 constexpr std::size_t contact_phase_numbers(int balls, int contacts) noexcept {
@@ -88,7 +91,7 @@ constexpr std::size_t contact_phase_places(int balls, int contacts) noexcept {
 /// summed in the given order.
 /// @param tolerance  [V] error of the velocities and spins that a step may make
 /// @return the number of evaluations of the forces, or -1 if the contacts did not separate within time_limit
-///         [L/V] or kMostSteps
+///         [L/V], phase.most evaluations or kMostSteps
 using ContactPhaseFunction = std::int64_t (*)(const ContactPhase& phase, const HertzLaw& law,
                                               double tolerance, double look_ahead,
                                               double time_limit) noexcept;
