@@ -1,18 +1,23 @@
 #!/usr/bin/env python3
-"""Fits the value of a position (games/src/player/lie.cpp) to racks, and prints how well it is calibrated.
+"""Fits the value of a position to racks, writes games/src/player/worth.h, and prints the calibration.
 
-    carom_player_games positions league league 4000 eight_ball > positions.txt
-    player_fit.py positions.txt
+    carom_player_games positions league league 500 nine_ball > fit.txt
+    carom_player_games positions league league 500 nine_ball 900001 > other.txt
+    player_fit.py [--write] nine_ball=fit.txt:other.txt [GAME=FIT[:OTHER] ...]
 
-Each line of the file has the rack, the features, and whether the player to shoot won. The fit is a logistic
-regression by Newton's method with a small ridge. Calibration uses racks that the fit has not seen (five
-folds): ten bins of equal size, each with the mean chance and the share of wins. A file of `player_games
-chances` has a chance in place of the features: only its calibration is printed.
+Each line of a file has the rack, the features, and whether the player to shoot won. The fit is a logistic
+regression by Newton's method with a small ridge. Calibration uses racks that the fit has not seen, those of
+OTHER or else of five folds: ten bins of equal size, each with the mean chance and the share of wins. A file
+of `player_games chances` has a chance in place of the features: only its calibration is printed. --write
+replaces the weights of the named games in worth.h.
 """
+import pathlib
+import re
 import sys
 
 import numpy as np
 
+TABLE = pathlib.Path(__file__).resolve().parents[2] / "games/src/player/worth.h"
 RIDGE = 1.0
 FOLDS = 5
 BINS = 10
@@ -36,22 +41,44 @@ def log_loss(y, p):
     return -np.mean(y * np.log(p) + (1 - y) * np.log(1 - p))
 
 
+def read(path):
+    data = np.loadtxt(path)
+    return data[:, 0].astype(int), data[:, 1:-1], data[:, -1]
+
+
 def main():
-    data = np.loadtxt(sys.argv[1])
-    rack, x, y = data[:, 0].astype(int), data[:, 1:-1], data[:, -1]
-    told = x.shape[1] == 1
-    p = x[:, 0].copy()
-    for fold in range(0 if told else FOLDS):
-        out = rack % FOLDS == fold
-        p[out] = chance(x[out], fitted(x[~out], y[~out]))
-    print(f"{len(np.unique(rack))} seeds, {len(y)} positions")
-    p = np.clip(p, 1e-6, 1 - 1e-6)
-    print(f"log loss {log_loss(y, p):.4f}; of a constant {log_loss(y, np.full(len(y), y.mean())):.4f}")
-    order = np.argsort(p)
-    for part in np.array_split(order, BINS):
-        print(f"  chance {100 * p[part].mean():5.1f} %, won {100 * y[part].mean():5.1f} %")
-    if not told:
-        print(", ".join(f"{value:.2f}" for value in fitted(x, y)))
+    for word in sys.argv[1:]:
+        if word == "--write":
+            continue
+        game, _, paths = word.rpartition("=")
+        path, _, other = paths.partition(":")
+        rack, x, y = read(path)
+        told = x.shape[1] == 1
+        if other:
+            weights = fitted(x, y)
+            rack, x, y = read(other)
+            p = chance(x, weights)
+        else:
+            p = x[:, 0].copy()
+            for fold in range(0 if told else FOLDS):
+                out = rack % FOLDS == fold
+                p[out] = chance(x[out], fitted(x[~out], y[~out]))
+            weights = None if told else fitted(x, y)
+        print(f"{game} {path}: {len(np.unique(rack))} seeds, {len(y)} positions")
+        p = np.clip(p, 1e-6, 1 - 1e-6)
+        print(f"log loss {log_loss(y, p):.4f}; of a constant {log_loss(y, np.full(len(y), y.mean())):.4f}")
+        for part in np.array_split(np.argsort(p), BINS):
+            print(f"  chance {100 * p[part].mean():5.1f} %, won {100 * y[part].mean():5.1f} %")
+        if weights is None:
+            continue
+        row = ", ".join(f"{weight:.3f}" for weight in weights)
+        print(row)
+        if "--write" in sys.argv:
+            name = "kWorth" + game.title().replace("_", "")
+            text, count = re.subn(rf"({name} = \{{)[^}}]*", rf"\g<1>{row}", TABLE.read_text(encoding="utf-8"))
+            if count != 1:
+                sys.exit(f"{game}: {TABLE} has no {name}")
+            TABLE.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

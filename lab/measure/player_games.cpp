@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -40,8 +41,8 @@ namespace {
 constexpr double kR = 0.028575;
 
 struct Count {
-    int racks = 0, breaks = 0, cleared = 0, tried = 0, made = 0, safeties = 0, fouls = 0, decisions = 0,
-        shots = 0;
+    int racks = 0, breaks = 0, cleared = 0, tried = 0, made = 0, safeties = 0, fouls = 0, decisions = 0;
+    std::vector<int> shots{};  ///< of each rack
     double foretold = 0.0, seconds = 0.0;
     std::array<int, 2> wins{};
 };
@@ -123,8 +124,10 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
         first = false;
         return !alone || made;
     };
+    const int decided = count.decisions;
     const int winner = test::play_rack(game, skills, {timed(0), timed(1)}, seed, breaker, each);
     ++count.racks;
+    count.shots.push_back(count.decisions - decided);
     if (winner < 0) return;
     ++count.wins[static_cast<std::size_t>(winner)];
     count.cleared += winner == breaker;
@@ -186,7 +189,12 @@ int main(int argc, char** argv) {
     fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));
     fmt::print("pots made                      {}; foretold {:.1f} %\n", share(count.made, count.tried),
                100.0 * count.foretold / count.tried);
-    fmt::print("safeties {}, fouls {}\n", count.safeties, count.fouls);
+    std::nth_element(count.shots.begin(), count.shots.begin() + racks / 2, count.shots.end());
+    fmt::print("shots a rack, median           {}\n", count.shots[static_cast<std::size_t>(racks) / 2]);
+    // A break is no safety, and its fouls are not counted.
+    const int others = count.decisions - count.racks;
+    fmt::print("safeties                       {}\n", share(count.safeties, others));
+    fmt::print("fouls                          {}\n", share(count.fouls, others));
     if (alone)
         fmt::print("cleared after a good break     {}\n", share(count.cleared, count.breaks));
     else

@@ -62,6 +62,11 @@ void check_game(Game game) {
 
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game
 void check_balls(const State& state, const Scene& scene) {
+    const bool rolls_on = scene.balls.rolls() && !(scene.balls.mu_r > 0.0);
+    if (!(scene.physics.gravity > 0.0) || rolls_on)
+        throw std::invalid_argument(
+            fmt::format("no ball comes to rest with {} = 0, so that no shot can be judged; give more",
+                        scene.physics.gravity > 0.0 ? "mu_r" : "gravity"));
     for (const BallStart& ball : scene.ball) {
         const int number = detail::number_of(ball.id);
         if ((number == 0 && ball.id != cue_ball(state)) || number >= detail::kNumbers)
@@ -194,7 +199,7 @@ Skill skill_by_name(std::string_view name, double R) {
         throw std::invalid_argument(
             fmt::format("unknown level {}; use {}", in_quotes(name), fmt::join(kSkills, ", ")));
     const auto& level = kLevels[found - kSkills.begin()];
-    Skill skill{noise_by_name("fastfiz", R), level.look};
+    Skill skill{noise_by_name("fastfiz", R), level.look, 0.0, {.places = 2e-4}};
     for (double* error : {&skill.noise.speed, &skill.noise.aim_deg, &skill.noise.elevation_deg,
                           &skill.noise.side, &skill.noise.height})
         *error *= level.errors;
@@ -214,7 +219,8 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     if (state.over) throw std::invalid_argument("the game is over; there is no next shot");
     if (options.best == 0) throw std::invalid_argument("best is 0; ask for at least one shot");
     check_balls(state, given);
-    const Scene scene = completed(state, given);
+    Scene scene = completed(state, given);
+    scene.stop = {};
     Search search(state, scene, skill, isa, options);
     const bool in_hand = state.in_hand != InHand::kNo;
     std::vector<Attempt> best;
@@ -233,11 +239,14 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     if (options.fresh > 0) {
         for (Attempt* candidate : chosen) candidate->tally = {};
         search.rate(chosen, options.fresh, Search::kFresh, true);
-        // The first one stays first: it was the best of many shots.
-        std::stable_sort(chosen.begin() + 1, chosen.end(), [](const Attempt* a, const Attempt* b) {
+        std::stable_sort(chosen.begin(), chosen.end(), [](const Attempt* a, const Attempt* b) {
             return a->tally.mean() > b->tally.mean();
         });
     }
+    // A shot that is a foul more often than not is advice only if nothing else is worth more.
+    chosen.erase(
+        std::remove_if(chosen.begin() + 1, chosen.end(), [](const Attempt* a) { return a->fouls(); }),
+        chosen.end());
     std::vector<Advice> advice;
     advice.reserve(chosen.size());
     for (const Attempt* candidate : chosen)

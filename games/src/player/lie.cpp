@@ -10,6 +10,7 @@
 #include "carom/engine/math.h"
 #include "facts.h"
 #include "lines.h"
+#include "player/worth.h"
 
 namespace carom::games::detail {
 namespace {
@@ -37,13 +38,12 @@ double error_function(double x) {
     return 1.0 - 1.0 / (eighth * eighth);
 }
 
-/// Weights of Potting::features().
-using Weights = std::array<double, Potting::kFeatures>;
-constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
-// The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
-constexpr Weights kRotation = {0.57, -0.17, 0.0, 0.0, 0.09, -1.05, -0.04, 1.72, 1.83, -0.04, 0.09, 0.36};
 /// [-] Estimated chance to get from one ball to a good place for the next.
 constexpr double kGetsThere = 0.95;
+/// [-] Of the chance from a good place, the share that a miss leaves the opponent.
+constexpr double kLeft = 0.5;
+/// [rad] Error of the aim of noise "fastfiz".
+constexpr double kUsualError = 0.125 / kDegrees;
 
 /// The ball that wins the game.
 int money_ball(Game game) {
@@ -65,6 +65,7 @@ State of_other(State state) {
 
 Lie lie_of(const Scene& scene) {
     Lie lie;
+    lie.string = head_string(scene.table);
     for (const BallStart& ball : scene.ball) {
         const Vec2 place = planar(ball.position);
         if (const int number = number_of(ball.id); number > 0)
@@ -77,6 +78,7 @@ Lie lie_of(const Scene& scene) {
 
 Lie lie_of(const Record& record, const Option& option) {
     Lie lie;
+    lie.string = head_string(record.table);
     for (int b = 0; b < static_cast<int>(record.tracks.size()); ++b) {
         const std::string& id = record.tracks[static_cast<std::size_t>(b)].id;
         const auto back = std::find_if(option.respots.begin(), option.respots.end(),
@@ -104,6 +106,10 @@ Numbers targets(const State& state, const Lie& lie) {
     Numbers first = 0, callable = 0;
     for (const std::string& id : allowed.first) first |= only(number_of(id));
     for (const std::string& id : allowed.callable) callable |= only(number_of(id));
+    Numbers beyond = first;
+    for (const Lie::Ball& ball : lie.balls)
+        if (is_behind_string(state, lie.string, ball.place.y())) beyond &= ~only(ball.number);
+    if (beyond != 0) first = beyond;
     return allowed.callable.empty() ? first : first & callable;
 }
 
@@ -167,19 +173,21 @@ bool Potting::inside(const Vec2& place) const {
     return is_inside(noses_, place);
 }
 
-bool Potting::clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const {
+bool Potting::clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart,
+                    Numbers without) const {
     return std::all_of(lie.balls.begin(), lie.balls.end(), [&](const Lie::Ball& ball) {
-        return ball.number == number || dot(ball.place - from, to - from) <= 0.0 ||
-               distance_to_segment(ball.place, from, to) >= apart;
+        return ball.number == number || (without & only(ball.number)) != 0 ||
+               dot(ball.place - from, to - from) <= 0.0 || distance_to_segment(ball.place, from, to) >= apart;
     });
 }
 
-bool Potting::reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const {
+bool Potting::reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards,
+                        Numbers without) const {
     for (const double side : {0.0, -kGoodSin, kGoodSin}) {
         const double ahead = side == 0.0 ? 1.0 : kGoodCos;
         const Vec2 way(ahead * towards.x() - side * towards.y(), side * towards.x() + ahead * towards.y());
         const Vec2 from = ghost - kGoodDistance * way;
-        if (inside(from) && clear(lie, number, from, ghost, both_)) return true;
+        if (inside(from) && clear(lie, number, from, ghost, both_, without)) return true;
     }
     return false;
 }
@@ -206,9 +214,11 @@ std::vector<Pot> Potting::pots(const Lie& lie, Numbers balls, double least) cons
     return pots;
 }
 
-std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers now) const {
+std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers now, bool in_order) const {
     std::array<Chance, kNumbers> chances{};
     for (const Lie::Ball& ball : lie.balls) {
+        // The lower balls are gone when this one is the next.
+        const Numbers without = in_order ? only(ball.number) - 1 : 0;
         Chance& best = chances[static_cast<std::size_t>(ball.number)];
         for (int p = 0; p < static_cast<int>(mouths_.size()); ++p) {
             const Path path = this->path(p, ball.place);
@@ -224,9 +234,10 @@ std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers n
                 if (straight >= kThinnest) from_here = chance(distance, straight, path.width);
             }
             if ((ideal <= best.ideal && from_here <= best.now) ||
-                !clear(lie, ball.number, ball.place, path.end, 2.0 * R_))
+                !clear(lie, ball.number, ball.place, path.end, 2.0 * R_, without))
                 continue;
-            if (ideal > best.ideal && reachable(lie, ball.number, ghost, path.towards)) best.ideal = ideal;
+            if (ideal > best.ideal && reachable(lie, ball.number, ghost, path.towards, without))
+                best.ideal = ideal;
             if (from_here > best.now && clear(lie, ball.number, *lie.cue, ghost, both_)) best.now = from_here;
         }
     }
@@ -243,26 +254,7 @@ int Potting::surest(const State& state, const Lie& lie) const {
 std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
-    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
-    // The balls that a player must pot, including the money ball, and the chance to pot them from good
-    // places.
-    struct Task {
-        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
-    };
-    const auto task_of = [&](int player, Numbers may) {
-        Task task;
-        const Numbers needed = (eight ? may : all) | money;
-        for (int n = 1; n < kNumbers; ++n) {
-            if ((needed & only(n)) == 0) continue;
-            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
-            task.mean += ideal / std::popcount(needed);
-            task.least = std::min(task.least, ideal);
-            task.run *= kGetsThere * ideal;
-        }
-        const bool open = eight && state.group[static_cast<std::size_t>(player)] == Group::kOpen;
-        task.left = open ? 7 : std::popcount(needed) - 1;
-        return task;
-    };
+    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine, !eight);
     std::array<double, 3> best{};
     for (int n = 1; n < kNumbers; ++n) {
         if ((mine & only(n)) == 0) continue;
@@ -271,8 +263,56 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
         for (double& other : best)
             if (now > other) std::swap(now, other);
     }
+    const double level = sd_aim_ / (sd_aim_ + kUsualError), placed = in_hand ? 1.0 : 0.0;
+    if (!eight) {
+        // From the last ball to the next one: the chance to win from a good place, and that of the opponent
+        // after a miss. Both miss in turns until one pots the ball.
+        double after = 1.0, chance = 1.0, passed = 0.0, mean = 0.0;
+        for (int n = kNumbers - 1; n > 0; --n) {
+            if ((all & only(n)) == 0 || n > money_ball(state.game)) continue;
+            const double ideal = chances[static_cast<std::size_t>(n)].ideal, left = kLeft * ideal;
+            after = chance;
+            passed = (left * after + 1.0 - left) / (2.0 - left);
+            chance = kGetsThere * ideal * after + (1.0 - kGetsThere * ideal) * (1.0 - passed);
+            mean += ideal / std::popcount(all);
+        }
+        const double wins = best[0] * after + (1.0 - best[0]) * (1.0 - passed) - 0.5;
+        const double left = std::popcount(all) - 1;
+        return {1.0,
+                wins,
+                wins * wins * wins,
+                best[0],
+                best[0] * after,
+                left,
+                left * best[0],
+                left == 0.0 ? best[0] : 0.0,
+                placed,
+                placed * left,
+                mean,
+                level,
+                level * best[0]};
+    }
+    // The balls that a player must pot, including the money ball, and the chance to pot them from good
+    // places.
+    struct Task {
+        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
+    };
+    const auto task_of = [&](int player, Numbers may) {
+        Task task;
+        const Numbers needed = may | money;
+        for (int n = 1; n < kNumbers; ++n) {
+            if ((needed & only(n)) == 0) continue;
+            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
+            task.mean += ideal / std::popcount(needed);
+            task.least = std::min(task.least, ideal);
+            task.run *= kGetsThere * ideal;
+        }
+        const bool open = state.group[static_cast<std::size_t>(player)] == Group::kOpen;
+        task.left = open ? 7 : std::popcount(needed) - 1;
+        return task;
+    };
     const Task own = task_of(state.turn, mine);
-    const Task other = eight ? task_of(1 - state.turn, targets(of_other(state), lie)) : own;
+    const Task other = task_of(1 - state.turn, targets(of_other(state), lie));
     return {1.0,
             best[0],
             best[1],
@@ -284,13 +324,16 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
             best[0] * own.run,
             other.left,
             other.mean,
-            other.run};
+            other.run,
+            placed};
 }
 
 double Potting::value(const State& state, const Lie& lie) const {
     if (lie.balls.empty()) return 0.0;
     const std::array<double, kFeatures> features = this->features(state, lie);
-    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kRotation;
+    const auto& weights = state.game == Game::kEightBall  ? kWorthEightBall
+                          : state.game == Game::kNineBall ? kWorthNineBall
+                                                          : kWorthTenBall;
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));

@@ -17,6 +17,7 @@
 #include "carom/games/shot.h"
 #include "facts.h"
 #include "lines.h"
+#include "unknown.h"
 
 namespace carom::games::detail {
 namespace {
@@ -55,6 +56,8 @@ constexpr int kCorrections = 2;
 constexpr std::size_t kPlaces = 40;
 constexpr std::array kDistances{0.15, 0.3, 0.55};
 constexpr std::array kAngles{0.0, -14.0, 14.0, -30.0, 30.0, -50.0, 50.0};
+/// [m] Distance of a cue ball in hand from balls whose places are not known exactly.
+constexpr double kClear = 4e-3;
 /// [-] Cost of a foul for a player who ignores the position that a shot leaves.
 constexpr double kFoulCost = 0.3;
 
@@ -81,6 +84,14 @@ ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fal
 /// The turn to the left from one direction to another [degrees].
 double turn_deg(const Vec2& from, const Vec2& to) {
     return direction_deg({dot(from, to), cross(from, to)});
+}
+
+/// Drops strikes that are too steep. If all are, the cue is lowered.
+void level_off(std::vector<Attempt>& candidates) {
+    const auto steep = [](const Attempt& candidate) { return candidate.cue.elevation_deg > kMostElevation; };
+    if (!std::all_of(candidates.begin(), candidates.end(), steep)) std::erase_if(candidates, steep);
+    for (Attempt& candidate : candidates)
+        candidate.cue.elevation_deg = std::min(candidate.cue.elevation_deg, kMostElevation);
 }
 
 double sd_of_aim(const Noise& noise) {
@@ -111,12 +122,13 @@ Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa 
       first_(0),
       cue_ball_(static_cast<std::size_t>(index_of(scene_.ball, scene_.cue->ball))),
       in_hand_(state.in_hand != InHand::kNo || state.opening) {
-    const Legal allowed = legal(state, ids_of(scene_.ball));
+    const Legal allowed = legal(state, scene_);
     for (const std::string& id : allowed.first) first_ |= only(number_of(id));
     calls_ = !allowed.callable.empty();
 }
 
-void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const {
+void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge,
+                  const std::vector<Scene>& tables) const {
     const std::string place = "ball." + scene_.cue->ball + ".position.";
     std::array<std::pair<std::string, std::vector<double>>, 7> numbers{{{"cue.speed", {}},
                                                                         {"cue.aim_deg", {}},
@@ -132,9 +144,19 @@ void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const
         for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k].second.push_back(values[k]);
     }
     std::vector<BatchColumn> columns;
-    // A cue ball that is not in hand stays, so its place needs no check.
+    // A cue ball that is not in hand stays or is drawn, so its place needs no check.
     for (std::size_t k = 0; k < (in_hand_ ? 7 : 5); ++k)
         columns.push_back({numbers[k].first, numbers[k].second});
+    const std::vector<bool> resized(scene_.ball.size());
+    std::vector<std::string> keys;
+    if (!tables.empty()) keys = table_keys(scene_, resized);
+    std::vector<std::vector<double>> drawn(keys.size());
+    for (std::size_t i = 0; i < cues.size() && !tables.empty(); ++i) {
+        const std::vector<double> values = table_values(tables[i % tables.size()], resized);
+        for (std::size_t k = 0; k < keys.size(); ++k) drawn[k].push_back(values[k]);
+    }
+    for (std::size_t k = 0; k < keys.size(); ++k)
+        if (!in_hand_ || keys[k].rfind(place, 0) != 0) columns.push_back({keys[k], drawn[k]});
     BatchOptions batch;
     batch.threads = options_.threads;
     batch.stop = options_.stop;
@@ -256,27 +278,29 @@ std::vector<Attempt> Search::pots(std::span<const Vec2> places) const {
 std::vector<Attempt> Search::sweep(const Vec2& place) const {
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
     std::vector<Attempt> tried;
-    const auto add = [&](double aim_deg, double speed) {
+    const auto add = [&](double aim_deg, std::span<const double> speeds) {
         Attempt candidate;
         candidate.cue = *scene_.cue;
         candidate.cue.aim_deg = aim_deg;
-        candidate.cue.speed = speed;
         candidate.cue.side = candidate.cue.height = candidate.cue.elevation_deg = 0.0;
         candidate.place = place;
-        tried.push_back(std::move(candidate));
+        lift(candidate);
+        for (const double speed : speeds) {
+            candidate.cue.speed = speed;
+            tried.push_back(candidate);
+        }
     };
     for (const Lie::Ball& ball : lie_.balls) {
         if ((first_ & only(ball.number)) == 0) continue;
         const Vec2 way = ball.place - place;
         for (int k = 0; k < grid.hits; ++k) {
             const double hit = kThinnestHit * (2.0 * k / (grid.hits - 1) - 1.0);
-            const double aim = hit_aim_deg(way, potting_.both(), hit);
-            for (const double speed : kSweepSpeeds) add(aim, speed);
+            add(hit_aim_deg(way, potting_.both(), hit), kSweepSpeeds);
         }
     }
     for (int k = 0; k < grid.around; ++k)
-        for (std::size_t v = 1; v < kSweepSpeeds.size(); ++v)
-            add(360.0 * k / grid.around + 0.37, kSweepSpeeds[v]);
+        add(360.0 * k / grid.around + 0.37, std::span(kSweepSpeeds).subspan(1));
+    level_off(tried);
     std::vector<Cue> cues;
     cues.reserve(tried.size());
     for (const Attempt& candidate : tried) cues.push_back(candidate.cue);
@@ -328,7 +352,6 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
         push.pocket = -1;
         candidates.push_back(std::move(push));
     }
-    for (Attempt& candidate : candidates) lift(candidate);
     return candidates;
 }
 
@@ -336,7 +359,7 @@ bool Search::may_lie(const Vec2& place) const {
     if (!in_area(scene_.table, state_.in_hand, place) || !potting_.inside(place)) return false;
     // No shot is played from a place that touches a ball.
     return std::all_of(lie_.balls.begin(), lie_.balls.end(), [&](const Lie::Ball& ball) {
-        return length(ball.place - place) > potting_.both() + kSpotGap;
+        return length(ball.place - place) > potting_.both() + kClear;
     });
 }
 
@@ -386,10 +409,14 @@ void Search::rate(std::span<Attempt* const> candidates, std::size_t shots, std::
             places.push_back(candidate->place);
         }
     }
+    std::vector<Scene> tables;
+    for (std::size_t k = 0; k < shots && skill_.unknown != kExactTable; ++k)
+        tables.push_back(drawn_table(scene_, skill_.unknown, options_.seed, first + k));
     std::vector<Result> results(cues.size());
-    play(cues, places, [&](std::size_t i, const Record& record) {
+    const auto rated = [&](std::size_t i, const Record& record) {
         results[i] = result(record, candidates[i / shots]->call, closer);
-    });
+    };
+    play(cues, places, rated, tables);
     for (std::size_t i = 0; i < results.size(); ++i) {
         Tally& tally = candidates[i / shots]->tally;
         ++tally.shots;
@@ -424,8 +451,7 @@ std::vector<Attempt> Search::best() {
     if (!in_hand_ || candidates.empty()) {
         for (Attempt& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
     }
-    const auto steep = [](const Attempt& candidate) { return candidate.cue.elevation_deg > kMostElevation; };
-    if (!std::all_of(candidates.begin(), candidates.end(), steep)) std::erase_if(candidates, steep);
+    level_off(candidates);
     std::vector<Attempt*> alive;
     alive.reserve(candidates.size());
     for (Attempt& candidate : candidates) alive.push_back(&candidate);

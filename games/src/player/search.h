@@ -30,6 +30,8 @@ struct Attempt {
     int ball = 0, pocket = -1;  ///< number of the potted ball, index of its pocket; 0, -1: none
     double cut_deg = 0.0;
     Tally tally;
+    /// Whether more than half of its shots are fouls.
+    bool fouls() const { return 2 * tally.fouls > tally.shots; }
 };
 
 class Search {
@@ -58,7 +60,9 @@ class Search {
     struct Line;
 
     using Judge = std::function<void(std::size_t, const Record&)>;
-    void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
+    /// @param tables  shot i is played on table i modulo their number; empty: on the scene's
+    void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge,
+              const std::vector<Scene>& tables = {}) const;
     /// @param closer  whether to also find Result::leaves, and the chance to win instead of the measure of
     /// the skill
     Result result(const Record& record, const Call& call, bool closer = false) const;

@@ -34,13 +34,15 @@ constexpr auto names_of(Look) {
 struct Skill {
     Noise noise;
     Look look = Look::kWhole;
-    double of_speed = 0.0;  ///< [-] another error of the speed, as a fraction of it
+    double of_speed = 0.0;          ///< [-] another error of the speed, as a fraction of it
+    Unknown unknown = kExactTable;  ///< what the player does not know about the table
     /// Of a strike with this speed [m/s].
     Noise noise_at(double speed) const;
     bool operator==(const Skill&) const = default;
 };
 inline constexpr std::array kSkills{"beginner", "club", "league", "professional", "machine"};
-/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz". @param R radius of the cue ball [m]
+/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz"; all do not know the cloth by 5 %, the rails
+/// by 2 % and the places of balls by 0.2 mm. @param R radius of the cue ball [m]
 /// @throws std::invalid_argument for another name, or a radius that is not greater than 0
 Skill skill_by_name(std::string_view name, double R);
 
