@@ -162,6 +162,10 @@ Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
     advice.makes = share_of(tally.made, tally.shots);
     advice.fouls = share_of(tally.fouls, tally.shots);
     advice.worth = tally.mean();
+    if (tally.passed > 0) advice.opponent = tally.opponent / static_cast<double>(tally.passed);
+    advice.spin = candidate.spin;
+    advice.rails = candidate.rails;
+    advice.rest = candidate.rest;
     std::vector<int> balls;
     for (int n = 1; n < detail::kNumbers; ++n)
         if (tally.leaves[static_cast<std::size_t>(n)] > 0) balls.push_back(n);
@@ -174,12 +178,25 @@ Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
     return advice;
 }
 
+/// By the speed of the cue; the ball is about a third faster.
 const char* speed_word(double speed) {
-    return speed < 1.0   ? "soft"
-           : speed < 1.6 ? "slow"
-           : speed < 2.4 ? "medium"
-           : speed < 3.6 ? "hard"
-                         : "very hard";
+    return speed < 0.75  ? "very soft"
+           : speed < 1.4 ? "soft"
+           : speed < 3.1 ? "medium"
+           : speed < 5.2 ? "hard"
+                         : "break speed";
+}
+
+/// The part of the object ball that a cut covers.
+std::string thickness(double cut_deg) {
+    constexpr double kFull = 6.0;  // degrees
+    const auto [sin, cos] = sin_cos_deg(std::abs(cut_deg));
+    if (std::abs(cut_deg) < kFull) return "full";
+    const char* part = 1.0 - sin > 0.62   ? "three-quarter ball"
+                       : 1.0 - sin > 0.38 ? "half ball"
+                       : 1.0 - sin > 0.15 ? "quarter ball"
+                                          : "thin";
+    return fmt::format("{} to the {}", part, cut_deg > 0.0 ? "left" : "right");
 }
 
 }  // namespace
@@ -247,6 +264,7 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     chosen.erase(
         std::remove_if(chosen.begin() + 1, chosen.end(), [](const Attempt* a) { return a->fouls(); }),
         chosen.end());
+    search.describe(chosen);
     std::vector<Advice> advice;
     advice.reserve(chosen.size());
     for (const Attempt* candidate : chosen)
@@ -283,22 +301,41 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
 }
 
 std::string words_of(const Advice& advice, const Table& table) {
-    std::string words = advice.kind == ShotKind::kPot ? "" : std::string(name(advice.kind)) + ": ";
+    const bool deliberate = advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak;
+    std::string words = deliberate                      ? "deliberate foul: "
+                        : advice.kind == ShotKind::kPot ? ""
+                                                        : std::string(name(advice.kind)) + ": ";
     if (!advice.ball.empty()) {
         const int pocket = index_of(table.pockets, advice.pocket);
         const std::string& where = pocket >= 0 ? table.pockets[static_cast<std::size_t>(pocket)].name : "";
         words += fmt::format("{} into {}{}, ", advice.ball, advice.pocket,
                              where.empty() ? "" : " (" + where + ")");
     }
-    if (advice.kind == ShotKind::kPot)
-        words += std::abs(advice.cut_deg) < 3.0
-                     ? "straight, "
-                     : fmt::format("cut {:.0f} degrees {}, ", std::abs(advice.cut_deg),
-                                   advice.cut_deg > 0.0 ? "left" : "right");
-    words += speed_word(advice.cue.speed);
+    if (!advice.rails.empty()) words += advice.rails + ", ";
+    const bool pot = advice.kind == ShotKind::kPot;
+    const std::string part = pot ? thickness(advice.cut_deg) : "";
+    if (pot) words += part + ", ";
+    if (!advice.spin.empty())
+        words += (part == "full" && advice.spin == "stun" ? "stop" : advice.spin) + ", ";
     constexpr double kCentre = 0.05;
-    if (std::abs(advice.cue.height) > kCentre) words += advice.cue.height > 0.0 ? ", high" : ", low";
-    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? ", left" : ", right";
+    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? "left side, " : "right side, ";
+    return words + speed_word(advice.cue.speed);
+}
+
+std::string result_words(const Advice& advice) {
+    const auto percent = [](double share) { return fmt::format("{:.0f} %", 100.0 * share); };
+    const bool ends = advice.kind == ShotKind::kSafety || advice.kind == ShotKind::kPushOut;
+    std::string words;
+    if (!ends)
+        words = fmt::format("{} {} ({:.0f} to {:.0f}), ", advice.ball.empty() ? "keeps the turn" : "pots",
+                            percent(advice.makes.value), 100.0 * advice.makes.low, 100.0 * advice.makes.high);
+    words += fmt::format("wins {}, fouls {}", percent(advice.worth), percent(advice.fouls.value));
+    if (!advice.rest.empty()) words += "; cue ball rests " + advice.rest;
+    if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
+        words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
+                             percent(advice.opponent));
+    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
+        words += "; worth more than any fair shot";
     return words;
 }
 

@@ -244,11 +244,17 @@ std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers n
     return chances;
 }
 
-int Potting::surest(const State& state, const Lie& lie) const {
-    const std::array<Chance, kNumbers> chances = this->chances(lie, targets(state, lie));
-    const auto best = std::max_element(chances.begin(), chances.end(),
-                                       [](const Chance& a, const Chance& b) { return a.now < b.now; });
-    return best->now > 0.0 ? static_cast<int>(best - chances.begin()) : 0;
+std::pair<int, double> Potting::surest(const State& state, const Lie& lie) const {
+    const bool in_hand = state.in_hand != InHand::kNo;
+    const Numbers mine = targets(state, lie);
+    const std::array<Chance, kNumbers> chances = this->chances(lie, mine);
+    std::pair<int, double> best{0, 0.0};
+    for (int n = 1; n < kNumbers; ++n) {
+        const Chance& chance = chances[static_cast<std::size_t>(n)];
+        const double now = in_hand ? chance.ideal : chance.now;
+        if ((mine & only(n)) != 0 && now > best.second) best = {n, now};
+    }
+    return best;
 }
 
 std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {

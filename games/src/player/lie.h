@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "carom/games/rules.h"
@@ -65,8 +66,8 @@ class Potting {
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
     /// [-] The chance of the player whose turn it is to win: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;
-    /// The number of the ball with the surest pot for the player to shoot; 0: none.
-    int surest(const State& state, const Lie& lie) const;
+    /// The number of the ball with the surest pot for the player to shoot, and its chance; 0: none.
+    std::pair<int, double> surest(const State& state, const Lie& lie) const;
     /// Whether the cue ball fits there between the noses.
     bool inside(const Vec2& place) const;
     /// [m] Distance of the centres of the cue ball and an object ball in contact.

@@ -61,8 +61,12 @@ struct Advice {
     /// From AdviceOptions::fresh shots that the search has not used: how often the shot wins the turn or the
     /// game, and how often it is a foul. All shots of a break are fresh.
     Share makes{}, fouls{};
-    double worth = 0.0;               ///< mean value of the position that it leaves: 1 is a win, 0 a loss [-]
+    double worth = 0.0;     ///< mean chance to win the rack against a player of the same level [-]
+    double opponent = 0.0;  ///< mean chance of the surest pot that the opponent gets, if one shoots next
     std::vector<std::string> leaves;  ///< the balls that it most often leaves as the surest pot, at most 3
+    /// Of the shot without errors, in words: the spin at the first contact; the rails of a bank or kick; the
+    /// place where the cue ball rests, and its next ball.
+    std::string spin, rails, rest;
 };
 
 struct AdviceOptions {
@@ -89,7 +93,9 @@ Scene scene_with(const Scene& scene, const Advice& advice);
 /// @throws std::invalid_argument for a game without a player
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill);
 
-/// A sentence such as "the 7 into p3 (right side), cut 23 degrees to the left, medium, low".
+/// The shot, such as "7 into p5 (right side pocket), half ball to the left, stun, medium".
 std::string words_of(const Advice& advice, const Table& table);
+/// Its result, such as "pots 84 % (80 to 87), wins 61 %, fouls 2 %; cue ball near the foot spot for the 8".
+std::string result_words(const Advice& advice);
 
 }  // namespace carom::games

@@ -94,23 +94,13 @@ games::Skill skill_of(const AdviseArgs& args, const Scene& scene) {
     return skill;
 }
 
-std::string percent(double share) {
-    return fmt::format("{:.0f}", 100.0 * share);
-}
-
 std::string advice_text(const std::vector<Advice>& advice, const carom::Table& table) {
     std::string text;
     for (std::size_t i = 0; i < advice.size(); ++i) {
         const Advice& a = advice[i];
-        text += fmt::format("{}  {}\n", i + 1, games::words_of(a, table));
-        const bool ends = a.kind == games::ShotKind::kSafety || a.kind == games::ShotKind::kPushOut;
-        if (!ends)
-            text += fmt::format("   {} {} % ({} to {}), ", a.ball.empty() ? "keeps the turn" : "pots",
-                                percent(a.makes.value), percent(a.makes.low), percent(a.makes.high));
-        text += fmt::format("{}fouls {} %", ends ? "   " : "", percent(a.fouls.value));
-        if (!a.leaves.empty()) text += fmt::format("; leaves {}", fmt::join(a.leaves, ", "));
-        if (a.place) text += fmt::format("; cue ball at {:.3f}, {:.3f} m", a.place->x(), a.place->y());
-        text += "\n";
+        text += fmt::format("{}  {}", i + 1, games::words_of(a, table));
+        if (a.place) text += fmt::format("; cue ball from {:.3f}, {:.3f} m", a.place->x(), a.place->y());
+        text += "\n   " + games::result_words(a) + "\n";
     }
     return text;
 }
