@@ -3,9 +3,9 @@
 
     carom_player_games positions league league 500 nine_ball > fit.txt
     carom_player_games positions league league 500 nine_ball 900001 > other.txt
-    player_fit.py [--write] nine_ball=fit.txt:other.txt [GAME=FIT[:OTHER] ...]
+    player_fit.py [--write] rotation=fit.txt:other.txt [eight_ball=FIT[,FIT ...][:OTHER] ...]
 
-Each line of a file has the rack, the features, and whether the player to shoot won. The fit is a logistic
+Nine-ball and ten-ball share a row, rotation. Each line of a file has the rack, the features, and whether the player to shoot won. The fit is a logistic
 regression by Newton's method with a small ridge. Calibration uses racks that the fit has not seen, those of
 OTHER or else of five folds: ten bins of equal size, each with the mean chance and the share of wins. A file
 of `player_games chances` has a chance in place of the features: only its calibration is printed. --write
@@ -41,8 +41,8 @@ def log_loss(y, p):
     return -np.mean(y * np.log(p) + (1 - y) * np.log(1 - p))
 
 
-def read(path):
-    data = np.loadtxt(path)
+def read(paths):
+    data = np.concatenate([np.loadtxt(path) for path in paths.split(",")])
     return data[:, 0].astype(int), data[:, 1:-1], data[:, -1]
 
 
@@ -75,6 +75,7 @@ def main():
         print(row)
         if "--write" in sys.argv:
             name = "kWorth" + game.title().replace("_", "")
+            row = row.removesuffix(", 0.000" * 5)
             text, count = re.subn(rf"({name} = \{{)[^}}]*", rf"\g<1>{row}", TABLE.read_text(encoding="utf-8"))
             if count != 1:
                 sys.exit(f"{game}: {TABLE} has no {name}")

@@ -3,7 +3,7 @@
 //     player_games alone LEVEL [RACKS [GAME [FIRST]]]            from the break until the turn is lost
 //     player_games match LEVEL LEVEL [RACKS [GAME [FIRST]]]      the break alternates
 //     player_games positions LEVEL LEVEL [RACKS [GAME [FIRST]]]  the same; prints the features of every
-//         position, and whether the player to shoot wins, for player_fit.py
+//         position, and whether the player to shoot wins, for player_fit.py; the results go to standard error
 //     player_games chances LEVEL LEVEL [RACKS [GAME [FIRST]]]    the same; in place of the features prints
 //         the played shot's chance to win, from fresh shots
 //
@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <string>
@@ -183,21 +184,21 @@ int main(int argc, char** argv) {
     for (int k = 0; k < racks; ++k)
         play(skills, {words[1] == "pro", words[levels] == "pro"}, game,
              seed + static_cast<std::uint64_t>(alone ? k : k / 2), alone ? 0 : k % 2, alone, tell, count);
-    if (tell != Tell::kNothing) return 0;
-    fmt::print("{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
+    std::FILE* const out = tell == Tell::kNothing ? stdout : stderr;
+    fmt::print(out, "{} racks, {} decisions; {:.3f} CPU s a decision\n", count.racks, count.decisions,
                count.seconds / count.decisions);
-    fmt::print("break pots and keeps the turn  {}\n", share(count.breaks, racks));
-    fmt::print("pots made                      {}; foretold {:.1f} %\n", share(count.made, count.tried),
+    fmt::print(out, "break pots and keeps the turn  {}\n", share(count.breaks, racks));
+    fmt::print(out, "pots made                      {}; foretold {:.1f} %\n", share(count.made, count.tried),
                100.0 * count.foretold / count.tried);
     std::nth_element(count.shots.begin(), count.shots.begin() + racks / 2, count.shots.end());
-    fmt::print("shots a rack, median           {}\n", count.shots[static_cast<std::size_t>(racks) / 2]);
+    fmt::print(out, "shots a rack, median           {}\n", count.shots[static_cast<std::size_t>(racks) / 2]);
     // A break is no safety, and its fouls are not counted.
     const int others = count.decisions - count.racks;
-    fmt::print("safeties                       {}\n", share(count.safeties, others));
-    fmt::print("fouls                          {}\n", share(count.fouls, others));
+    fmt::print(out, "safeties                       {}\n", share(count.safeties, others));
+    fmt::print(out, "fouls                          {}\n", share(count.fouls, others));
     if (alone)
-        fmt::print("cleared after a good break     {}\n", share(count.cleared, count.breaks));
+        fmt::print(out, "cleared after a good break     {}\n", share(count.cleared, count.breaks));
     else
-        fmt::print("won by the first               {}\n",
+        fmt::print(out, "won by the first               {}\n",
                    share(count.wins[0], count.wins[0] + count.wins[1]));
 }

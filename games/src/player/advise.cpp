@@ -245,6 +245,11 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
         best.push_back(break_of(state, scene));
     else
         best = search.best();
+    // A foul is advice only if there is no fair shot.
+    const auto drop_fouls = [](auto& list, const auto& fouls) {
+        if (!std::all_of(list.begin(), list.end(), fouls)) std::erase_if(list, fouls);
+    };
+    drop_fouls(best, [](const Attempt& a) { return a.fouls(); });
     std::vector<Attempt*> chosen;
     for (Attempt& candidate : best) {
         const bool like = std::any_of(chosen.begin(), chosen.end(), [&](const Attempt* other) {
@@ -260,10 +265,8 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
             return a->tally.mean() > b->tally.mean();
         });
     }
-    // A shot that is a foul more often than not is advice only if nothing else is worth more.
-    chosen.erase(
-        std::remove_if(chosen.begin() + 1, chosen.end(), [](const Attempt* a) { return a->fouls(); }),
-        chosen.end());
+    drop_fouls(chosen, [](const Attempt* a) { return a->fouls(); });
+    if (chosen.front()->fouls()) chosen.resize(1);
     search.describe(chosen);
     std::vector<Advice> advice;
     advice.reserve(chosen.size());
@@ -334,8 +337,7 @@ std::string result_words(const Advice& advice) {
     if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
         words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
                              percent(advice.opponent));
-    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
-        words += "; worth more than any fair shot";
+    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak) words += "; no fair shot was found";
     return words;
 }
 

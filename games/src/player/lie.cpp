@@ -269,34 +269,28 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
         for (double& other : best)
             if (now > other) std::swap(now, other);
     }
-    const double level = sd_aim_ / (sd_aim_ + kUsualError), placed = in_hand ? 1.0 : 0.0;
+    const double placed = in_hand ? 1.0 : 0.0;
     if (!eight) {
         // From the last ball to the next one: the chance to win from a good place, and that of the opponent
         // after a miss. Both miss in turns until one pots the ball.
-        double after = 1.0, chance = 1.0, passed = 0.0, mean = 0.0;
+        double after = 1.0, chance = 1.0, passed = 0.0;
         for (int n = kNumbers - 1; n > 0; --n) {
             if ((all & only(n)) == 0 || n > money_ball(state.game)) continue;
             const double ideal = chances[static_cast<std::size_t>(n)].ideal, left = kLeft * ideal;
             after = chance;
             passed = (left * after + 1.0 - left) / (2.0 - left);
             chance = kGetsThere * ideal * after + (1.0 - kGetsThere * ideal) * (1.0 - passed);
-            mean += ideal / std::popcount(all);
         }
         const double wins = best[0] * after + (1.0 - best[0]) * (1.0 - passed) - 0.5;
-        const double left = std::popcount(all) - 1;
+        const bool last = std::popcount(all) == 1;
         return {1.0,
                 wins,
                 wins * wins * wins,
                 best[0],
                 best[0] * after,
-                left,
-                left * best[0],
-                left == 0.0 ? best[0] : 0.0,
+                last ? best[0] : 0.0,
                 placed,
-                placed * left,
-                mean,
-                level,
-                level * best[0]};
+                sd_aim_ / (sd_aim_ + kUsualError)};
     }
     // The balls that a player must pot, including the money ball, and the chance to pot them from good
     // places.
@@ -337,9 +331,7 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
 double Potting::value(const State& state, const Lie& lie) const {
     if (lie.balls.empty()) return 0.0;
     const std::array<double, kFeatures> features = this->features(state, lie);
-    const auto& weights = state.game == Game::kEightBall  ? kWorthEightBall
-                          : state.game == Game::kNineBall ? kWorthNineBall
-                                                          : kWorthTenBall;
+    const auto& weights = state.game == Game::kEightBall ? kWorthEightBall : kWorthRotation;
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));

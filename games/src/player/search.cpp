@@ -113,6 +113,8 @@ std::string spin_words(const Record& record, const Shot& shot) {
 
 /// The rails that the cue ball of a kick, or the ball of a bank, meets.
 std::string rail_words(const Record& record, const Shot& shot, const Attempt& candidate) {
+    // [-] Of the table's width.
+    constexpr double kMouth = 0.15;
     const Table& table = record.table;
     const bool bank = candidate.kind == ShotKind::kBank;
     const int ball = bank ? index_of(record, std::to_string(candidate.ball)) : shot.struck;
@@ -121,7 +123,12 @@ std::string rail_words(const Record& record, const Shot& shot, const Attempt& ca
     std::string words;
     for (const Touch& touch : shot.touches) {
         if (!touch.cushion() || touch.ball != ball || (!bank && touch.time > shot.first_time)) continue;
-        const Vec2 at = planar(record.state_at(ball, touch.time).position) - table.corner;
+        const Vec2 place = planar(record.state_at(ball, touch.time).position), at = place - table.corner;
+        // A jaw or the rail beside it is a part of the pocket.
+        const bool in_mouth = std::any_of(
+            table.pockets.begin(), table.pockets.end(),
+            [&](const Pocket& pocket) { return length(place - pocket.center) < kMouth * table.width; });
+        if (in_mouth) continue;
         const double right = table.width - at.x(), foot = table.length - at.y(),
                      least = std::min({at.x(), right, at.y(), foot});
         const bool side = least == at.x() || least == right;
@@ -450,9 +457,12 @@ std::vector<Vec2> Search::places() const {
         for (const PocketLine& line : pocket_lines(scene_, std::to_string(ball.number), scene_.cue->ball)) {
             if (!line.open()) continue;
             const Vec2 ghost = ghost_ball(ball.place, line.towards, potting_.both());
-            for (const double distance : kDistances) {
-                for (const double angle : kAngles) {
-                    const Vec2 at = ghost - distance * direction(direction_deg(line.towards) + angle);
+            for (const double angle : kAngles) {
+                const Vec2 way = direction(direction_deg(line.towards) + angle);
+                // As near as the head string allows.
+                const double behind = (ghost.y() - head_string(scene_.table) + kClear) / way.y();
+                for (double distance : {kDistances[0], kDistances[1], kDistances[2], behind}) {
+                    const Vec2 at = ghost - distance * way;
                     if (!may_lie(at)) continue;
                     Lie lie = lie_;
                     lie.cue = at;
@@ -532,12 +542,14 @@ std::vector<Attempt*> Search::kept(std::vector<Attempt*> alive, std::size_t keep
                      [](const Attempt* a, const Attempt* b) { return a->tally.mean() > b->tally.mean(); });
     std::vector<Attempt*> kept;
     for (Attempt* candidate : alive) {
-        // Advice must vary: keep two of every kind, ball and pocket as well.
+        // Advice must vary: keep two of every kind, ball and pocket as well, and a fair shot.
         const auto like = std::count_if(kept.begin(), kept.end(), [&](const Attempt* other) {
             return other->kind == candidate->kind && other->ball == candidate->ball &&
-                   other->pocket == candidate->pocket;
+                   other->pocket == candidate->pocket && other->fouls() == candidate->fouls();
         });
-        if (kept.size() < keep || (options_.best > 1 && like < 2)) kept.push_back(candidate);
+        const bool fair = std::any_of(kept.begin(), kept.end(), [](const Attempt* a) { return !a->fouls(); });
+        if (kept.size() < keep || (options_.best > 1 && like < 2) || (!fair && !candidate->fouls()))
+            kept.push_back(candidate);
     }
     return kept;
 }
