@@ -75,7 +75,6 @@ def main():
         print(row)
         if "--write" in sys.argv:
             name = "kWorth" + game.title().replace("_", "")
-            row = row.removesuffix(", 0.000" * 5)
             text, count = re.subn(rf"({name} = \{{)[^}}]*", rf"\g<1>{row}", TABLE.read_text(encoding="utf-8"))
             if count != 1:
                 sys.exit(f"{game}: {TABLE} has no {name}")

@@ -264,6 +264,15 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
         std::stable_sort(chosen.begin(), chosen.end(), [](const Attempt* a, const Attempt* b) {
             return a->tally.mean() > b->tally.mean();
         });
+        // Worths that differ less than this are alike [-]; the surest of these shots comes first.
+        constexpr double kAlike = 0.025;
+        const auto alike = std::find_if(chosen.begin(), chosen.end(), [&](const Attempt* a) {
+            return a->tally.mean() < chosen.front()->tally.mean() - kAlike;
+        });
+        const auto surest = std::max_element(chosen.begin(), alike, [](const Attempt* a, const Attempt* b) {
+            return a->tally.made < b->tally.made;
+        });
+        std::rotate(chosen.begin(), surest, surest + 1);
     }
     drop_fouls(chosen, [](const Attempt* a) { return a->fouls(); });
     if (chosen.front()->fouls()) chosen.resize(1);
@@ -337,7 +346,8 @@ std::string result_words(const Advice& advice) {
     if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
         words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
                              percent(advice.opponent));
-    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak) words += "; no fair shot was found";
+    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
+        words += "; no shot was found that is fair more often than not";
     return words;
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/math.h"
@@ -38,6 +39,8 @@ double error_function(double x) {
     return 1.0 - 1.0 / (eighth * eighth);
 }
 
+/// [-] Balls of a group in eight-ball.
+constexpr int kGroup = 7;
 /// [-] Estimated chance to get from one ball to a good place for the next.
 constexpr double kGetsThere = 0.95;
 /// [-] Of the chance from a good place, the share that a miss leaves the opponent.
@@ -48,6 +51,37 @@ constexpr double kUsualError = 0.125 / kDegrees;
 /// The ball that wins the game.
 int money_ball(Game game) {
     return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
+}
+
+/// The chances to win [-] from a good place for the ball after this one, and of the opponent who shoots from
+/// where a miss at this one leaves the cue ball.
+struct Race {
+    double after = 1.0, passed = 0.5;
+};
+
+/// From a good place for a ball with this chance.
+double good_place(double ideal, const Race& race) {
+    return kGetsThere * ideal * race.after + (1.0 - kGetsThere * ideal) * (1.0 - race.passed);
+}
+
+/// Both players need balls of their own. @param own  how many, and the mean chance from a good place
+Race race_of(const std::pair<int, double>& own, const std::pair<int, double>& others) {
+    // From a good place, by the number of the shooter's balls and the other player's.
+    std::array<std::array<double, kGroup + 2>, kGroup + 2> mine{}, theirs{};
+    mine[0].fill(1.0);
+    theirs[0].fill(1.0);
+    const double p = std::max(kLeft * own.second, 1e-3), q = std::max(kLeft * others.second, 1e-3);
+    Race race;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(own.first); ++k)
+        for (std::size_t m = 1; m <= static_cast<std::size_t>(others.first); ++m) {
+            // After a miss, both miss in turns until one pots a ball.
+            const double next = mine[k - 1][m], other = theirs[m - 1][k], both = 1.0 - (1.0 - p) * (1.0 - q);
+            race = {next, (q * other + (1.0 - q) * p * (1.0 - next)) / both};
+            mine[k][m] = good_place(own.second, race);
+            theirs[m][k] =
+                good_place(others.second, {other, (p * next + (1.0 - p) * q * (1.0 - other)) / both});
+        }
+    return race;
 }
 
 Numbers all_of(const Lie& lie) {
@@ -261,71 +295,45 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
     const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine, !eight);
-    std::array<double, 3> best{};
+    double best = 0.0;
     for (int n = 1; n < kNumbers; ++n) {
-        if ((mine & only(n)) == 0) continue;
         const Chance& chance = chances[static_cast<std::size_t>(n)];
-        double now = in_hand ? chance.ideal : chance.now;
-        for (double& other : best)
-            if (now > other) std::swap(now, other);
+        if ((mine & only(n)) != 0) best = std::max(best, in_hand ? chance.ideal : chance.now);
     }
-    const double placed = in_hand ? 1.0 : 0.0;
-    if (!eight) {
-        // From the last ball to the next one: the chance to win from a good place, and that of the opponent
-        // after a miss. Both miss in turns until one pots the ball.
-        double after = 1.0, chance = 1.0, passed = 0.0;
-        for (int n = kNumbers - 1; n > 0; --n) {
-            if ((all & only(n)) == 0 || n > money_ball(state.game)) continue;
-            const double ideal = chances[static_cast<std::size_t>(n)].ideal, left = kLeft * ideal;
-            after = chance;
-            passed = (left * after + 1.0 - left) / (2.0 - left);
-            chance = kGetsThere * ideal * after + (1.0 - kGetsThere * ideal) * (1.0 - passed);
-        }
-        const double wins = best[0] * after + (1.0 - best[0]) * (1.0 - passed) - 0.5;
-        const bool last = std::popcount(all) == 1;
-        return {1.0,
-                wins,
-                wins * wins * wins,
-                best[0],
-                best[0] * after,
-                last ? best[0] : 0.0,
-                placed,
-                sd_aim_ / (sd_aim_ + kUsualError)};
+    Race race;
+    int left = std::popcount(all);
+    if (eight) {
+        const auto side = [&](int player, Numbers may) {
+            const Numbers needed = may | (all & money);
+            double mean = 0.0;
+            for (int n = 1; n < kNumbers; ++n)
+                if ((needed & only(n)) != 0)
+                    mean += chances[static_cast<std::size_t>(n)].ideal / std::popcount(needed);
+            const bool open = state.group[static_cast<std::size_t>(player)] == Group::kOpen;
+            return std::pair(open ? kGroup + 1 : std::popcount(needed), mean);
+        };
+        const auto own = side(state.turn, mine);
+        left = own.first;
+        race = race_of(own, side(1 - state.turn, targets(of_other(state), lie)));
+    } else {
+        // Both need the same balls, from the last one to the next.
+        double good = 1.0;
+        for (int n = money_ball(state.game); n > 0; --n)
+            if ((all & only(n)) != 0) {
+                const double ideal = chances[static_cast<std::size_t>(n)].ideal, may = kLeft * ideal;
+                race = {good, (may * good + 1.0 - may) / (2.0 - may)};
+                good = good_place(ideal, race);
+            }
     }
-    // The balls that a player must pot, including the money ball, and the chance to pot them from good
-    // places.
-    struct Task {
-        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
-    };
-    const auto task_of = [&](int player, Numbers may) {
-        Task task;
-        const Numbers needed = may | money;
-        for (int n = 1; n < kNumbers; ++n) {
-            if ((needed & only(n)) == 0) continue;
-            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
-            task.mean += ideal / std::popcount(needed);
-            task.least = std::min(task.least, ideal);
-            task.run *= kGetsThere * ideal;
-        }
-        const bool open = state.group[static_cast<std::size_t>(player)] == Group::kOpen;
-        task.left = open ? 7 : std::popcount(needed) - 1;
-        return task;
-    };
-    const Task own = task_of(state.turn, mine);
-    const Task other = task_of(1 - state.turn, targets(of_other(state), lie));
+    const double wins = best * race.after + (1.0 - best) * (1.0 - race.passed) - 0.5;
     return {1.0,
-            best[0],
-            best[1],
-            best[2],
-            own.mean,
-            own.least,
-            own.left,
-            own.left == 0.0 ? best[0] : 0.0,
-            best[0] * own.run,
-            other.left,
-            other.mean,
-            other.run,
-            placed};
+            wins,
+            wins * wins * wins,
+            best,
+            best * race.after,
+            left == 1 ? best : 0.0,
+            in_hand ? 1.0 : 0.0,
+            sd_aim_ / (sd_aim_ + kUsualError)};
 }
 
 double Potting::value(const State& state, const Lie& lie) const {
