@@ -6,7 +6,7 @@
     player_fit.py [--write] rotation=fit.txt:other.txt [eight_ball=FIT[,FIT ...][:OTHER] ...]
 
 Nine-ball and ten-ball share a row, rotation. Each line of a file has the rack, the features, and whether the player to shoot won. The fit is a logistic
-regression by Newton's method with a small ridge. Calibration uses racks that the fit has not seen, those of
+regression by Newton's method with a ridge around a guess. Calibration uses racks that the fit has not seen, those of
 OTHER or else of five folds: ten bins of equal size, each with the mean chance and the share of wins. A file
 of `player_games chances` has a chance in place of the features: only its calibration is printed. --write
 replaces the weights of the named games in worth.h.
@@ -18,7 +18,10 @@ import sys
 import numpy as np
 
 TABLE = pathlib.Path(__file__).resolve().parents[2] / "games/src/player/worth.h"
-RIDGE = 1.0
+# A guess to which the fit is drawn, and how strongly. The turn and a pot keep the worth of the guess: racks
+# resolve it badly, and players who see none in them only play safe (lab/notes/2026-11-player.md).
+GUESS = np.array([0.1, 4.0, 4.0, 0.2, 0.0, 0.0])
+RIDGE = np.array([1e6, 10.0, 10.0, 1e6, 10.0, 10.0])
 FOLDS = 5
 BINS = 10
 
@@ -28,11 +31,11 @@ def chance(x, w):
 
 
 def fitted(x, y):
-    w = np.zeros(x.shape[1])
+    w = GUESS.copy()
     for _ in range(30):
         p = chance(x, w)
-        gradient = x.T @ (y - p) - RIDGE * w
-        curvature = (x * (p * (1 - p))[:, None]).T @ x + RIDGE * np.eye(len(w))
+        gradient = x.T @ (y - p) - RIDGE * (w - GUESS)
+        curvature = (x * (p * (1 - p))[:, None]).T @ x + np.diag(RIDGE)
         w += np.linalg.solve(curvature, gradient)
     return w
 

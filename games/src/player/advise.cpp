@@ -189,7 +189,7 @@ const char* speed_word(double speed) {
 
 /// The part of the object ball that a cut covers.
 std::string thickness(double cut_deg) {
-    constexpr double kFull = 6.0;  // degrees
+    constexpr double kFull = 8.0;  // degrees
     const auto [sin, cos] = sin_cos_deg(std::abs(cut_deg));
     if (std::abs(cut_deg) < kFull) return "full";
     const char* part = 1.0 - sin > 0.62   ? "three-quarter ball"

@@ -42,11 +42,9 @@ double error_function(double x) {
 /// [-] Balls of a group in eight-ball.
 constexpr int kGroup = 7;
 /// [-] Estimated chance to get from one ball to a good place for the next.
-constexpr double kGetsThere = 0.95;
+constexpr double kGetsThere = 0.9;
 /// [-] Of the chance from a good place, the share that a miss leaves the opponent.
 constexpr double kLeft = 0.5;
-/// [rad] Error of the aim of noise "fastfiz".
-constexpr double kUsualError = 0.125 / kDegrees;
 
 /// The ball that wins the game.
 int money_ball(Game game) {
@@ -326,14 +324,7 @@ std::array<double, Potting::kFeatures> Potting::features(const State& state, con
             }
     }
     const double wins = best * race.after + (1.0 - best) * (1.0 - race.passed) - 0.5;
-    return {1.0,
-            wins,
-            wins * wins * wins,
-            best,
-            best * race.after,
-            left == 1 ? best : 0.0,
-            in_hand ? 1.0 : 0.0,
-            sd_aim_ / (sd_aim_ + kUsualError)};
+    return {1.0, wins, wins * wins * wins, best, left == 1 ? best : 0.0, in_hand ? 1.0 : 0.0};
 }
 
 double Potting::value(const State& state, const Lie& lie) const {

@@ -62,7 +62,7 @@ class Potting {
     /// potted first
     std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now, bool in_order = false) const;
     /// The features of a position, for the player whose turn it is.
-    static constexpr std::size_t kFeatures = 8;
+    static constexpr std::size_t kFeatures = 6;
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
     /// [-] The chance of the player whose turn it is to win: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;

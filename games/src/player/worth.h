@@ -7,8 +7,8 @@
 namespace carom::games::detail {
 
 // clang-format off
-inline constexpr std::array<double, 8> kWorthEightBall = {0.830, 2.375, 4.321, -0.238, 0.441, 0.869, 0.097, -1.282};
-inline constexpr std::array<double, 8> kWorthRotation = {0.830, 2.375, 4.321, -0.238, 0.441, 0.869, 0.097, -1.282};
+inline constexpr std::array<double, 6> kWorthEightBall = {0.100, 2.600, 4.600, 0.200, 0.716, 0.081};
+inline constexpr std::array<double, 6> kWorthRotation = {0.100, 2.600, 4.600, 0.200, 0.716, 0.081};
 // clang-format on
 
 }  // namespace carom::games::detail
