@@ -62,8 +62,8 @@ std::vector<std::string> table_keys(const Scene& scene, const std::vector<bool>&
     else
         keys.emplace_back("balls.e_c");
     for (std::size_t i = 0; i < scene.ball.size(); ++i)
-        for (const char* what : {"position.x", "position.y", "radius", "mass"})
-            if (resized[i] || *what == 'p') keys.push_back("ball." + scene.ball[i].id + "." + what);
+        for (const char* number : {"position.x", "position.y", "radius", "mass"})
+            if (resized[i] || *number == 'p') keys.push_back("ball." + scene.ball[i].id + "." + number);
     return keys;
 }
 

@@ -5,11 +5,11 @@
     carom_player_games positions league league 500 nine_ball 900001 > other.txt
     player_fit.py [--write] rotation=fit.txt:other.txt [eight_ball=FIT[,FIT ...][:OTHER] ...]
 
-Nine-ball and ten-ball share a row, rotation. Each line of a file has the rack, the features, and whether the player to shoot won. The fit is a logistic
-regression by Newton's method with a ridge around a guess. Calibration uses racks that the fit has not seen, those of
-OTHER or else of five folds: ten bins of equal size, each with the mean chance and the share of wins. A file
-of `player_games chances` has a chance in place of the features: only its calibration is printed. --write
-replaces the weights of the named games in worth.h.
+Nine-ball and ten-ball share a row, rotation. Each line of a file has the rack, the features, and whether the
+player to shoot won. The fit is a logistic regression by Newton's method with a ridge around a guess.
+Calibration uses racks that the fit has not seen, those of OTHER or else of five folds: ten bins of equal
+size, each with the mean chance and the share of wins. A file of `player_games chances` has a chance in place
+of the features: only its calibration is printed. --write replaces the weights of the named games in worth.h.
 """
 import pathlib
 import re
@@ -19,11 +19,9 @@ import numpy as np
 
 TABLE = pathlib.Path(__file__).resolve().parents[2] / "games/src/player/worth.h"
 # A guess to which the fit is drawn, and how strongly. The turn and a pot keep the worth of the guess: racks
-# resolve it badly, and players who see none in them only play safe (lab/notes/2026-11-player.md).
-GUESS = np.array([0.1, 4.0, 4.0, 0.2, 0.0, 0.0])
+# resolve it badly, and players who see no worth in them only play safe (lab/notes/2026-11-player.md).
+GUESS = np.array([0.0, 4.0, 4.0, 0.25, 0.0, 0.0])
 RIDGE = np.array([1e6, 10.0, 10.0, 1e6, 10.0, 10.0])
-FOLDS = 5
-BINS = 10
 
 
 def chance(x, w):

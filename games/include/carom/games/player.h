@@ -35,7 +35,7 @@ struct Skill {
     Noise noise;
     Look look = Look::kWhole;
     double of_speed = 0.0;          ///< [-] another error of the speed, as a fraction of it
-    Unknown unknown = kExactTable;  ///< what the player does not know about the table
+    Unknown unknown = kExactTable;  ///< properties of the table that the player does not know
     /// Of a strike with this speed [m/s].
     Noise noise_at(double speed) const;
     bool operator==(const Skill&) const = default;

@@ -162,9 +162,10 @@ void add_advise(Options& program) {
         .option("--skill", &args.skill, "LEVEL",
                 "Level of the player: size of the errors and depth of the search")
         .one_of({games::kSkills.begin(), games::kSkills.end()});
-    command.option("--hand", &args.hand, "ERRORS",
-                   "Errors of the player, as in carom solve, and what it does not know, as in --unknown: "
-                   "aim=0.2,cloth=5%,places=0.2 (default: the level's)");
+    command.option(
+        "--hand", &args.hand, "ERRORS",
+        "Errors of the player, as in carom solve, and unknown properties of the table, as in --unknown: "
+        "aim=0.2,cloth=5%,places=0.2 (default: the level's)");
     command.option("--best", &args.best, "N", "Number of shots to print").in(1, 20);
     command.option("--seed", &args.seed, "S", "Seed of the player's errors");
     command.option("--jobs", &args.jobs, "J", "Threads, 0 for one per core; the result is always the same")
