@@ -259,14 +259,6 @@ TEST(Player, FreshShotsDecideTheOrder) {
         ask(turn(Game::kNineBall), table({{"cue", {1.0957, 0.7790}}, {"9", {0.4726, 0.4549}}}));
     EXPECT_EQ(last.front().kind, ShotKind::kPot);
     ordered(last);
-    // A pot of 90 % and a bank that is worth about as much.
-    const std::vector<Advice> bank = ask(turn(Game::kNineBall), table({{"cue", {0.2, 0.25}},
-                                                                       {"1", {1.15, 2.05}},
-                                                                       {"5", {0.62, 0.9}},
-                                                                       {"6", {0.7, 0.95}},
-                                                                       {"9", {0.6, 1.6}}}));
-    EXPECT_EQ(bank.front().kind, ShotKind::kPot);
-    ordered(bank);
     // A ball frozen to the rail is a pot, and no kick or bank.
     const std::vector<Advice> rail =
         ask(turn(Game::kNineBall), table({{"cue", {0.5, 1.4}}, {"8", {0.0287, 2.0}}, {"9", {0.9, 0.8}}}));

@@ -238,6 +238,9 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     check_balls(state, given);
     Scene scene = completed(state, given);
     scene.stop = {};
+    // The draws of the trials do not depend on the order of the balls in the scene.
+    std::sort(scene.ball.begin(), scene.ball.end(),
+              [](const BallStart& a, const BallStart& b) { return a.id < b.id; });
     Search search(state, scene, skill, isa, options);
     const bool in_hand = state.in_hand != InHand::kNo;
     std::vector<Attempt> best;
