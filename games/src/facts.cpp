@@ -181,10 +181,11 @@ void Facts::add_placement_fouls(std::vector<Foul>& fouls) const {
         fouls.push_back(Foul::kPlacedOutside);
         return;
     }
-    if (state.in_hand != InHand::kHeadString || shot.first_hits.empty()) return;
+    if (shot.first_hits.empty()) return;
     const double string = head_string(record.table);
     const double first = record.state_at(shot.first_hits.front(), 0.0).position.y();
-    if (first < string && farthest(record, shot.struck, Vec2(0.0, 1.0), shot.first_time) <= string)
+    if (is_behind_string(state, string, first) &&
+        farthest(record, shot.struck, Vec2(0.0, 1.0), shot.first_time) <= string)
         fouls.push_back(Foul::kBehindHeadString);
 }
 

@@ -62,6 +62,10 @@ class Facts {
 };
 
 bool is_in(std::string_view ball, const std::vector<std::string>& list);
+/// Whether a ball at y may only be hit after the cue ball has crossed the head string. @param string  its y
+inline bool is_behind_string(const State& state, double string, double y) {
+    return state.in_hand == InHand::kHeadString && y < string;
+}
 bool is_in(std::string_view ball, const std::vector<Respot>& respots);
 /// Whether a ball that fell was driven to a rail far from the pocket, not only to a rail, facing or jaw at
 /// its mouth.

@@ -180,6 +180,16 @@ Legal legal(const State& state, std::span<const std::string> balls) {
     return legal;
 }
 
+Legal legal(const State& state, const Scene& scene) {
+    Legal all = legal(state, ids_of(scene.ball));
+    Legal beyond = all;
+    std::erase_if(beyond.first, [&](const std::string& id) {
+        const BallStart& ball = scene.ball[static_cast<std::size_t>(index_of(scene.ball, id))];
+        return detail::is_behind_string(state, head_string(scene.table), ball.position.y());
+    });
+    return beyond.first.empty() ? all : beyond;
+}
+
 Verdict judge(const State& state, const Record& record, const Call& call) {
     check(state);
     check(state, record, call);

@@ -46,40 +46,18 @@ Trials::Trials(const Scene& scene, const Measure& want, kernel::Isa isa, const S
 
 /// The keys that differ from table to table.
 void Trials::add_table_keys() {
-    std::vector<std::string> keys = {"balls.mu_s", "balls.mu_r"};
-    if (scene_.balls.e_c_fall > 0.0)
-        keys.insert(keys.end(), {"balls.e_c_fit.0", "balls.e_c_fit.1", "balls.e_c_fit.2"});
-    else
-        keys.emplace_back("balls.e_c");
     resized_.assign(scene_.ball.size(), false);
     if (options_.racks) {
         const Scene first = options_.racks(0);
         for (std::size_t i = 0; i < scene_.ball.size(); ++i)
             resized_[i] = scene_.ball[i].own != first.ball.at(i).own;
     }
-    for (std::size_t i = 0; i < scene_.ball.size(); ++i)
-        for (const char* what : {"position.x", "position.y", "radius", "mass"})
-            if (resized_[i] || *what == 'p') keys.push_back("ball." + scene_.ball[i].id + "." + what);
-    for (const std::string& key : keys) {
+    for (const std::string& key : table_keys(scene_, resized_)) {
         columns_.push_back(
             static_cast<std::size_t>(std::find(keys_.begin(), keys_.end(), key) - keys_.begin()));
         if (columns_.back() == keys_.size()) keys_.push_back(key);
     }
-    usual_ = table_values(scene_);
-}
-
-/// In the order of add_table_keys().
-std::vector<double> Trials::table_values(const Scene& table) const {
-    const BallParams& balls = table.balls;
-    std::vector<double> values = {balls.mu_s, balls.mu_r, balls.e_c};
-    if (scene_.balls.e_c_fall > 0.0) values.insert(values.end(), {balls.e_c_fall, balls.e_c_above});
-    for (std::size_t i = 0; i < table.ball.size(); ++i) {
-        const BallStart& ball = table.ball[i];
-        values.insert(values.end(), {ball.position.x(), ball.position.y()});
-        const BallSize size = table.size_of(ball);
-        if (resized_[i]) values.insert(values.end(), {size.R, size.m});
-    }
-    return values;
+    usual_ = table_values(scene_, resized_);
 }
 
 /// The table of a trial, common to all candidates.
@@ -90,7 +68,7 @@ const std::vector<double>& Trials::table(std::size_t trial) {
         Scene table = options_.racks ? options_.racks(index) : scene_;
         if (!exact && options_.unknown != kExactTable)
             table = drawn_table(table, options_.unknown, options_.seed, index);
-        known.push_back(table_values(table));
+        known.push_back(table_values(table, resized_));
     }
     return known[trial];
 }

@@ -46,7 +46,6 @@ class Trials {
     Draw draw(std::uint64_t index) const;
     std::vector<double> meant(const std::vector<double>& values) const;
     void add_table_keys();
-    std::vector<double> table_values(const Scene& table) const;
     const std::vector<double>& table(std::size_t trial);
     void play_rows(std::span<Candidate> candidates, std::size_t shots, std::size_t rows,
                    const std::function<void(std::size_t, const Record&)>& look);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/draws.h"
@@ -53,6 +54,31 @@ void change_rails(BallParams& balls, double factor) {
 }
 
 }  // namespace
+
+std::vector<std::string> table_keys(const Scene& scene, const std::vector<bool>& resized) {
+    std::vector<std::string> keys = {"balls.mu_s", "balls.mu_r"};
+    if (scene.balls.e_c_fall > 0.0)
+        keys.insert(keys.end(), {"balls.e_c_fit.0", "balls.e_c_fit.1", "balls.e_c_fit.2"});
+    else
+        keys.emplace_back("balls.e_c");
+    for (std::size_t i = 0; i < scene.ball.size(); ++i)
+        for (const char* number : {"position.x", "position.y", "radius", "mass"})
+            if (resized[i] || *number == 'p') keys.push_back("ball." + scene.ball[i].id + "." + number);
+    return keys;
+}
+
+std::vector<double> table_values(const Scene& table, const std::vector<bool>& resized) {
+    const BallParams& balls = table.balls;
+    std::vector<double> values = {balls.mu_s, balls.mu_r, balls.e_c};
+    if (balls.e_c_fall > 0.0) values.insert(values.end(), {balls.e_c_fall, balls.e_c_above});
+    for (std::size_t i = 0; i < table.ball.size(); ++i) {
+        const BallStart& ball = table.ball[i];
+        values.insert(values.end(), {ball.position.x(), ball.position.y()});
+        const BallSize size = table.size_of(ball);
+        if (resized[i]) values.insert(values.end(), {size.R, size.m});
+    }
+    return values;
+}
 
 Scene drawn_table(const Scene& scene, const Unknown& sd, std::uint64_t seed, std::uint64_t index) {
     // [-] Frictions and restitutions change by at most this part.

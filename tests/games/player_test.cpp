@@ -214,10 +214,110 @@ TEST(Player, RefusesUnplayableTables) {
         refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}, {"red", {1.0, 0.5}}})).find("\"red\""),
         std::string::npos);
     EXPECT_NE(refusal(turn(Game::kEightBall), table({{"cue", {0.6, 0.9}}})), "");
+    Scene endless = scene;
+    endless.physics.gravity = 0.0;
+    EXPECT_NE(refusal(turn(Game::kEightBall), endless).find("gravity = 0"), std::string::npos);
+    endless = scene;
+    endless.balls.mu_r = 0.0;
+    EXPECT_NE(refusal(turn(Game::kEightBall), endless).find("mu_r = 0"), std::string::npos);
+    // A stop of the scene does not end a trial.
+    Scene stopped = scene;
+    stopped.stop.time = 0.1;
+    EXPECT_GT(ask(turn(Game::kEightBall), stopped).front().makes.value, 0.5);
     Scene moves = scene;
     moves.ball[1].velocity = {1.0, 0.0, 0.0};
     EXPECT_NE(refusal(turn(Game::kEightBall), moves).find("moves"), std::string::npos);
     EXPECT_THROW(games::skill_by_name("wizard", kPoolRadius), std::invalid_argument);
+}
+
+// An easy ball behind the head string, another one beyond it, the cue ball in hand behind it.
+TEST(Player, BehindTheStringTheFirstBallLiesBeyondIt) {
+    const Scene scene = table({{"cue", {0.635, 0.4}},
+                               {"2", {0.15, 0.25}},
+                               {"3", {1.0, 1.9}},
+                               {"9", {0.6, 2.2}},
+                               {"8", {0.4, 1.6}}});
+    const State state = turn(Game::kEightBall, Group::kOpen, InHand::kHeadString);
+    EXPECT_EQ(games::legal(state, scene).first, (std::vector<std::string>{"3", "9"}));
+    const std::vector<Advice> advice = ask(state, scene);
+    EXPECT_NE(advice.front().ball, "2");
+    EXPECT_LT(advice.front().fouls.value, 0.2);
+    // Every ball is behind the string: the cue ball must cross it first.
+    const Scene all = table({{"cue", {0.635, 0.4}}, {"2", {0.15, 0.25}}, {"8", {0.4, 1.6}}});
+    EXPECT_EQ(games::legal(state, all).first, (std::vector<std::string>{"2"}));
+}
+
+TEST(Player, FreshShotsDecideTheOrder) {
+    const auto ordered = [](const std::vector<Advice>& advice) {
+        for (std::size_t i = 1; i < advice.size(); ++i) {
+            EXPECT_LE(advice[i].worth, advice[i - 1].worth + (i == 1 ? 0.025 : 0.0));
+            EXPECT_LE(advice[i].fouls.value, 0.5);
+        }
+    };
+    // The last nine: a pot wins.
+    const std::vector<Advice> last =
+        ask(turn(Game::kNineBall), table({{"cue", {1.0957, 0.7790}}, {"9", {0.4726, 0.4549}}}));
+    EXPECT_EQ(last.front().kind, ShotKind::kPot);
+    ordered(last);
+    // A ball frozen to the rail is a pot, and no kick or bank.
+    const std::vector<Advice> rail =
+        ask(turn(Game::kNineBall), table({{"cue", {0.5, 1.4}}, {"8", {0.0287, 2.0}}, {"9", {0.9, 0.8}}}));
+    EXPECT_EQ(rail.front().kind, ShotKind::kPot);
+    EXPECT_LT(rail.front().fouls.value, 0.1);
+    ordered(rail);
+}
+
+// Ten balls and the cue ball in hand: giving the turn away is worth less than a pot.
+TEST(Player, PotsWithManyBallsOnTheTable) {
+    const Scene scene = table({{"cue", {0.635, 0.635}},
+                               {"2", {1.18568, 0.97604}},
+                               {"3", {0.62519, 0.94931}},
+                               {"4", {0.88854, 0.12462}},
+                               {"5", {0.09898, 0.79356}},
+                               {"6", {0.03496, 0.26129}},
+                               {"7", {0.10588, 1.69302}},
+                               {"8", {0.19593, 1.55388}},
+                               {"9", {0.58944, 2.32538}},
+                               {"10", {0.66723, 2.05359}}});
+    const Advice best = ask(turn(Game::kTenBall, Group::kOpen, InHand::kAnywhere), scene).front();
+    EXPECT_EQ(best.ball, "2");
+    EXPECT_GT(best.makes.value, 0.8);
+}
+
+// Keeping the turn with the same balls left is worth more than giving it away, and a good place more than
+// none.
+TEST(Player, AValueRisesWithTheTurnAndTheChance) {
+    for (const Game game : {Game::kNineBall, Game::kTenBall}) {
+        const int last = game == Game::kNineBall ? 9 : 10;
+        for (int balls = 1; balls <= last; ++balls) {
+            Places places;
+            for (int k = 0; k < balls; ++k)
+                places.push_back({std::to_string(last - k), {0.3 + 0.2 * (k % 4), 0.5 + 0.6 * (k / 4)}});
+            const Scene scene = table(places);
+            games::detail::Lie lie = games::detail::lie_of(scene);
+            const games::detail::Potting potting(scene, 0.13 / kDegrees);
+            const double in_hand = potting.value(turn(game, Group::kOpen, InHand::kAnywhere), lie);
+            EXPECT_GT(in_hand, 0.5) << balls;
+            lie.cue = Vec2(1.24, 2.5);
+            EXPECT_LT(potting.value(turn(game), lie), in_hand) << balls;
+        }
+    }
+}
+
+// Through two balls, three rails and a jaw: a person does not know the cloth, the rails and the places so
+// well.
+TEST(Player, AdvisesNoFlukes) {
+    const Scene scene = table({{"cue", {0.75, 1.55}},
+                               {"1", {1.0, 2.1}},
+                               {"2", {0.635, 2.3}},
+                               {"3", {0.692, 2.31}},
+                               {"8", {0.2, 0.5}},
+                               {"10", {0.5, 0.3}},
+                               {"12", {0.9, 0.7}}});
+    for (const Advice& advice : ask(turn(Game::kEightBall), scene))
+        if (advice.kind == ShotKind::kKick) {
+            EXPECT_LT(advice.makes.value, 0.5);
+        }
 }
 
 TEST(Player, AChanceFallsWithDistanceCutAndError) {

@@ -160,6 +160,30 @@ TEST_F(CliGames, ACallThatTheTableOrTheGameDoesNotHaveIsRefused) {
                          "the groups are solids and open"));
 }
 
+TEST_F(CliGames, AnAdviceNeedsNoStateFile) {
+    const std::string scene = folder_.write("open.toml",
+                                            "[table]\npreset = \"nine_foot\"\n"
+                                            "[[ball]]\nid = \"cue\"\nposition = [0.3, 0.4]\n"
+                                            "[[ball]]\nid = \"3\"\nposition = [0.3, 1.2]\n"
+                                            "[[ball]]\nid = \"9\"\nposition = [0.8, 1.6]\n"
+                                            "[[ball]]\nid = \"8\"\nposition = [0.2, 2.3]\n");
+    const auto asked = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"advise", scene, "--best", "1", "--json"});
+        return carom(more);
+    };
+    const ProcessResult stripes = asked({"--group", "stripes", "--in-hand", "line"});
+    ASSERT_EQ(stripes.status, 0) << stripes.err;
+    const Json best = Json::parse(stripes.out).at(0);
+    EXPECT_EQ(best.at("call").at("ball"), "9");
+    EXPECT_LT(best.at("place").at(1), 0.635);
+    EXPECT_EQ(asked({"--game", "nine_ball", "--on", "3"}).status, 0);
+    EXPECT_TRUE(
+        contains(asked({"--game", "nine_ball", "--on", "9"}).err, "the rules let the cue ball hit 3 first"));
+    EXPECT_TRUE(contains(asked({"--game", "nine_ball", "--group", "solids"}).err, "nine_ball has no groups"));
+    EXPECT_TRUE(contains(asked({"--game", "snooker"}).err, "carom does not play snooker"));
+    EXPECT_EQ(asked({"--hand", "aim=0.2,cloth=9%,places=1"}).status, 0);
+}
+
 TEST_F(CliGames, AMissMayBeReplayed) {
     const std::string miss = folder_.write("miss.toml",
                                            "[table]\npreset = \"snooker\"\n[balls]\npreset = \"snooker\"\n"

@@ -73,7 +73,7 @@ CAROM_WEB int carom_game_options() {
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
         const games::State before = state_at(state, size);
-        const games::Legal legal = games::legal(before, ids_of(scene->scene.ball));
+        const games::Legal legal = games::legal(before, scene->scene);
         give(nullptr, dumped({{"cueBalls", legal.cue_balls},
                               {"first", legal.first},
                               {"callable", legal.callable},
@@ -172,7 +172,7 @@ CAROM_WEB int carom_game_next(const WebShot* shot, const WebVerdict* verdict, st
         const std::vector<std::string> balls = ids_of(next.ball);
         next.cue =
             tools::next_cue(next, shot->scene.cue.value_or(Cue{}), games::struck_next(option.state, balls),
-                            games::legal(option.state, balls).first);
+                            games::legal(option.state, next).first);
         give_scene(std::move(next));
     });
 }

@@ -62,6 +62,11 @@ void check_game(Game game) {
 
 /// @throws std::invalid_argument for a scene that cannot be a position of the state's game
 void check_balls(const State& state, const Scene& scene) {
+    const bool rolls_on = scene.balls.rolls() && !(scene.balls.mu_r > 0.0);
+    if (!(scene.physics.gravity > 0.0) || rolls_on)
+        throw std::invalid_argument(
+            fmt::format("no ball comes to rest with {} = 0, so that no shot can be judged; give more",
+                        scene.physics.gravity > 0.0 ? "mu_r" : "gravity"));
     for (const BallStart& ball : scene.ball) {
         const int number = detail::number_of(ball.id);
         if ((number == 0 && ball.id != cue_ball(state)) || number >= detail::kNumbers)
@@ -157,6 +162,10 @@ Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
     advice.makes = share_of(tally.made, tally.shots);
     advice.fouls = share_of(tally.fouls, tally.shots);
     advice.worth = tally.mean();
+    if (tally.passed > 0) advice.opponent = tally.opponent / static_cast<double>(tally.passed);
+    advice.spin = candidate.spin;
+    advice.rails = candidate.rails;
+    advice.rest = candidate.rest;
     std::vector<int> balls;
     for (int n = 1; n < detail::kNumbers; ++n)
         if (tally.leaves[static_cast<std::size_t>(n)] > 0) balls.push_back(n);
@@ -169,12 +178,25 @@ Advice advice_of(const Attempt& candidate, const Scene& scene, bool in_hand) {
     return advice;
 }
 
+/// By the speed of the cue; the ball is about a third faster.
 const char* speed_word(double speed) {
-    return speed < 1.0   ? "soft"
-           : speed < 1.6 ? "slow"
-           : speed < 2.4 ? "medium"
-           : speed < 3.6 ? "hard"
-                         : "very hard";
+    return speed < 0.75  ? "very soft"
+           : speed < 1.4 ? "soft"
+           : speed < 3.1 ? "medium"
+           : speed < 5.2 ? "hard"
+                         : "break speed";
+}
+
+/// The part of the object ball that a cut covers.
+std::string thickness(double cut_deg) {
+    constexpr double kFull = 8.0;  // degrees
+    const auto [sin, cos] = sin_cos_deg(std::abs(cut_deg));
+    if (std::abs(cut_deg) < kFull) return "full";
+    const char* part = 1.0 - sin > 0.62   ? "three-quarter ball"
+                       : 1.0 - sin > 0.38 ? "half ball"
+                       : 1.0 - sin > 0.15 ? "quarter ball"
+                                          : "thin";
+    return fmt::format("{} to the {}", part, cut_deg > 0.0 ? "left" : "right");
 }
 
 }  // namespace
@@ -194,7 +216,7 @@ Skill skill_by_name(std::string_view name, double R) {
         throw std::invalid_argument(
             fmt::format("unknown level {}; use {}", in_quotes(name), fmt::join(kSkills, ", ")));
     const auto& level = kLevels[found - kSkills.begin()];
-    Skill skill{noise_by_name("fastfiz", R), level.look};
+    Skill skill{noise_by_name("fastfiz", R), level.look, 0.0, {.places = 2e-4}};
     for (double* error : {&skill.noise.speed, &skill.noise.aim_deg, &skill.noise.elevation_deg,
                           &skill.noise.side, &skill.noise.height})
         *error *= level.errors;
@@ -214,7 +236,11 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     if (state.over) throw std::invalid_argument("the game is over; there is no next shot");
     if (options.best == 0) throw std::invalid_argument("best is 0; ask for at least one shot");
     check_balls(state, given);
-    const Scene scene = completed(state, given);
+    Scene scene = completed(state, given);
+    scene.stop = {};
+    // The draws of the trials do not depend on the order of the balls in the scene.
+    std::sort(scene.ball.begin(), scene.ball.end(),
+              [](const BallStart& a, const BallStart& b) { return a.id < b.id; });
     Search search(state, scene, skill, isa, options);
     const bool in_hand = state.in_hand != InHand::kNo;
     std::vector<Attempt> best;
@@ -222,6 +248,11 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
         best.push_back(break_of(state, scene));
     else
         best = search.best();
+    // A foul is advice only if there is no fair shot.
+    const auto drop_fouls = [](auto& list, const auto& fouls) {
+        if (!std::all_of(list.begin(), list.end(), fouls)) std::erase_if(list, fouls);
+    };
+    drop_fouls(best, [](const Attempt& a) { return a.fouls(); });
     std::vector<Attempt*> chosen;
     for (Attempt& candidate : best) {
         const bool like = std::any_of(chosen.begin(), chosen.end(), [&](const Attempt* other) {
@@ -233,11 +264,22 @@ std::vector<Advice> advise(const State& state, const Scene& given, const Skill& 
     if (options.fresh > 0) {
         for (Attempt* candidate : chosen) candidate->tally = {};
         search.rate(chosen, options.fresh, Search::kFresh, true);
-        // The first one stays first: it was the best of many shots.
-        std::stable_sort(chosen.begin() + 1, chosen.end(), [](const Attempt* a, const Attempt* b) {
+        std::stable_sort(chosen.begin(), chosen.end(), [](const Attempt* a, const Attempt* b) {
             return a->tally.mean() > b->tally.mean();
         });
+        // Worths that differ less than this are alike [-]; the surest of these shots comes first.
+        constexpr double kAlike = 0.025;
+        const auto alike = std::find_if(chosen.begin(), chosen.end(), [&](const Attempt* a) {
+            return a->tally.mean() < chosen.front()->tally.mean() - kAlike;
+        });
+        const auto surest = std::max_element(chosen.begin(), alike, [](const Attempt* a, const Attempt* b) {
+            return a->tally.made < b->tally.made;
+        });
+        std::rotate(chosen.begin(), surest, surest + 1);
     }
+    drop_fouls(chosen, [](const Attempt* a) { return a->fouls(); });
+    if (chosen.front()->fouls()) chosen.resize(1);
+    search.describe(chosen);
     std::vector<Advice> advice;
     advice.reserve(chosen.size());
     for (const Attempt* candidate : chosen)
@@ -274,22 +316,41 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
 }
 
 std::string words_of(const Advice& advice, const Table& table) {
-    std::string words = advice.kind == ShotKind::kPot ? "" : std::string(name(advice.kind)) + ": ";
+    const bool deliberate = advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak;
+    std::string words = deliberate                      ? "deliberate foul: "
+                        : advice.kind == ShotKind::kPot ? ""
+                                                        : std::string(name(advice.kind)) + ": ";
     if (!advice.ball.empty()) {
         const int pocket = index_of(table.pockets, advice.pocket);
         const std::string& where = pocket >= 0 ? table.pockets[static_cast<std::size_t>(pocket)].name : "";
         words += fmt::format("{} into {}{}, ", advice.ball, advice.pocket,
                              where.empty() ? "" : " (" + where + ")");
     }
-    if (advice.kind == ShotKind::kPot)
-        words += std::abs(advice.cut_deg) < 3.0
-                     ? "straight, "
-                     : fmt::format("cut {:.0f} degrees {}, ", std::abs(advice.cut_deg),
-                                   advice.cut_deg > 0.0 ? "left" : "right");
-    words += speed_word(advice.cue.speed);
+    if (!advice.rails.empty()) words += advice.rails + ", ";
+    const bool pot = advice.kind == ShotKind::kPot;
+    const std::string part = pot ? thickness(advice.cut_deg) : "";
+    if (pot) words += part + ", ";
+    if (!advice.spin.empty())
+        words += (part == "full" && advice.spin == "stun" ? "stop" : advice.spin) + ", ";
     constexpr double kCentre = 0.05;
-    if (std::abs(advice.cue.height) > kCentre) words += advice.cue.height > 0.0 ? ", high" : ", low";
-    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? ", left" : ", right";
+    if (std::abs(advice.cue.side) > kCentre) words += advice.cue.side > 0.0 ? "left side, " : "right side, ";
+    return words + speed_word(advice.cue.speed);
+}
+
+std::string result_words(const Advice& advice) {
+    const auto percent = [](double share) { return fmt::format("{:.0f} %", 100.0 * share); };
+    const bool ends = advice.kind == ShotKind::kSafety || advice.kind == ShotKind::kPushOut;
+    std::string words;
+    if (!ends)
+        words = fmt::format("{} {} ({:.0f} to {:.0f}), ", advice.ball.empty() ? "keeps the turn" : "pots",
+                            percent(advice.makes.value), 100.0 * advice.makes.low, 100.0 * advice.makes.high);
+    words += fmt::format("wins {}, fouls {}", percent(advice.worth), percent(advice.fouls.value));
+    if (!advice.rest.empty()) words += "; cue ball rests " + advice.rest;
+    if (advice.kind != ShotKind::kBreak && advice.makes.value < 1.0)
+        words += fmt::format("; {} the opponent a pot of {}", ends ? "leaves" : "a miss leaves",
+                             percent(advice.opponent));
+    if (advice.fouls.value > 0.5 && advice.kind != ShotKind::kBreak)
+        words += "; no shot was found that is fair more often than not";
     return words;
 }
 

@@ -5,11 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/math.h"
 #include "facts.h"
 #include "lines.h"
+#include "player/worth.h"
 
 namespace carom::games::detail {
 namespace {
@@ -37,17 +39,47 @@ double error_function(double x) {
     return 1.0 - 1.0 / (eighth * eighth);
 }
 
-/// Weights of Potting::features().
-using Weights = std::array<double, Potting::kFeatures>;
-constexpr Weights kEightBall = {-1.6, 3.0, 0.6, 0.3, 1.2, 0.5, -0.30, 1.5, 0.0, 0.25, -0.5, 0.0};
-// The rotation games, nine-ball and ten-ball: both players have the same balls to pot, in order.
-constexpr Weights kRotation = {0.57, -0.17, 0.0, 0.0, 0.09, -1.05, -0.04, 1.72, 1.83, -0.04, 0.09, 0.36};
+/// [-] Balls of a group in eight-ball.
+constexpr int kGroup = 7;
 /// [-] Estimated chance to get from one ball to a good place for the next.
-constexpr double kGetsThere = 0.95;
+constexpr double kGetsThere = 0.9;
+/// [-] Of the chance from a good place, the share that a miss leaves the opponent.
+constexpr double kLeft = 0.5;
 
 /// The ball that wins the game.
 int money_ball(Game game) {
     return game == Game::kEightBall ? 8 : game == Game::kNineBall ? 9 : 10;
+}
+
+/// The chances to win [-] from a good place for the ball after this one, and of the opponent who shoots from
+/// where a miss at this one leaves the cue ball.
+struct Race {
+    double after = 1.0, passed = 0.5;
+};
+
+/// From a good place for a ball with this chance.
+double good_place(double ideal, const Race& race) {
+    return kGetsThere * ideal * race.after + (1.0 - kGetsThere * ideal) * (1.0 - race.passed);
+}
+
+/// Both players need balls of their own. @param own  how many, and the mean chance from a good place
+Race race_of(const std::pair<int, double>& own, const std::pair<int, double>& others) {
+    // From a good place, by the number of the shooter's balls and the other player's.
+    std::array<std::array<double, kGroup + 2>, kGroup + 2> mine{}, theirs{};
+    mine[0].fill(1.0);
+    theirs[0].fill(1.0);
+    const double p = std::max(kLeft * own.second, 1e-3), q = std::max(kLeft * others.second, 1e-3);
+    Race race;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(own.first); ++k)
+        for (std::size_t m = 1; m <= static_cast<std::size_t>(others.first); ++m) {
+            // After a miss, both miss in turns until one pots a ball.
+            const double next = mine[k - 1][m], other = theirs[m - 1][k], both = 1.0 - (1.0 - p) * (1.0 - q);
+            race = {next, (q * other + (1.0 - q) * p * (1.0 - next)) / both};
+            mine[k][m] = good_place(own.second, race);
+            theirs[m][k] =
+                good_place(others.second, {other, (p * next + (1.0 - p) * q * (1.0 - other)) / both});
+        }
+    return race;
 }
 
 Numbers all_of(const Lie& lie) {
@@ -65,6 +97,7 @@ State of_other(State state) {
 
 Lie lie_of(const Scene& scene) {
     Lie lie;
+    lie.string = head_string(scene.table);
     for (const BallStart& ball : scene.ball) {
         const Vec2 place = planar(ball.position);
         if (const int number = number_of(ball.id); number > 0)
@@ -77,6 +110,7 @@ Lie lie_of(const Scene& scene) {
 
 Lie lie_of(const Record& record, const Option& option) {
     Lie lie;
+    lie.string = head_string(record.table);
     for (int b = 0; b < static_cast<int>(record.tracks.size()); ++b) {
         const std::string& id = record.tracks[static_cast<std::size_t>(b)].id;
         const auto back = std::find_if(option.respots.begin(), option.respots.end(),
@@ -104,6 +138,10 @@ Numbers targets(const State& state, const Lie& lie) {
     Numbers first = 0, callable = 0;
     for (const std::string& id : allowed.first) first |= only(number_of(id));
     for (const std::string& id : allowed.callable) callable |= only(number_of(id));
+    Numbers beyond = first;
+    for (const Lie::Ball& ball : lie.balls)
+        if (is_behind_string(state, lie.string, ball.place.y())) beyond &= ~only(ball.number);
+    if (beyond != 0) first = beyond;
     return allowed.callable.empty() ? first : first & callable;
 }
 
@@ -167,19 +205,21 @@ bool Potting::inside(const Vec2& place) const {
     return is_inside(noses_, place);
 }
 
-bool Potting::clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const {
+bool Potting::clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart,
+                    Numbers without) const {
     return std::all_of(lie.balls.begin(), lie.balls.end(), [&](const Lie::Ball& ball) {
-        return ball.number == number || dot(ball.place - from, to - from) <= 0.0 ||
-               distance_to_segment(ball.place, from, to) >= apart;
+        return ball.number == number || (without & only(ball.number)) != 0 ||
+               dot(ball.place - from, to - from) <= 0.0 || distance_to_segment(ball.place, from, to) >= apart;
     });
 }
 
-bool Potting::reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const {
+bool Potting::reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards,
+                        Numbers without) const {
     for (const double side : {0.0, -kGoodSin, kGoodSin}) {
         const double ahead = side == 0.0 ? 1.0 : kGoodCos;
         const Vec2 way(ahead * towards.x() - side * towards.y(), side * towards.x() + ahead * towards.y());
         const Vec2 from = ghost - kGoodDistance * way;
-        if (inside(from) && clear(lie, number, from, ghost, both_)) return true;
+        if (inside(from) && clear(lie, number, from, ghost, both_, without)) return true;
     }
     return false;
 }
@@ -206,9 +246,11 @@ std::vector<Pot> Potting::pots(const Lie& lie, Numbers balls, double least) cons
     return pots;
 }
 
-std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers now) const {
+std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers now, bool in_order) const {
     std::array<Chance, kNumbers> chances{};
     for (const Lie::Ball& ball : lie.balls) {
+        // The lower balls are gone when this one is the next.
+        const Numbers without = in_order ? only(ball.number) - 1 : 0;
         Chance& best = chances[static_cast<std::size_t>(ball.number)];
         for (int p = 0; p < static_cast<int>(mouths_.size()); ++p) {
             const Path path = this->path(p, ball.place);
@@ -224,73 +266,71 @@ std::array<Potting::Chance, kNumbers> Potting::chances(const Lie& lie, Numbers n
                 if (straight >= kThinnest) from_here = chance(distance, straight, path.width);
             }
             if ((ideal <= best.ideal && from_here <= best.now) ||
-                !clear(lie, ball.number, ball.place, path.end, 2.0 * R_))
+                !clear(lie, ball.number, ball.place, path.end, 2.0 * R_, without))
                 continue;
-            if (ideal > best.ideal && reachable(lie, ball.number, ghost, path.towards)) best.ideal = ideal;
+            if (ideal > best.ideal && reachable(lie, ball.number, ghost, path.towards, without))
+                best.ideal = ideal;
             if (from_here > best.now && clear(lie, ball.number, *lie.cue, ghost, both_)) best.now = from_here;
         }
     }
     return chances;
 }
 
-int Potting::surest(const State& state, const Lie& lie) const {
-    const std::array<Chance, kNumbers> chances = this->chances(lie, targets(state, lie));
-    const auto best = std::max_element(chances.begin(), chances.end(),
-                                       [](const Chance& a, const Chance& b) { return a.now < b.now; });
-    return best->now > 0.0 ? static_cast<int>(best - chances.begin()) : 0;
+std::pair<int, double> Potting::surest(const State& state, const Lie& lie) const {
+    const bool in_hand = state.in_hand != InHand::kNo;
+    const Numbers mine = targets(state, lie);
+    const std::array<Chance, kNumbers> chances = this->chances(lie, mine);
+    std::pair<int, double> best{0, 0.0};
+    for (int n = 1; n < kNumbers; ++n) {
+        const Chance& chance = chances[static_cast<std::size_t>(n)];
+        const double now = in_hand ? chance.ideal : chance.now;
+        if ((mine & only(n)) != 0 && now > best.second) best = {n, now};
+    }
+    return best;
 }
 
 std::array<double, Potting::kFeatures> Potting::features(const State& state, const Lie& lie) const {
     const bool eight = state.game == Game::kEightBall, in_hand = state.in_hand != InHand::kNo;
     const Numbers mine = targets(state, lie), all = all_of(lie), money = only(money_ball(state.game));
-    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine);
-    // The balls that a player must pot, including the money ball, and the chance to pot them from good
-    // places.
-    struct Task {
-        double left = 0.0, mean = 0.0, least = 1.0, run = 1.0;
-    };
-    const auto task_of = [&](int player, Numbers may) {
-        Task task;
-        const Numbers needed = (eight ? may : all) | money;
-        for (int n = 1; n < kNumbers; ++n) {
-            if ((needed & only(n)) == 0) continue;
-            const double ideal = chances[static_cast<std::size_t>(n)].ideal;
-            task.mean += ideal / std::popcount(needed);
-            task.least = std::min(task.least, ideal);
-            task.run *= kGetsThere * ideal;
-        }
-        const bool open = eight && state.group[static_cast<std::size_t>(player)] == Group::kOpen;
-        task.left = open ? 7 : std::popcount(needed) - 1;
-        return task;
-    };
-    std::array<double, 3> best{};
+    const std::array<Chance, kNumbers> chances = this->chances(lie, in_hand ? Numbers{0} : mine, !eight);
+    double best = 0.0;
     for (int n = 1; n < kNumbers; ++n) {
-        if ((mine & only(n)) == 0) continue;
         const Chance& chance = chances[static_cast<std::size_t>(n)];
-        double now = in_hand ? chance.ideal : chance.now;
-        for (double& other : best)
-            if (now > other) std::swap(now, other);
+        if ((mine & only(n)) != 0) best = std::max(best, in_hand ? chance.ideal : chance.now);
     }
-    const Task own = task_of(state.turn, mine);
-    const Task other = eight ? task_of(1 - state.turn, targets(of_other(state), lie)) : own;
-    return {1.0,
-            best[0],
-            best[1],
-            best[2],
-            own.mean,
-            own.least,
-            own.left,
-            own.left == 0.0 ? best[0] : 0.0,
-            best[0] * own.run,
-            other.left,
-            other.mean,
-            other.run};
+    Race race;
+    int left = std::popcount(all);
+    if (eight) {
+        const auto side = [&](int player, Numbers may) {
+            const Numbers needed = may | (all & money);
+            double mean = 0.0;
+            for (int n = 1; n < kNumbers; ++n)
+                if ((needed & only(n)) != 0)
+                    mean += chances[static_cast<std::size_t>(n)].ideal / std::popcount(needed);
+            const bool open = state.group[static_cast<std::size_t>(player)] == Group::kOpen;
+            return std::pair(open ? kGroup + 1 : std::popcount(needed), mean);
+        };
+        const auto own = side(state.turn, mine);
+        left = own.first;
+        race = race_of(own, side(1 - state.turn, targets(of_other(state), lie)));
+    } else {
+        // Both need the same balls, from the last one to the next.
+        double good = 1.0;
+        for (int n = money_ball(state.game); n > 0; --n)
+            if ((all & only(n)) != 0) {
+                const double ideal = chances[static_cast<std::size_t>(n)].ideal, may = kLeft * ideal;
+                race = {good, (may * good + 1.0 - may) / (2.0 - may)};
+                good = good_place(ideal, race);
+            }
+    }
+    const double wins = best * race.after + (1.0 - best) * (1.0 - race.passed) - 0.5;
+    return {1.0, wins, wins * wins * wins, best, left == 1 ? best : 0.0, in_hand ? 1.0 : 0.0};
 }
 
 double Potting::value(const State& state, const Lie& lie) const {
     if (lie.balls.empty()) return 0.0;
     const std::array<double, kFeatures> features = this->features(state, lie);
-    const Weights& weights = state.game == Game::kEightBall ? kEightBall : kRotation;
+    const auto& weights = state.game == Game::kEightBall ? kWorthEightBall : kWorthRotation;
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "carom/games/rules.h"
@@ -26,12 +27,13 @@ struct Lie {
     };
     std::vector<Ball> balls;  ///< except the cue ball
     std::optional<Vec2> cue;
+    double string = 0.0;  ///< y of the head string [m]
 };
 Lie lie_of(const Scene& scene);
 /// The position after a shot, with the balls that an option of its verdict respots.
 Lie lie_of(const Record& record, const Option& option);
 
-/// The balls that the player to shoot may hit first and pot.
+/// The balls that the player to shoot may hit first and pot directly, by the rule of legal().
 Numbers targets(const State& state, const Lie& lie);
 
 /// A direct pot: the cue ball goes straight to the ghost ball, and the object ball straight into a pocket.
@@ -56,15 +58,16 @@ class Potting {
         double now = 0.0;    ///< of the best pot from where the cue ball lies
         double ideal = 0.0;  ///< of the best pot from a good place of the cue ball
     };
-    /// By number. @param now  the balls whose Chance::now is needed
-    std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now) const;
+    /// By number. @param now  the balls whose Chance::now is needed @param in_order  whether lower balls are
+    /// potted first
+    std::array<Chance, kNumbers> chances(const Lie& lie, Numbers now, bool in_order = false) const;
     /// The features of a position, for the player whose turn it is.
-    static constexpr std::size_t kFeatures = 12;
+    static constexpr std::size_t kFeatures = 6;
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
     /// [-] The chance of the player whose turn it is to win: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;
-    /// The number of the ball with the surest pot for the player to shoot; 0: none.
-    int surest(const State& state, const Lie& lie) const;
+    /// The number of the ball with the surest pot for the player to shoot, and its chance; 0: none.
+    std::pair<int, double> surest(const State& state, const Lie& lie) const;
     /// Whether the cue ball fits there between the noses.
     bool inside(const Vec2& place) const;
     /// [m] Distance of the centres of the cue ball and an object ball in contact.
@@ -78,9 +81,10 @@ class Potting {
     };
     Path path(int pocket, const Vec2& from) const;
     double chance(double distance, double straight, double width) const;
-    bool clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart) const;
+    bool clear(const Lie& lie, int number, const Vec2& from, const Vec2& to, double apart,
+               Numbers without = 0) const;
     /// Whether the cue ball has a clear path to the ghost ball from one of three good places.
-    bool reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards) const;
+    bool reachable(const Lie& lie, int number, const Vec2& ghost, const Vec2& towards, Numbers without) const;
 
     struct Mouth {
         bool there = false;

@@ -1,5 +1,7 @@
 #include "player/search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +19,7 @@
 #include "carom/games/shot.h"
 #include "facts.h"
 #include "lines.h"
+#include "unknown.h"
 
 namespace carom::games::detail {
 namespace {
@@ -55,6 +58,8 @@ constexpr int kCorrections = 2;
 constexpr std::size_t kPlaces = 40;
 constexpr std::array kDistances{0.15, 0.3, 0.55};
 constexpr std::array kAngles{0.0, -14.0, 14.0, -30.0, 30.0, -50.0, 50.0};
+/// [m] Distance of a cue ball in hand from balls whose places are not known exactly.
+constexpr double kClear = 4e-3;
 /// [-] Cost of a foul for a player who ignores the position that a shot leaves.
 constexpr double kFoulCost = 0.3;
 
@@ -69,18 +74,102 @@ Vec2 direction(double deg) {
     return {cos, sin};
 }
 
+/// [s] Just before or after a contact.
+constexpr double kAtOnce = 1e-6;
+
+/// Whether a ball that moves at a time goes straight to a place, or nearly so.
+bool is_direct(const Record& record, int ball, double from, const Vec2& to) {
+    // [-] Cosine of 8 degrees: a ball along a rail may touch it.
+    constexpr double kStraight = 0.99;
+    const BallState start = record.state_at(ball, from);
+    const Vec2 way = to - planar(start.position), went = planar(start.velocity);
+    return dot(way, went) > kStraight * length(way) * length(went);
+}
+
 /// How the ball fell: directly, off a rail, off another ball, or after a cushion of the cue ball.
 ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
     for (const Touch& touch : shot.touches)
-        if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time)
+        if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time &&
+            !is_direct(record, shot.struck, 0.0,
+                       planar(record.state_at(shot.struck, shot.first_time).position)))
             return ShotKind::kKick;
     if (shot.first_hits.empty() || shot.first_hits[0] != fallen.ball) return ShotKind::kCombination;
-    return is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
+    const bool direct = is_direct(record, fallen.ball, shot.first_time + kAtOnce,
+                                  record.table.pockets[static_cast<std::size_t>(fallen.pocket)].center);
+    return !direct && is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
+}
+
+/// The motion of the cue ball at its first contact.
+std::string spin_words(const Record& record, const Shot& shot) {
+    // [-] Of the spin of a rolling ball.
+    constexpr double kRolls = 0.5, kDraws = -0.1;
+    if (shot.first_hits.empty()) return "";
+    const BallState at = record.state_at(shot.struck, std::max(0.0, shot.first_time - kAtOnce));
+    const Vec2 way = planar(at.velocity);
+    const double share =
+        cross(planar(at.spin), way) * -record.size(shot.struck).R / std::max(dot(way, way), 1e-12);
+    return share > kRolls ? "follow" : share < kDraws ? "draw" : "stun";
+}
+
+/// The rails that the cue ball of a kick, or the ball of a bank, meets.
+std::string rail_words(const Record& record, const Shot& shot, const Attempt& candidate) {
+    // [-] Of the table's width.
+    constexpr double kMouth = 0.15;
+    const Table& table = record.table;
+    const bool bank = candidate.kind == ShotKind::kBank;
+    const int ball = bank ? index_of(record, std::to_string(candidate.ball)) : shot.struck;
+    if (!bank && is_direct(record, ball, 0.0, planar(record.state_at(ball, shot.first_time).position)))
+        return "";
+    std::string words;
+    for (const Touch& touch : shot.touches) {
+        if (!touch.cushion() || touch.ball != ball || (!bank && touch.time > shot.first_time)) continue;
+        const Vec2 place = planar(record.state_at(ball, touch.time).position), at = place - table.corner;
+        // A jaw or the rail beside it is a part of the pocket.
+        const bool in_mouth = std::any_of(
+            table.pockets.begin(), table.pockets.end(),
+            [&](const Pocket& pocket) { return length(place - pocket.center) < kMouth * table.width; });
+        if (in_mouth) continue;
+        const double right = table.width - at.x(), foot = table.length - at.y(),
+                     least = std::min({at.x(), right, at.y(), foot});
+        const bool side = least == at.x() || least == right;
+        words += fmt::format("{}{} rail at diamond {:.1f}", words.empty() ? "off the " : ", ",
+                             least == at.x()   ? "left"
+                             : least == right  ? "right"
+                             : least == at.y() ? "head"
+                                               : "foot",
+                             side ? 8.0 * at.y() / table.length : 4.0 * at.x() / table.width);
+    }
+    return words;
+}
+
+/// A place by the nearest pocket or spot, or by both sides of a line between two.
+std::string place_words(const Table& table, const Vec2& place) {
+    // [-] Of the table's width.
+    constexpr double kNear = 0.2;
+    std::vector<std::pair<double, std::string>> marks;
+    const auto add = [&](const Vec2& at, const std::string& name) {
+        marks.emplace_back(length(place - at), name);
+    };
+    for (const Pocket& pocket : table.pockets) add(pocket.center, pocket.id);
+    add(head_spot(table), "the head spot");
+    add(center_spot(table), "the centre spot");
+    add(foot_spot(table), "the foot spot");
+    std::partial_sort(marks.begin(), marks.begin() + 2, marks.end());
+    if (marks[0].first < kNear * table.width) return "near " + marks[0].second;
+    return "between " + marks[0].second + " and " + marks[1].second;
 }
 
 /// The turn to the left from one direction to another [degrees].
 double turn_deg(const Vec2& from, const Vec2& to) {
     return direction_deg({dot(from, to), cross(from, to)});
+}
+
+/// Drops strikes that are too steep. If all are, the cue is lowered.
+void level_off(std::vector<Attempt>& candidates) {
+    const auto steep = [](const Attempt& candidate) { return candidate.cue.elevation_deg > kMostElevation; };
+    if (!std::all_of(candidates.begin(), candidates.end(), steep)) std::erase_if(candidates, steep);
+    for (Attempt& candidate : candidates)
+        candidate.cue.elevation_deg = std::min(candidate.cue.elevation_deg, kMostElevation);
 }
 
 double sd_of_aim(const Noise& noise) {
@@ -111,12 +200,13 @@ Search::Search(const State& state, Scene scene, const Skill& skill, kernel::Isa 
       first_(0),
       cue_ball_(static_cast<std::size_t>(index_of(scene_.ball, scene_.cue->ball))),
       in_hand_(state.in_hand != InHand::kNo || state.opening) {
-    const Legal allowed = legal(state, ids_of(scene_.ball));
+    const Legal allowed = legal(state, scene_);
     for (const std::string& id : allowed.first) first_ |= only(number_of(id));
     calls_ = !allowed.callable.empty();
 }
 
-void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const {
+void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge,
+                  const std::vector<Scene>& tables) const {
     const std::string place = "ball." + scene_.cue->ball + ".position.";
     std::array<std::pair<std::string, std::vector<double>>, 7> numbers{{{"cue.speed", {}},
                                                                         {"cue.aim_deg", {}},
@@ -132,9 +222,19 @@ void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const
         for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k].second.push_back(values[k]);
     }
     std::vector<BatchColumn> columns;
-    // A cue ball that is not in hand stays, so its place needs no check.
+    // A cue ball that is not in hand stays or is drawn, so its place needs no check.
     for (std::size_t k = 0; k < (in_hand_ ? 7 : 5); ++k)
         columns.push_back({numbers[k].first, numbers[k].second});
+    const std::vector<bool> resized(scene_.ball.size());
+    std::vector<std::string> keys;
+    if (!tables.empty()) keys = table_keys(scene_, resized);
+    std::vector<std::vector<double>> drawn(keys.size());
+    for (std::size_t i = 0; i < cues.size() && !tables.empty(); ++i) {
+        const std::vector<double> values = table_values(tables[i % tables.size()], resized);
+        for (std::size_t k = 0; k < keys.size(); ++k) drawn[k].push_back(values[k]);
+    }
+    for (std::size_t k = 0; k < keys.size(); ++k)
+        if (!in_hand_ || keys[k].rfind(place, 0) != 0) columns.push_back({keys[k], drawn[k]});
     BatchOptions batch;
     batch.threads = options_.threads;
     batch.stop = options_.stop;
@@ -163,10 +263,15 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
         } else if (!option.rerack()) {
             const Lie lie = lie_of(record, option);
             worth = potting_.value(option.state, lie);
-            if (option.state.turn != state_.turn)
-                worth = 1.0 - worth;
-            else if (closer)
-                result.leaves = potting_.surest(option.state, lie);
+            result.passed = option.state.turn != state_.turn;
+            if (result.passed) worth = 1.0 - worth;
+            if (closer) {
+                const auto [ball, chance] = potting_.surest(option.state, lie);
+                if (result.passed)
+                    result.opponent = chance;
+                else
+                    result.leaves = ball;
+            }
         }
         const bool better = verdict.chooser == state_.turn ? worth > result.worth : worth < result.worth;
         if (first || better) result.worth = worth;
@@ -256,27 +361,29 @@ std::vector<Attempt> Search::pots(std::span<const Vec2> places) const {
 std::vector<Attempt> Search::sweep(const Vec2& place) const {
     const Grid& grid = skill_.look == Look::kWhole ? kWhole : kQuick;
     std::vector<Attempt> tried;
-    const auto add = [&](double aim_deg, double speed) {
+    const auto add = [&](double aim_deg, std::span<const double> speeds) {
         Attempt candidate;
         candidate.cue = *scene_.cue;
         candidate.cue.aim_deg = aim_deg;
-        candidate.cue.speed = speed;
         candidate.cue.side = candidate.cue.height = candidate.cue.elevation_deg = 0.0;
         candidate.place = place;
-        tried.push_back(std::move(candidate));
+        lift(candidate);
+        for (const double speed : speeds) {
+            candidate.cue.speed = speed;
+            tried.push_back(candidate);
+        }
     };
     for (const Lie::Ball& ball : lie_.balls) {
         if ((first_ & only(ball.number)) == 0) continue;
         const Vec2 way = ball.place - place;
         for (int k = 0; k < grid.hits; ++k) {
             const double hit = kThinnestHit * (2.0 * k / (grid.hits - 1) - 1.0);
-            const double aim = hit_aim_deg(way, potting_.both(), hit);
-            for (const double speed : kSweepSpeeds) add(aim, speed);
+            add(hit_aim_deg(way, potting_.both(), hit), kSweepSpeeds);
         }
     }
     for (int k = 0; k < grid.around; ++k)
-        for (std::size_t v = 1; v < kSweepSpeeds.size(); ++v)
-            add(360.0 * k / grid.around + 0.37, kSweepSpeeds[v]);
+        add(360.0 * k / grid.around + 0.37, std::span(kSweepSpeeds).subspan(1));
+    level_off(tried);
     std::vector<Cue> cues;
     cues.reserve(tried.size());
     for (const Attempt& candidate : tried) cues.push_back(candidate.cue);
@@ -328,7 +435,6 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
         push.pocket = -1;
         candidates.push_back(std::move(push));
     }
-    for (Attempt& candidate : candidates) lift(candidate);
     return candidates;
 }
 
@@ -336,7 +442,7 @@ bool Search::may_lie(const Vec2& place) const {
     if (!in_area(scene_.table, state_.in_hand, place) || !potting_.inside(place)) return false;
     // No shot is played from a place that touches a ball.
     return std::all_of(lie_.balls.begin(), lie_.balls.end(), [&](const Lie::Ball& ball) {
-        return length(ball.place - place) > potting_.both() + kSpotGap;
+        return length(ball.place - place) > potting_.both() + kClear;
     });
 }
 
@@ -351,9 +457,12 @@ std::vector<Vec2> Search::places() const {
         for (const PocketLine& line : pocket_lines(scene_, std::to_string(ball.number), scene_.cue->ball)) {
             if (!line.open()) continue;
             const Vec2 ghost = ghost_ball(ball.place, line.towards, potting_.both());
-            for (const double distance : kDistances) {
-                for (const double angle : kAngles) {
-                    const Vec2 at = ghost - distance * direction(direction_deg(line.towards) + angle);
+            for (const double angle : kAngles) {
+                const Vec2 way = direction(direction_deg(line.towards) + angle);
+                // As near as the head string allows.
+                const double behind = (ghost.y() - head_string(scene_.table) + kClear) / way.y();
+                for (double distance : {kDistances[0], kDistances[1], kDistances[2], behind}) {
+                    const Vec2 at = ghost - distance * way;
                     if (!may_lie(at)) continue;
                     Lie lie = lie_;
                     lie.cue = at;
@@ -386,18 +495,46 @@ void Search::rate(std::span<Attempt* const> candidates, std::size_t shots, std::
             places.push_back(candidate->place);
         }
     }
+    std::vector<Scene> tables;
+    for (std::size_t k = 0; k < shots && skill_.unknown != kExactTable; ++k)
+        tables.push_back(drawn_table(scene_, skill_.unknown, options_.seed, first + k));
     std::vector<Result> results(cues.size());
-    play(cues, places, [&](std::size_t i, const Record& record) {
+    const auto rated = [&](std::size_t i, const Record& record) {
         results[i] = result(record, candidates[i / shots]->call, closer);
-    });
+    };
+    play(cues, places, rated, tables);
     for (std::size_t i = 0; i < results.size(); ++i) {
         Tally& tally = candidates[i / shots]->tally;
         ++tally.shots;
         tally.made += results[i].made;
         tally.fouls += results[i].foul;
         tally.worth += results[i].worth;
+        tally.passed += results[i].passed;
+        tally.opponent += results[i].opponent;
         ++tally.leaves[static_cast<std::size_t>(results[i].leaves)];
     }
+}
+
+void Search::describe(std::span<Attempt* const> candidates) const {
+    std::vector<Cue> cues;
+    std::vector<Vec2> places;
+    for (const Attempt* candidate : candidates) {
+        cues.push_back(candidate->cue);
+        places.push_back(candidate->place);
+    }
+    play(cues, places, [&](std::size_t i, const Record& record) {
+        Attempt& candidate = *candidates[i];
+        const Shot shot = shot_of(record);
+        candidate.spin = spin_words(record, shot);
+        candidate.rails = rail_words(record, shot, candidate);
+        const Verdict verdict = judge(state_, record, candidate.call);
+        const Option& next = verdict.options.front();
+        if (next.state.over || next.rerack() || shot.gone(shot.struck)) return;
+        const Lie lie = lie_of(record, next);
+        candidate.rest = place_words(scene_.table, *lie.cue);
+        const auto [ball, chance] = potting_.surest(next.state, lie);
+        if (ball > 0 && next.state.turn == state_.turn) candidate.rest += " for the " + std::to_string(ball);
+    });
 }
 
 std::vector<Attempt*> Search::kept(std::vector<Attempt*> alive, std::size_t keep) const {
@@ -405,12 +542,14 @@ std::vector<Attempt*> Search::kept(std::vector<Attempt*> alive, std::size_t keep
                      [](const Attempt* a, const Attempt* b) { return a->tally.mean() > b->tally.mean(); });
     std::vector<Attempt*> kept;
     for (Attempt* candidate : alive) {
-        // Advice must vary: keep two of every kind, ball and pocket as well.
+        // Advice must vary: keep two of every kind, ball and pocket as well, and a fair shot.
         const auto like = std::count_if(kept.begin(), kept.end(), [&](const Attempt* other) {
             return other->kind == candidate->kind && other->ball == candidate->ball &&
-                   other->pocket == candidate->pocket;
+                   other->pocket == candidate->pocket && other->fouls() == candidate->fouls();
         });
-        if (kept.size() < keep || (options_.best > 1 && like < 2)) kept.push_back(candidate);
+        const bool fair = std::any_of(kept.begin(), kept.end(), [](const Attempt* a) { return !a->fouls(); });
+        if (kept.size() < keep || (options_.best > 1 && like < 2) || (!fair && !candidate->fouls()))
+            kept.push_back(candidate);
     }
     return kept;
 }
@@ -424,8 +563,7 @@ std::vector<Attempt> Search::best() {
     if (!in_hand_ || candidates.empty()) {
         for (Attempt& candidate : sweep(from.front())) candidates.push_back(std::move(candidate));
     }
-    const auto steep = [](const Attempt& candidate) { return candidate.cue.elevation_deg > kMostElevation; };
-    if (!std::all_of(candidates.begin(), candidates.end(), steep)) std::erase_if(candidates, steep);
+    level_off(candidates);
     std::vector<Attempt*> alive;
     alive.reserve(candidates.size());
     for (Attempt& candidate : candidates) alive.push_back(&candidate);

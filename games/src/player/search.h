@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "carom/games/player.h"
@@ -17,7 +18,8 @@ namespace carom::games::detail {
 /// The results of a candidate's shots so far.
 struct Tally {
     std::size_t shots = 0, made = 0, fouls = 0;
-    double worth = 0.0;                  ///< sum
+    std::size_t passed = 0;              ///< shots after which the opponent shoots
+    double worth = 0.0, opponent = 0.0;  ///< sums of the chances to win, and of the opponent's surest pots
     std::array<int, kNumbers> leaves{};  ///< how often each ball was left as the surest pot
     double mean() const { return shots > 0 ? worth / static_cast<double>(shots) : 0.0; }
 };
@@ -29,7 +31,10 @@ struct Attempt {
     ShotKind kind = ShotKind::kPot;
     int ball = 0, pocket = -1;  ///< number of the potted ball, index of its pocket; 0, -1: none
     double cut_deg = 0.0;
+    std::string spin, rails, rest;  ///< as in Advice
     Tally tally;
+    /// Whether more than half of its shots are fouls.
+    bool fouls() const { return 2 * tally.fouls > tally.shots; }
 };
 
 class Search {
@@ -44,6 +49,8 @@ class Search {
     /// @param closer  as in result()
     void rate(std::span<Attempt* const> candidates, std::size_t shots, std::size_t first,
               bool closer = false) const;
+    /// Plays the shots without errors, and describes them.
+    void describe(std::span<Attempt* const> candidates) const;
     /// Number of draws that best() may use; later ones are fresh.
     static constexpr std::size_t kFresh = 1000;
 
@@ -51,14 +58,17 @@ class Search {
     /// The worth of one shot to the player.
     struct Result {
         double worth = 0.0;
-        bool made = false, foul = true;
-        int leaves = 0;  ///< number of a ball, or 0
+        bool made = false, foul = true, passed = false;
+        int leaves = 0;         ///< number of a ball, or 0
+        double opponent = 0.0;  ///< chance of the opponent's surest pot
     };
     /// A direct pot with one tip and speed, whose aim is corrected by playing it.
     struct Line;
 
     using Judge = std::function<void(std::size_t, const Record&)>;
-    void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge) const;
+    /// @param tables  shot i is played on table i modulo their number; empty: on the scene's
+    void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge,
+              const std::vector<Scene>& tables = {}) const;
     /// @param closer  whether to also find Result::leaves, and the chance to win instead of the measure of
     /// the skill
     Result result(const Record& record, const Call& call, bool closer = false) const;

@@ -52,26 +52,31 @@ void read_deviations(const char* option, const std::string& text, const std::vec
     }
 }
 
+std::vector<Deviation> deviations_of(games::Unknown& unknown) {
+    return {{"cloth", "PERCENT%", &unknown.cloth, 0.01},
+            {"rails", "PERCENT%", &unknown.rails, 0.01},
+            {"places", "MILLIMETRES", &unknown.places, 1e-3},
+            {"gaps", "MICROMETRES", &unknown.gaps, 1e-6}};
+}
+
 }  // namespace
 
-games::Hand read_hand(const std::string& text) {
+games::Hand read_hand(const std::string& text, games::Unknown* unknown) {
     games::Hand hand;
-    read_deviations("--hand", text,
-                    {{"aim", "DEGREES", &hand.aim_deg},
-                     {"speed", "PERCENT%", &hand.speed, 0.01},
-                     {"tip", "RADII", &hand.tip},
-                     {"elevation", "DEGREES", &hand.elevation_deg}});
+    std::vector<Deviation> known = {{"aim", "DEGREES", &hand.aim_deg},
+                                    {"speed", "PERCENT%", &hand.speed, 0.01},
+                                    {"tip", "RADII", &hand.tip},
+                                    {"elevation", "DEGREES", &hand.elevation_deg}};
+    if (unknown != nullptr)
+        for (const Deviation& d : deviations_of(*unknown)) known.push_back(d);
+    read_deviations("--hand", text, known);
     return hand;
 }
 
 games::Unknown read_unknown(const std::string& text) {
     if (text == "none") return games::kExactTable;
     games::Unknown unknown;
-    read_deviations("--unknown", text,
-                    {{"cloth", "PERCENT%", &unknown.cloth, 0.01},
-                     {"rails", "PERCENT%", &unknown.rails, 0.01},
-                     {"places", "MILLIMETRES", &unknown.places, 1e-3},
-                     {"gaps", "MICROMETRES", &unknown.gaps, 1e-6}});
+    read_deviations("--unknown", text, deviations_of(unknown));
     return unknown;
 }
 

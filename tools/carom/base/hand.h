@@ -10,8 +10,9 @@ namespace carom::tools {
 /// The default of --hand.
 inline constexpr const char* kHand = "aim=0.2,speed=3%,tip=0.02";
 
-/// "aim=0.2,speed=3%,tip=0.02". @throws UsageError
-games::Hand read_hand(const std::string& text);
+/// "aim=0.2,speed=3%,tip=0.02". @param unknown  if not null, the keys of --unknown are read into it, too
+/// @throws UsageError
+games::Hand read_hand(const std::string& text, games::Unknown* unknown = nullptr);
 
 /// The default of --unknown.
 inline constexpr const char* kUnknown = "cloth=5%,rails=2%,places=0.1,gaps=20";

@@ -71,6 +71,7 @@ Json advice_json(const std::vector<games::Advice>& advice, const carom::Table& t
         Json place;
         if (a.place) place = {a.place->x(), a.place->y()};
         list.push_back({{"words", games::words_of(a, table)},
+                        {"result", games::result_words(a)},
                         {"kind", carom::name(a.kind)},
                         {"ball", a.ball},
                         {"pocket", a.pocket},

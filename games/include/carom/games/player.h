@@ -34,13 +34,15 @@ constexpr auto names_of(Look) {
 struct Skill {
     Noise noise;
     Look look = Look::kWhole;
-    double of_speed = 0.0;  ///< [-] another error of the speed, as a fraction of it
+    double of_speed = 0.0;          ///< [-] another error of the speed, as a fraction of it
+    Unknown unknown = kExactTable;  ///< properties of the table that the player does not know
     /// Of a strike with this speed [m/s].
     Noise noise_at(double speed) const;
     bool operator==(const Skill&) const = default;
 };
 inline constexpr std::array kSkills{"beginner", "club", "league", "professional", "machine"};
-/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz". @param R radius of the cue ball [m]
+/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz"; all do not know the cloth by 5 %, the rails
+/// by 2 % and the places of balls by 0.2 mm. @param R radius of the cue ball [m]
 /// @throws std::invalid_argument for another name, or a radius that is not greater than 0
 Skill skill_by_name(std::string_view name, double R);
 
@@ -59,8 +61,12 @@ struct Advice {
     /// From AdviceOptions::fresh shots that the search has not used: how often the shot wins the turn or the
     /// game, and how often it is a foul. All shots of a break are fresh.
     Share makes{}, fouls{};
-    double worth = 0.0;               ///< mean value of the position that it leaves: 1 is a win, 0 a loss [-]
+    double worth = 0.0;     ///< mean chance to win the rack against a player of the same level [-]
+    double opponent = 0.0;  ///< mean chance of the surest pot that the opponent gets, if one shoots next
     std::vector<std::string> leaves;  ///< the balls that it most often leaves as the surest pot, at most 3
+    /// Of the shot without errors, in words: the spin at the first contact; the rails of a bank or kick; the
+    /// place where the cue ball rests, and its next ball.
+    std::string spin, rails, rest;
 };
 
 struct AdviceOptions {
@@ -87,7 +93,9 @@ Scene scene_with(const Scene& scene, const Advice& advice);
 /// @throws std::invalid_argument for a game without a player
 std::size_t choose(const Verdict& verdict, const Record& record, const Skill& skill);
 
-/// A sentence such as "the 7 into p3 (right side), cut 23 degrees to the left, medium, low".
+/// The shot, such as "7 into p5 (right side pocket), half ball to the left, stun, medium".
 std::string words_of(const Advice& advice, const Table& table);
+/// Its result, such as "pots 84 % (80 to 87), wins 61 %, fouls 2 %; cue ball near the foot spot for the 8".
+std::string result_words(const Advice& advice);
 
 }  // namespace carom::games

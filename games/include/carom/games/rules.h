@@ -121,6 +121,9 @@ struct Legal {
 /// of racks: cue, 1 to 15; white, yellow, red (four-ball: red1, red2); snooker numbers its reds. @throws
 /// std::invalid_argument if no ball is left to play
 Legal legal(const State& state, std::span<const std::string> balls);
+/// The same for the balls of a scene. While the cue ball is in hand behind the head string, a ball behind it
+/// is not in `first`, unless all of them are there: the cue ball must cross the string before it hits one.
+Legal legal(const State& state, const Scene& scene);
 
 enum class Foul : std::uint8_t {
     kCueBallPocketed,

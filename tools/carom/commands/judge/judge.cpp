@@ -193,7 +193,7 @@ int run_next(const NextArgs& args) {
             return games::table_after(plan.scene, record, option, place_of(args, record, option));
         });
         ball = asked(args.scene, [&] { return games::struck_next(option.state, ids_of(next.ball)); });
-        first = games::legal(option.state, ids_of(next.ball)).first;
+        first = games::legal(option.state, next).first;
         said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
                             next_text(option.state));
         write_report(args.game.state_out, state_json(option.state).dump(2) + "\n");
