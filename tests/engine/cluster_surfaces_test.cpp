@@ -13,6 +13,7 @@
 #include "reference/contact_phase.h"
 #include "reference/random_impacts.h"
 #include "support/engine_cases.h"
+#include "support/hard_scenes.h"
 
 namespace carom {
 namespace {
@@ -25,6 +26,7 @@ constexpr int kBreaksInTheAir = 2;
 constexpr int kBreaksInTheAir = 80;
 #endif
 
+constexpr double kRadius = 0.028575;  // [m] of pool balls
 constexpr const char* kTable = "[table]\npreset = \"nine_foot\"\n[balls]\npreset = \"pool\"\n";
 
 /// A break with a raised cue, from any place behind the head string.
@@ -52,7 +54,7 @@ Scene unlike_break(reference::Generator& rng) {
 
 /// Two balls frozen to each other and to the left rail, hit by a third from any side.
 Scene frozen_to_rail(reference::Generator& rng) {
-    const double R = kPoolR, side = rng.uniform(-75.0, 75.0) / 180.0 * M_PI, away = 0.2;
+    const double R = kRadius, side = rng.uniform(-75.0, 75.0) / 180.0 * M_PI, away = 0.2;
     const double hit = rng.uniform(-0.9, 0.9) * 2.0 * R, x = R + std::cos(side) * away - std::sin(side) * hit,
                  y = 1.0 + std::sin(side) * away + std::cos(side) * hit, v = rng.uniform(0.5, 8.0);
     return parse_scene(
@@ -90,7 +92,7 @@ double error_of(const Scene& scene) {
         const Segment &one = record.tracks[i].segments.back(), &two = other.tracks[i].segments.back();
         fastest =
             std::max(fastest, length3(record.state_at(ball, std::nextafter(cluster->time, 0.0)).velocity));
-        most = std::max({most, length3(one.v - two.v), kPoolR * length3(one.w - two.w)});
+        most = std::max({most, length3(one.v - two.v), kRadius * length3(one.w - two.w)});
     }
     return most / fastest;
 }

@@ -291,8 +291,10 @@ TEST(Player, AValueRisesWithTheTurnAndTheChance) {
         const int last = game == Game::kNineBall ? 9 : 10;
         for (int balls = 1; balls <= last; ++balls) {
             Places places;
-            for (int k = 0; k < balls; ++k)
-                places.push_back({std::to_string(last - k), {0.3 + 0.2 * (k % 4), 0.5 + 0.6 * (k / 4)}});
+            for (int k = 0; k < balls; ++k) {
+                const int row = k / 4;
+                places.push_back({std::to_string(last - k), {0.3 + 0.2 * (k % 4), 0.5 + 0.6 * row}});
+            }
             const Scene scene = table(places);
             games::detail::Lie lie = games::detail::lie_of(scene);
             const games::detail::Potting potting(scene, 0.13 / kDegrees);
