@@ -22,6 +22,8 @@ TABLE = pathlib.Path(__file__).resolve().parents[2] / "games/src/player/worth.h"
 # resolve it badly, and players who see no worth in them only play safe (lab/notes/2026-11-player.md).
 GUESS = np.array([0.0, 4.0, 4.0, 0.25, 0.0, 0.0])
 RIDGE = np.array([1e6, 10.0, 10.0, 1e6, 10.0, 10.0])
+FOLDS = 5
+BINS = 10
 
 
 def chance(x, w):

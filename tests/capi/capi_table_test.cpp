@@ -78,7 +78,7 @@ TEST(CApiTable, PartsDiamondsAndSpots) {
     EXPECT_EQ(carom_scene_spot(shot.scene, "middle", place), CAROM_BAD_ARGUMENT);
 }
 
-// A ball hits two frozen ones and nothing else: the cluster is three hits or two, and nobody hits the fourth.
+// A ball hits the first of two frozen ones, which pushes the second; nobody hits the fourth ball.
 TEST(CApiTable, WhoHitWhom) {
     const PlayedShot shot(
         "[stop]\ntime = 1\n[[ball]]\nid = \"cue\"\nposition = [0.3, 0.6]\nvelocity = [2, 0]\n"
@@ -99,7 +99,7 @@ TEST(CApiTable, WhoHitWhom) {
     EXPECT_EQ(std::minmax(hits[0].a, hits[0].b), std::minmax(0, 1));
     EXPECT_EQ(std::minmax(hits[1].a, hits[1].b), std::minmax(1, 2));
     EXPECT_LT(hits[0].time, hits[1].time);
-    // The last ball has the momentum of its hit; a millisecond later the cloth has hardly slowed it.
+    // The last ball has the momentum of its hit. Two milliseconds later the cloth has hardly slowed it.
     double rvw[9];
     ASSERT_EQ(carom_record_state(shot.record, 2, hits[1].time + 2e-3, rvw, nullptr), CAROM_OK);
     EXPECT_NEAR(hits[1].impulse, 0.170097 * rvw[3], 0.01 * hits[1].impulse);

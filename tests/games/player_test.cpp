@@ -306,20 +306,18 @@ TEST(Player, AValueRisesWithTheTurnAndTheChance) {
     }
 }
 
-// Through two balls, three rails and a jaw: a person does not know the cloth, the rails and the places so
-// well.
-TEST(Player, AdvisesNoFlukes) {
-    const Scene scene = table({{"cue", {0.75, 1.55}},
-                               {"1", {1.0, 2.1}},
-                               {"2", {0.635, 2.3}},
-                               {"3", {0.692, 2.31}},
-                               {"8", {0.2, 0.5}},
-                               {"10", {0.5, 0.3}},
-                               {"12", {0.9, 0.7}}});
-    for (const Advice& advice : ask(turn(Game::kEightBall), scene))
-        if (advice.kind == ShotKind::kKick) {
-            EXPECT_LT(advice.makes.value, 0.5);
-        }
+// A player who knows the places only to 5 mm pots less, whatever the search chooses.
+TEST(Player, TrialsDrawTheTable) {
+    const Scene scene =
+        table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"12", {0.2, 1.9}}, {"8", {0.4, 2.2}}});
+    games::Skill skill = games::skill_by_name("machine", kPoolRadius);
+    EXPECT_GT(skill.unknown.cloth, 0.0);
+    const auto most = [&](const games::Unknown& unknown) {
+        skill.unknown = unknown;
+        return games::advise(turn(Game::kEightBall), scene, skill, kernel::best_isa()).front().makes.value;
+    };
+    EXPECT_GT(most(games::kExactTable), 0.95);
+    EXPECT_LT(most({.cloth = 0.0, .rails = 0.0, .places = 5e-3}), 0.8);
 }
 
 TEST(Player, AChanceFallsWithDistanceCutAndError) {

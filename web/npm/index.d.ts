@@ -261,6 +261,8 @@ export interface Strike {
 /** A shot to play, and its success rate. Shares have intervals of 95 %: [share, low, high]. */
 export interface Advice {
   words: string;
+  /** Its success rate, the chance to win, fouls and the position that it leaves, in words. */
+  result: string;
   kind: "pot" | "combination" | "bank" | "kick" | "safety" | "push out" | "break";
   /** The ball to pot, and the pocket; "" for other kinds. */
   ball: string;
@@ -276,7 +278,7 @@ export interface Advice {
   /** Shares of shots that the search has not used: wins of the turn or the game, and fouls. */
   makes: [number, number, number];
   fouls: [number, number, number];
-  /** Mean value of the position that it leaves: 1 is a win, 0 a loss. */
+  /** Mean chance to win against a player of the same level, as estimated; for eight-ball only an order. */
   worth: number;
   leaves: string[];
 }

@@ -28,9 +28,9 @@ inline constexpr double kClusterEpsilon = 1.3e-3;
 /// [L/V] A cluster that has not separated after this many contact times of its heaviest balls is solved as
 /// rigid; the slowest of 16 balls needs a few dozen.
 inline constexpr double kClusterTimeLimit = 200.0;
-/// [-] Most evaluations of the forces for a cluster that lasts, at the tolerance 1e-6; more at a smaller
-/// one, as a method of order 4 needs them. With 20 balls they last 7 ms on a Zen 3 at 2.4 GHz; of 3227
-/// clusters in crowded trays 57 needed more.
+/// [-] Most evaluations of the forces for a cluster that lasts, at the tolerance 1e-6; more at a smaller one,
+/// as a method of order 4 needs them. The note lab/notes/2026-11-clusters_by_tolerance.md says how many need
+/// more.
 inline constexpr double kClusterEvaluations = 2e4;
 
 struct ClusterBall {

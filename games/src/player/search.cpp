@@ -19,6 +19,7 @@
 #include "carom/games/shot.h"
 #include "facts.h"
 #include "lines.h"
+#include "player/description.h"
 #include "unknown.h"
 
 namespace carom::games::detail {
@@ -72,91 +73,6 @@ const Call kPush = [] {
 Vec2 direction(double deg) {
     const auto [sin, cos] = sin_cos_deg(deg);
     return {cos, sin};
-}
-
-/// [s] Just before or after a contact.
-constexpr double kAtOnce = 1e-6;
-
-/// Whether a ball that moves at a time goes straight to a place, or nearly so.
-bool is_direct(const Record& record, int ball, double from, const Vec2& to) {
-    // [-] Cosine of 8 degrees: a ball along a rail may touch it.
-    constexpr double kStraight = 0.99;
-    const BallState start = record.state_at(ball, from);
-    const Vec2 way = to - planar(start.position), went = planar(start.velocity);
-    return dot(way, went) > kStraight * length(way) * length(went);
-}
-
-/// How the ball fell: directly, off a rail, off another ball, or after a cushion of the cue ball.
-ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen) {
-    for (const Touch& touch : shot.touches)
-        if (touch.cushion() && touch.ball == shot.struck && touch.time < shot.first_time &&
-            !is_direct(record, shot.struck, 0.0,
-                       planar(record.state_at(shot.struck, shot.first_time).position)))
-            return ShotKind::kKick;
-    if (shot.first_hits.empty() || shot.first_hits[0] != fallen.ball) return ShotKind::kCombination;
-    const bool direct = is_direct(record, fallen.ball, shot.first_time + kAtOnce,
-                                  record.table.pockets[static_cast<std::size_t>(fallen.pocket)].center);
-    return !direct && is_bank(record, shot, fallen) ? ShotKind::kBank : ShotKind::kPot;
-}
-
-/// The motion of the cue ball at its first contact.
-std::string spin_words(const Record& record, const Shot& shot) {
-    // [-] Of the spin of a rolling ball.
-    constexpr double kRolls = 0.5, kDraws = -0.1;
-    if (shot.first_hits.empty()) return "";
-    const BallState at = record.state_at(shot.struck, std::max(0.0, shot.first_time - kAtOnce));
-    const Vec2 way = planar(at.velocity);
-    const double share =
-        cross(planar(at.spin), way) * -record.size(shot.struck).R / std::max(dot(way, way), 1e-12);
-    return share > kRolls ? "follow" : share < kDraws ? "draw" : "stun";
-}
-
-/// The rails that the cue ball of a kick, or the ball of a bank, meets.
-std::string rail_words(const Record& record, const Shot& shot, const Attempt& candidate) {
-    // [-] Of the table's width.
-    constexpr double kMouth = 0.15;
-    const Table& table = record.table;
-    const bool bank = candidate.kind == ShotKind::kBank;
-    const int ball = bank ? index_of(record, std::to_string(candidate.ball)) : shot.struck;
-    if (!bank && is_direct(record, ball, 0.0, planar(record.state_at(ball, shot.first_time).position)))
-        return "";
-    std::string words;
-    for (const Touch& touch : shot.touches) {
-        if (!touch.cushion() || touch.ball != ball || (!bank && touch.time > shot.first_time)) continue;
-        const Vec2 place = planar(record.state_at(ball, touch.time).position), at = place - table.corner;
-        // A jaw or the rail beside it is a part of the pocket.
-        const bool in_mouth = std::any_of(
-            table.pockets.begin(), table.pockets.end(),
-            [&](const Pocket& pocket) { return length(place - pocket.center) < kMouth * table.width; });
-        if (in_mouth) continue;
-        const double right = table.width - at.x(), foot = table.length - at.y(),
-                     least = std::min({at.x(), right, at.y(), foot});
-        const bool side = least == at.x() || least == right;
-        words += fmt::format("{}{} rail at diamond {:.1f}", words.empty() ? "off the " : ", ",
-                             least == at.x()   ? "left"
-                             : least == right  ? "right"
-                             : least == at.y() ? "head"
-                                               : "foot",
-                             side ? 8.0 * at.y() / table.length : 4.0 * at.x() / table.width);
-    }
-    return words;
-}
-
-/// A place by the nearest pocket or spot, or by both sides of a line between two.
-std::string place_words(const Table& table, const Vec2& place) {
-    // [-] Of the table's width.
-    constexpr double kNear = 0.2;
-    std::vector<std::pair<double, std::string>> marks;
-    const auto add = [&](const Vec2& at, const std::string& name) {
-        marks.emplace_back(length(place - at), name);
-    };
-    for (const Pocket& pocket : table.pockets) add(pocket.center, pocket.id);
-    add(head_spot(table), "the head spot");
-    add(center_spot(table), "the centre spot");
-    add(foot_spot(table), "the foot spot");
-    std::partial_sort(marks.begin(), marks.begin() + 2, marks.end());
-    if (marks[0].first < kNear * table.width) return "near " + marks[0].second;
-    return "between " + marks[0].second + " and " + marks[1].second;
 }
 
 /// The turn to the left from one direction to another [degrees].
@@ -526,7 +442,8 @@ void Search::describe(std::span<Attempt* const> candidates) const {
         Attempt& candidate = *candidates[i];
         const Shot shot = shot_of(record);
         candidate.spin = spin_words(record, shot);
-        candidate.rails = rail_words(record, shot, candidate);
+        const bool bank = candidate.kind == ShotKind::kBank;
+        candidate.rails = rail_words(record, shot, bank ? candidate.ball : 0);
         const Verdict verdict = judge(state_, record, candidate.call);
         const Option& next = verdict.options.front();
         if (next.state.over || next.rerack() || shot.gone(shot.struck)) return;

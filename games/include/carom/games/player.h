@@ -41,8 +41,8 @@ struct Skill {
     bool operator==(const Skill&) const = default;
 };
 inline constexpr std::array kSkills{"beginner", "club", "league", "professional", "machine"};
-/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz"; all do not know the cloth by 5 %, the rails
-/// by 2 % and the places of balls by 0.2 mm. @param R radius of the cue ball [m]
+/// The named level: 4, 2, 1, 1 and 1/2 times the noise "fastfiz"; none knows the cloth better than to 5 %,
+/// the rails to 2 % and the places of balls to 0.2 mm. @param R radius of the cue ball [m]
 /// @throws std::invalid_argument for another name, or a radius that is not greater than 0
 Skill skill_by_name(std::string_view name, double R);
 
@@ -61,7 +61,9 @@ struct Advice {
     /// From AdviceOptions::fresh shots that the search has not used: how often the shot wins the turn or the
     /// game, and how often it is a foul. All shots of a break are fresh.
     Share makes{}, fouls{};
-    double worth = 0.0;     ///< mean chance to win the rack against a player of the same level [-]
+    /// Mean chance to win the rack against a player of the same level [-], as estimated; for eight-ball it
+    /// only orders positions.
+    double worth = 0.0;
     double opponent = 0.0;  ///< mean chance of the surest pot that the opponent gets, if one shoots next
     std::vector<std::string> leaves;  ///< the balls that it most often leaves as the surest pot, at most 3
     /// Of the shot without errors, in words: the spin at the first contact; the rails of a bank or kick; the
@@ -95,7 +97,8 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
 
 /// The shot, such as "7 into p5 (right side pocket), half ball to the left, stun, medium".
 std::string words_of(const Advice& advice, const Table& table);
-/// Its result, such as "pots 84 % (80 to 87), wins 61 %, fouls 2 %; cue ball near the foot spot for the 8".
+/// Its result, such as "pots 84 % (80 to 87), wins 61 %, fouls 2 %; cue ball rests near the foot spot for the
+/// 8".
 std::string result_words(const Advice& advice);
 
 }  // namespace carom::games
