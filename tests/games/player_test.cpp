@@ -306,7 +306,7 @@ TEST(Player, AValueRisesWithTheTurnAndTheChance) {
     }
 }
 
-// A player who knows the places only to 5 mm pots less, whatever the search chooses.
+// A player who knows the places only to 5 mm pots less.
 TEST(Player, TrialsDrawTheTable) {
     const Scene scene =
         table({{"cue", {0.6, 0.9}}, {"9", {0.9, 1.4}}, {"12", {0.2, 1.9}}, {"8", {0.4, 2.2}}});
