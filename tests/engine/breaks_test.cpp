@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-TEST(Breaks, FirstEventsAgreeUntilTheReferenceDiverges) {
+TEST(BreakEvents, FirstEventsAgreeUntilTheReferenceDiverges) {
     const auto data = read_json("breaks.json");
     int checked = 0;
     for (const auto& c : data.at("cases")) {

@@ -183,7 +183,7 @@ TEST(SceneText, WritesEveryKey) {
     }
 }
 
-TEST(Validate, ChecksASceneBuiltInCode) {
+TEST(SceneTextRules, ChecksASceneBuiltInCode) {
     Scene scene;
     scene.file = "my scene";
     scene.table = make_table("nine_foot");

@@ -22,7 +22,7 @@ std::vector<std::string> scene_files() {
     return files;
 }
 
-TEST(Scenes, RunToRestUnderTheChecker) {
+TEST(ShippedScenes, RunToRestUnderTheChecker) {
     ASSERT_GE(scene_files().size(), 8u);
     for (const std::string& file : scene_files()) {
         SCOPED_TRACE(file);
@@ -34,7 +34,7 @@ TEST(Scenes, RunToRestUnderTheChecker) {
     }
 }
 
-TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryRun) {
+TEST(ShippedScenes, SameBitsOnEveryInstructionSetAndEveryRun) {
     for (const std::string& file : scene_files()) {
         SCOPED_TRACE(file);
         const Scene scene = read_scene(file);
@@ -52,7 +52,7 @@ TEST(Scenes, SameBitsOnEveryInstructionSetAndEveryRun) {
 }
 
 // Breaks of random speed, line and gap: none reaches the event limit or breaks a law.
-TEST(Scenes, SeededBreaks) {
+TEST(ShippedScenes, SeededBreaks) {
     reference::Generator rng(20261121);
     std::size_t most = 0;
     for (int i = 0; i < 100; ++i) {

@@ -157,8 +157,8 @@ Impact of_one_radius(Generator& rng) {
 
 constexpr Impact (*kKinds[])(Generator&) = {unlike, of_one_radius};
 
-double energy(const Impact& i, const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
-              const double (&w2)[3]) {
+double energy_of(const Impact& i, const double (&v1)[3], const double (&w1)[3], const double (&v2)[3],
+                 const double (&w2)[3]) {
     const Two t = two_of(i);
     const Triple v[2] = {of(v1), of(v2)}, w[2] = {of(w1), of(w2)};
     double sum = 0.0;
@@ -257,8 +257,8 @@ TEST(UnlikeImpact, MomentumAndEnergy) {
         if (n % 2 == 0) i.params.e_b = 1.0;
         for (const double tolerance : {1e-3, 1e-6, 1e-10}) {
             const ImpactResult r = solve(i, tolerance);
-            const double before = energy(i, i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w);
-            EXPECT_LE(energy(i, r.v1, r.w1, r.v2, r.w2), before * (1.0 + 1e-14)) << n;
+            const double before = energy_of(i, i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w);
+            EXPECT_LE(energy_of(i, r.v1, r.w1, r.v2, r.w2), before * (1.0 + 1e-14)) << n;
         }
         i.params.mu_s1 = i.params.mu_s2 = 0.0;
         const ImpactResult r = solve(i, 1e-3);
@@ -273,8 +273,8 @@ TEST(UnlikeImpact, MomentumAndEnergy) {
         i.params.mu_b = 0.0;
         i.params.e_b = 1.0;
         const ImpactResult free = solve(i, 1e-3);
-        const double before = energy(i, i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w);
-        EXPECT_NEAR(energy(i, free.v1, free.w1, free.v2, free.w2), before, 1e-14 * before);
+        const double before = energy_of(i, i.ball1.v, i.ball1.w, i.ball2.v, i.ball2.w);
+        EXPECT_NEAR(energy_of(i, free.v1, free.w1, free.v2, free.w2), before, 1e-14 * before);
     }
 }
 

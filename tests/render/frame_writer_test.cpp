@@ -55,7 +55,7 @@ TEST(FrameWriter, AFailedThreadStartIsAnError) {
         const RoomForTwoThreads room;
         ASSERT_TRUE(room.set());
         try {
-            const FrameWriter writer(options, "", 16);
+            const FrameWriter writer(options, 16);
         } catch (const RenderError& error) {
             message = error.what();
         }
@@ -64,7 +64,7 @@ TEST(FrameWriter, AFailedThreadStartIsAnError) {
                 message.rfind("only 2 of 16 threads could be started (", 0) == 0)
         << message;
     EXPECT_NE(message.find("; use fewer with --jobs"), std::string::npos) << message;
-    FrameWriter again(options, "", 3);
+    FrameWriter again(options, 3);
     again.finish();
 }
 

@@ -64,37 +64,6 @@ TEST(Pipeline, ThreadsChangeNothingInTheFrames) {
     EXPECT_EQ(folder.entries(), 2 * count);
 }
 
-TEST(Pipeline, ResumeRendersOnlyMissingFrames) {
-    const ScratchFolder folder("resume");
-    const Record record = rolling_ball();
-    SequenceOptions options = options_for(folder.file("%02d.png"));
-    render_sequence(record, options);
-    const Image fifth = render_test::read_png(folder.file("05.png"));
-    std::filesystem::remove(folder.file("05.png"));
-    std::ofstream(folder.file("07.png")) << "cut off";
-    SequenceOptions small = options_for(folder.file("09.png"));
-    small.pattern = folder.file("0%d.png");
-    small.size = {80, 45};
-    small.frame = 9;
-    render_sequence(record, small);  // frame 9 exists in another size
-    const auto before = std::filesystem::last_write_time(folder.file("06.png"));
-    options.resume = true;
-    std::vector<long> progress;
-    options.progress = [&](long done, long total) {
-        progress.push_back(done);
-        EXPECT_EQ(total, 31);
-    };
-    const std::vector<FrameTiming> timings = render_sequence(record, options);
-    ASSERT_EQ(timings.size(), 3U);
-    EXPECT_EQ(timings[0].frame, 5);
-    EXPECT_EQ(timings[1].frame, 7);
-    EXPECT_EQ(timings[2].frame, 9);
-    EXPECT_EQ(progress, (std::vector<long>{29, 30, 31}));
-    EXPECT_TRUE(same_pixels(render_test::read_png(folder.file("05.png")), fifth));
-    EXPECT_EQ(std::filesystem::last_write_time(folder.file("06.png")), before);
-    EXPECT_TRUE(render_sequence(record, options).empty());
-}
-
 TEST(Pipeline, RawFramesComeInOrderWithTheSamePixels) {
     const ScratchFolder folder("raw");
     const Record record = rolling_ball();
@@ -262,9 +231,6 @@ TEST(Pipeline, ProgressMayStopTheRun) {
 
 TEST(Pipeline, RefusesConflictingOptions) {
     SequenceOptions options = options_for("");
-    options.resume = true;
-    EXPECT_THROW(render_sequence(rolling_ball(), options), RenderError);
-    options = options_for("");
     options.jobs = -1;
     EXPECT_THROW(render_sequence(rolling_ball(), options), RenderError);
 }

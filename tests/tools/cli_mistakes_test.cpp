@@ -175,36 +175,6 @@ TEST_F(Mistakes, OnePictureHasItsGivenName) {
     EXPECT_TRUE(fs::exists(one));
 }
 
-TEST_F(Mistakes, ResumeRecognisesFramesOfItsShot) {
-    const std::string pattern = folder_.file("f%d.png");
-    const auto render = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> all = {"render", scene_,   "--fps", "10", "--to",
-                                        "0.3",    "--size", "32x18", "-o", pattern};
-        all.insert(all.end(), more.begin(), more.end());
-        return carom(all);
-    };
-    folder_.write("f1.png", "of nobody");
-    EXPECT_TRUE(contains(render({"--resume"}).err, "the existing frames do not state their shot"));
-    fs::remove(folder_.file("f1.png"));
-    ASSERT_EQ(render({"--resume"}).status, 0);  // all frames
-    ASSERT_EQ(render({}).status, 0);
-    EXPECT_TRUE(contains(render({"--resume"}).out, "all frames already exist"));
-    const std::vector<std::vector<std::string>> others = {{"--camera", "rail"},
-                                                          {"--overlay", "trails"},
-                                                          {"--from", "0.1"},
-                                                          {"--eye", "1,1,1", "--target", "0,0,0"}};
-    for (std::vector<std::string> other : others) {
-        other.push_back("--resume");
-        const ProcessResult result = render(other);
-        EXPECT_EQ(result.status, 1) << other[0];
-        EXPECT_TRUE(
-            contains(result.err, "show another shot, camera, overlay or size; render without --resume"))
-            << result.err;
-    }
-    std::ofstream(scene_, std::ios::app) << "[balls]\nmu_r = 0.02\n";
-    EXPECT_EQ(render({"--resume"}).status, 1);
-}
-
 TEST_F(Mistakes, OlderFramesStayOutOfTheFilm) {
     const std::string pattern = folder_.file("a film %d.png");
     const ProcessResult result =

@@ -121,35 +121,6 @@ TEST_F(CliRenderOptions, AFullDeviceEndsRawFramesWithAMessage) {
     EXPECT_NE(result.err.find("No space left"), std::string::npos) << result.err;
 }
 
-TEST_F(CliRenderOptions, ResumeLeavesFinishedFramesAlone) {
-    const std::vector<std::string> arguments = {
-        "render", record_, "-o", folder_.file("f%d.png"), "--fps", "4", "--to", "0.75", "--size", "64x36"};
-    ASSERT_EQ(carom(arguments).status, 0);
-    const std::string second = read_file(folder_.file("f1.png"));
-    // One frame is missing, one truncated, one from another picture, and one complete.
-    std::filesystem::remove(folder_.file("f0.png"));
-    folder_.write("f1.png", second.substr(0, 20));
-    const std::string third = read_file(folder_.file("f2.png")), last = read_file(folder_.file("f3.png"));
-    ASSERT_FALSE(last == third);
-    folder_.write("f2.png", last);
-    const auto written = std::filesystem::last_write_time(folder_.file("f3.png"));
-    std::vector<std::string> again = arguments;
-    again.push_back("--resume");
-    const ProcessResult result = carom(again);
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_TRUE(read_file(folder_.file("f1.png")) == second);
-    EXPECT_TRUE(read_file(folder_.file("f2.png")) == third);
-    EXPECT_EQ(std::filesystem::last_write_time(folder_.file("f3.png")), written);
-    EXPECT_TRUE(std::filesystem::exists(folder_.file("f0.png")));
-    EXPECT_EQ(folder_.names().size(), 6u);
-    // All exist: nothing to do is no failure. Files of another size are not examined.
-    ASSERT_EQ(carom(again).status, 0);
-    again.insert(again.end(), {"--size", "32x18"});
-    again.erase(again.begin() + 8, again.begin() + 10);
-    ASSERT_EQ(carom(again).status, 1);
-    EXPECT_TRUE(read_file(folder_.file("f2.png")) == third);
-}
-
 TEST_F(CliRenderOptions, BothBackEndsGiveTheSameFile) {
     ProcessResult egl =
         carom({"render", record_, "-o", folder_.file("e%d.png"), "--at", "0.5", "--gl", "egl"});

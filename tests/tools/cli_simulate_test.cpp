@@ -63,21 +63,6 @@ TEST_F(CliSimulate, LinesMayHaveWindowsEnds) {
     EXPECT_EQ(read_record(record).hash() + "\n", hash);
 }
 
-TEST_F(CliSimulate, WithoutARecordTheFinalStateIsTheSame) {
-    const Json all = Json::parse(run({"--json"}).out), end = Json::parse(run({"--json", "--no-record"}).out);
-    EXPECT_EQ(end["duration"], all["duration"]);
-    EXPECT_EQ(end["events"], all["events"]);
-    ASSERT_EQ(end["balls"].size(), all["balls"].size());
-    for (std::size_t i = 0; i < all["balls"].size(); ++i) {
-        for (const char* key : {"id", "position", "pocket"})
-            EXPECT_EQ(end["balls"][i][key], all["balls"][i][key]) << key;
-        EXPECT_EQ(end["balls"][i]["off_table"], false);
-    }
-    const ProcessResult text = run({"--no-record"});
-    EXPECT_EQ(text.status, 0) << text.err;
-    EXPECT_NE(text.out.find("final positions (m)\n"), std::string::npos) << text.out;
-}
-
 TEST_F(CliSimulate, VerifyNamesTheBrokenLawAndTheEvent) {
     const ProcessResult good = run({"--hash", "--verify"});
     EXPECT_EQ(good.status, 0) << good.err;

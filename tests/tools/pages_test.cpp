@@ -151,6 +151,28 @@ TEST(Pages, TheIndexNamesEveryPage) {
     }
 }
 
+// A file or folder is named by the end of its path.
+TEST(Pages, ArchitectureNamesWhatExists) {
+    std::set<std::string> ends;
+    for (const char* top : {"kernel", "engine", "games", "render", "capi", "python", "tools", "web", "tests",
+                            "lab", "examples"})
+        for (const auto& entry : fs::recursive_directory_iterator(CAROM_SOURCE_DIR "/" + std::string(top))) {
+            std::string path = "/" + fs::relative(entry.path(), CAROM_SOURCE_DIR).generic_string();
+            for (std::size_t at = 0; at != path.npos; at = path.find('/', at + 1))
+                ends.insert(path.substr(at + 1));
+            if (entry.path().parent_path() == fs::path(CAROM_SOURCE_DIR "/") / top) ends.insert(top);
+        }
+    const std::string page = read_source("docs/design/architecture.md");
+    const std::regex name("`([a-z0-9_/]+(/|\\.(h|cpp|js|cmake)))`");
+    std::size_t names = 0;
+    for (std::sregex_iterator it(page.begin(), page.end(), name), end; it != end; ++it, ++names) {
+        std::string wanted = (*it)[1];
+        if (wanted.back() == '/') wanted.pop_back();
+        EXPECT_TRUE(ends.count(wanted) > 0) << "there is no " << wanted;
+    }
+    EXPECT_GE(names, 40u);
+}
+
 TEST(Pages, GuidePagesAreShortAndBeginWithTheirPurpose) {
     const Pages guide = pages_of("docs/guide");
     EXPECT_GE(guide.size(), 7u);

@@ -19,7 +19,6 @@
 #include "carom/render/kept_png.h"
 #include "carom/render/png.h"
 #include "carom/render/renderer.h"
-#include "frames/frame_mark.h"
 #include "frames/writer.h"
 
 namespace carom::render {
@@ -28,9 +27,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void make_folder(const std::string& pattern) {
+/// Where the frames lie.
+std::filesystem::path folder_of(const std::string& pattern) {
     const std::filesystem::path folder = std::filesystem::path(frame_path(pattern, 0)).parent_path();
-    if (folder.empty()) return;
+    return folder.empty() ? "." : folder;
+}
+
+void make_folder(const std::string& pattern) {
+    const std::filesystem::path folder = folder_of(pattern);
     std::error_code error;
     std::filesystem::create_directory(folder, error);
     if (!std::filesystem::is_directory(folder)) {
@@ -51,64 +55,18 @@ long frame_of(const std::string& pattern, const std::string& name) {
     return -1;
 }
 
-/// The frame files of one run. No other run writes them meanwhile, and frames of other pictures are removed
-/// before the first one is written, so that a film that was interrupted and resumed shows one picture.
-class FrameFiles {
-  public:
-    /// @param count of frames; a single one leaves other frames alone, and other runs may draw meanwhile
-    FrameFiles(const SequenceOptions& options, std::string picture, long count)
-        : options_(options),
-          count_(count),
-          picture_(std::move(picture)),
-          lock_(options.pattern + ".lock", count > 1) {}
-
-    /// Whether frame k is finished.
-    bool is_done(long k) const { return mark_of(frame_path(options_.pattern, k)) == mark(k); }
-
-    /// @throws RenderError if frames exist but none of them belongs to this picture
-    void check() const {
-        bool some = false, marked = false;
-        for (long k = 0; k < count_; ++k) {
-            if (is_done(k)) return;
-            const std::string path = frame_path(options_.pattern, k);
-            some = some || std::filesystem::exists(path);
-            marked = marked || !mark_of(path).empty();
-        }
-        if (some)
-            throw RenderError(options_.pattern + ": " +
-                              (marked ? "the existing frames show another shot, camera, overlay or size"
-                                      : "the existing frames do not state their shot") +
-                              "; render without --resume");
+/// Removes the files that this run will write, so that a film whose drawing was interrupted shows one
+/// picture.
+void remove_old(const std::string& pattern, long count) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_of(pattern), error)) {
+        if (entry.is_symlink(error) || !entry.is_regular_file(error)) continue;
+        const long k = frame_of(pattern, entry.path().filename().string());
+        if (k >= 0 && k < count) std::filesystem::remove(entry.path(), error);
     }
+}
 
-    /// Removes what this run will write, and frames with higher numbers that carom drew of other pictures.
-    void remove_old() const {
-        if (count_ <= 1) return;
-        std::error_code error;
-        const std::filesystem::path folder =
-            std::filesystem::path(frame_path(options_.pattern, 0)).parent_path();
-        for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, error)) {
-            if (entry.is_symlink(error) || !entry.is_regular_file(error)) continue;
-            const long k = frame_of(options_.pattern, entry.path().filename().string());
-            if (k < 0) continue;
-            const std::string found = mark_of(entry.path().string());
-            const bool ours = found == mark(k);
-            if (k < count_ ? !(options_.resume && ours) : !ours && !found.empty())
-                std::filesystem::remove(entry.path(), error);
-        }
-    }
-
-  private:
-    std::string mark(long k) const { return mark_at(picture_, frame_time(options_.from, k, options_.fps)); }
-
-    const SequenceOptions& options_;
-    const long count_;
-    std::string picture_;
-    FileLock lock_;
-};
-
-std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options,
-                                      const std::optional<FrameFiles>& files) {
+std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOptions& options) {
     const long count = frame_count(options.from, options.to.value_or(record.duration), options.fps);
     if (options.frame && (*options.frame < 0 || *options.frame >= count)) {
         throw RenderError("no frame " + std::to_string(*options.frame) + ": there are " +
@@ -116,7 +74,6 @@ std::vector<FrameTiming> frames_to_do(const Record& record, const SequenceOption
     }
     std::vector<FrameTiming> frames;
     for (long k = options.frame.value_or(0); k < (options.frame ? *options.frame + 1 : count); ++k) {
-        if (options.resume && files->is_done(k)) continue;
         FrameTiming timing;
         timing.frame = k;
         timing.time = frame_time(options.from, k, options.fps);
@@ -142,24 +99,21 @@ StageOptions stage_options(const SequenceOptions& options) {
 void check_options(const SequenceOptions& options) {
     if (options.size.width < 1 || options.size.height < 1)
         throw RenderError("an image needs at least one pixel");
-    if (options.resume && (options.pattern.empty() || options.raw || !is_numbered(options.pattern)))
-        throw RenderError("only numbered frames in files can be resumed");
 }
 
 // Draws the frames in order.
 class FrameLoop {
   public:
-    FrameLoop(const Record& record, const SequenceOptions& options, const std::string& picture,
-              std::vector<FrameTiming>& frames)
+    FrameLoop(const Record& record, const SequenceOptions& options, std::vector<FrameTiming>& frames)
         : options_(options),
           frames_(frames),
           stage_(record, stage_options(options)),
           renderer_(options.backend),
           threads_(thread_count(options)),
-          writer_(options, picture, threads_) {}
+          writer_(options, threads_) {}
 
-    void run(long skipped) {
-        const long total = skipped + static_cast<long>(frames_.size());
+    void run() {
+        const long total = static_cast<long>(frames_.size());
         if (frames_.empty()) return;
         // Compiles the shaders and draws the table; this time belongs to no frame.
         renderer_.on_table(options_.table_progress);
@@ -168,7 +122,7 @@ class FrameLoop {
         for (std::size_t i = 0; i < frames_.size(); ++i) {
             draw(i);
             read(i);
-            if (options_.progress) options_.progress(skipped + static_cast<long>(i) + 1, total);
+            if (options_.progress) options_.progress(static_cast<long>(i) + 1, total);
         }
         writer_.finish();
     }
@@ -236,9 +190,8 @@ class FrameLoop {
 bool writes_over(const std::string& pattern, const std::string& path) {
     namespace fs = std::filesystem;
     std::error_code error;
-    const fs::path first = frame_path(pattern, 0), folder = first.parent_path();
-    if (!is_numbered(pattern)) return fs::equivalent(first, path, error);
-    for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error))
+    if (!is_numbered(pattern)) return fs::equivalent(frame_path(pattern, 0), path, error);
+    for (const auto& entry : fs::directory_iterator(folder_of(pattern), error))
         if (frame_of(pattern, entry.path().filename().string()) >= 0 &&
             fs::equivalent(entry.path(), path, error))
             return true;
@@ -255,19 +208,17 @@ std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOpt
         throw RenderError("bad frame pattern '" + options.pattern +
                           "'; give exactly one %d or %0Nd, as in frames/%05d.png");
     if (files) make_folder(options.pattern);
-    // A single picture with its own name is not part of a film: its bytes depend on its pixels alone.
-    const std::string picture = numbered ? picture_of(record, options) : "";
-    std::optional<FrameFiles> kept;
+    // No other run writes the frames of a film meanwhile; a single one leaves other frames alone.
+    std::optional<FileLock> lock;
     try {
-        if (numbered) kept.emplace(options, picture, count);
+        if (numbered) lock.emplace(options.pattern + ".lock", count > 1);
     } catch (const std::runtime_error& error) {
         throw RenderError(error.what());
     }
-    if (options.resume && !options.frame) kept->check();
-    std::vector<FrameTiming> frames = frames_to_do(record, options, kept);
-    FrameLoop loop(record, options, picture, frames);
-    if (numbered) kept->remove_old();
-    loop.run(count - static_cast<long>(frames.size()));
+    std::vector<FrameTiming> frames = frames_to_do(record, options);
+    FrameLoop loop(record, options, frames);
+    if (numbered && count > 1) remove_old(options.pattern, count);
+    loop.run();
     return frames;
 }
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "carom/render/png.h"
-#include "frames/frame_mark.h"
 
 namespace carom::render {
 
@@ -17,7 +16,7 @@ double ms_since(std::chrono::steady_clock::time_point& mark) {
     return ms;
 }
 
-const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image, const std::string& mark) {
+const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image) {
     if (options_.raw && options_.raw_format == RawFormat::kY4m) {
         const std::vector<std::uint8_t>& bytes = yuv_.pack(image);
         share_ = yuv_.share();
@@ -35,7 +34,6 @@ const std::vector<std::uint8_t>& Encoder::encode(const KeptImage& image, const s
         png_.encode(image, bytes_);
         share_ = png_.share();
     }
-    if (!mark.empty()) add_mark(bytes_, mark);
     return bytes_;
 }
 
@@ -52,8 +50,8 @@ std::size_t image_limit(FrameSize size, int threads) {
 
 }  // namespace
 
-FrameWriter::FrameWriter(const SequenceOptions& options, const std::string& picture, int threads)
-    : options_(options), picture_(picture), limit_(image_limit(options.size, threads)), encoder_(options) {
+FrameWriter::FrameWriter(const SequenceOptions& options, int threads)
+    : options_(options), limit_(image_limit(options.size, threads)), encoder_(options) {
     // More threads than images would only wait.
     threads = std::min(threads, static_cast<int>(limit_));
     try {
@@ -82,8 +80,7 @@ void FrameWriter::stop() {
 
 void FrameWriter::write(const KeptImage& image, FrameTiming& timing, Encoder& encoder) const {
     auto mark = std::chrono::steady_clock::now();
-    const std::vector<std::uint8_t>& bytes =
-        encoder.encode(image, picture_.empty() ? "" : mark_at(picture_, timing.time));
+    const std::vector<std::uint8_t>& bytes = encoder.encode(image);
     timing.encode_ms = ms_since(mark);
     timing.encoded_share = encoder.share();
     if (options_.raw)

@@ -8,7 +8,6 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -24,9 +23,8 @@ class Encoder {
   public:
     explicit Encoder(const SequenceOptions& options) : options_(options) {}
 
-    /// @param mark of a PNG file (frame_mark.h), or ""
     /// @returns the bytes, valid until the next call
-    const std::vector<std::uint8_t>& encode(const KeptImage& image, const std::string& mark = "");
+    const std::vector<std::uint8_t>& encode(const KeptImage& image);
 
     /// The share of the last picture that was encoded anew, 0..1.
     double share() const { return share_; }
@@ -42,11 +40,10 @@ class Encoder {
 
 class FrameWriter {
   public:
-    /// @param picture of the marks (frame_mark.h), or ""
     /// @param threads 0: submit() does the work itself. Raw frames need exactly one thread, which preserves
     /// their order.
     /// @throws RenderError if the system cannot start that many threads
-    FrameWriter(const SequenceOptions& options, const std::string& picture, int threads);
+    FrameWriter(const SequenceOptions& options, int threads);
 
     /// Drops the frames that have not been started and waits for the others.
     ~FrameWriter();
@@ -77,7 +74,6 @@ class FrameWriter {
     void write(const KeptImage& image, FrameTiming& timing, Encoder& encoder) const;
 
     const SequenceOptions& options_;
-    const std::string picture_;
     const std::size_t limit_;  // largest number of images
     Encoder encoder_;          // of a writer without threads
     std::mutex mutex_;

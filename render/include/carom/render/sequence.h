@@ -55,9 +55,6 @@ struct SequenceOptions {
     /// calling thread, so that the timings do not disturb each other. 0: one
     /// per core, or 1 with an empty pattern, which is used for measurements.
     int jobs = 0;
-    /// Skip frames whose file is a complete PNG of the same picture and instant, according to a comment in
-    /// each file. Frames of other pictures are drawn again; it is an error if there are only others.
-    bool resume = false;
     RawSink raw;  ///< instead of PNG files; the pattern is not used
     RawFormat raw_format = RawFormat::kRgb;
     std::function<void(long done, long total)> progress;  ///< called on the calling thread; may throw to stop
@@ -81,10 +78,9 @@ double frame_time(double from, long k, double fps);
 long frame_count(double from, double to, double fps);
 
 /// Renders and writes the frames (to a temporary name, then renamed). Creates the folder of the pattern if
-/// its parent exists. Existing frames with these numbers are removed first, and those with higher numbers if
-/// carom drew them for another picture; a single frame leaves the others alone. Meanwhile another run with
-/// the same pattern is refused. Skipped frames (`resume`) have no timing. Memory does not grow with the
-/// number of frames.
+/// its parent exists. Existing frames with these numbers are removed first; a single frame leaves the others
+/// alone. Meanwhile another run with the same pattern is refused. Memory does not grow with the number of
+/// frames.
 /// @throws RenderError naming the file; finished frames stay, and no incomplete file is left
 std::vector<FrameTiming> render_sequence(const Record& record, const SequenceOptions& options);
 

@@ -39,7 +39,6 @@ struct RenderArgs {
     std::string overlay;      ///< list of names
     std::string sheet;        ///< "4x3"; empty: frames
     int jobs = 0;
-    bool resume = false;
     bool raw = false;
     bool y4m = false;
     const FilmKind* film() const { return raw || y4m || !sheet.empty() ? nullptr : film_kind(pattern); }
@@ -88,7 +87,6 @@ void check_args(const RenderArgs& args) {
     }
     if (const FilmKind* const film = args.film()) {
         const std::string what = fmt::format("-o {}", args.pattern);
-        if (args.resume) throw UsageError(what + ": a film cannot be resumed; leave out --resume");
         if (args.frame || args.at)
             throw UsageError(what + ": a film needs more than one frame; use --from and --to");
         if (args.png_writer != "changes")
@@ -100,16 +98,12 @@ void check_args(const RenderArgs& args) {
     const bool one = args.at || args.frame;
     try {
         check_input(args, render::writes_over(args.pattern, args.input), args.pattern);
-        const bool numbered = render::is_numbered(args.pattern);
-        if (!one && !numbered)
+        if (!one && !render::is_numbered(args.pattern))
             throw UsageError(fmt::format(
                 "-o {}: frames need a number in their names; write one %d or %05d, as in "
                 "frames/%05d.png, name a film, as in shot.mp4 (.webm, .gif, .webp), or choose one "
                 "frame with --at S",
                 args.pattern));
-        if (args.resume && !numbered)
-            throw UsageError(
-                fmt::format("-o {}: one picture cannot be resumed; leave out --resume", args.pattern));
     } catch (const render::RenderError& error) {
         throw UsageError(error.what());
     }
@@ -179,7 +173,6 @@ render::SequenceOptions sequence_options(const RenderArgs& args, const Record& r
     set_view(args, settings, options);
     options.libpng = args.png_writer == "libpng";
     options.jobs = args.jobs;
-    options.resume = args.resume;
     if (args.raw || args.y4m) {
         if (args.y4m) options.raw_format = render::RawFormat::kY4m;
         options.raw = [](const std::uint8_t* bytes, std::size_t count) {
@@ -240,24 +233,13 @@ int write_film(const RenderArgs& args, const Record& record, render::SequenceOpt
     return kOk;
 }
 
-/// Renders, and prints how to continue after an interrupt.
-std::vector<render::FrameTiming> rendered(const Record& record, const render::SequenceOptions& options) {
-    try {
-        return render::render_sequence(record, options);
-    } catch (const Interrupted&) {
-        if (!options.raw && render::is_numbered(options.pattern))
-            message("stopped; run the same command with --resume to continue");
-        throw;
-    }
-}
-
 int run(const RenderArgs& args) {
     render::backend_from_name(args.gl);  // fails in a build without OpenGL
     check_args(args);
     if (args.raw && args.y4m) throw UsageError("--raw and --y4m cannot be combined; use one of them");
     const char* const stream = args.raw ? "--raw" : "--y4m";
-    if ((args.raw || args.y4m) && (args.resume || !args.sheet.empty()))
-        throw UsageError(fmt::format("{} cannot be combined with --resume or --sheet", stream));
+    if ((args.raw || args.y4m) && !args.sheet.empty())
+        throw UsageError(fmt::format("{} cannot be combined with --sheet", stream));
     if (!args.size.empty()) parse_size(args.size);
     SimulateOptions simulation;
     simulation.profile = overlay_of(args).margin;
@@ -276,12 +258,8 @@ int run(const RenderArgs& args) {
     if (!args.sheet.empty()) return write_sheet(args, record, options);
     if (args.film() != nullptr) return write_film(args, record, options);
     if (args.y4m) print(render::y4m_header(options.size, options.fps));
-    const std::vector<render::FrameTiming> timings = rendered(record, options);
+    const std::vector<render::FrameTiming> timings = render::render_sequence(record, options);
     throw_if_interrupted();
-    if (timings.empty()) {
-        print(fmt::format("all frames already exist: {}\n", options.pattern));
-        return kOk;
-    }
     if (args.raw || args.y4m) {
         flush_output();
         const std::string input =
@@ -336,7 +314,6 @@ void add_render(Options& program) {
     command.option("--sheet", &args.sheet, "CxR",
                    "Write one contact sheet with C columns and R rows, as wide as --size (default: off)");
     command.option("--jobs", &args.jobs, "N", "Threads that encode and write, 0 for one per core").in(0, 256);
-    command.flag("--resume", args.resume, "Skip frames whose files are already finished (default: off)");
     command.flag("--raw", args.raw,
                  "Write RGB bytes to standard output, for ffmpeg, instead of PNG files (default: off)");
     command.flag(

@@ -43,8 +43,7 @@ struct SimulateArgs {
     bool json = false;
     bool list = false;  ///< print every event
     std::string units = kUnits[0];
-    bool verify = false;     ///< check the physical laws after every event
-    bool no_record = false;  ///< only the final state
+    bool verify = false;  ///< check the physical laws after every event
     std::vector<std::string> measures;
     std::string game;  ///< rules for measures
 };
@@ -203,52 +202,6 @@ void check_args(const SimulateArgs& args) {
     }
 }
 
-/// Plays without a record, which needs less time and memory if there are many events.
-int final_state(const SimulateArgs& args, const Plan& plan, SimulateOptions options) {
-    const std::pair<const char*, bool> asked[] = {{"--output", !args.record.empty()},
-                                                  {"--events", !args.events.empty()},
-                                                  {"--samples", !args.samples.empty()},
-                                                  {"--list", args.list},
-                                                  {"--hash", args.hash},
-                                                  {"--profile", args.profile},
-                                                  {"--measure", !args.measures.empty()},
-                                                  {"--verify", args.verify}};
-    for (const auto& [option, given] : asked)
-        if (given) throw UsageError(fmt::format("{} needs a record; leave out --no-record", option));
-    options.progress = [](std::size_t, double) { throw_if_interrupted(); };
-    RunBuffers buffers;
-    Outcome outcome;
-    simulate(plan, buffers, outcome, options);
-    const Unit length = length_unit(units_of(args.units));
-    Json balls = Json::array();
-    std::string text =
-        fmt::format("{}: {}, {:.4f} s, {}; {}\n\nfinal positions ({})\n", args.scene,
-                    counted(outcome.balls.size(), "ball"), outcome.duration, counted(outcome.events, "event"),
-                    words(outcome.stopped).sentence, length.name);
-    for (std::size_t i = 0; i < outcome.balls.size(); ++i) {
-        const BallOutcome& ball = outcome.balls[i];
-        const std::string& id = plan.scene.ball[i].id;
-        const bool off = ball.pocket == kOffTable;
-        const std::string pocket = ball.pocket >= 0 ? plan.scene.table.pockets.at(ball.pocket).id : "";
-        const Vec3 &r = ball.position, shown = r * length.factor;
-        balls.push_back({{"id", id},
-                         {"position", {r.x(), r.y(), r.z()}},
-                         {"pocket", pocket.empty() ? Json() : Json(pocket)},
-                         {"off_table", off}});
-        text += fmt::format("  {:<6} {:<11}{:>11.6f}{:>11.6f}\n", id,
-                            off              ? "off table"
-                            : pocket.empty() ? "on table"
-                                             : pocket,
-                            shown.x(), shown.y());
-    }
-    if (args.json)
-        print(Json({{"duration", outcome.duration}, {"events", outcome.events}, {"balls", balls}}).dump() +
-              "\n");
-    else
-        print(text);
-    return kOk;
-}
-
 void write_files(const SimulateArgs& args, const Record& record) {
     if (!args.record.empty()) write_record(record, args.record);
     if (!args.events.empty()) write_events_csv(record, args.events);
@@ -283,7 +236,6 @@ int run(const SimulateArgs& args) {
     SimulateOptions options;
     options.profile = args.profile;
     options.until = args.until;
-    if (args.no_record) return final_state(args, plan, options);
     const std::vector<games::Measure> measures = measures_of(args, plan.scene);
     const Record record = simulate_plan(plan, options);
     write_files(args, record);
@@ -339,7 +291,6 @@ void add_simulate(Options& program) {
     command.flag("--verify", args.verify,
                  "Check the laws of mechanics; report the first one broken, with exit status 1 "
                  "(default: off)");
-    command.flag("--no-record", args.no_record, "Keep and print only the final state (default: off)");
 }
 
 }  // namespace carom::tools
