@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import concurrent.futures
 import contextlib
+import logging
 import os
+import signal
 import sys
 from typing import Any, NoReturn
 
@@ -58,10 +60,16 @@ def _complain(message: object, code: int) -> int:
 
 def _client(args: argparse.Namespace) -> Any:
     """A client of the named cluster, or of processes on this machine."""
+    # Otherwise the tasks that wait for shards print tracebacks when Ctrl-C closes the client.
+    logging.getLogger("asyncio").setLevel(logging.CRITICAL)
     connect: Any = need("distributed").Client
     if not args.dask:
-        return connect(n_workers=args.threads or len(os.sched_getaffinity(0)), threads_per_worker=1,
-                       dashboard_address=None, silence_logs="CRITICAL")
+        # Workers inherit that they ignore the Ctrl-C of the terminal; the client ends them.
+        handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        client = connect(n_workers=args.threads or len(os.sched_getaffinity(0)), threads_per_worker=1,
+                         dashboard_address=None, silence_logs="CRITICAL")
+        signal.signal(signal.SIGINT, handler)
+        return client
     client = connect(**{"scheduler_file" if args.dask.endswith(".json") else "address": args.dask}, timeout=30)
     print(f"dashboard: {client.dashboard_link}", flush=True)
     return client
@@ -86,7 +94,7 @@ def _report(of: Plan, folder: str, check: bool) -> int:
     kinds = f" ({_kinds(found.outcomes)})" if check else ""
     print(f"{folder}: {len(found.finished)} of {of.shards} shards, {found.rows} of {of.shots} rows{kinds}")
     if found.missing:
-        print(f"missing: {', '.join(map(str, found.missing))}")
+        print(f"missing: {', '.join(map(str, found.missing[:20]))}{', ...' * (len(found.missing) > 20)}")
     for fault in found.faults.values():
         _complain(fault, 1)
     return 0 if found.whole else 1
