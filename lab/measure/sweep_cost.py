@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The cost of sharded sweeps: CPU time compared with the engine's batch and `carom sweep`, bytes per row, time
-and memory of Dask's client and scheduler.
+"""The cost of sharded sweeps: CPU time compared with the engine's batch and `carom sweep`, bytes per row,
+time and memory of Dask's client and scheduler.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 
@@ -102,11 +102,12 @@ def nothing(plan, shard, folder):
 shards = int(sys.argv[1])
 _shards.run_shard = nothing
 plan = sweep.plan("scenes/eight_ball_break.toml", ["cue.speed=uniform(2,11)"], shards, shard=1)
-with tempfile.TemporaryDirectory() as folder, distributed.Client(processes=False, dashboard_address=None) as client:
+client = distributed.Client(processes=False, dashboard_address=None)
+with tempfile.TemporaryDirectory() as folder, client:
     before, start = peak(), time.perf_counter()
     sweep.run(plan, folder, client)
     ran = time.perf_counter() - start
-print("|", " | ".join((str(shards), f"{1e6 * ran / shards:.0f}", f"{before:.0f}", f"{peak() - before:.1f}")), "|")
+print(f"| {shards} | {1e6 * ran / shards:.0f} | {before:.0f} | {peak() - before:.1f} |")
 """
     print("\n| shards | us a shard | Python with carom and Dask, MB | on top, MB |")
     print("|---|---|---|---|")

@@ -19,7 +19,7 @@ from carom import sweep
 from conftest import HANGS, SLOW, SOURCE
 
 pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
-distributed = pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
+distributed = pytest.importorskip("distributed", reason="it is not installed: pip install distributed")
 
 from test_sweep_shards import break_plan, contents, draw_plan, stamps, unfinished  # noqa: E402
 
@@ -70,8 +70,9 @@ def once(tmp_path_factory):
     not SLOW, reason="takes long; CAROM_SLOW_TESTS=1 runs it"))])
 def test_killed_workers_lose_nothing(tmp_path, once, deaths):
     plan, _, files = once
-    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None,
-                            silence_logs="CRITICAL") as client, concurrent.futures.ThreadPoolExecutor() as pool:
+    workers = {"n_workers": 2, "threads_per_worker": 1, "silence_logs": "CRITICAL"}
+    with distributed.Client(dashboard_address=None, **workers) as client, \
+            concurrent.futures.ThreadPoolExecutor() as pool:
         running = pool.submit(sweep.run, plan, tmp_path, client)
         for death in range(deaths):
             wait_for(lambda: len(stamps(tmp_path)) > 2 * death or running.done())
@@ -143,7 +144,7 @@ def test_the_command_makes_plans_runs_them_and_reports_files(tmp_path, capsys, m
     assert sweep_in_process(capsys, monkeypatch, file, *arguments, "--shots", 60)[0] == 0
     see = "; see python -m carom.sweep --help"
     for words, code, message in [
-        ([file, *arguments, "--shots", 61], 1,
+        ([file, *arguments, "--shots", 61], 2,
          f"{file}: another plan is already there; remove it, or write elsewhere"),
         ([file, *arguments], 2, f"--scene needs --vary and --shots{see}"),
         ([file, "--scene", "no.toml", "--vary", "cue.speed=list(1)", "--shots", 3], 2,
@@ -174,7 +175,8 @@ def test_the_command_makes_plans_runs_them_and_reports_files(tmp_path, capsys, m
     assert code == 1 and err.startswith(f"carom.sweep: {path}: damaged ("), err
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
 def test_a_stopped_command_leaves_no_workers_and_whole_files(tmp_path, number, status):
     plan = break_plan(100_000, 200)
     plan.save(tmp_path / "p.json")

@@ -18,7 +18,7 @@ from test_sweep import RULES, all_the_same
 
 pyarrow = pytest.importorskip("pyarrow", reason="pyarrow is not installed: pip install pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
-distributed = pytest.importorskip("distributed", reason="distributed is not installed: pip install distributed")
+distributed = pytest.importorskip("distributed", reason="it is not installed: pip install distributed")
 
 from carom.sweep import _shards  # noqa: E402
 
@@ -62,7 +62,8 @@ def unfinished(folder):
 @pytest.fixture(scope="module")
 def client():
     """A Dask cluster in this process."""
-    with distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as dask:
+    options = {"processes": False, "n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.Client(**options) as dask:
         yield dask
 
 
@@ -287,7 +288,8 @@ def press():
 threading.Thread(target=press).start()
 sweep.run(sweep.Plan.load({str(tmp_path / "p.json")!r}), {str(tmp_path / "a")!r})
 """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS, check=False)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=HANGS,
+                          check=False)
     assert done.stderr.endswith("KeyboardInterrupt\n")
     assert unfinished(tmp_path / "a") == [] and 2 <= len(contents(tmp_path / "a")) < 300
     assert sweep.check(tmp_path / "a").faults == {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import concurrent.futures
 import contextlib
 import logging
 import os
@@ -15,9 +14,8 @@ from carom.sweep import _shards
 from carom.sweep._columns import need
 from carom.sweep._plan import Plan, SweepError, plan
 
-_ABOUT = """Makes the missing shards of a sweep in its folder, on the cores of this machine or on a Dask
-cluster. It may be killed at any time; the same command continues. With --scene it writes the plan PLAN
-instead."""
+_ABOUT = """Makes the missing shards of a sweep in its folder, on this machine or on a Dask cluster. It may be
+killed at any time; the same command continues. With --scene it writes the plan PLAN instead."""
 _END = """Exit status: 0 done, 1 something failed or is missing, 2 bad input, 130 after Ctrl-C."""
 
 
@@ -70,7 +68,8 @@ def _client(args: argparse.Namespace) -> Any:
                          dashboard_address=None, silence_logs="CRITICAL")
         signal.signal(signal.SIGINT, handler)
         return client
-    client = connect(**{"scheduler_file" if args.dask.endswith(".json") else "address": args.dask}, timeout=30)
+    where = "scheduler_file" if args.dask.endswith(".json") else "address"
+    client = connect(**{where: args.dask}, timeout=30)
     print(f"dashboard: {client.dashboard_link}", flush=True)
     return client
 
@@ -104,14 +103,12 @@ def _do(args: argparse.Namespace) -> int:
     try:
         if args.scene:
             made = plan(args.scene, args.vary, args.shots, seed=args.seed, shard=args.shard)
-        else:
-            made = Plan.load(args.plan)
+            made.save(args.plan)
+            print(f"{args.plan}: {made.shots} shots in {made.shards} shards")
+            return 0
+        made = Plan.load(args.plan)
     except (SweepError, ValueError) as error:
         return _complain(error, 2)
-    if args.scene:
-        made.save(args.plan)
-        print(f"{args.plan}: {made.shots} shots in {made.shards} shards")
-        return 0
     own = os.path.basename(args.plan) == _shards.PLAN
     folder = args.output or (os.path.dirname(args.plan) or "." if own else os.path.splitext(args.plan)[0])
     if folder == args.plan:
@@ -129,7 +126,7 @@ def main() -> int:
         return _complain("stopped; run the same command to continue", 130)
     except Exception as error:
         # Dask's errors for shards whose workers died again and again, and for a scheduler that has gone.
-        if type(error).__name__ != "KilledWorker" and not isinstance(error, concurrent.futures.CancelledError):
+        if type(error).__name__ not in ("KilledWorker", "FutureCancelledError", "CancelledError"):
             raise
         return _complain(f"{error}; finished shards are kept: run the same command to continue", 1)
 

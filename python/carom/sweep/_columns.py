@@ -43,9 +43,7 @@ def need(name: str) -> Any:
 
 
 class Player:
-    """Plays ranges of shots of one sweep, from any thread.
-
-    about: more metadata of its tables
+    """Plays ranges of shots of one sweep. `about` is added to the metadata of its tables.
 
     Raises ValueError for a rule that cannot be read or that makes no valid scene.
     """
@@ -60,10 +58,6 @@ class Player:
         self.about = {"carom.version": _carom.VERSION, **(about or {})}
         self.sweep = _carom.make_sweep(scene._native, self.rules, seed, list(measures), game)
 
-    def types(self) -> dict[str, tuple[str, str]]:
-        """For every column its type, "int64", "float64" or "text", and its unit or ""."""
-        return {name: (kind, unit) for name, kind, unit in self.sweep.columns}
-
     def play(self, first: int, last: int, threads: int) -> list[tuple[Any, ...]]:
         """The columns of shots first to last - 1: values; texts of which these are the indices, or None; and
         for each shot whether its value is missing, or None if no value can be."""
@@ -74,7 +68,7 @@ class Player:
         pyarrow = need("pyarrow")
         kinds = {"int64": pyarrow.int64(), "float64": pyarrow.float64(), "text": pyarrow.string()}
         fields = [pyarrow.field(name, kinds[kind], metadata={"unit": unit} if unit else None)
-                  for name, (kind, unit) in self.types().items()]
+                  for name, kind, unit in self.sweep.columns]
         numbers = {"carom.seed": str(self.seed), "carom.first": str(first), "carom.last": str(last)}
         texts = {"carom.scene": self.scene.source, "carom.vary": "\n".join(self.rules), **self.about}
         return pyarrow.schema(fields, metadata=texts | numbers)
@@ -114,7 +108,8 @@ def columns(
     """
     end = _end(shots, first, last, threads)
     player = Player(as_scene(scene), vary, seed, measures, game)
-    return {name: _plain(*column) for name, column in zip(player.types(), player.play(first, end, threads))}
+    played = zip(player.sweep.columns, player.play(first, end, threads))
+    return {name: _plain(*column) for (name, _, _), column in played}
 
 
 def _end(shots: int, first: int, last: int | None, threads: int) -> int:

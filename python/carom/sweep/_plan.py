@@ -19,7 +19,7 @@ from carom.sweep._columns import MOST_SHOTS, Player
 FORMAT = "carom sweep plan 2"
 #: The number of first shots that every worker compares with the plan before it plays others.
 _PROBE = 8
-#: Dask needs about a millisecond and some kilobytes for each task.
+#: Dask needs 3 ms and 9 kB for each (lab/measure/sweep_cost.py).
 _MOST_SHARDS = 100_000
 
 
@@ -128,7 +128,7 @@ def plan(
     """Makes the plan of a sweep; plays only the first few shots.
 
     shots: at most 2**53
-    shard: shots per file, and the largest loss of a killed worker; 10 to 60 s of work are a good size
+    shard: shots per file, which a worker keeps in memory; 10 to 60 s of work are a good size
     scene, vary, seed, measures, game: as for `columns`
 
     Raises ValueError for a number out of range, or a rule that cannot be read or that makes no valid scene,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import collections
 import functools
-import glob
 import os
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     import pyarrow.dataset
 
 PLAN = "plan.json"
-_ROW_GROUP = 1 << 16
 _ENCODINGS = {"float64": "BYTE_STREAM_SPLIT", "int64": "DELTA_BINARY_PACKED"}
 
 
@@ -55,13 +53,11 @@ def _table(plan: Plan, shard: int, threads: int) -> pyarrow.Table:
 
 
 def _write(table: pyarrow.Table, file: BinaryIO) -> None:
-    encodings = {"double": "BYTE_STREAM_SPLIT", "int64": "DELTA_BINARY_PACKED"}
-    kinds = {field.name: str(field.type) for field in table.schema}
     need("pyarrow.parquet").write_table(
-        table, file, compression="zstd", row_group_size=_ROW_GROUP,
-        use_dictionary=[name for name, kind in kinds.items() if kind == "string"],
-        column_encoding={name: encodings[kind] for name, kind in kinds.items() if kind != "string"},
-        # Pages have a checksum. Without statistics, because readers would use them to skip pages unchecked.
+        table, file, compression="zstd",
+        use_dictionary=[field.name for field in table.schema if field.type == "string"],
+        use_byte_stream_split=[field.name for field in table.schema if field.type == "double"],
+        # Without statistics, because readers would use them to skip pages whose checksum is wrong.
         write_page_checksum=True, write_statistics=False)
 
 
@@ -69,15 +65,16 @@ def _read(plan: Plan, shard: int, folder: str, columns: list[str] | None = None)
     """A shard's rows. Raises SweepError if its file is damaged or belongs elsewhere."""
     path = os.path.join(folder, plan.file(shard))
     first, last = plan.range(shard)
+    parquet = need("pyarrow.parquet")
     try:
-        with need("pyarrow.parquet").ParquetFile(path, page_checksum_verification=True) as file:
+        with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             schema, table = file.schema_arrow, file.read(columns)
     except Exception as error:  # pyarrow raises errors of any type for a damaged file
         what = (str(error).strip() or type(error).__name__).splitlines()[0][:200]
         raise SweepError(f"{path}: damaged ({what}); remove it and run the sweep again") from None
-    wrong = table.num_rows != last - first or not schema.equals(
-        player_of(plan).schema(first, last), check_metadata=True)
-    if wrong or columns != [] and table["shot"].to_pylist() != list(range(first, last)):
+    right = schema.equals(player_of(plan).schema(first, last), check_metadata=True)
+    right = right and table.num_rows == last - first
+    if not right or (columns != [] and table["shot"].to_pylist() != list(range(first, last))):
         what = f"its rows are not shots {first} to {last - 1} of plan {plan.id}"
         raise SweepError(f"{path}: {what}; remove it, or use another folder")
     return table
@@ -119,8 +116,7 @@ def run_shard(
 
 
 def _each(
-    client: Any, work: Callable[..., Any], shards: Iterable[int], threads: int, retries: int,
-    progress: bool = False,
+    client: Any, work: Any, shards: Iterable[int], threads: int, retries: int, progress: bool = False
 ) -> Iterable[Any]:
     """The results of `work` on shards, in their order."""
     if client is None:
@@ -161,10 +157,10 @@ def run(
     # Workers read the plan from the folder, so that a task is small.
     work = functools.partial(run_shard, path, folder=name)
     reports += _each(client, work, found.missing, threads, retries, progress)
-    # Killed workers may have left unfinished files.
-    for left in glob.glob(os.path.join(glob.escape(name), "shard-*.parquet.*.tmp")):
-        if os.path.exists(left.rsplit(".", 2)[0]):
-            os.unlink(left)
+    # Now every shard exists, so an unfinished file was left by a killed worker.
+    for left in os.listdir(name):
+        if left.startswith("shard-") and left.endswith(".tmp"):
+            os.unlink(os.path.join(name, left))
     outcomes: collections.Counter[str] = collections.Counter()
     for report in reports:
         outcomes.update(report["outcomes"])
@@ -210,7 +206,7 @@ def status(folder: str | os.PathLike[str]) -> Status:
     plan = Plan.load(os.path.join(folder, PLAN))
     there = set(os.listdir(folder))
     finished = tuple(shard for shard in range(plan.shards) if plan.file(shard) in there)
-    missing = tuple(sorted(set(range(plan.shards)).difference(finished)))
+    missing = tuple(shard for shard in range(plan.shards) if plan.file(shard) not in there)
     return Status(plan, finished, missing, sum(last - first for first, last in map(plan.range, finished)))
 
 
