@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     import pyarrow.dataset
 
 PLAN = "plan.json"
-_ENCODINGS = {"float64": "BYTE_STREAM_SPLIT", "int64": "DELTA_BINARY_PACKED"}
 
 
 class Status(NamedTuple):
