@@ -3,8 +3,8 @@
 
 # Packages from PyPI for the tests and for building the package (pyproject.toml names the latter, too). The
 # type check needs numpy 2.4: the types of 2.2, in Debian 13, are less complete.
-carom_python_needs=('nanobind>=2.9' 'pytest>=8' 'mypy>=1.11' 'numpy>=2.4' pyarrow dask distributed duckdb
-    'matplotlib>=3.9' pandas 'gymnasium>=1.1' 'pettingzoo>=1.25')
+carom_python_needs=('nanobind>=2.9' 'pytest>=8' 'mypy>=1.11' 'numpy>=2.4' pyarrow dask distributed
+    dask-jobqueue duckdb 'matplotlib>=3.9' pandas 'gymnasium>=1.1' 'pettingzoo>=1.25')
 
 # carom_make_python_env: sets carom_python to the environment's interpreter, or fails with the reason in
 # carom_no_python.

@@ -4,8 +4,8 @@ and a table.
 
     lab/measure/million_breaks.py FOLDER -o map.png
 
-FOLDER contains the shards made by python -m carom.sweep from lab/notes/2026-11-million_breaks.json. Needs
-duckdb and matplotlib from PyPI.
+FOLDER contains the shards of a plan with the scene, the rules, the seed, the shots and the shard size of
+lab/notes/2026-11-million_breaks.json, whose own format is that of carom 0.1. Needs duckdb and matplotlib.
 """
 
 import argparse

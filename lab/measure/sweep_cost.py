@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """The cost of sharded sweeps: CPU time compared with the engine's batch and `carom sweep`, bytes per row,
-memory of the client.
+time and memory of Dask's client and scheduler.
 
     PYTHONPATH=build/release/python lab/measure/sweep_cost.py [--rounds 9]
 
-Everything runs on one thread, alternating; medians over the rounds. Needs pyarrow.
+Everything runs on one thread, alternating; medians over the rounds. Needs pyarrow
+and distributed.
 """
 
 import argparse
@@ -16,7 +17,8 @@ import sys
 import tempfile
 import time
 
-from carom import _carom, sweep
+from carom import sweep
+from carom.sweep._plan import player_of
 
 CASES = [
     ("draw", ["cue.aim_deg=normal(2)", "cue.speed=uniform(1,4)"], 250_000),
@@ -31,12 +33,11 @@ def children():
     return used.ru_utime + used.ru_stime
 
 
-def batch(plan, hashes):
+def batch(plan):
     """CPU seconds of the engine alone, the plain batch, including its random draws."""
-    scene = sweep._plan.Scene.loads(plan.scene, plan.name)
-    native = _carom.make_sweep(scene._native, list(plan.vary), plan.seed)
+    native = player_of(plan).sweep
     start = time.process_time()
-    native.play(0, plan.shots, 1, int(hashes), sweep._columns.NEVER)
+    native.play(0, plan.shots, 1, False)
     return time.process_time() - start
 
 
@@ -62,84 +63,57 @@ def table(plan, path):
 
 
 def rows(rounds):
-    print("| shots | plain batch, us a shot | with hashes | shards, no hashes | shards, digest | "
-          "`carom sweep` | bytes a row: Parquet | CSV | ratio |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| shots | plain batch, us a shot | shards | `carom sweep` | bytes a row: Parquet | CSV | ratio |")
+    print("|---|---|---|---|---|---|---|")
     for name, rules, shots in CASES:
         path = f"scenes/{name}.toml"
-        plain = sweep.plan(path, rules, shots, shard=shots, hashes="none")
-        digest = plain._replace(hashes="digest")
-        seconds = {key: [] for key in ("batch", "hashes", "plain", "digest", "csv")}
+        plan = sweep.plan(path, rules, shots, shard=shots)
+        seconds = {key: [] for key in ("batch", "shards", "csv")}
         for _ in range(rounds):
-            seconds["batch"].append(batch(plain, False))
-            seconds["hashes"].append(batch(plain, True))
-            cost, parquet = shards(plain)
-            seconds["plain"].append(cost)
-            seconds["digest"].append(shards(digest)[0])
-            cost, csv = table(plain, path)
+            seconds["batch"].append(batch(plan))
+            cost, parquet = shards(plan)
+            seconds["shards"].append(cost)
+            cost, csv = table(plan, path)
             seconds["csv"].append(cost)
 
         def ratio(key):
             return statistics.median(a / b for a, b in zip(seconds[key], seconds["batch"]))
 
         cost = statistics.median(seconds["batch"]) / shots * 1e6
-        print(
-            f"| {name} | {cost:.2f} | {ratio('hashes'):.3f} | {ratio('plain'):.3f} | {ratio('digest'):.3f} | "
-            f"{ratio('csv'):.3f} | "
-            f"{parquet / shots:.1f} | {csv / shots:.1f} | {parquet / csv:.3f} |"
-        )
+        print(f"| {name} | {cost:.2f} | {ratio('shards'):.3f} | {ratio('csv'):.3f} | {parquet / shots:.1f} | "
+              f"{csv / shots:.1f} | {parquet / csv:.3f} |")
 
 
 def memory():
-    """Prints the cost of planning and supervising a large sweep, measured in its own process."""
+    """Prints the cost of a large sweep for Dask's client and scheduler, measured in their own process."""
     code = """
-import os, sys, tempfile, time
+import sys, tempfile, time
+import distributed
 from carom import sweep
-import pyarrow.parquet
+from carom.sweep import _shards
 
 def peak():  # not ru_maxrss, which includes the parent process
     with open("/proc/self/status") as file:
         return next(int(line.split()[1]) for line in file if line.startswith("VmHWM")) / 1024
 
-shots, shard = int(sys.argv[1]), int(sys.argv[2])
-before = peak()
-start = time.perf_counter()
-plan = sweep.plan("scenes/eight_ball_break.toml", ["cue.speed=uniform(2,11)"], shots, shard=shard)
-planned = time.perf_counter() - start
-with tempfile.TemporaryDirectory() as folder:
-    plan.save(os.path.join(folder, "plan.json"))
-    for name in plan.files():
-        open(os.path.join(folder, name), "w").close()
-    start = time.perf_counter()
-    found = sweep.status(folder)
-    seen = time.perf_counter() - start
-    assert found.done == plan.shards
-    size = os.path.getsize(os.path.join(folder, "plan.json"))
-    for name in plan.files():
-        os.unlink(os.path.join(folder, name))
-    # An executor that makes nothing, so that only the client's own cost remains.
-    class Done:
-        def __init__(self, arguments): self.arguments = arguments
-        def add_done_callback(self, call): call(self)
-        def cancel(self): pass
-        def result(self):
-            first, last = plan.range(self.arguments[1])
-            return {"outcomes": {"at_rest": last - first}, "played": True}
-    class Executor:
-        def submit(self, work, *arguments): return Done(arguments)
-    start = time.perf_counter()
-    assert sweep.run(plan, folder, Executor()).rows == shots
+def nothing(plan, shard, folder):
+    return {"outcomes": {"at_rest": 1}, "played": True}
+
+shards = int(sys.argv[1])
+_shards.run_shard = nothing
+plan = sweep.plan("scenes/eight_ball_break.toml", ["cue.speed=uniform(2,11)"], shards, shard=1)
+client = distributed.Client(processes=False, dashboard_address=None)
+with tempfile.TemporaryDirectory() as folder, client:
+    before, start = peak(), time.perf_counter()
+    sweep.run(plan, folder, client)
     ran = time.perf_counter() - start
-row = (f"{shots:.0e}", plan.shards, size, f"{1e3 * planned:.1f}", f"{1e3 * seen:.0f}",
-       f"{1e6 * ran / plan.shards:.0f}", f"{before:.0f}", f"{peak() - before:.1f}")
-print("|", " | ".join(map(str, row)), "|")
+print(f"| {shards} | {1e6 * ran / shards:.0f} | {before:.0f} | {peak() - before:.1f} |")
 """
-    print("\n| shots | shards | bytes of the plan | planning, ms | `status`, ms | client, us a shard | "
-          "a Python with carom and pyarrow, MB | on top, MB |")
-    print("|---|---|---|---|---|---|---|---|")
-    for shots, shard in (10**6, 250_000), (10**9, 250_000), (10**9, 10_000), (2**53, 10**11):
+    print("\n| shards | us a shard | Python with carom and Dask, MB | on top, MB |")
+    print("|---|---|---|---|")
+    for shards in 1000, 4000, 100_000:
         sys.stdout.flush()
-        subprocess.run([sys.executable, "-c", code, str(shots), str(shard)], check=True)
+        subprocess.run([sys.executable, "-c", code, str(shards)], check=True)
 
 
 def main():

@@ -137,22 +137,18 @@ SweepArrays arrays_of(const games::SweepColumn& column, ColumnValues&& of) {
     return {std::move(values), std::move(texts), std::move(missing)};
 }
 
-/// @param hash_every  0: no hashes  @param stop  one flag: the batch ends with BatchStopped once it is not 0
-/// @return the columns, the status of each shot, and the hashes
+/// @return the columns, the status of each shot, and the hashes if they are wanted
 std::tuple<std::vector<SweepArrays>, nb::any, nb::any> sweep_shots(const games::Sweep& sweep,
                                                                    std::uint64_t first, std::size_t count,
-                                                                   int threads, std::uint64_t hash_every,
-                                                                   const Flat<const std::uint8_t>& stop) {
+                                                                   int threads, bool hashes) {
     const kernel::Isa isa = chosen_isa();
-    Batch batch(count, sweep.variation().base().ball.size(), hash_every > 0);
+    Batch batch(count, sweep.variation().base().ball.size(), hashes);
     std::vector<ColumnValues> values;
     try {
-        interruptible([&](const std::function<bool()>& interrupted) {
+        interruptible([&](std::function<bool()> interrupted) {
             BatchOptions options;
             options.threads = threads;
-            options.hash_every = std::max<std::uint64_t>(hash_every, 1);
-            const volatile std::uint8_t* const flag = stop.data();
-            options.stop = [&interrupted, flag] { return *flag != 0 || interrupted(); };
+            options.stop = std::move(interrupted);
             const games::SweptShots shots = sweep.play(first, count, isa, options, batch.arrays());
             for (const games::SweepColumn& column : sweep.columns())
                 values.push_back(values_of(sweep, column, shots));
@@ -189,8 +185,7 @@ void add_batches(nb::module_& m) {
           nb::arg("out").noconvert(), nb::arg("times").noconvert(), nb::arg("paths").noconvert());
     nb::class_<games::Sweep>(m, "Sweep")
         .def_prop_ro("columns", column_rows)
-        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"),
-             nb::arg("hash_every"), nb::arg("stop").noconvert());
+        .def("play", sweep_shots, nb::arg("first"), nb::arg("shots"), nb::arg("threads"), nb::arg("hashes"));
     m.def("make_sweep", make_sweep, nb::arg("scene"), nb::arg("rules"), nb::arg("seed"),
           nb::arg("measures") = std::vector<std::string>(), nb::arg("game") = nb::none());
 }

@@ -407,25 +407,6 @@ TEST(Batch, AJudgeReadsTheRecordsOfSingleShots) {
     EXPECT_THROW(simulate_many(scene, columns.shots, list, kIsa, options), std::domain_error);
 }
 
-TEST(Batch, OnlySelectedShotsAreHashed) {
-    const Variation variation =
-        Variation::from_text(read_source("scenes/draw.toml"), "draw", {"cue.aim_deg=normal(2)"}, 5);
-    constexpr std::size_t kShots = 40, kFirst = 7;
-    std::vector<std::uint64_t> all(kShots), some(kShots, 1);
-    std::vector<DrawnValue> values;
-    BatchArrays out;
-    out.hash = all.data();
-    simulate_many(variation, kFirst, kShots, kIsa, {}, out, values);
-    BatchOptions options;
-    options.hash_every = 4;
-    out.hash = some.data();
-    simulate_many(variation, kFirst, kShots, kIsa, options, out, values);
-    for (std::size_t i = 0; i < kShots; ++i) {
-        EXPECT_NE(all[i], 0u);
-        EXPECT_EQ(some[i], (kFirst + i) % 4 == 0 ? all[i] : 0u) << i;
-    }
-}
-
 TEST(Batch, ShotsOfAVariationEqualThoseOfItsScenes) {
     const std::string text = read_source("scenes/draw.toml");
     // In the second list, one value is not a number of the scene.

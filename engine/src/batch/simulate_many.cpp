@@ -160,13 +160,11 @@ struct Work {
           options(how),
           simulate(how.simulate),
           out(arrays) {
-        simulate.hash = false;
+        simulate.hash = out.hash != nullptr;
         simulate.profile = false;
         // A crowded shot may last for seconds.
         simulate.progress = nullptr;
         if (options.stop) simulate.progress = [this](std::size_t, double) { check_stop(); };
-        hashed = simulate;
-        hashed.hash = out.hash != nullptr;
     }
 
     const Scene& scene;
@@ -174,9 +172,8 @@ struct Work {
     PlayShot play;
     kernel::Isa isa;
     const BatchOptions& options;
-    SimulateOptions simulate, hashed;
+    SimulateOptions simulate;
     const BatchArrays& out;
-    std::uint64_t number = 0;  // of the first shot, if shots have numbers
     std::vector<Batch::Message> messages;
     std::size_t threads = 1;
     std::atomic<std::size_t> next{0};
@@ -199,8 +196,7 @@ struct Work {
 
     void play_one(Player& player, std::size_t shot) {
         const std::size_t balls = scene.ball.size();
-        const bool hash = (number + shot) % options.hash_every == 0;
-        const ShotStatus status = play(player, shot, hash ? hashed : simulate);
+        const ShotStatus status = play(player, shot, simulate);
         if (out.status != nullptr) out.status[shot] = status;
         const bool some = player.last != &player.whole;
         if (!has_result(status) || some)
@@ -315,9 +311,7 @@ std::vector<Batch::Message> simulate_many(const Variation& variation, std::uint6
         const std::span drawn = std::span(values).subspan(shot * keys, keys);
         return player.whole.play(variation, first + shot, drawn, how);
     };
-    Work work(variation.base(), shots, play, isa, options, out);
-    work.number = first;
-    return work.run();
+    return Work(variation.base(), shots, play, isa, options, out).run();
 }
 
 Batch simulate_many(const Scene& scene, std::size_t shots, std::span<const BatchColumn> columns,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from carom import _carom
 from carom._arguments import checked
@@ -16,15 +16,11 @@ from carom._names import GameName
 from carom._scene import Scene, SceneLike, as_scene
 from carom.sweep._columns import MOST_SHOTS, Player
 
-FORMAT = "carom sweep plan 1"
+FORMAT = "carom sweep plan 2"
 #: The number of first shots that every worker compares with the plan before it plays others.
 _PROBE = 8
-_MOST_SHARDS = 10_000_000
-#: Which records are hashed: none, some for each shard's digest, or all for a column.
-_HASHES = ("none", "digest", "column")
-#: A shard's digest is over the shots whose number is a multiple of this. Not all, since hashing takes half
-#: as long as a short shot.
-HASH_EVERY = 64
+#: Dask needs 3 ms and 9 kB for each (lab/measure/sweep_cost.py).
+_MOST_SHARDS = 100_000
 
 
 class SweepError(RuntimeError):
@@ -41,16 +37,15 @@ class Plan(NamedTuple):
     seed: int
     shots: int
     shard: int  # shots per shard; the last one may have fewer
-    hashes: str  # "none", "digest" or "column"
+    measures: tuple[str, ...]  # expressions, a column each
+    game: str  # the rules for measures such as "foul", or ""
     version: str  # carom's
     probe: str  # digest of the first shots' records, which shows whether a worker's carom gives the same bits
-    measures: tuple[str, ...] = ()  # expressions, a column each
-    game: str = ""  # the rules for measures such as "foul"
 
     @property
     def id(self) -> str:
         """SHA-256 of the whole plan."""
-        return sha256(canonical(self._content()))
+        return _digest({"format": FORMAT, **self._asdict()})
 
     @property
     def shards(self) -> int:
@@ -67,124 +62,74 @@ class Plan(NamedTuple):
         """The name of a shard's file in the folder."""
         return f"shard-{shard:0{len(str(self.shards - 1))}}.parquet"
 
-    def files(self) -> Iterator[str]:
-        """The names of all files, in the order of the shots."""
-        return map(self.file, range(self.shards))
-
-    def types(self) -> dict[str, tuple[str, str]]:
-        """For every column its type, "int64", "uint64", "float64" or "text", and its unit or ""."""
-        types = player_of(self).types()
-        return types | {"record_hash": ("uint64", "")} if self.hashes == "column" else types
-
-    def _content(self) -> dict[str, Any]:
-        content: dict[str, Any] = {"format": FORMAT, **self._asdict(), "vary": list(self.vary)}
-        content["measures"] = list(self.measures)
-        # A plan without measures is equal to the plan of earlier versions.
-        return content if self.measures else dict(list(content.items())[:-2])
-
-    def text(self) -> str:
-        """The content of the plan's file: JSON."""
-        return json.dumps({**self._content(), "sha256": self.id}, indent=1, ensure_ascii=False) + "\n"
-
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the plan, or keeps a file with the same plan. Raises SweepError if the file has
         other content."""
         name = os.fspath(path)
-        if os.path.exists(name):
-            if Plan.load(name) != self:
-                what = "another plan is already there; remove it, or write elsewhere"
-                raise SweepError(f"{name}: {what}")
-            return
-        try:
+        if not os.path.exists(name):
+            tree = {"format": FORMAT, **self._asdict(), "sha256": self.id}
             with whole_file(name) as file:
-                file.write(self.text().encode())
-        except OSError as error:
-            raise SweepError(f"{name}: cannot write it: {error.strerror}") from None
+                file.write(json.dumps(tree, indent=1, ensure_ascii=False).encode() + b"\n")
+        elif Plan.load(name) != self:
+            raise SweepError(f"{name}: another plan is already there; remove it, or write elsewhere")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Plan:
         """Reads a plan. Raises SweepError for a file that is not a plan or was changed."""
         name = os.fspath(path)
+        remedy = "make a new plan with carom.sweep.plan"
         try:
             with open(name, encoding="utf-8") as file:
                 tree = json.load(file)
         except json.JSONDecodeError as error:
-            what = f"{error.msg}; a plan is written by carom.sweep.plan(...).save()"
-            raise SweepError(f"{name}:{error.lineno}:{error.colno}: {what}") from None
+            raise SweepError(f"{name}:{error.lineno}:{error.colno}: {error.msg}; {remedy}") from None
         except (OSError, ValueError) as error:
             raise SweepError(f"{name}: cannot read it: {getattr(error, 'strerror', None) or error}") from None
-        return cls._of(tree, name)
-
-    @classmethod
-    def _of(cls, tree: Any, name: str) -> Plan:
         if not isinstance(tree, dict) or tree.get("format") != FORMAT:
-            raise SweepError(f'{name}: not a plan of a sweep: "format" must be "{FORMAT}"')
-        content = {key: value for key, value in tree.items() if key not in ("format", "sha256")}
-        digest = sha256(canonical({"format": FORMAT, **content}))
-        if tuple(content) not in (cls._fields, cls._fields[:-2]) or tree.get("sha256") != digest:
-            what = "the plan was changed by hand or is damaged; make a new one with carom.sweep.plan"
-            raise SweepError(f"{name}: {what}")
-        lists = {key: tuple(content[key]) for key in ("vary", "measures") if key in content}
-        return cls(**content | lists)
+            raise SweepError(f'{name}: not a plan of a sweep: "format" must be "{FORMAT}"; {remedy}')
+        digest = tree.pop("sha256", None)
+        if _digest(tree) != digest:
+            raise SweepError(f"{name}: the plan was changed by hand or is damaged; {remedy}")
+        del tree["format"]
+        return cls(**tree | {key: tuple(tree[key]) for key in ("vary", "measures")})
 
 
-def sha256(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
-
-
-def canonical(tree: Any) -> bytes:
-    """A tree as bytes, which are equal if and only if the trees are."""
-    return json.dumps(tree, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
+def _digest(tree: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(tree, sort_keys=True).encode()).hexdigest()
 
 
 @lru_cache(maxsize=8)
 def player_of(plan: Plan) -> Player:
-    return Player(Scene.loads(plan.scene, plan.name), plan.vary, plan.seed, plan.measures, plan.game or None)
+    """The player of a plan's shots."""
+    about = {"carom.plan": plan.id, "carom.version": plan.version}
+    scene = Scene.loads(plan.scene, plan.name)
+    return Player(scene, plan.vary, plan.seed, plan.measures, plan.game or None, about)
 
 
 def _probe(player: Player, shots: int) -> str:
-    played = player.play(0, min(shots, _PROBE), 1, hash_every=1)
-    return sha256(played.hash.astype("<u8").tobytes() + played.status.tobytes())
+    _, status, hashes = player.sweep.play(0, min(shots, _PROBE), 1, True)
+    return _digest({"status": status.tolist(), "hash": hashes.tolist()})
 
 
 @lru_cache(maxsize=8)
-def wrong_worker(plan: Plan) -> str:
-    """Why this process must not play shots of the plan, or "": another version of carom, or other bits."""
-    if plan.version != _carom.VERSION:
-        versions = f"this is carom {_carom.VERSION}, and the plan is of carom {plan.version}"
-        return f"{versions}: install that one here, or make a new plan"
-    if _probe(player_of(plan), plan.shots) != plan.probe:
-        return (
-            f"this carom {_carom.VERSION} gives other bits for the first shots than the carom that made the "
-            "plan: install the same build everywhere, or make a new plan"
-        )
-    return ""
+def require_same_bits(plan: Plan) -> None:
+    """Raises SweepError if this process may play other rows: another version of carom, or other bits."""
+    if plan.version != _carom.VERSION or _probe(player_of(plan), plan.shots) != plan.probe:
+        here = f"{os.uname().nodename}, process {os.getpid()}: carom {_carom.VERSION}"
+        other = f"is another build than the carom {plan.version} that made the plan, or gives other bits"
+        raise SweepError(f"{here} {other}; install the same build everywhere, or make a new plan")
 
 
 @checked
 def plan(
-    scene: SceneLike,
-    vary: Mapping[str, Any] | Sequence[str],
-    shots: int,
-    *,
-    seed: int = 1,
-    shard: int = 250_000,
-    hashes: Literal["none", "digest", "column"] = "digest",
-    measures: Sequence[str] = (),
-    game: GameName | None = None,
+    scene: SceneLike, vary: Mapping[str, Any] | Sequence[str], shots: int, *,
+    seed: int = 1, shard: int = 250_000, measures: Sequence[str] = (), game: GameName | None = None,
 ) -> Plan:
     """Makes the plan of a sweep; plays only the first few shots.
 
-    scene: a scene, the path of its file, or its tree
-    vary: rules as for `carom sweep --vary`, or a mapping from keys to distributions ("normal(0.5)") or lists
-        of values
     shots: at most 2**53
-    seed: of all draws
-    shard: shots per file, and the largest loss of a killed worker; 10 to 60 s of work are a good size
-    hashes: "digest" keeps one hash per shard, over the records of every 64th shot, with which the shard can
-        be replayed and compared; "column" also keeps `int(record.hash(), 16)` of every shot in a column
-        "record_hash", which takes time if shots are short; or "none"
-    measures, game: as for `columns`
+    shard: shots per file, which a worker keeps in memory; 10 to 60 s of work are a good size
+    scene, vary, seed, measures, game: as for `columns`
 
     Raises ValueError for a number out of range, or a rule that cannot be read or that makes no valid scene,
     and SceneError for the scene.
@@ -192,19 +137,9 @@ def plan(
     scene = as_scene(scene)
     if not 1 <= shots <= MOST_SHOTS:
         raise ValueError(f"shots={shots}: expected 1 to 2**53")
-    if shard < 1:
-        raise ValueError(f"shard={shard}: expected at least 1")
-    if -(-shots // shard) > _MOST_SHARDS:
-        least = -(-shots // _MOST_SHARDS)
-        what = f"that makes more than {_MOST_SHARDS} shards; use at least {least} shots in each"
-        raise ValueError(f"shard={shard}: {what}")
-    if hashes not in _HASHES:
-        raise ValueError(f"hashes={hashes!r}: expected one of {', '.join(_HASHES)}")
+    least = -(-shots // _MOST_SHARDS)
+    if shard < least:
+        raise ValueError(f"shard={shard}: expected at least {least}, for at most {_MOST_SHARDS} shards")
     player = Player(scene, vary, seed, measures, game)
-    name = os.path.basename(scene.file)
-    probe = _probe(player, shots)
-    made = Plan(scene.source, name, tuple(player.rules), int(seed), int(shots), int(shard), hashes,
-                _carom.VERSION, probe, tuple(measures), game or "")
-    if "record_hash" in player.types():
-        raise ValueError("vary: record_hash names a column that is always there")
-    return made
+    return Plan(scene.source, os.path.basename(scene.file), tuple(player.rules), int(seed), int(shots),
+                int(shard), tuple(measures), game or "", _carom.VERSION, _probe(player, shots))

@@ -102,9 +102,6 @@ struct BatchOptions {
     /// Called by each thread after every shot has been stored and judged. @param message  why the shot has no
     /// result, or ""
     std::function<void(std::size_t shot, const std::string& message)> done{};
-    /// Hash only shots whose number is a multiple of this (not 0); the others get 0. Hashing makes short
-    /// shots 50% slower.
-    std::uint64_t hash_every = 1;
 };
 
 /// Destination of the outcomes of n shots of b balls: the caller's arrays of n or n x b elements, as in
