@@ -61,6 +61,9 @@ constexpr std::array kDistances{0.15, 0.3, 0.55};
 constexpr std::array kAngles{0.0, -14.0, 14.0, -30.0, 30.0, -50.0, 50.0};
 /// [m] Distance of a cue ball in hand from balls whose places are not known exactly.
 constexpr double kClear = 4e-3;
+/// [-] A person foresees at most this many contacts until a ball falls: a bank by three rails, or a kick
+/// whose ball meets two. Pots by more are flukes.
+constexpr std::size_t kMostContacts = 4;
 /// [-] Cost of a foul for a player who ignores the position that a shot leaves.
 constexpr double kFoulCost = 0.3;
 
@@ -160,6 +163,16 @@ void Search::play(std::span<const Cue> cues, std::span<const Vec2> places, const
     simulate_many(scene_, cues.size(), columns, isa_, batch, {});
 }
 
+std::pair<const Option*, double> Search::chosen(const Verdict& verdict, const Record& record) const {
+    std::pair<const Option*, double> best{nullptr, 0.0};
+    for (const Option& option : verdict.options) {
+        const double worth = potting_.worth(option, record, state_.turn);
+        const bool better = verdict.chooser == state_.turn ? worth > best.second : worth < best.second;
+        if (best.first == nullptr || better) best = {&option, worth};
+    }
+    return best;
+}
+
 Search::Result Search::result(const Record& record, const Call& call, bool closer) const {
     const Verdict verdict = judge(state_, record, call);
     Result result;
@@ -170,29 +183,15 @@ Search::Result Search::result(const Record& record, const Call& call, bool close
         result.worth = result.made ? 1.0 : result.foul ? -kFoulCost : 0.0;
         return result;
     }
-    // The player who chooses takes the option that is best for himself.
-    bool first = true;
-    for (const Option& option : verdict.options) {
-        double worth = 0.5;  // of a new rack
-        if (option.state.over) {
-            worth = option.state.winner == state_.turn ? 1.0 : 0.0;
-        } else if (!option.rerack()) {
-            const Lie lie = lie_of(record, option);
-            worth = potting_.value(option.state, lie);
-            result.passed = option.state.turn != state_.turn;
-            if (result.passed) worth = 1.0 - worth;
-            if (closer) {
-                const auto [ball, chance] = potting_.surest(option.state, lie);
-                if (result.passed)
-                    result.opponent = chance;
-                else
-                    result.leaves = ball;
-            }
-        }
-        const bool better = verdict.chooser == state_.turn ? worth > result.worth : worth < result.worth;
-        if (first || better) result.worth = worth;
-        first = false;
-    }
+    const auto [taken, worth] = chosen(verdict, record);
+    result.worth = worth;
+    if (!closer || taken->state.over || taken->rerack()) return result;
+    result.passed = taken->state.turn != state_.turn;
+    const auto [ball, chance] = potting_.surest(taken->state, lie_of(record, *taken));
+    if (result.passed)
+        result.opponent = chance;
+    else
+        result.leaves = ball;
     return result;
 }
 
@@ -315,6 +314,11 @@ std::vector<Attempt> Search::sweep(const Vec2& place) const {
             for (const Shot::Fallen& fallen : shot.pocketed) {
                 const std::string& id = record.tracks[static_cast<std::size_t>(fallen.ball)].id;
                 if (fallen.ball == shot.struck || (calls_ && id != candidate.call.ball)) continue;
+                if (chain_of(record, fallen.ball).size() > kMostContacts) {
+                    results[i].made = false;
+                    results[i].worth = -1.0;
+                    break;
+                }
                 candidate.kind = kind_of(record, shot, fallen);
                 candidate.ball = number_of(id);
                 candidate.pocket = fallen.pocket;
@@ -442,10 +446,10 @@ void Search::describe(std::span<Attempt* const> candidates) const {
         Attempt& candidate = *candidates[i];
         const Shot shot = shot_of(record);
         candidate.spin = spin_words(record, shot);
-        const bool bank = candidate.kind == ShotKind::kBank;
-        candidate.rails = rail_words(record, shot, bank ? candidate.ball : 0);
+        if (candidate.kind != ShotKind::kPot)
+            candidate.rails = chain_words(record, shot, index_of(record, std::to_string(candidate.ball)));
         const Verdict verdict = judge(state_, record, candidate.call);
-        const Option& next = verdict.options.front();
+        const Option& next = *chosen(verdict, record).first;
         if (next.state.over || next.rerack() || shot.gone(shot.struck)) return;
         const Lie lie = lie_of(record, next);
         candidate.rest = place_words(scene_.table, *lie.cue);
