@@ -269,7 +269,7 @@ TEST(Player, FreshShotsDecideTheOrder) {
 }
 
 // The last option of a push out is to pass the shot back, and nobody passes an easy pot back.
-TEST(Player, WhatAPushOutLeavesIsThatOfTheChosenOption) {
+TEST(Player, APushOutLeavesTheOpponentsChoice) {
     State state = turn(Game::kNineBall);
     state.may_push_out = true;
     AdviceOptions options;
@@ -280,6 +280,7 @@ TEST(Player, WhatAPushOutLeavesIsThatOfTheChosenOption) {
                                    [](const Advice& a) { return a.kind == ShotKind::kPushOut; });
     ASSERT_NE(push, advice.end());
     EXPECT_GT(push->opponent, 0.3);
+    EXPECT_LE(push->opponent, 1.0);
 }
 
 // Balls 2 and 3 all but touch, so that a kick off the left rail sends the 3 to two more rails and the corner:

@@ -168,7 +168,7 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
 
     balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
         "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name. Only a
-        scene tells which balls lie behind the head string, for a cue ball in hand there
+        scene shows which balls lie behind the head string, for a cue ball in hand there
 
     Raises ValueError if the game is over or no ball is left to play at.
     """
