@@ -138,7 +138,7 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
 
 // [-] The smallest restitution of a contact in a cluster, because the exponent of the unloading law is
 // limited.
-constexpr double kLeastInCluster = 0.05;
+constexpr double kLeastInCluster = 0.0016;
 
 void warn_of_clusters(Plan& plan) {
     const double e_b = plan.e_b();
