@@ -157,6 +157,29 @@ TEST(RoundWalls, KeepAPlasticBall) {
     }
 }
 
+// Once a run failed after a million such intervals. With the least friction it comes to rest, and with a ball
+// in its path it has another event.
+TEST(RoundWalls, APlasticBallRunsForEver) {
+    Scene scene = frictionless();
+    scene.balls.e_c = 0.0;
+    scene.table.jaws.push_back(wall(Vec2::Zero(), 0.5));
+    add_ball(scene, "ball", 0.1, 0.0, 0.5, 0.1);
+    scene.stop.events = 100;
+    const Record endless = run_verified(scene);
+    EXPECT_EQ(endless.stopped, StopReason::kEndless);
+    EXPECT_EQ(endless.events.size(), 2u);
+    EXPECT_LT(endless.tracks[0].segments.size(), 10000u);
+
+    Scene meets = scene;
+    const double orbit = 0.5 - scene.balls.R;
+    add_ball(meets, "other", 0.0, orbit - 0.01);
+    EXPECT_GE(count(run_verified(meets), EventType::kBallBall), 1);
+
+    Scene rests = scene;
+    rests.balls.mu_s = rests.balls.mu_r = 1e-3;
+    EXPECT_EQ(run_verified(rests).stopped, StopReason::kAtRest);
+}
+
 // 13 of 24 such orbits once lost the speed at which they met the wall.
 TEST(RoundWalls, ALosslessGrazeBounces) {
     for (int k = 0; k < 24; ++k) {

@@ -102,6 +102,8 @@ class Log : private Borrowed<LogMemory> {
         if (costs_) book_costs();
         if (options_.progress) report_progress();
     }
+    /// Number of iterations since the last event.
+    int quiet_rounds() const { return quiet_rounds_; }
     /// Marks this iteration as slow, so that it ends with a progress report.
     void note_long_round() { long_round_ = true; }
 
