@@ -39,7 +39,7 @@ WEAK = {
     r"\b(go|goes) on\b": (1, "continue"),
     r"\banswers?\b": (19, "return, print, respond"),
     r"\bstands?\b": (9, "be, be listed, be stated"),
-    r"\b(those|that) of\b": (111, "the noun again"),
+    r"\b(those|that) of\b": (110, "the noun again"),
     r"\b(what|whatever|whoever)\b": (133, "a noun"),
 }
 

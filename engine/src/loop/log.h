@@ -75,7 +75,8 @@ class Log : private Borrowed<LogMemory> {
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
     void event(EventType type, const Contact& contact) {
-        event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));
+        event(type, contact.ball, event_partner(contact, geometry_, planar(balls_.position(contact.ball))),
+              event_detail(contact));
     }
     /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls, const std::vector<Hit>& hits);
