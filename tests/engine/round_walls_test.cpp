@@ -180,6 +180,30 @@ TEST(RoundWalls, APlasticBallRunsForEver) {
     EXPECT_EQ(run_verified(rests).stopped, StopReason::kAtRest);
 }
 
+// A ball that ran along a wall of several arcs once left it at every joint: 2000 events in 1000 laps.
+TEST(RoundWalls, ArcsThatContinueEachOtherAreOneWall) {
+    for (const double e_c : {0.0, 0.9}) {
+        const auto run = [&](const std::vector<double>& from, double turn) {
+            Scene scene = frictionless();
+            scene.balls.e_c = e_c;
+            for (const double start : from)
+                scene.table.jaws.push_back(wall(Vec2::Zero(), 0.5, start, start + turn));
+            add_ball(scene, "ball", 0.1, 0.0, 0.5, 0.1);
+            scene.stop.events = 20;
+            return run_verified(scene);
+        };
+        const Record one = run({100.0}, 360.0), several = run({100.0, 340.0, 220.0}, 120.0);
+        EXPECT_EQ(several.stopped, one.stopped);
+        ASSERT_EQ(several.events.size(), one.events.size());
+        EXPECT_EQ(several.state_at(0, several.duration).position, one.state_at(0, one.duration).position);
+        for (const Event& event : several.events) {
+            const Vec2 at = planar(several.state_at(0, event.time).position);
+            EXPECT_TRUE(span_of(several.table.jaws[static_cast<std::size_t>(event.b)]).holds(at))
+                << event.time;
+        }
+    }
+}
+
 // 13 of 24 such orbits once lost the speed at which they met the wall.
 TEST(RoundWalls, ALosslessGrazeBounces) {
     for (int k = 0; k < 24; ++k) {
