@@ -1,6 +1,7 @@
 // Round walls around balls: no ball leaves, none gains energy, and none loses any without a cause.
 #include <gtest/gtest.h>
 
+#include <vector>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
