@@ -75,6 +75,7 @@ class Search {
     /// @param closer  whether to also find Result::leaves, and the chance to win instead of the measure of
     /// the skill
     Result result(const Record& record, const Call& call, bool closer = false) const;
+    std::vector<Attempt> candidates() const;
     void lift(Attempt& candidate) const;
     std::vector<Attempt> pots(std::span<const Vec2> places) const;
     void correct(std::vector<Line>& lines) const;
