@@ -1,13 +1,13 @@
 // Round walls around balls: no ball leaves, none gains energy, and none loses any without a cause.
 #include <gtest/gtest.h>
 
-#include <vector>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "carom/engine/cushion.h"
 #include "reference/random_impacts.h"
