@@ -91,6 +91,17 @@ const games::Option& option_of(const carom_verdict* verdict, size_t index) {
     return verdict->verdict.options[index];
 }
 
+void fill(const std::vector<std::string>& balls, const games::Legal& legal, uint8_t* strike, uint8_t* first,
+          uint8_t* callable) {
+    const auto mark = [&](uint8_t* out, const std::vector<std::string>& list) {
+        for (size_t i = 0; out != nullptr && i < balls.size(); ++i)
+            out[i] = std::find(list.begin(), list.end(), balls[i]) != list.end() ? 1 : 0;
+    };
+    mark(strike, legal.cue_balls);
+    mark(first, legal.first);
+    mark(callable, legal.callable);
+}
+
 }  // namespace
 
 carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state) {
@@ -123,14 +134,17 @@ carom_status carom_legal(const carom_game_state* state, size_t count, const char
             need({ids[i]});
             balls.emplace_back(ids[i]);
         }
-        const games::Legal legal = asked([&] { return games::legal(state_of(*state), balls); });
-        const auto fill = [&](uint8_t* out, const std::vector<std::string>& list) {
-            for (size_t i = 0; out != nullptr && i < count; ++i)
-                out[i] = std::find(list.begin(), list.end(), balls[i]) != list.end() ? 1 : 0;
-        };
-        fill(strike, legal.cue_balls);
-        fill(first, legal.first);
-        fill(callable, legal.callable);
+        fill(balls, asked([&] { return games::legal(state_of(*state), balls); }), strike, first, callable);
+    });
+}
+
+carom_status carom_legal_on(const carom_game_state* state, const carom_scene* scene, uint8_t* strike,
+                            uint8_t* first, uint8_t* callable) {
+    return guarded([&] {
+        need({state, scene});
+        const carom::Scene& on = scene->scene;
+        fill(carom::ids_of(on.ball), asked([&] { return games::legal(state_of(*state), on); }), strike, first,
+             callable);
     });
 }
 

@@ -66,6 +66,10 @@ bool is_in(std::string_view ball, const std::vector<std::string>& list);
 inline bool is_behind_string(const State& state, double string, double y) {
     return state.in_hand == InHand::kHeadString && y < string;
 }
+/// The rules of the next shot. @param behind  ids of the balls behind the head string, by is_behind_string():
+/// none may be hit first, unless no other ball may be
+Legal legal(const State& state, const std::vector<std::string>& balls,
+            const std::vector<std::string>& behind);
 bool is_in(std::string_view ball, const std::vector<Respot>& respots);
 /// Whether a ball that fell was driven to a rail far from the pocket, not only to a rail, facing or jaw at
 /// its mouth.

@@ -180,14 +180,21 @@ Legal legal(const State& state, std::span<const std::string> balls) {
     return legal;
 }
 
+Legal detail::legal(const State& state, const std::vector<std::string>& balls,
+                    const std::vector<std::string>& behind) {
+    Legal legal = games::legal(state, balls);
+    const std::vector<std::string> all = legal.first;
+    std::erase_if(legal.first, [&](const std::string& id) { return is_in(id, behind); });
+    if (legal.first.empty()) legal.first = all;
+    return legal;
+}
+
 Legal legal(const State& state, const Scene& scene) {
-    Legal all = legal(state, ids_of(scene.ball));
-    Legal beyond = all;
-    std::erase_if(beyond.first, [&](const std::string& id) {
-        const BallStart& ball = scene.ball[static_cast<std::size_t>(index_of(scene.ball, id))];
-        return detail::is_behind_string(state, head_string(scene.table), ball.position.y());
-    });
-    return beyond.first.empty() ? all : beyond;
+    std::vector<std::string> behind;
+    for (const BallStart& ball : scene.ball)
+        if (detail::is_behind_string(state, head_string(scene.table), ball.position.y()))
+            behind.push_back(ball.id);
+    return detail::legal(state, ids_of(scene.ball), behind);
 }
 
 Verdict judge(const State& state, const Record& record, const Call& call) {

@@ -89,7 +89,9 @@ games::Option option_of(const OptionRow& row) {
     return option;
 }
 
-LegalRow legal(const StateRow& state, const std::vector<std::string>& balls) {
+/// @param balls  ids, or a scene
+template <class Balls>
+LegalRow legal(const StateRow& state, const Balls& balls) {
     const games::Legal l = games::legal(state_of(state), balls);
     return {l.cue_balls, l.first, l.callable, name(l.in_hand), l.may_push_out};
 }
@@ -187,7 +189,8 @@ void add_games_rules(nb::module_& m) {
                               o.what);
         return rows;
     });
-    m.def("legal", legal);
+    m.def("legal", legal<std::vector<std::string>>);
+    m.def("legal_on", [](const StateRow& state, const NativeScene& on) { return legal(state, *on.scene); });
     m.def("judge", judge);
     m.def("book_of", [](const std::string& game) {
         return std::string(games::book_of(value_of<games::Game>("game", game)));

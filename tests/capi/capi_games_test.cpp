@@ -89,6 +89,18 @@ TEST(CApiGames, AShotIsJudgedAndTheNextOneFollows) {
     EXPECT_EQ(std::vector<int>(strike, strike + 3), (std::vector<int>{1, 0, 0}));
     EXPECT_EQ(std::vector<int>(first, first + 3), (std::vector<int>{0, 0, 1}));
     EXPECT_EQ(std::vector<int>(callable, callable + 3), (std::vector<int>{0, 0, 0}));
+    // With the cue ball in hand behind the head string, the 1 there may not be hit first, but the 9 may.
+    carom_game_state eight = state;
+    ASSERT_EQ(carom_game_new(CAROM_EIGHT_BALL, 0, 0, &eight), CAROM_OK);
+    eight.opening = 0;
+    eight.in_hand = CAROM_HEAD_STRING;
+    const auto scene = parsed(
+        "[table]\npreset = \"nine_foot\"\n[[ball]]\nid = \"1\"\nposition = [0.5, 0.3]\n"
+        "[[ball]]\nid = \"9\"\nposition = [0.5, 1.9]\n"
+        "[[ball]]\nid = \"cue\"\nposition = [0.8, 0.3]\n");
+    ASSERT_EQ(carom_legal_on(&eight, scene.get(), strike, first, nullptr), CAROM_OK);
+    EXPECT_EQ(std::vector<int>(strike, strike + 3), (std::vector<int>{0, 0, 1}));
+    EXPECT_EQ(std::vector<int>(first, first + 3), (std::vector<int>{0, 1, 0}));
 
     const RecordPtr record = played(parsed(kScratch).get());
     const VerdictPtr verdict = judged(state, record.get());

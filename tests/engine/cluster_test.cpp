@@ -380,12 +380,25 @@ TEST(Cluster, APlanSaysWhichRestitutionCounts) {
         for (int k = 0; k < balls; ++k) add_ball(scene, std::to_string(k), 0.1 * k, 0.0, k == 0 ? 1.0 : 0.0);
         return plan_of(scene).warnings;
     };
-    const auto found = warnings(3, 0.01, ClusterModel::kCompliant);
+    const auto found = warnings(3, 0.001, ClusterModel::kCompliant);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0], "balls.e_b is 0.01, but impacts of three or more balls use 0.05");
-    EXPECT_TRUE(warnings(2, 0.01, ClusterModel::kCompliant).empty());
-    EXPECT_TRUE(warnings(3, 0.05, ClusterModel::kCompliant).empty());
-    EXPECT_TRUE(warnings(3, 0.01, ClusterModel::kRigid).empty());
+    EXPECT_EQ(found[0], "balls.e_b is 0.001, but impacts of three or more balls use 0.0016");
+    EXPECT_TRUE(warnings(2, 0.001, ClusterModel::kCompliant).empty());
+    EXPECT_TRUE(warnings(3, 0.002, ClusterModel::kCompliant).empty());
+    EXPECT_TRUE(warnings(3, 0.001, ClusterModel::kRigid).empty());
+}
+
+// Three balls in line: a plastic impact leaves them one velocity, and a small restitution separates the outer
+// two by about as much.
+TEST(Cluster, PlasticBallsEndWithOneVelocity) {
+    for (const double e : {0.0, 0.001, 0.003, 0.01, 0.02, 0.049}) {
+        std::vector<ClusterBall> line;
+        for (int k = 0; k < 3; ++k)
+            line.push_back({k, {2.0 * kR * k, 0.0, kR}, {k == 0 ? 1.0 : 0.0, 0.0, 0.0}, Vec3::Zero()});
+        const Result out = run(line, settings(0.0, 0.0, e), 1.0);
+        for (const ClusterBall& ball : out.balls) EXPECT_NEAR(ball.v.x(), 1.0 / 3.0, 0.5 * e + 1e-3) << e;
+        EXPECT_GE(out.balls[2].v.x() - out.balls[0].v.x(), 0.5 * e) << e;
+    }
 }
 
 TEST(Cluster, BallsThatHardlyMoveComeToRest) {

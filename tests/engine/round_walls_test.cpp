@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "carom/engine/cushion.h"
 #include "reference/random_impacts.h"
@@ -154,6 +155,53 @@ TEST(RoundWalls, KeepAPlasticBall) {
         scene.stop.time = 60.0;
         const Record record = run_verified(scene);
         EXPECT_NEAR(length(planar(record.state_at(0, 60.0).position)), 0.5 - scene.balls.R, 1e-7);
+    }
+}
+
+// Once a run failed after a million such intervals. With the least friction it comes to rest, and with a ball
+// in its path it has another event.
+TEST(RoundWalls, APlasticBallRunsForEver) {
+    Scene scene = frictionless();
+    scene.balls.e_c = 0.0;
+    scene.table.jaws.push_back(wall(Vec2::Zero(), 0.5));
+    add_ball(scene, "ball", 0.1, 0.0, 0.5, 0.1);
+    scene.stop.events = 100;
+    const Record endless = run_verified(scene);
+    EXPECT_EQ(endless.stopped, StopReason::kEndless);
+    EXPECT_EQ(endless.events.size(), 2u);
+    EXPECT_LT(endless.tracks[0].segments.size(), 10000u);
+
+    Scene meets = scene;
+    const double orbit = 0.5 - scene.balls.R;
+    add_ball(meets, "other", 0.0, orbit - 0.01);
+    EXPECT_GE(count(run_verified(meets), EventType::kBallBall), 1);
+
+    Scene rests = scene;
+    rests.balls.mu_s = rests.balls.mu_r = 1e-3;
+    EXPECT_EQ(run_verified(rests).stopped, StopReason::kAtRest);
+}
+
+// A ball that ran along a wall of several arcs once left it at every joint: 2000 events in 1000 laps.
+TEST(RoundWalls, ArcsThatContinueEachOtherAreOneWall) {
+    for (const double e_c : {0.0, 0.9}) {
+        const auto run = [&](const std::vector<double>& from, double turn) {
+            Scene scene = frictionless();
+            scene.balls.e_c = e_c;
+            for (const double start : from)
+                scene.table.jaws.push_back(wall(Vec2::Zero(), 0.5, start, start + turn));
+            add_ball(scene, "ball", 0.1, 0.0, 0.5, 0.1);
+            scene.stop.events = 20;
+            return run_verified(scene);
+        };
+        const Record one = run({100.0}, 360.0), several = run({100.0, 340.0, 220.0}, 120.0);
+        EXPECT_EQ(several.stopped, one.stopped);
+        ASSERT_EQ(several.events.size(), one.events.size());
+        EXPECT_EQ(several.state_at(0, several.duration).position, one.state_at(0, one.duration).position);
+        for (const Event& event : several.events) {
+            const Vec2 at = planar(several.state_at(0, event.time).position);
+            EXPECT_TRUE(span_of(several.table.jaws[static_cast<std::size_t>(event.b)]).holds(at))
+                << event.time;
+        }
     }
 }
 

@@ -90,6 +90,13 @@ def test_a_new_game_states_what_is_legal():
     assert games.legal(later, ["cue", "8", "1", "9"]).callable == ["1"]
     assert games.legal(games.new_game("three_cushion", first=1),
                        carom.Scene(**RACKS["three_cushion"])).cue_balls == ["yellow"]
+    # Only a scene shows that the 1 lies behind the head string.
+    at = {"cue": [0.8, 0.3], "1": [0.5, 0.3], "9": [0.5, 1.9]}
+    balls = [{"id": ball, "position": place} for ball, place in at.items()]
+    behind = carom.Scene(table="nine_foot", ball=balls)
+    line = state._replace(opening=False)
+    assert games.legal(line, behind).first == ["9"]
+    assert games.legal(line, list(at)).first == ["1", "9"]
     for bad in (
         lambda: games.new_game("pinball"), lambda: games.new_game("snooker", first=3),
         lambda: games.legal(state._replace(over=True), ["8"])

@@ -278,6 +278,10 @@ CAROM_API carom_status carom_game_rule(carom_game_state* state, const char* opti
  * of them may be NULL. */
 CAROM_API carom_status carom_legal(const carom_game_state* state, size_t count, const char* const* ids,
                                    uint8_t* strike, uint8_t* first, uint8_t* callable);
+/* The same for the balls of a scene, in its order. While the cue ball is in hand behind the head string, a
+ * ball behind it may not be hit first, unless all are there. */
+CAROM_API carom_status carom_legal_on(const carom_game_state* state, const carom_scene* scene,
+                                      uint8_t* strike, uint8_t* first, uint8_t* callable);
 
 /* An announcement before a shot. A text that is NULL announces nothing. */
 typedef struct carom_call {

@@ -32,9 +32,13 @@ inline bool is_jaw(const Contact& c, const Geometry& geometry) {
     return c.with == With::kNose && geometry.noses[c.other].type == EventType::kBallJaw;
 }
 
-/// The fields b and detail of an event of this contact (Event).
-inline int event_partner(const Contact& c, const Geometry& geometry) {
-    return c.with == With::kNose ? geometry.noses[c.other].index : c.other;
+/// The fields b and detail of an event of this contact (Event). @param place  of the ball
+inline int event_partner(const Contact& c, const Geometry& geometry, const Vec2& place) {
+    if (c.with != With::kNose) return c.other;
+    const Nose& nose = geometry.noses[c.other];
+    for (const Nose& arc : geometry.joined)
+        if (continues(arc, nose) && arc.span.holds(place - arc.center)) return arc.index;
+    return nose.index;
 }
 inline int event_detail(const Contact& c) {
     return c.with == With::kNose ? c.other : -1;

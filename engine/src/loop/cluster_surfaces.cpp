@@ -122,7 +122,8 @@ void NearSurfaces::hit(std::size_t member, double time, const Vec3& r, Velocitie
     const double left = ball.v.dot(n);
     if (!solved || !(left > -kCreeps)) ball.v -= left * n;
     m_.hits_.push_back({time, index, jaw ? Partner::kJaw : Partner::kCushion,
-                        event_partner(part, plan_.geometry), mass * std::max(0.0, (ball.v - before).dot(n))});
+                        event_partner(part, plan_.geometry, planar(r)),
+                        mass * std::max(0.0, (ball.v - before).dot(n))});
 }
 
 double NearSurfaces::out(std::size_t member, const Placed& at) const {

@@ -75,7 +75,8 @@ class Log : private Borrowed<LogMemory> {
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
     void event(EventType type, const Contact& contact) {
-        event(type, contact.ball, event_partner(contact, geometry_), event_detail(contact));
+        const Vec2 place = contact.with == With::kNose ? planar(balls_.position(contact.ball)) : Vec2(0.0, 0.0);
+        event(type, contact.ball, event_partner(contact, geometry_, place), event_detail(contact));
     }
     /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
     void cluster(int a, int b, const std::vector<ClusterBall>& balls, const std::vector<Hit>& hits);
@@ -102,6 +103,8 @@ class Log : private Borrowed<LogMemory> {
         if (costs_) book_costs();
         if (options_.progress) report_progress();
     }
+    /// Number of iterations since the last event.
+    int quiet_rounds() const { return quiet_rounds_; }
     /// Marks this iteration as slow, so that it ends with a progress report.
     void note_long_round() { long_round_ = true; }
 

@@ -35,6 +35,7 @@ class Run {
   private:
     StopReason run();
     void start_balls();
+    bool goes_round();
     void check_digits(int ball, double time);
     void check_creeping(double time);
     [[noreturn]] void lose(int ball, double when);
@@ -51,6 +52,7 @@ class Run {
     RestingContacts resting_;
     Detector detector_;
     Resolver resolver_;
+    double lap_speed_ = -1.0;  // [m/s] of the last moving ball when goes_round() last looked
 };
 
 }  // namespace carom

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
+#include <utility>
 
 #include "carom/engine/tolerances.h"
 #include "contact/detect.h"
@@ -21,6 +24,10 @@ namespace {
 constexpr double kLostShare = 1e-3;
 // [s] Before this the clock is fine enough for any legal speed, and is not checked.
 constexpr double kDigitsAreMany = 1e3;
+// [-] Iterations between two looks at a ball that runs along a wall.
+constexpr int kLook = 1000;
+// [-] Friction makes a greater difference of speeds between two looks.
+constexpr double kSameSpeed = 1e-12;
 
 }  // namespace
 
@@ -73,8 +80,29 @@ StopReason Run::run() {
         resolver_.resolve(next.contact);
         detector_.update(log_.touched());
         log_.end_round();
+        if (stop_ == kNever && log_.quiet_rounds() % kLook == kLook - 1 && goes_round())
+            return StopReason::kEndless;
     }
     return StopReason::kEvents;
+}
+
+// Whether the only ball that moves has gone twice round every wall since the last event without losing speed:
+// it runs along one for ever, without friction.
+bool Run::goes_round() {
+    int runner = -1;
+    for (int ball = 0; ball < balls_.count(); ++ball) {
+        const MotionState state = balls_.segment(ball).state;
+        if (state == MotionState::kStationary || is_gone(state)) continue;
+        if (runner >= 0) return false;
+        runner = ball;
+    }
+    if (runner < 0) return false;
+    const double speed = length3(balls_.segment(runner).v), before = std::exchange(lap_speed_, speed);
+    double largest = 0.0;
+    for (const Nose& nose : plan_.geometry.noses) largest = std::max(largest, std::abs(nose.radius));
+    const double since = log_.events().empty() ? 0.0 : log_.events().back().time;
+    return std::abs(speed - before) <= kSameSpeed * speed &&
+           speed * (balls_.now() - since) > 4.0 * std::numbers::pi * largest;
 }
 
 // Without friction a slow ball can move for so long that the clock's resolution no longer suffices: it would

@@ -19,8 +19,10 @@ constexpr std::size_t kCacheLine = 64;  // [bytes]
 constexpr double kClusterLookAhead = 4.0;
 // [V] With smaller errors of a step, rounding prevails.
 constexpr double kClusterTightest = 1e-11;
-// [-] Largest exponent of the unloading law; in a cluster, restitutions below 0.05 count as 0.05.
-constexpr int kLargestLawExponent = 1024;
+// [-] Largest exponent of the unloading law: in a cluster, no restitution is below 0.0016.
+constexpr int kLargestLawExponent = 1 << 20;
+// [-] With less restitution, contacts open in proportion more slowly.
+constexpr double kPlastic = 0.05;
 // [-] Limit on sweeps of the rigid projection; a rack of 15 needs about 500.
 constexpr std::int64_t kRigidSweeps = 100000;
 
@@ -293,6 +295,7 @@ std::int64_t ClusterMap::compliant(std::vector<ClusterBall>& balls,
     // A slow contact lasts longer in this unit of time.
     const double slow = contact_length(approach) / (approach * (L / V));
     double limit = slow * kClusterTimeLimit * heaviest;
+    if (settings.e_b < kPlastic) limit *= kPlastic / std::max(settings.e_b, std::sqrt(2.5 / law.p));
     if (settings.longest > 0.0) limit = std::min(limit, settings.longest / (L / V));
     const std::int64_t evaluations =
         settings.integrate(phase, law, tolerance, slow * kClusterLookAhead, limit);

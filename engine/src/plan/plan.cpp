@@ -42,6 +42,39 @@ bool needs_tip(const Geometry& geometry, const Table& table, const Vec2& end) {
                         [&](const Nose& nose) { return nose.radius == 0.0 && nose.center == end; });
 }
 
+// Joins arcs that continue each other on one circle, so that a ball does not leave its wall at a joint. An
+// arc has the index of its first part. @return the other parts, by their indices
+std::vector<std::pair<Jaw, int>> join_arcs(std::vector<std::pair<Jaw, int>>& jaws) {
+    // [-] Distance of two directions that are one.
+    constexpr double kSameEnd = 1e-12;
+    std::vector<std::pair<Jaw, int>> parts;
+    const auto meet = [](const Vec2& end, const Vec2& start) { return length(end - start) <= kSameEnd; };
+    const auto joins = [&](Jaw& arc, const Jaw& next) {
+        if (!arc.is_arc() || !next.is_arc()) return false;
+        const Nose one = nose_of(arc, 0, 0.0), other = nose_of(next, 0, 0.0);
+        if (!continues(one, other) || one.height != other.height || one.span.whole || other.span.whole)
+            return false;
+        const double turn = *next.to_deg - *next.from_deg;
+        if (meet(one.span.to, other.span.from))
+            arc.to_deg = *arc.to_deg + turn;
+        else if (meet(other.span.to, one.span.from))
+            arc.from_deg = *arc.from_deg - turn;
+        else
+            return false;
+        return true;
+    };
+    for (std::size_t i = 0; i < jaws.size(); ++i)
+        for (std::size_t k = i + 1; k < jaws.size();)
+            if (joins(jaws[i].first, jaws[k].first)) {
+                parts.push_back(jaws[k]);
+                jaws.erase(jaws.begin() + static_cast<std::ptrdiff_t>(k));
+                k = i + 1;
+            } else {
+                ++k;
+            }
+    return parts;
+}
+
 Geometry geometry_of(const Scene& scene) {
     const Table& table = scene.table;
     const double R = scene.size_of(scene.ball.front()).R;
@@ -55,16 +88,18 @@ Geometry geometry_of(const Scene& scene) {
                 geometry.noses.push_back({end, 0.0, cushion.height, EventType::kBallCushion,
                                           static_cast<int>(i), inset(cushion.height)});
     }
-    for (std::size_t i = 0; i < table.jaws.size(); ++i) {
-        const Jaw& jaw = table.jaws[i];
-        const Nose nose = nose_of(jaw, static_cast<int>(i), inset(jaw.height));
+    std::vector<std::pair<Jaw, int>> jaws;
+    for (const Jaw& jaw : table.jaws) jaws.emplace_back(jaw, static_cast<int>(jaws.size()));
+    for (const auto& [jaw, i] : join_arcs(jaws))
+        geometry.joined.push_back(nose_of(jaw, i, inset(jaw.height)));
+    for (const auto& [jaw, i] : jaws) {
+        const Nose nose = nose_of(jaw, i, inset(jaw.height));
         geometry.noses.push_back(nose);
         if (nose.span.whole) continue;
         for (const Vec2& out : {nose.span.from, nose.span.to}) {
             const Vec2 end = jaw.center + jaw.radius * out;
             if (needs_tip(geometry, table, end))
-                geometry.noses.push_back(
-                    {end, 0.0, jaw.height, EventType::kBallJaw, static_cast<int>(i), inset(jaw.height)});
+                geometry.noses.push_back({end, 0.0, jaw.height, EventType::kBallJaw, i, inset(jaw.height)});
         }
     }
     geometry.pockets = table.pockets;
@@ -138,7 +173,7 @@ void warn_of_tip(Plan& plan, const BallStart& ball) {
 
 // [-] The smallest restitution of a contact in a cluster, because the exponent of the unloading law is
 // limited.
-constexpr double kLeastInCluster = 0.05;
+constexpr double kLeastInCluster = 0.0016;
 
 void warn_of_clusters(Plan& plan) {
     const double e_b = plan.e_b();

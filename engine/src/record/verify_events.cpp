@@ -302,7 +302,8 @@ class Events {
             report("U6", "the event names a part that no ball can reach");
         else if (partner == Partner::kBall && e.a == e.b)
             report("U6", "ball {} meets itself", id(static_cast<std::size_t>(e.a)));
-        else if (contact.with == With::kNose && plan_.geometry.noses[contact.other].index != e.b)
+        else if (contact.with == With::kNose &&
+                 event_partner(contact, plan_.geometry, planar(changed_[balls[0]].at.position)) != e.b)
             report("U6", "the event names another nose than its part");
         for (const std::size_t ball : balls) {
             if (found_) break;

@@ -303,10 +303,7 @@ std::size_t choose(const Verdict& verdict, const Record& record, const Skill& sk
     for (std::size_t i = 0; i < verdict.options.size(); ++i) {
         const Option& option = verdict.options[i];
         check_game(option.state.game);
-        double worth = 0.5;  // of a new rack
-        if (!option.rerack() && !option.state.over)
-            worth = potting.value(option.state, detail::lie_of(record, option));
-        if (option.state.turn != verdict.chooser) worth = 1.0 - worth;
+        const double worth = potting.worth(option, record, verdict.chooser);
         if (worth > most) {
             most = worth;
             best = i;

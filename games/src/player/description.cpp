@@ -1,6 +1,7 @@
 #include "player/description.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -52,31 +53,55 @@ std::string spin_words(const Record& record, const Shot& shot) {
     return share > kRolls ? "follow" : share < kDraws ? "draw" : "stun";
 }
 
-std::string rail_words(const Record& record, const Shot& shot, int bank) {
-    // [-] Of the table's width.
+std::vector<Hit> chain_of(const Record& record, int ball, double until) {
+    // [-] Of the table's width: the rail beside a jaw is a part of the pocket.
     constexpr double kMouth = 0.15;
-    const Table& table = record.table;
-    const int ball = bank > 0 ? index_of(record, std::to_string(bank)) : shot.struck;
-    if (bank == 0 && is_direct(record, ball, 0.0, planar(record.state_at(ball, shot.first_time).position)))
-        return "";
-    std::string words;
-    const auto add = [&](const Hit& hit) {
-        if (hit.a != ball || hit.partner != Partner::kCushion || (bank == 0 && hit.time > shot.first_time))
-            return;
-        const Vec2 place = planar(record.state_at(ball, hit.time).position);
-        // The rail beside a jaw is a part of the pocket.
-        const bool in_mouth = std::any_of(
-            table.pockets.begin(), table.pockets.end(),
-            [&](const Pocket& pocket) { return length(place - pocket.center) < kMouth * table.width; });
-        if (in_mouth) return;
-        const Cushion& cushion = table.cushions[static_cast<std::size_t>(hit.b)];
-        const std::string name = cushion.name.empty() ? cushion.id : cushion.name;
-        words += fmt::format("{}{} at diamond {:.1f}", words.empty() ? "off the " : ", ",
-                             name.substr(0, name.find(',')),
-                             cushion_point(table, hit.partner, hit.b, place).diamond);
+    const auto in_mouth = [&](const Hit& hit) {
+        const Vec2 place = planar(record.state_at(hit.a, hit.time).position);
+        const auto& pockets = record.table.pockets;
+        return std::any_of(pockets.begin(), pockets.end(), [&](const Pocket& pocket) {
+            return length(place - pocket.center) < kMouth * record.table.width;
+        });
     };
-    for (const Event& event : record.events) each_hit(event, record.hits(event), add);
-    return words;
+    std::vector<Hit> hits, chain;
+    for (const Event& event : record.events)
+        each_hit(event, record.hits(event), [&](const Hit& hit) {
+            if (hit.time < until) hits.push_back(hit);
+        });
+    for (auto hit = hits.rbegin(); hit != hits.rend(); ++hit) {
+        if (hit->partner == Partner::kBall && (hit->a == ball || hit->b == ball)) {
+            Hit drives = *hit;
+            const bool rested =
+                planar(record.state_at(ball, std::max(0.0, hit->time - kAtOnce)).velocity) == Vec2::Zero();
+            if ((hit->b == ball) != rested) std::swap(drives.a, drives.b);
+            chain.push_back(drives);
+            if (rested) ball = drives.a;
+        } else if (hit->partner == Partner::kCushion && hit->a == ball && !in_mouth(*hit)) {
+            chain.push_back(*hit);
+        }
+    }
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+}
+
+std::string chain_words(const Record& record, const Shot& shot, int ball) {
+    if (ball < 0 &&
+        is_direct(record, shot.struck, 0.0, planar(record.state_at(shot.struck, shot.first_time).position)))
+        return "";
+    std::vector<std::string> words;
+    for (const Hit& hit :
+         ball < 0 ? chain_of(record, shot.struck, shot.first_time) : chain_of(record, ball)) {
+        if (hit.partner == Partner::kBall) {
+            if (hit.b != ball) words.push_back(record.tracks[static_cast<std::size_t>(hit.b)].id);
+            continue;
+        }
+        const Cushion& cushion = record.table.cushions[static_cast<std::size_t>(hit.b)];
+        const std::string name = cushion.name.empty() ? cushion.id : cushion.name;
+        const Vec2 place = planar(record.state_at(hit.a, hit.time).position);
+        words.push_back(fmt::format("{} at diamond {:.1f}", name.substr(0, name.find(',')),
+                                    cushion_point(record.table, hit.partner, hit.b, place).diamond));
+    }
+    return words.empty() ? "" : fmt::format("off the {}", fmt::join(words, ", the "));
 }
 
 std::string place_words(const Table& table, const Vec2& place) {

@@ -1,7 +1,9 @@
 // A shot that was played, as a player describes it.
 #pragma once
 
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "carom/engine/record.h"
 #include "carom/games/player.h"
@@ -13,9 +15,13 @@ namespace carom::games::detail {
 ShotKind kind_of(const Record& record, const Shot& shot, const Shot::Fallen& fallen);
 /// The motion of the cue ball at its first contact: "follow", "stun" or "draw"; "" if it hits no ball.
 std::string spin_words(const Record& record, const Shot& shot);
-/// The rails that the ball of a bank meets, or the cue ball of a kick: "off the left rail at diamond 3.2".
-/// @param bank  the number of that ball; 0: the cue ball
-std::string rail_words(const Record& record, const Shot& shot, int bank);
+/// The contacts before `until` that bring a ball to its place, in order: rails, except at the mouth of a
+/// pocket, and balls. Hit::a is the ball that comes, and Hit::b the one that it drives on or leaves.
+std::vector<Hit> chain_of(const Record& record, int ball,
+                          double until = std::numeric_limits<double>::infinity());
+/// The chain of a potted ball, without its own first contact: "off the left rail at diamond 3.2, the 2".
+/// @param ball  its index; -1: the rails of the struck ball before its first hit
+std::string chain_words(const Record& record, const Shot& shot, int ball);
 /// A place by the nearest pocket or spot, or by both sides of a line between two.
 std::string place_words(const Table& table, const Vec2& place);
 

@@ -132,16 +132,15 @@ Lie lie_of(const Record& record, const Option& option) {
 }
 
 Numbers targets(const State& state, const Lie& lie) {
-    std::vector<std::string> ids;
-    for (const Lie::Ball& ball : lie.balls) ids.push_back(std::to_string(ball.number));
-    const Legal allowed = legal(state, ids);
+    std::vector<std::string> ids, behind;
+    for (const Lie::Ball& ball : lie.balls) {
+        ids.push_back(std::to_string(ball.number));
+        if (is_behind_string(state, lie.string, ball.place.y())) behind.push_back(ids.back());
+    }
+    const Legal allowed = legal(state, ids, behind);
     Numbers first = 0, callable = 0;
     for (const std::string& id : allowed.first) first |= only(number_of(id));
     for (const std::string& id : allowed.callable) callable |= only(number_of(id));
-    Numbers beyond = first;
-    for (const Lie::Ball& ball : lie.balls)
-        if (is_behind_string(state, lie.string, ball.place.y())) beyond &= ~only(ball.number);
-    if (beyond != 0) first = beyond;
     return allowed.callable.empty() ? first : first & callable;
 }
 
@@ -334,6 +333,14 @@ double Potting::value(const State& state, const Lie& lie) const {
     double x = 0.0;
     for (std::size_t k = 0; k < kFeatures; ++k) x += weights[k] * features[k];
     return 1.0 / (1.0 + exponential(-x));
+}
+
+double Potting::worth(const Option& option, const Record& record, int player) const {
+    const State& next = option.state;
+    if (next.over) return next.winner == player ? 1.0 : 0.0;
+    if (option.rerack()) return 0.5;
+    const double chance = value(next, lie_of(record, option));
+    return next.turn == player ? chance : 1.0 - chance;
 }
 
 }  // namespace carom::games::detail

@@ -66,6 +66,8 @@ class Potting {
     std::array<double, kFeatures> features(const State& state, const Lie& lie) const;
     /// [-] The chance of the player whose turn it is to win: a logistic function of the features.
     double value(const State& state, const Lie& lie) const;
+    /// The chance of a player to win [-] after an option of a shot: 0.5 in a new rack.
+    double worth(const Option& option, const Record& record, int player) const;
     /// The number of the ball with the surest pot for the player to shoot, and its chance; 0: none.
     std::pair<int, double> surest(const State& state, const Lie& lie) const;
     /// Whether the cue ball fits there between the noses.

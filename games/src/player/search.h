@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "carom/games/player.h"
@@ -69,9 +70,12 @@ class Search {
     /// @param tables  shot i is played on table i modulo their number; empty: on the scene's
     void play(std::span<const Cue> cues, std::span<const Vec2> places, const Judge& judge,
               const std::vector<Scene>& tables = {}) const;
+    /// The option that is best for the player who chooses, and the chance to win of the one who shoots.
+    std::pair<const Option*, double> chosen(const Verdict& verdict, const Record& record) const;
     /// @param closer  whether to also find Result::leaves, and the chance to win instead of the measure of
     /// the skill
     Result result(const Record& record, const Call& call, bool closer = false) const;
+    std::vector<Attempt> candidates() const;
     void lift(Attempt& candidate) const;
     std::vector<Attempt> pots(std::span<const Vec2> places) const;
     void correct(std::vector<Line>& lines) const;

@@ -167,11 +167,14 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
     """Returns the legal choices for the next shot.
 
     balls: a scene, or the ids of the balls on the table, named as in racks: "cue", "1" to "15"; "white",
-        "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name
+        "yellow", "red" (four-ball: "red1", "red2"); in snooker, numbered reds and colours by name. Only a
+        scene shows which balls lie behind the head string, for a cue ball in hand there
 
     Raises ValueError if the game is over or no ball is left to play at.
     """
-    return Legal(*_carom.legal(_fitting(state), list(balls.ids if isinstance(balls, Scene) else balls)))
+    if isinstance(balls, Scene):
+        return Legal(*_carom.legal_on(_fitting(state), balls._native))
+    return Legal(*_carom.legal(_fitting(state), list(balls)))
 
 
 @checked

@@ -46,6 +46,10 @@ struct Nose {
     double sign() const { return radius < 0.0 ? -1.0 : 1.0; }
     bool is_arc() const { return radius < 0.0 || !span.whole; }
 };
+/// Whether two noses are on one circle, with the balls on the same side.
+inline bool continues(const Nose& one, const Nose& other) {
+    return one.center == other.center && one.radius == other.radius && one.is_arc() && other.is_arc();
+}
 /// @param index  of the jaw in scene.table
 Nose nose_of(const Jaw& jaw, int index, double inset);
 
@@ -57,6 +61,7 @@ struct Geometry {
     std::vector<CushionLine> cushions;
     std::vector<Nose> noses;
     std::vector<Pocket> pockets;
+    std::vector<Nose> joined{};  ///< arcs that continue another one: all on a circle are one nose
 };
 
 }  // namespace carom

@@ -206,8 +206,8 @@ struct EventCost {
     bool operator==(const EventCost&) const = default;
 };
 
-/// kEndless: balls move forever without another event, and no stop time was set; the record ends at its last
-/// event.
+/// kEndless: balls move forever without another event, and no stop time was set; the record ends after its
+/// last event.
 enum class StopReason : std::uint8_t { kAtRest, kTime, kEvents, kEndless };
 
 struct StopWords {
