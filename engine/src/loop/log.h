@@ -75,7 +75,8 @@ class Log : private Borrowed<LogMemory> {
     void mark_slow() { events_.back().slow = true; }
     /// An event of a ball and a part of the table, or of two balls.
     void event(EventType type, const Contact& contact) {
-        const Vec2 place = contact.with == With::kNose ? planar(balls_.position(contact.ball)) : Vec2(0.0, 0.0);
+        const Vec2 place =
+            contact.with == With::kNose ? planar(balls_.position(contact.ball)) : Vec2(0.0, 0.0);
         event(type, contact.ball, event_partner(contact, geometry_, place), event_detail(contact));
     }
     /// A simultaneous impact of several balls, started by a and b; `balls` are ordered by position.
