@@ -14,7 +14,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build/release") / "carom"
 PAGES = {"command-line": "command_line.md", "scene-schema": "scene.schema.json",
-         "record-schema": "record.schema.json", "scene-format": "scene_format.md"}
+         "record-schema": "record.schema.json", "scene-format": "scene_format.md", "types": "types.md",
+         "types-python": "../../python/carom/_types.py"}
 
 for what, name in PAGES.items():
     path = ROOT / "docs/reference" / name

@@ -34,13 +34,43 @@ E value_of(const char* what, int32_t value) {
     return static_cast<E>(value);
 }
 
-// The options of the rules share `game`, because the size of the struct is promised.
-constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1;
+// The options of the rules share `game`, two bits each, because the size of the struct is promised.
+constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1, kOptionBits = 2, kOptionMask = 3;
+
+/// @throws BadArgument for bits that are no options of the game
+std::vector<std::string> unpacked(games::Game game, std::uint32_t bits) {
+    std::vector<std::string> rules;
+    for (const games::RuleOption& option : games::rule_options()) {
+        if (option.game != game) continue;
+        const std::size_t value = bits & kOptionMask;
+        bits = value < option.values.size() ? bits >> kOptionBits : ~0U;
+        if (bits == ~0U) break;
+        if (value > 0) rules.push_back(option.key + "=" + option.values[value]);
+    }
+    if (bits != 0)
+        throw BadArgument(std::string("the state has rule options of another game, not of ") + name(game) +
+                          "; begin a new game and set them");
+    return rules;
+}
+
+std::uint32_t packed(const games::State& state) {
+    std::uint32_t bits = 0;
+    int shift = 0;
+    for (const games::RuleOption& option : games::rule_options()) {
+        if (option.game != state.game) continue;
+        for (std::uint32_t value = 1; value < option.values.size(); ++value)
+            if (std::find(state.rules.begin(), state.rules.end(), option.key + "=" + option.values[value]) !=
+                state.rules.end())
+                bits |= value << shift;
+        shift += kOptionBits;
+    }
+    return bits;
+}
 
 games::State state_of(const carom_game_state& s) {
     games::State state;
     state.game = value_of<games::Game>("game", s.game & kGameMask);
-    state.rules = static_cast<std::uint32_t>(s.game) >> kGameBits;
+    state.rules = unpacked(state.game, static_cast<std::uint32_t>(s.game) >> kGameBits);
     state.turn = s.turn;
     state.opening = s.opening != 0;
     state.in_hand = value_of<games::InHand>("in_hand", s.in_hand);
@@ -58,7 +88,7 @@ games::State state_of(const carom_game_state& s) {
 
 carom_game_state state_of(const games::State& s) {
     carom_game_state state{};
-    state.game = static_cast<int32_t>(static_cast<std::uint32_t>(s.game) | s.rules << kGameBits);
+    state.game = static_cast<int32_t>(static_cast<std::uint32_t>(s.game) | packed(s) << kGameBits);
     state.turn = s.turn;
     state.opening = s.opening ? 1 : 0;
     state.in_hand = static_cast<int32_t>(s.in_hand);
@@ -142,7 +172,6 @@ carom_status carom_judge(const carom_game_state* state, const carom_record* reco
         if (call != nullptr)
             said = {text_of(call->ball), text_of(call->pocket), call->safety != 0, call->push_out != 0};
         const games::State before = state_of(*state);
-        v.game = before.game;
         v.record = record->record.hash();
         v.verdict = asked([&] { return games::judge(before, record->record, said); });
     });
@@ -157,12 +186,13 @@ size_t carom_verdict_foul_count(const carom_verdict* verdict) {
 }
 
 const char* carom_verdict_foul(const carom_verdict* verdict, size_t index) {
-    return index < carom_verdict_foul_count(verdict) ? carom::name(verdict->verdict.fouls[index]) : nullptr;
+    return index < carom_verdict_foul_count(verdict) ? carom::name(verdict->verdict.fouls[index].foul)
+                                                     : nullptr;
 }
 
 const char* carom_verdict_rule(const carom_verdict* verdict, size_t index) {
     if (index >= carom_verdict_foul_count(verdict)) return nullptr;
-    return games::rule_of(verdict->game, verdict->verdict.fouls[index]);
+    return verdict->verdict.fouls[index].rule.c_str();
 }
 
 int carom_verdict_points(const carom_verdict* verdict) {

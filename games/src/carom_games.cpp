@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "carom/engine/tolerances.h"
@@ -174,7 +173,7 @@ Verdict judge_carom(const Facts& facts) {
     };
     std::vector<std::string> off;
     for (const int ball : facts.shot.out) off.push_back(facts.id(ball));
-    Verdict verdict = one_way(std::move(fouls), {Decision::kPlayOn, next, back(off)});
+    Verdict verdict = one_way(fouls, {Decision::kPlayOn, next, back(off)});
     verdict.points = point ? 1 : loses ? -1 : 0;
     const std::vector<std::string> against = off.empty() && !next.over && state.game != Game::kFourBall
                                                  ? touching(facts, next.turn)
@@ -213,7 +212,7 @@ Verdict judge_sum_to_three(const Facts& facts) {
         next.respots.push_back(
             {facts.id(ball), spot_on_long_string(table, spot, facts.record.size(ball).R, others)});
     }
-    Verdict verdict = one_way(std::move(fouls), next);
+    Verdict verdict = one_way(fouls, next);
     verdict.points = point ? 1 : 0;
     return verdict;
 }

@@ -1,7 +1,6 @@
 // Eight-ball by the World Pool-Billiard Association: rule 3, with 1.4 to 1.6 and 6.
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -75,9 +74,11 @@ void add_fouls(const Facts& facts, const std::vector<std::string>& first, bool n
 }
 
 Verdict judge_break(const Facts& facts) {
-    Verdict verdict;
+    std::vector<Foul> fouls;
     // 3.3 (b): any ball may be hit first.
-    add_fouls(facts, facts.ids(), true, verdict.fouls);
+    add_fouls(facts, facts.ids(), true, fouls);
+    Verdict verdict;
+    verdict.fouls = called(fouls);
     const bool illegal = !facts.any_object_fell() && facts.objects_driven() < kDrivenOnBreak;
     State next = facts.state;
     next.opening = false;
@@ -145,11 +146,10 @@ Verdict judge_eight_ball(const Facts& facts) {
     next.in_hand = InHand::kNo;
     if (facts.gone(kEight)) {
         const int winner = wins(facts, fouls, own) ? state.turn : 1 - state.turn;
-        return one_way(std::move(fouls), {Decision::kPlayOn, won_by(next, winner), {}});
+        return one_way(fouls, {Decision::kPlayOn, won_by(next, winner), {}});
     }
     const InHand where = rule(state, "in_hand") == "anywhere" ? InHand::kAnywhere : InHand::kHeadString;
-    if (!fouls.empty())
-        return one_way(std::move(fouls), {Decision::kTakeInHand, other_players(next, where), {}});
+    if (!fouls.empty()) return one_way(fouls, {Decision::kTakeInHand, other_players(next, where), {}});
     const std::string ball = made(facts, own);
     if (ball.empty()) return one_way({}, {Decision::kPlayOn, other_players(next, InHand::kNo), {}});
     // 3.4: the first ball that counts decides the groups.

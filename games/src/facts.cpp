@@ -75,9 +75,15 @@ std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::stri
     return respots;
 }
 
-Verdict one_way(std::vector<Foul> fouls, const Option& option) {
+std::vector<CalledFoul> called(const std::vector<Foul>& fouls) {
+    std::vector<CalledFoul> list;
+    for (const Foul foul : fouls) list.push_back({foul});
+    return list;
+}
+
+Verdict one_way(const std::vector<Foul>& fouls, const Option& option) {
     Verdict verdict;
-    verdict.fouls = std::move(fouls);
+    verdict.fouls = called(fouls);
     verdict.options = {option};
     return verdict;
 }

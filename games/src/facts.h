@@ -82,8 +82,6 @@ inline const char* own_ball(int player) {
 
 /// The chosen value of an option that the state's game has.
 std::string_view rule(const State& state, std::string_view key);
-/// Whether the options are those of the state's game.
-bool has_its_rules(const State& state);
 
 /// The state for the other player's turn, with the cue ball in hand as given.
 State other_players(const State& state, InHand in_hand);
@@ -93,8 +91,10 @@ State won_by(State state, int winner);
 State scored(State state, int player, int points);
 /// The state of a new break in the same game, by its rules.
 State broken_by(const State& state, int breaker);
+/// The fouls of a verdict; judge() adds their rules.
+std::vector<CalledFoul> called(const std::vector<Foul>& fouls);
 /// The verdict with a single option.
-Verdict one_way(std::vector<Foul> fouls, const Option& option);
+Verdict one_way(const std::vector<Foul>& fouls, const Option& option);
 /// These balls, each spotted on the long string from the foot spot (WPA 1.4).
 std::vector<Respot> on_foot_spot(const Facts& facts, const std::vector<std::string>& balls);
 

@@ -1,7 +1,6 @@
 // Free pyramid, the Russian game in which any ball may be struck: the rules at duplet.news
 // ("Free Pyramid", 1 to 7) and the general rules of pyramid.
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "facts.h"
@@ -48,9 +47,8 @@ Verdict judge_free_pyramid(const Facts& facts) {
     for (const std::string& ball : facts.ids())
         if (facts.gone(ball)) down.push_back(ball);
     next = scored(other_players(next, InHand::kNo), 1 - state.turn, 1);
-    Verdict verdict =
-        one_way(std::move(fouls),
-                {Decision::kPlayOn, next, next.over ? std::vector<Respot>() : on_foot_spot(facts, down)});
+    Verdict verdict = one_way(
+        fouls, {Decision::kPlayOn, next, next.over ? std::vector<Respot>() : on_foot_spot(facts, down)});
     verdict.penalty = 1;
     return verdict;
 }

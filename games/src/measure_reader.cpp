@@ -43,7 +43,7 @@ void as_list(Node& text, const Node& measure) {
     const bool list = measure.row != nullptr && std::string_view(measure.row->info.unit) == "list";
     if (!list || text.kind != Node::Kind::kValue || !std::holds_alternative<Texts>(text.value)) return;
     std::string whole = text_of(text.value);
-    for (std::size_t at = 0; (at = whole.find(", ", at)) != std::string::npos;) whole.replace(at, 2, ";");
+    for (std::size_t at = 0; (at = whole.find(", ", at)) != std::string::npos;) whole.replace(at, 2, 1, ';');
     text.value = Texts{whole};
 }
 

@@ -1,14 +1,13 @@
-// Options of the games' rules. A state keeps the chosen value of each option in two bits, in the order of the
-// game's rows.
+// Options of the games' rules.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/engine/printable.h"
@@ -16,9 +15,6 @@
 
 namespace carom::games {
 namespace {
-
-constexpr unsigned kBits = 2;
-constexpr std::uint32_t kMask = (1U << kBits) - 1;
 
 const std::vector<RuleOption>& table() {
     static const std::vector<RuleOption> kTable = {
@@ -64,15 +60,12 @@ const std::vector<RuleOption>& table() {
     return kTable;
 }
 
-std::vector<const RuleOption*> options_of(Game game) {
-    std::vector<const RuleOption*> list;
-    for (const RuleOption& option : table())
-        if (option.game == game) list.push_back(&option);
-    return list;
-}
-
-std::uint32_t chosen(const State& state, std::size_t option) {
-    return state.rules >> (kBits * option) & kMask;
+/// The value that a state has chosen for an option, or "".
+std::string_view chosen(const State& state, std::string_view key) {
+    for (const std::string_view option : state.rules)
+        if (option.size() > key.size() && option.starts_with(key) && option[key.size()] == '=')
+            return option.substr(key.size() + 1);
+    return {};
 }
 
 }  // namespace
@@ -84,54 +77,45 @@ std::span<const RuleOption> rule_options() {
 void set_rule(State& state, std::string_view option) {
     const std::size_t equals = std::min(option.find('='), option.size());
     const std::string_view key = option.substr(0, equals);
-    const std::vector<const RuleOption*> options = options_of(state.game);
-    std::string known;
-    for (std::size_t i = 0; i < options.size(); ++i) {
-        const RuleOption& row = *options[i];
-        known += (i == 0 ? "" : ", ") + std::string(row.key);
-        if (key != row.key) continue;
-        for (std::uint32_t value = 0; equals < option.size() && value < row.values.size(); ++value) {
-            if (option.substr(equals + 1) != row.values[value]) continue;
-            state.rules = (state.rules & ~(kMask << (kBits * i))) | value << (kBits * i);
-            return;
+    std::vector<std::string> rules, known;
+    bool is_known = false;
+    // Rules keep the order of the game's options, so that equal states compare equal.
+    for (const RuleOption& row : table()) {
+        if (row.game != state.game) continue;
+        known.push_back(row.key);
+        std::string_view value = chosen(state, row.key);
+        if (key == row.key) {
+            is_known = true;
+            value = option.substr(std::min(equals + 1, option.size()));
+            if (std::find(row.values.begin(), row.values.end(), value) == row.values.end())
+                throw std::invalid_argument(
+                    fmt::format("{}: expected {}={}", harmless(option), row.key, fmt::join(row.values, "|")));
         }
-        throw std::invalid_argument(fmt::format("{}: expected {}={}", harmless(std::string(option)), row.key,
-                                                fmt::join(row.values, "|")));
+        if (!value.empty() && value != row.values[0]) rules.push_back(fmt::format("{}={}", row.key, value));
+    }
+    if (is_known) {
+        state.rules = rules;
+        return;
     }
     throw std::invalid_argument(
-        options.empty()
-            ? fmt::format("{} has no options; leave out {}", name(state.game), in_quotes(std::string(key)))
-            : fmt::format("{} has no option {}; it has {}", name(state.game), in_quotes(std::string(key)),
-                          known));
+        known.empty() ? fmt::format("{} has no options; leave out {}", name(state.game), in_quotes(key))
+                      : fmt::format("{} has no option {}; it has {}", name(state.game), in_quotes(key),
+                                    fmt::join(known, ", ")));
 }
 
-std::vector<std::string> chosen_rules(const State& state) {
-    std::vector<std::string> list;
-    const std::vector<const RuleOption*> options = options_of(state.game);
-    for (std::size_t i = 0; i < options.size(); ++i)
-        if (const std::uint32_t value = chosen(state, i); value > 0 && value < options[i]->values.size())
-            list.push_back(std::string(options[i]->key) + "=" + options[i]->values[value]);
-    return list;
-}
-
-namespace detail {
-
-bool has_its_rules(const State& state) {
-    const std::vector<const RuleOption*> options = options_of(state.game);
-    std::uint32_t rest = state.rules;
-    for (const RuleOption* option : options) {
-        if ((rest & kMask) >= option->values.size()) return false;
-        rest >>= kBits;
+void complete(State& state) {
+    try {
+        for (const std::string& option : std::exchange(state.rules, {})) set_rule(state, option);
+    } catch (const std::invalid_argument& refused) {
+        throw std::invalid_argument(std::string("rules: ") + refused.what());
     }
-    return rest == 0;
 }
 
-std::string_view rule(const State& state, std::string_view key) {
-    const std::vector<const RuleOption*> options = options_of(state.game);
-    for (std::size_t i = 0; i < options.size(); ++i)
-        if (key == options[i]->key) return options[i]->values.at(chosen(state, i));
+std::string_view detail::rule(const State& state, std::string_view key) {
+    if (const std::string_view value = chosen(state, key); !value.empty()) return value;
+    for (const RuleOption& row : table())
+        if (row.game == state.game && row.key == key) return row.values[0];
     throw std::logic_error("the game has no option " + std::string(key));
 }
 
-}  // namespace detail
 }  // namespace carom::games

@@ -69,9 +69,10 @@ void check(const State& state) {
         throw std::invalid_argument(std::string("the groups are ") + name(state.group[0]) + " and " +
                                     name(state.group[1]) +
                                     "; one player has solids and the other stripes, or both are open");
-    if (!detail::has_its_rules(state))
-        throw std::invalid_argument(std::string("the state has rule options of another game, not of ") +
-                                    name(state.game) + "; begin a new game and set them");
+    if (!state.rules.empty()) {
+        State read = state;
+        complete(read);
+    }
     if (state.over) throw std::invalid_argument("the game is over; begin a new one");
 }
 
@@ -202,7 +203,9 @@ Verdict judge(const State& state, const Record& record, const Call& call) {
     if (rules.struck == GameRules::Struck::kCueBall && !facts.struck("cue"))
         throw std::invalid_argument("the cue strikes ball \"" + facts.id(facts.shot.struck) +
                                     "\" and not the cue ball");
-    return rules.judge(facts);
+    Verdict verdict = rules.judge(facts);
+    for (CalledFoul& called : verdict.fouls) called.rule = rule_of(state.game, called.foul);
+    return verdict;
 }
 
 }  // namespace carom::games

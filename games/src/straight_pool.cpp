@@ -87,7 +87,7 @@ Verdict foul(const Facts& facts, std::vector<Foul> fouls, bool breaking, const s
         next.fouls[me] = 0;
     }
     const Option again{Decision::kRerackForOther, broken_by(next, facts.state.turn), {}};
-    Verdict verdict = one_way(std::move(fouls), again);
+    Verdict verdict = one_way(fouls, again);
     verdict.points = -cost - (third ? kThird : 0);
     if (third) return verdict;
     const bool gone = facts.shot.gone(facts.shot.struck);

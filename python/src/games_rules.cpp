@@ -53,7 +53,7 @@ StateRow row_of(const games::State& s) {
             {s.fouls[0], s.fouls[1]},
             name(s.on),
             s.free_ball,
-            games::chosen_rules(s)};
+            s.rules};
 }
 
 games::State state_of(const StateRow& row) {
@@ -99,7 +99,7 @@ VerdictRow judge(const StateRow& state, const NativeRecord& record, const CallRo
     const games::Verdict v = games::judge(
         before, *record.record, {std::get<0>(call), std::get<1>(call), std::get<2>(call), std::get<3>(call)});
     std::vector<Two<std::string>> fouls;
-    for (const games::Foul foul : v.fouls) fouls.emplace_back(name(foul), games::rule_of(before.game, foul));
+    for (const games::CalledFoul& called : v.fouls) fouls.emplace_back(name(called.foul), called.rule);
     std::vector<OptionRow> options;
     for (const games::Option& option : v.options) options.push_back(row_of(option));
     return {fouls, v.points, v.penalty, options, v.chooser};

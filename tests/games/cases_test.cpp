@@ -189,7 +189,7 @@ std::string told_of(const std::string& key, const Verdict& v, const std::string&
         return std::to_string(p[0]) + ":" + std::to_string(p[1]);
     };
     Words fouls, options, back;
-    for (const games::Foul foul : v.fouls) fouls.emplace_back(name(foul));
+    for (const games::CalledFoul& called : v.fouls) fouls.emplace_back(name(called.foul));
     for (const games::Option& o : v.options) options.emplace_back(name(o.decision));
     for (const games::Respot& r : option.respots) back.push_back(r.ball);
     if (key == "fair" || key == "foul") return joined(fouls);

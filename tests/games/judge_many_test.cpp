@@ -164,7 +164,7 @@ void expect_row(const RandomTables& tables, Game game, const Judgements& got, st
     const Scene scene = tables.shot(i);
     const Record record = simulate(make_plan(scene, kSet));
     const games::Verdict verdict = games::judge(state, record, call_of(state, scene, record));
-    EXPECT_EQ(got.foul[i], verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front()));
+    EXPECT_EQ(got.foul[i], verdict.fouls.empty() ? -1 : static_cast<int>(verdict.fouls.front().foul));
     EXPECT_EQ(got.group[i], static_cast<int>(verdict.next().group[0]));
     EXPECT_EQ(got.goes_on[i], verdict.next().turn == 0 && !verdict.next().over);
     const games::Shot shot = games::shot_of(record);

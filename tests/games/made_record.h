@@ -1,6 +1,7 @@
 // Records made for a rule: balls at given places, and events added one by one.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -9,6 +10,16 @@
 #include "carom/engine/scene.h"
 #include "carom/games/rules.h"
 #include "carom/games/shot.h"
+
+namespace carom::games {
+
+/// A verdict's fouls, without their rules.
+inline bool operator==(const std::vector<CalledFoul>& called, const std::vector<Foul>& fouls) {
+    return std::equal(called.begin(), called.end(), fouls.begin(), fouls.end(),
+                      [](const CalledFoul& one, Foul other) { return one.foul == other; });
+}
+
+}  // namespace carom::games
 
 namespace carom::test {
 

@@ -50,8 +50,7 @@ class Match {
         state_ = games::new_game(start.game, random_.below(2), random_.below(2) * 5);
         for (const games::RuleOption& option : games::rule_options())
             if (option.game == start.game)
-                games::set_rule(state_,
-                                std::string(option.key) + "=" + option.values[pick(option.values.size())]);
+                games::set_rule(state_, option.key + "=" + option.values[pick(option.values.size())]);
         rack();
     }
 

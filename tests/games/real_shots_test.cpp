@@ -224,8 +224,7 @@ class RandomPlayers {
             EXPECT_TRUE(verdict.fouls.empty() || final || option.state.turn != state_.turn);
             respots += static_cast<int>(option.respots.size());
         }
-        for (const games::Foul foul : verdict.fouls)
-            EXPECT_STRNE(games::rule_of(game_, foul), "") << name(foul);
+        for (const games::CalledFoul& called : verdict.fouls) EXPECT_NE(called.rule, "") << name(called.foul);
         fouls += !verdict.fouls.empty();
         choices += verdict.options.size() > 1;
         points += verdict.points;

@@ -36,14 +36,15 @@ TEST(RuleOptions, EveryValueOfEveryOptionReadsBack) {
     for (const games::RuleOption& option : games::rule_options()) {
         SCOPED_TRACE(option.key);
         ASSERT_GE(option.values.size(), 2u);
+        // Two bits in C.
         ASSERT_LE(option.values.size(), 4u);
-        for (const char* value : option.values) {
+        for (const std::string& value : option.values) {
             State state = games::new_game(option.game);
-            const std::string text = std::string(option.key) + "=" + value;
+            const std::string text = option.key + "=" + value;
             set_rule(state, text);
             const bool standard = value == option.values[0];
-            EXPECT_EQ(games::chosen_rules(state), standard ? std::vector<std::string>() : std::vector{text});
-            set_rule(state, std::string(option.key) + "=" + option.values[0]);
+            EXPECT_EQ(state.rules, standard ? std::vector<std::string>() : std::vector{text});
+            set_rule(state, option.key + "=" + option.values[0]);
             EXPECT_EQ(state, games::new_game(option.game));
         }
     }
@@ -70,7 +71,7 @@ TEST(RuleOptions, SurviveANewRack) {
     const games::Verdict verdict = games::judge(state, record);
     ASSERT_EQ(verdict.options.size(), 4u);
     for (const games::Option& option : verdict.options)
-        EXPECT_EQ(games::chosen_rules(option.state), std::vector<std::string>{"call=none"});
+        EXPECT_EQ(option.state.rules, std::vector<std::string>{"call=none"});
 }
 
 // The light cue ball of scenes/jump.toml passes over the eight and hits the one.
@@ -84,13 +85,13 @@ TEST(RuleOptions, AJumpIsAFoulIfTheRulesForbidIt) {
     State state = games::new_game(Game::kEightBall);
     state.opening = false;
     const auto jumps = [&] {
-        const std::vector<games::Foul> fouls = games::judge(state, record).fouls;
-        return std::count(fouls.begin(), fouls.end(), games::Foul::kJumpShot);
+        const std::vector<games::CalledFoul> fouls = games::judge(state, record).fouls;
+        return std::count(fouls.begin(), fouls.end(),
+                          games::CalledFoul{games::Foul::kJumpShot, "option jump"});
     };
     EXPECT_EQ(jumps(), 0);
     set_rule(state, "jump=foul");
     EXPECT_EQ(jumps(), 1);
-    EXPECT_STREQ(games::rule_of(Game::kEightBall, games::Foul::kJumpShot), "option jump");
 }
 
 TEST(RuleOptions, EveryGameHasABook) {

@@ -9,6 +9,7 @@
 #include <regex>
 #include <string>
 
+#include "carom/interface/shape.h"
 #include "support/pages.h"
 
 namespace carom::tools {
@@ -37,6 +38,13 @@ TEST(Formats, ThePageOfSceneFilesMatchesTheProgram) {
     const auto blocks = std::distance(std::sregex_iterator(printed.begin(), printed.end(), block), {});
     EXPECT_EQ(blocks, 11);
     EXPECT_EQ(printed.rfind("# Scene format\n", 0), 0u);
+}
+
+TEST(Formats, TheTypesOfTheInterfaceMatchTheirRows) {
+    EXPECT_TRUE(test::read_source("docs/reference/types.md") == interface::types_page())
+        << "docs/reference/types.md" << kStale;
+    EXPECT_TRUE(test::read_source("python/carom/_types.py") == interface::types_for_python())
+        << "python/carom/_types.py" << kStale;
 }
 
 }  // namespace

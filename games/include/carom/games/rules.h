@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "carom/engine/record.h"
+#include "carom/engine/row.h"
 #include "carom/games/spots.h"
 
 namespace carom::games {
@@ -53,28 +54,50 @@ constexpr auto names_of(BallOn) {
 /// More points than any game has, and fewer than an int holds.
 inline constexpr int kMostPoints = 1000000000;
 
-/// Everything a game remembers between two shots, besides the positions of the balls. Players are 0 and 1. A
-/// game reads only its own fields.
+/// A game reads only its own fields.
 struct State {
     Game game = Game::kEightBall;
-    int turn = 0;                  ///< whose shot it is
-    bool opening = true;           ///< the break, or the first shot of a carom game
-    InHand in_hand = InHand::kNo;  ///< where the player whose turn it is may place the cue ball
-    /// each at most kMostPoints, as are target and fouls; below 0 in straight pool and four-ball only
+    int turn = 0;
+    bool opening = true;
+    InHand in_hand = InHand::kNo;
     std::array<int, 2> points = {0, 0};
-    int target = 0;  ///< points that win; 0: no end
+    int target = 0;
     bool over = false;
-    int winner = -1;                                            ///< -1: none, or not yet
-    std::array<Group, 2> group = {Group::kOpen, Group::kOpen};  ///< eight-ball
-    bool may_push_out = false;  ///< nine-ball, ten-ball: this is the shot after the break
-    /// consecutive fouls of each player: nine-ball, ten-ball, straight pool; snooker: misses in a row with a
-    /// clear path to a full ball
+    int winner = -1;
+    std::array<Group, 2> group = {Group::kOpen, Group::kOpen};
+    bool may_push_out = false;
     std::array<int, 2> fouls = {0, 0};
-    BallOn on = BallOn::kRed;  ///< snooker
-    bool free_ball = false;    ///< snooker: any ball may be nominated as the ball on
-    std::uint32_t rules = 0;   ///< the options that set_rule() chose; 0: all defaults
+    BallOn on = BallOn::kRed;
+    bool free_ball = false;
+    std::vector<std::string> rules;
     bool operator==(const State&) const = default;
 };
+constexpr auto rows_of(const State*) {
+    return described(
+               "State",
+               "The memory of a game between two shots, without the positions of the balls. Players are 0 "
+               "and 1.",
+               row<&State::game>("game", "The game.").needed(),
+               row<&State::turn>("turn", "Whose shot it is.", {0, 1}),
+               row<&State::opening>("opening", "The break, or the first shot of a carom game."),
+               row<&State::in_hand>("in_hand", "Where the player may place the cue ball."),
+               row<&State::points>("points", "Of each player; below 0 in straight pool and four-ball only.",
+                                   {-kMostPoints, kMostPoints}),
+               row<&State::target>("target", "Points that win; 0: no end.", {0, kMostPoints}),
+               row<&State::over>("over", "The game is over."),
+               row<&State::winner>("winner", "-1: none, or not yet.", {-1, 1}),
+               row<&State::group>("group", "Eight-ball: the balls of each player."),
+               row<&State::may_push_out>("may_push_out", "Nine-ball, ten-ball: the shot after the break."),
+               row<&State::fouls>(
+                   "fouls", "Of each player in a row. Snooker: misses with a clear path to a full ball.",
+                   {0, kMostPoints}),
+               row<&State::on>("on", "Snooker: the ball on; colour: any, after a red."),
+               row<&State::free_ball>("free_ball", "Snooker: any ball may be nominated as the ball on."),
+               row<&State::rules>("rules", "Options that are not defaults, such as \"call=eight\"."))
+        .made_by_callers();
+}
+/// For readers of states: set_rule() for each of its rules. @throws std::invalid_argument
+void complete(State& state);
 
 /// A new game. @param first the player who begins @param target as in State::target; 0: the game's own, such
 /// as 8 in free pyramid
@@ -83,39 +106,57 @@ State new_game(Game game, int first = 0, int target = 0);
 /// The published rules of a game, with their edition.
 const char* book_of(Game game);
 
-/// An option of a game's rules.
 struct RuleOption {
-    Game game;
-    const char* key;
-    std::vector<const char*> values;  ///< at most four; the first one is the default
-    const char* what;
+    Game game{};
+    std::string key;
+    std::vector<std::string> values;
+    std::string what;
 };
+constexpr auto rows_of(const RuleOption*) {
+    return described("RuleOption", "An option of a game's rules.",
+                     row<&RuleOption::game>("game", "The game."), row<&RuleOption::key>("key", "Its name."),
+                     row<&RuleOption::values>("values", "The first one is the default."),
+                     row<&RuleOption::what>("what", "Its meaning."));
+}
 std::span<const RuleOption> rule_options();
 /// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for an unknown
 /// key or value; it lists the known ones
 void set_rule(State& state, std::string_view option);
-/// The chosen options that are not defaults, as set_rule() reads them.
-std::vector<std::string> chosen_rules(const State& state);
 
-/// An announcement before a shot. Snooker: `ball` is the nominated colour or free ball; if it is
-/// empty, the ball that is hit first.
 struct Call {
-    std::string ball;       ///< id, or ""
-    std::string pocket;     ///< id, "p1", ...
-    bool safety = false;    ///< eight-ball, ten-ball, straight pool: the turn ends whatever falls
-    bool push_out = false;  ///< nine-ball, ten-ball
+    std::string ball, pocket;
+    bool safety = false;
+    bool push_out = false;
     bool operator==(const Call&) const = default;
 };
+constexpr auto rows_of(const Call*) {
+    return described(
+               "Call", "An announcement before a shot.",
+               row<&Call::ball>("ball",
+                                "Id of the called ball. Snooker: the nominated colour or free ball; if \"\", "
+                                "the ball that is hit first."),
+               row<&Call::pocket>("pocket", "Id of the called pocket: \"p1\", ..."),
+               row<&Call::safety>("safety",
+                                  "Eight-ball, ten-ball, straight pool: the turn ends whatever falls."),
+               row<&Call::push_out>("push_out", "Nine-ball, ten-ball: a push out."))
+        .made_by_callers();
+}
 
-/// The rules of the next shot.
 struct Legal {
-    std::vector<std::string> cue_balls;  ///< ids that may be struck: one, in free pyramid any
-    std::vector<std::string> first;      ///< balls that the cue ball may hit first
-    std::vector<std::string> callable;   ///< balls that may be called; empty if the game has no calls
+    std::vector<std::string> cue_balls, first, callable;
     InHand in_hand = InHand::kNo;
     bool may_push_out = false;
     bool operator==(const Legal&) const = default;
 };
+constexpr auto rows_of(const Legal*) {
+    return described(
+        "Legal", "The rules of the next shot.",
+        row<&Legal::cue_balls>("cue_balls", "Balls that may be struck: one, in free pyramid any."),
+        row<&Legal::first>("first", "Balls that the cue ball may hit first."),
+        row<&Legal::callable>("callable", "Balls that may be called; empty if the game has no calls."),
+        row<&Legal::in_hand>("in_hand", "As in the state."),
+        row<&Legal::may_push_out>("may_push_out", "Whether a push out may be called."));
+}
 
 /// @param balls ids of the balls on the table. The cue ball may be missing while it is in hand. Ids are those
 /// of racks: cue, 1 to 15; white, yellow, red (four-ball: red1, red2); snooker numbers its reds. @throws
@@ -170,12 +211,26 @@ constexpr auto names_of(Foul) {
 /// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
 const char* rule_of(Game game, Foul foul);
 
-/// A ball that is respotted.
+struct CalledFoul {
+    Foul foul = Foul::kNoBallHit;
+    std::string rule{};
+    bool operator==(const CalledFoul&) const = default;
+};
+constexpr auto rows_of(const CalledFoul*) {
+    return described("Foul", "A foul, and the rule that it breaks.",
+                     row<&CalledFoul::foul>("foul", "Its name."),
+                     row<&CalledFoul::rule>("rule", "\"WPA 6.1\"; \"\" if the game has no such rule."));
+}
+
 struct Respot {
     std::string ball;
-    Vec2 place = Vec2::Zero();  ///< [m]
+    Vec2 place = Vec2::Zero();
     bool operator==(const Respot&) const = default;
 };
+constexpr auto rows_of(const Respot*) {
+    return described("Respot", "A ball that is respotted.", row<&Respot::ball>("ball", "Its id.").needed(),
+                     row<&Respot::place>("place", "[m]").needed());
+}
 
 /// How the game may continue.
 enum class Decision : std::uint8_t {
@@ -197,23 +252,38 @@ constexpr auto names_of(Decision) {
 
 struct Option {
     Decision decision = Decision::kPlayOn;
-    State state;                  ///< of the next shot
-    std::vector<Respot> respots;  ///< balls that are respotted before it
+    State state;
+    std::vector<Respot> respots;
     bool rerack() const { return decision == Decision::kRerack || decision == Decision::kRerackForOther; }
     bool operator==(const Option&) const = default;
 };
+constexpr auto rows_of(const Option*) {
+    return described("Option", "A possible continuation of the game.",
+                     row<&Option::decision>("decision", "The next step."),
+                     row<&Option::state>("state", "Of the next shot."),
+                     row<&Option::respots>("respots", "Balls that are respotted before it."));
+}
 
 struct Verdict {
-    std::vector<Foul> fouls;  ///< by rule; empty for a fair shot
-    int points = 0;           ///< scored by the shot
-    int penalty = 0;          ///< snooker: points for the other player
-    /// At least one. If there are several, the first one applies unless `chooser` chooses another.
+    std::vector<CalledFoul> fouls;
+    int points = 0;
+    int penalty = 0;
     std::vector<Option> options;
-    int chooser = -1;  ///< the player who chooses; -1 if there is one option
+    int chooser = -1;
     const State& next() const { return options.front().state; }
     const std::vector<Respot>& respots() const { return options.front().respots; }
     bool operator==(const Verdict&) const = default;
 };
+constexpr auto rows_of(const Verdict*) {
+    return described("Verdict", "The outcome of a shot.",
+                     row<&Verdict::fouls>("fouls", "In the order of the rules; empty for a fair shot."),
+                     row<&Verdict::points>("points", "Scored by the shot."),
+                     row<&Verdict::penalty>("penalty", "Snooker: points for the other player."),
+                     row<&Verdict::options>(
+                         "options", "At least one. The first one applies unless the chooser picks another."),
+                     row<&Verdict::chooser>(
+                         "chooser", "The player who chooses; -1 if there is one option, or lots decide."));
+}
 
 /// The outcome of a shot. @param state before it
 /// @throws std::invalid_argument for a record that does not end at rest, has no cue strike or lacks the

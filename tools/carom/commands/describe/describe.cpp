@@ -13,6 +13,7 @@
 #include "base/options.h"
 #include "carom/engine/event_details.h"
 #include "carom/games/measures.h"
+#include "carom/interface/shape.h"
 #include "commands/describe/formats.h"
 
 namespace carom::tools {
@@ -363,6 +364,8 @@ constexpr struct {
                 {"scene-format", [](const Options&) { return scene_format(); }},
                 {"measures", [](const Options&) { return measures_text(); }},
                 {"games", [](const Options&) { return games_text(); }},
+                {"types", [](const Options&) { return interface::types_page(); }},
+                {"types-python", [](const Options&) { return interface::types_for_python(); }},
                 {"events", [](const Options&) { return events_text(); }}};
 
 struct DescribeArgs {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -21,12 +20,12 @@
 #include "carom/engine/event_details.h"
 #include "carom/engine/printable.h"
 #include "carom/games/rules.h"
+#include "carom/interface/shape.h"
 #include "report/table.h"
 
 namespace carom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using games::Decision;
 using games::InHand;
 using games::State;
@@ -103,8 +102,9 @@ std::string verdict_text(const Judged& judged) {
     const Verdict& verdict = judged.verdict;
     const games::Game game = judged.option.state.game;
     std::string text = verdict.fouls.empty() ? "fair" : "foul";
-    for (std::size_t i = 0; i < verdict.fouls.size(); ++i)
-        text += (i == 0 ? ": " : ", ") + foul_text(game, verdict.fouls[i]);
+    for (const games::CalledFoul& called : verdict.fouls)
+        text += fmt::format("{}{}{}", text == "foul" ? ": " : ", ", name(called.foul),
+                            called.rule.empty() ? "" : " (" + called.rule + ")");
     text += "\n";
     // Eight-ball, nine-ball and ten-ball are not scored: there a point says that the player continues.
     const bool scored = verdict.points != 0 && game != games::Game::kEightBall &&
@@ -137,9 +137,8 @@ int run_judge(const JudgeArgs& args) {
         throw UsageError("no game is named; give --game or --state");
     const Record record = read_shot(args.shot, {});
     const Judged verdict = judged(args.shot, record, args.game);
-    write_report(args.game.state_out, state_json(verdict.option.state).dump(2) + "\n");
-    print(args.json ? verdict_json(verdict.verdict, verdict.option.state.game).dump() + "\n"
-                    : verdict_text(verdict));
+    write_report(args.game.state_out, interface::value_of(verdict.option.state).dump(2) + "\n");
+    print(args.json ? interface::value_of(verdict.verdict).dump() + "\n" : verdict_text(verdict));
     return kOk;
 }
 
@@ -196,7 +195,7 @@ int run_next(const NextArgs& args) {
         first = games::legal(option.state, next).first;
         said += fmt::format("# {}: {}.\n", verdict.verdict.fouls.empty() ? "Fair" : "A foul",
                             next_text(option.state));
-        write_report(args.game.state_out, state_json(option.state).dump(2) + "\n");
+        write_report(args.game.state_out, interface::value_of(option.state).dump(2) + "\n");
     }
     next.cue.reset();
     if (plan.scene.cue && index_of(next.ball, ball) >= 0)
