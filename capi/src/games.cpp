@@ -21,17 +21,22 @@ namespace {
 
 namespace games = carom::games;
 
-static_assert(CAROM_FOUR_BALL == static_cast<int>(games::Game::kFourBall));
 static_assert(CAROM_IN_THE_D == static_cast<int>(games::InHand::kD));
 
 /// A value of an enumeration. @throws BadArgument
-template <class E>
-E value_of(const char* what, int32_t value) {
-    const auto count = static_cast<int32_t>(carom::games::names_of(E{}).size());
-    if (value < 0 || value >= count)
+std::size_t checked(const char* what, int32_t value, std::size_t count) {
+    if (value < 0 || static_cast<std::size_t>(value) >= count)
         throw BadArgument(std::string(what) + " is " + std::to_string(value) + "; expected 0 to " +
                           std::to_string(count - 1));
-    return static_cast<E>(value);
+    return static_cast<std::size_t>(value);
+}
+template <class E>
+E value_of(const char* what, int32_t value) {
+    return static_cast<E>(checked(what, value, games::names_of(E{}).size()));
+}
+games::Game game_of(int32_t number) {
+    const auto all = games::all_of(games::Game{});
+    return all[checked("game", number, all.size())];
 }
 
 // The options of the rules share `game`, two bits each, because the size of the struct is promised.
@@ -40,8 +45,7 @@ constexpr int kGameBits = 8, kGameMask = (1 << kGameBits) - 1, kOptionBits = 2, 
 /// @throws BadArgument for bits that are no options of the game
 std::vector<std::string> unpacked(games::Game game, std::uint32_t bits) {
     std::vector<std::string> rules;
-    for (const games::RuleOption& option : games::rule_options()) {
-        if (option.game != game) continue;
+    for (const games::RuleOption& option : games::info_of(game).options) {
         const std::size_t value = bits & kOptionMask;
         bits = value < option.values.size() ? bits >> kOptionBits : ~0U;
         if (bits == ~0U) break;
@@ -53,11 +57,15 @@ std::vector<std::string> unpacked(games::Game game, std::uint32_t bits) {
     return rules;
 }
 
+std::uint32_t number_of(games::Game game) {
+    const auto all = games::all_of(game);
+    return static_cast<std::uint32_t>(std::find(all.begin(), all.end(), game) - all.begin());
+}
+
 std::uint32_t packed(const games::State& state) {
     std::uint32_t bits = 0;
     int shift = 0;
-    for (const games::RuleOption& option : games::rule_options()) {
-        if (option.game != state.game) continue;
+    for (const games::RuleOption& option : games::info_of(state.game).options) {
         for (std::uint32_t value = 1; value < option.values.size(); ++value)
             if (std::find(state.rules.begin(), state.rules.end(), option.key + "=" + option.values[value]) !=
                 state.rules.end())
@@ -69,7 +77,7 @@ std::uint32_t packed(const games::State& state) {
 
 games::State state_of(const carom_game_state& s) {
     games::State state;
-    state.game = value_of<games::Game>("game", s.game & kGameMask);
+    state.game = game_of(s.game & kGameMask);
     state.rules = unpacked(state.game, static_cast<std::uint32_t>(s.game) >> kGameBits);
     state.turn = s.turn;
     state.opening = s.opening != 0;
@@ -88,7 +96,7 @@ games::State state_of(const carom_game_state& s) {
 
 carom_game_state state_of(const games::State& s) {
     carom_game_state state{};
-    state.game = static_cast<int32_t>(static_cast<std::uint32_t>(s.game) | packed(s) << kGameBits);
+    state.game = static_cast<int32_t>(number_of(s.game) | packed(s) << kGameBits);
     state.turn = s.turn;
     state.opening = s.opening ? 1 : 0;
     state.in_hand = static_cast<int32_t>(s.in_hand);
@@ -126,7 +134,7 @@ const games::Option& option_of(const carom_verdict* verdict, size_t index) {
 carom_status carom_game_new(carom_game game, int first, int target, carom_game_state* state) {
     return guarded([&] {
         need({state});
-        const auto of = value_of<games::Game>("game", static_cast<int32_t>(game));
+        const auto of = game_of(static_cast<int32_t>(game));
         *state = asked([&] { return state_of(games::new_game(of, first, target)); });
     });
 }

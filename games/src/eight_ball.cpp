@@ -120,8 +120,6 @@ std::string made(const Facts& facts, const std::vector<std::string>& own) {
     return "";
 }
 
-}  // namespace
-
 Legal legal_eight_ball(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
     legal.cue_balls = {"cue"};
@@ -163,4 +161,43 @@ Verdict judge_eight_ball(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+const GameRules kEightBall = {
+    .info =
+        {.name = "eight_ball",
+         .title = "eight-ball",
+         .book = "World Pool-Billiard Association, The Rules of Play, 15 March 2016: rule 3",
+         .calls = "ball and pocket, or a safety",
+         .is_scored = false,
+         .has_groups = true,
+         .has_safety = true,
+         .start = detail::start_of("game = \"eight_ball\"", {{"cue", 0.45, 0.22}}, "cue", 8, 90),
+         .options = {{&kEightBall,
+                      "call",
+                      {"all", "eight", "none"},
+                      "Shots to call: all, only the one at the eight, or none."},
+                     {&kEightBall,
+                      "eight_on_break",
+                      {"respot", "wins", "rerack"},
+                      "Effect of an eight that falls on the break: a respot or rerack, as the next player "
+                      "chooses; a win, or a loss after a foul; or always a rerack."},
+                     {&kEightBall,
+                      "in_hand",
+                      {"anywhere", "behind_line"},
+                      "Area of the cue ball in hand after a foul: anywhere, or behind the head string."},
+                     {&kEightBall,
+                      "jump",
+                      {"fair", "foul"},
+                      "Whether the cue ball may pass over a ball before it hits one."}}},
+    .legal = detail::legal_eight_ball,
+    .judge = detail::judge_eight_ball,
+    .start = InHand::kHeadString,
+    .balls = {"cue", "8"},
+    .fouls = kPoolFouls,
+    .break_rule = "WPA 3.3"};
+
+}  // namespace carom::games

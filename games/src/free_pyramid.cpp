@@ -6,6 +6,7 @@
 #include "facts.h"
 
 namespace carom::games::detail {
+namespace {
 
 Legal legal_free_pyramid(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
@@ -53,4 +54,31 @@ Verdict judge_free_pyramid(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+namespace {
+
+constexpr FoulRule kPyramidFouls[] = {
+    {Foul::kNoBallHit, "pyramid, fouls"},        {Foul::kNoCushion, "pyramid, fouls"},
+    {Foul::kBallOff, "pyramid, fouls"},          {Foul::kPlacedOutside, "pyramid, break"},
+    {Foul::kBehindHeadString, "pyramid, break"}, {Foul::kWrongCueBall, "pyramid, break"}};
+
+}  // namespace
+
+const GameRules kFreePyramid = {
+    .info = {.name = "free_pyramid",
+             .title = "free pyramid",
+             .book = "Free Pyramid and Pyramid general rules, duplet.news, read in November 2026",
+             .target = 8,
+             .table = "pyramid",
+             .start = detail::start_of("game = \"pyramid\"", {{"cue", 0.45, 0.22}}, "cue", 8, 90)},
+    .legal = detail::legal_free_pyramid,
+    .judge = detail::judge_free_pyramid,
+    .start = InHand::kHeadString,
+    .fouls = kPyramidFouls,
+    .struck = GameRules::Struck::kAny};
+
+}  // namespace carom::games

@@ -57,8 +57,7 @@ void judge_row(Game game, const Scene& base, std::size_t row, const Outcome& out
             y = back.place.y();
         }
     }
-    const bool pool = game == Game::kEightBall || game == Game::kNineBall || game == Game::kTenBall;
-    to.points[row] = !pool ? verdict.points : verdict.fouls.empty() ? fallen : 0;
+    to.points[row] = game->info.is_scored ? verdict.points : verdict.fouls.empty() ? fallen : 0;
 }
 
 }  // namespace

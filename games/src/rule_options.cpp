@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,50 +15,6 @@
 namespace carom::games {
 namespace {
 
-const std::vector<RuleOption>& table() {
-    static const std::vector<RuleOption> kTable = {
-        {Game::kEightBall,
-         "call",
-         {"all", "eight", "none"},
-         "Shots to call: all, only the one at the eight, or none."},
-        {Game::kEightBall,
-         "eight_on_break",
-         {"respot", "wins", "rerack"},
-         "Effect of an eight that falls on the break: a respot or rerack, as the next player chooses; a win, "
-         "or a loss after a foul; or always a rerack."},
-        {Game::kEightBall,
-         "in_hand",
-         {"anywhere", "behind_line"},
-         "Area of the cue ball in hand after a foul: anywhere, or behind the head string."},
-        {Game::kEightBall,
-         "jump",
-         {"fair", "foul"},
-         "Whether the cue ball may pass over a ball before it hits one."},
-        {Game::kNineBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
-        {Game::kNineBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
-        {Game::kNineBall,
-         "nine_on_break",
-         {"wins", "respot"},
-         "Effect of a nine that falls on a fair break."},
-        {Game::kSnooker,
-         "miss",
-         {"false", "true"},
-         "A foul that hits no ball on first, although a straight path to one was clear, is a miss: the other "
-         "player may have the balls replaced."},
-        {Game::kTenBall, "push_out", {"true", "false"}, "The shot after the break may be a push out."},
-        {Game::kTenBall, "three_fouls", {"true", "false"}, "Three fouls in a row lose the rack."},
-        {Game::kTenBall,
-         "early_ten",
-         {"respot", "wins"},
-         "Effect of a called ten that falls while other balls are left."},
-        {Game::kFourBall,
-         "opponents_ball",
-         {"foul", "counts"},
-         "Effect of hitting the other player's cue ball: a foul, as in Korea, or the same as hitting a red, "
-         "as in Japan."}};
-    return kTable;
-}
-
 /// The value that a state has chosen for an option, or "".
 std::string_view chosen(const State& state, std::string_view key) {
     for (const std::string_view option : state.rules)
@@ -70,8 +25,11 @@ std::string_view chosen(const State& state, std::string_view key) {
 
 }  // namespace
 
-std::span<const RuleOption> rule_options() {
-    return table();
+std::vector<RuleOption> rule_options() {
+    std::vector<RuleOption> all;
+    for (const Game game : all_of(Game{}))
+        all.insert(all.end(), game->info.options.begin(), game->info.options.end());
+    return all;
 }
 
 void set_rule(State& state, std::string_view option) {
@@ -80,8 +38,7 @@ void set_rule(State& state, std::string_view option) {
     std::vector<std::string> rules, known;
     bool is_known = false;
     // Rules keep the order of the game's options, so that equal states compare equal.
-    for (const RuleOption& row : table()) {
-        if (row.game != state.game) continue;
+    for (const RuleOption& row : state.game->info.options) {
         known.push_back(row.key);
         std::string_view value = chosen(state, row.key);
         if (key == row.key) {
@@ -113,8 +70,8 @@ void complete(State& state) {
 
 std::string_view detail::rule(const State& state, std::string_view key) {
     if (const std::string_view value = chosen(state, key); !value.empty()) return value;
-    for (const RuleOption& row : table())
-        if (row.game == state.game && row.key == key) return row.values[0];
+    for (const RuleOption& row : state.game->info.options)
+        if (row.key == key) return row.values[0];
     throw std::logic_error("the game has no option " + std::string(key));
 }
 

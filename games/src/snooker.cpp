@@ -342,8 +342,6 @@ Verdict end_of_frame(const Facts& facts, const Stroke& stroke, State next) {
     return verdict;
 }
 
-}  // namespace
-
 Legal legal_snooker(const State& state, const std::vector<std::string>& balls) {
     Legal legal;
     legal.cue_balls = {"cue"};
@@ -391,4 +389,51 @@ Verdict judge_snooker(const Facts& facts) {
     return verdict;
 }
 
+}  // namespace
 }  // namespace carom::games::detail
+
+namespace carom::games {
+
+namespace {
+
+constexpr const char* kPenalty = "WPBSA 3, penalties";
+constexpr FoulRule kSnookerFouls[] = {{Foul::kCueBallPocketed, kPenalty},
+                                      {Foul::kCueBallOff, kPenalty},
+                                      {Foul::kNoBallHit, kPenalty},
+                                      {Foul::kWrongBallFirst, kPenalty},
+                                      {Foul::kBallOff, kPenalty},
+                                      {Foul::kPlacedOutside, kPenalty},
+                                      {Foul::kThirdFoul, "WPBSA 3.14"},
+                                      {Foul::kWrongBallPocketed, kPenalty},
+                                      {Foul::kTwoBallsAtOnce, kPenalty},
+                                      {Foul::kJumpShot, kPenalty},
+                                      {Foul::kBehindTheFreeBall, "WPBSA 3, free ball"},
+                                      {Foul::kMiss, "WPBSA 3.14"}};
+
+}  // namespace
+
+const GameRules kSnooker = {
+    .info =
+        {.name = "snooker",
+         .title = "snooker",
+         .book = "World Professional Billiards and Snooker Association, Official rules: section 3",
+         .calls = "the nominated colour or free ball; by default the ball that is hit first",
+         .balls = 21,
+         .table = "snooker",
+         .start = detail::start_of("game = \"snooker\"", {{"cue", 0.58, 0.2}}, "cue", 3.2, 90),
+         .options = {{&kSnooker,
+                      "miss",
+                      {"false", "true"},
+                      "A foul that hits no ball on first, although a straight path to one was clear, is a "
+                      "miss: the other player may have the balls replaced."}}},
+    .legal = detail::legal_snooker,
+    .judge = detail::judge_snooker,
+    .start = InHand::kD,
+    .balls = {"cue", "black"},
+    .fouls = kSnookerFouls,
+    .words = [](const State& state) {
+        const std::string on = state.on == BallOn::kColour ? "any colour" : name(state.on);
+        return ", " + on + " on" + (state.free_ball ? ", free ball" : "");
+    }};
+
+}  // namespace carom::games

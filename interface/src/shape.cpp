@@ -55,7 +55,9 @@ Value write_rows(const Shape& shape, const void* from) {
     Value all = Value::object();
     for (const Shape::Member& row : shape.rows) {
         const Shape& of = row.shape();
-        all[row.key] = of.write(of, row.in(const_cast<void*>(from)));  // NOLINT: it is only read
+        all[row.key] = row.computed != nullptr
+                           ? row.computed(from)
+                           : of.write(of, row.in(const_cast<void*>(from)));  // NOLINT: it is only read
     }
     return all;
 }
@@ -72,7 +74,7 @@ void read_rows(const Shape& shape, const Value& value, const Part& part, const S
             continue;
         }
         ++known;
-        row.shape().read(row.shape(), *found, inner, row.limits, row.in(to));
+        if (row.in != nullptr) row.shape().read(row.shape(), *found, inner, row.limits, row.in(to));
     }
     if (known < value.size()) {
         for (const auto& item : value.items()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -22,6 +23,12 @@ inline bool operator==(const std::vector<CalledFoul>& called, const std::vector<
 }  // namespace carom::games
 
 namespace carom::test {
+
+/// The place of a game in the list of all games.
+inline std::size_t number_of(games::Game game) {
+    const auto all = games::all_of(game);
+    return static_cast<std::size_t>(std::find(all.begin(), all.end(), game) - all.begin());
+}
 
 /// A shot in a referee's words. Every call adds an event, a tenth of a second after the previous one.
 class Told {

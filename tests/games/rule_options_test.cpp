@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -51,20 +52,20 @@ TEST(RuleOptions, EveryValueOfEveryOptionReadsBack) {
 }
 
 TEST(RuleOptions, AForeignOptionIsRefusedWithTheGamesOwn) {
-    EXPECT_EQ(refused(Game::kEightBall, "push_out=true"),
+    EXPECT_EQ(refused(&games::kEightBall, "push_out=true"),
               "eight_ball has no option \"push_out\"; it has call, eight_on_break, in_hand, jump");
-    EXPECT_EQ(refused(Game::kThreeCushion, "call=all"), "three_cushion has no options; leave out \"call\"");
-    EXPECT_EQ(refused(Game::kEightBall, "call=maybe"), "call=maybe: expected call=all|eight|none");
-    EXPECT_EQ(refused(Game::kEightBall, "call"), "call: expected call=all|eight|none");
-    EXPECT_EQ(refused(Game::kSnooker, ""), "snooker has no option \"\"; it has miss");
-    State other = games::new_game(Game::kEightBall);
+    EXPECT_EQ(refused(&games::kThreeCushion, "call=all"), "three_cushion has no options; leave out \"call\"");
+    EXPECT_EQ(refused(&games::kEightBall, "call=maybe"), "call=maybe: expected call=all|eight|none");
+    EXPECT_EQ(refused(&games::kEightBall, "call"), "call: expected call=all|eight|none");
+    EXPECT_EQ(refused(&games::kSnooker, ""), "snooker has no option \"\"; it has miss");
+    State other = games::new_game(&games::kEightBall);
     set_rule(other, "call=none");
-    other.game = Game::kThreeCushion;
+    other.game = &games::kThreeCushion;
     EXPECT_THROW(games::legal(other, std::vector<std::string>{"white", "red"}), std::invalid_argument);
 }
 
 TEST(RuleOptions, SurviveANewRack) {
-    State state = games::new_game(Game::kEightBall);
+    State state = games::new_game(&games::kEightBall);
     set_rule(state, "call=none");
     const Record record =
         Told().ball("cue", 0.6, 0.3).balls(numbered(1, 15)).strike("cue").hit("cue", "1").record();
@@ -82,7 +83,7 @@ TEST(RuleOptions, AJumpIsAFoulIfTheRulesForbidIt) {
         for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;)
             text.replace(at, std::string(from).size(), to);
     const Record record = simulate(plan_of(parse_scene(text, "jump.toml")));
-    State state = games::new_game(Game::kEightBall);
+    State state = games::new_game(&games::kEightBall);
     state.opening = false;
     const auto jumps = [&] {
         const std::vector<games::CalledFoul> fouls = games::judge(state, record).fouls;
@@ -94,11 +95,35 @@ TEST(RuleOptions, AJumpIsAFoulIfTheRulesForbidIt) {
     EXPECT_EQ(jumps(), 1);
 }
 
+// As play/tables.js writes it.
+std::string start_scene(const games::GameInfo& info) {
+    const Table table = make_table(info.table);
+    std::string text = "[table]\npreset = \"" + info.table + "\"\n[balls]\npreset = \"" +
+                       (info.table == "nine_foot" ? "pool" : info.table) + "\"\n",
+                rest = info.start;
+    rest.replace(std::min(rest.find("SEED"), rest.size()), 4, rest.find("SEED") == rest.npos ? "" : "7");
+    const std::regex part("([0-9.]+)([wl])\\b");
+    for (std::smatch found; std::regex_search(rest, found, part); rest = found.suffix())
+        text += found.prefix().str() +
+                std::to_string(std::stod(found[1]) * (found[2] == "w" ? table.width : table.length));
+    return text + rest;
+}
+
+TEST(Games, StartWithAShotByTheirRules) {
+    for (const Game game : games::all_of(Game{})) {
+        SCOPED_TRACE(name(game));
+        const games::GameInfo& info = games::info_of(game);
+        EXPECT_TRUE(!info.title.empty() && !info.book.empty());
+        const Scene scene = parse_scene(start_scene(info), name(game));
+        EXPECT_NO_THROW(games::judge(games::new_game(game), simulate(plan_of(scene))));
+        EXPECT_EQ(scene.ball.size(), static_cast<std::size_t>(info.balls) + 1);
+    }
+}
+
 TEST(RuleOptions, EveryGameHasABook) {
     std::set<std::string> books;
-    for (std::size_t i = 0; i < games::names_of(Game{}).size(); ++i)
-        books.insert(games::book_of(static_cast<Game>(i)));
-    EXPECT_EQ(books.size(), games::names_of(Game{}).size());
+    for (const Game game : games::all_of(Game{})) books.insert(games::info_of(game).book);
+    EXPECT_EQ(books.size(), games::all_of(Game{}).size());
 }
 
 }  // namespace

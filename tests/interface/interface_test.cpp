@@ -1,6 +1,7 @@
 // Types of the interface: each value survives JSON, and a wrong one is refused with its path.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -65,11 +66,22 @@ Value random_value(const Shape& shape, const Shape::Limits& limits, std::mt19937
             break;
     }
     Value all = Value::object();
-    for (const Shape::Member& row : shape.rows)
+    for (const Shape::Member& row : shape.rows) {
+        if (row.computed != nullptr) continue;
         // The rules of a state are not any texts.
         all[row.key] =
             std::string(row.key) == "rules" ? Value::array() : random_value(row.shape(), row.limits, random);
+    }
     return all;
+}
+
+/// Whether a value is the other one, or has more keys, which are computed.
+bool contains(const Value& all, const Value& part) {
+    if (!part.is_structured()) return all == part;
+    return std::all_of(part.items().begin(), part.items().end(), [&](const auto& item) {
+        return part.is_object() ? all.contains(item.key()) && contains(all[item.key()], item.value())
+                                : contains(all.at(std::stoul(item.key())), item.value());
+    });
 }
 
 template <class T>
@@ -78,8 +90,8 @@ void expect_round_trips() {
     for (int i = 0; i < 100; ++i) {
         const Value value = random_value(shape_of<T>(), {}, random);
         const T read = read_as<T>(Value::parse(value.dump()));
-        ASSERT_EQ(value_of(read), value);
-        ASSERT_EQ(value_of(read_as<T>(value_of(read))), value);
+        ASSERT_TRUE(contains(value_of(read), value)) << value_of(read) << " for " << value;
+        ASSERT_EQ(read_as<T>(value_of(read)), read);
     }
 }
 
@@ -88,7 +100,7 @@ TEST(Interface, EveryTypeSurvivesJson) {
     expect_round_trips<games::Verdict>();
     expect_round_trips<games::Legal>();
     expect_round_trips<games::Call>();
-    expect_round_trips<games::RuleOption>();
+    expect_round_trips<games::GameInfo>();
 }
 
 TEST(Interface, KeysDifferAndHideNoMethodOfATuple) {
@@ -125,7 +137,7 @@ TEST(Interface, AWrongValueIsRefusedByItsPath) {
               "state.on: expected one of colour, red, yellow, green, brown, blue, pink, black");
     EXPECT_EQ(state(R"({"game": "snooker", "rules": ["call=all"]})"),
               "state.rules: snooker has no option \"call\"; it has miss");
-    EXPECT_EQ(state(R"({"game": "snooker", "pionts": 1})").substr(0, 54),
+    EXPECT_EQ(state(R"({"game": "snooker", "pionts": 1})").substr(0, 55),
               "state: unknown key \"pionts\"; expected one of game, turn");
     EXPECT_EQ(state("{}").substr(0, 40), "state.game: expected one of eight_ball, ");
     EXPECT_EQ(state("nothing").substr(0, 42), "state: expected an object with game, turn,");

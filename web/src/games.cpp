@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/game_state.h"
 #include "base/verdict.h"
 #include "carom/engine/batch.h"
 #include "carom/games/noise.h"
@@ -46,7 +46,7 @@ void give_scene(Scene scene) {
 
 CAROM_WEB int carom_game_new(const char* name, std::size_t size, int first, int target) {
     return guarded([&] {
-        const games::Game game = tools::game_of(std::string(name, size));
+        const games::Game game = games::game_named(std::string_view(name, size));
         give(nullptr, dumped(interface::value_of(games::new_game(game, first, target))));
     });
 }
@@ -61,12 +61,7 @@ CAROM_WEB int carom_game_rules(const char* state, std::size_t size, const char* 
     });
 }
 CAROM_WEB int carom_game_options() {
-    return guarded([&] {
-        Json list = Json::array();
-        for (const games::RuleOption& option : games::rule_options())
-            list.push_back(interface::value_of(option));
-        give(nullptr, dumped(list));
-    });
+    return guarded([&] { give(nullptr, dumped(interface::value_of(games::rule_options()))); });
 }
 CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebScene* scene) {
     return guarded([&] {
@@ -77,7 +72,7 @@ CAROM_WEB int carom_game_legal(const char* state, std::size_t size, const WebSce
                               {"callable", legal.callable},
                               {"inHand", name(legal.in_hand)},
                               {"mayPushOut", legal.may_push_out},
-                              {"text", tools::next_text(before)}}));
+                              {"text", games::next_text(before)}}));
     });
 }
 CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size_t size, const char* call,
@@ -86,13 +81,7 @@ CAROM_WEB int carom_game_judge(const WebShot* shot, const char* state, std::size
         const games::State before = state_at(state, size);
         auto verdict = std::make_unique<WebVerdict>();
         verdict->verdict = games::judge(before, shot->record, call_at(call, call_size));
-        auto json = interface::value_of(verdict->verdict);
-        for (std::size_t i = 0; i < verdict->verdict.options.size(); ++i) {
-            const games::Option& option = verdict->verdict.options[i];
-            json["options"][i]["text"] = tools::next_text(option.state);
-            json["options"][i]["rerack"] = option.rerack();
-        }
-        std::string text = dumped(json);
+        std::string text = dumped(interface::value_of(verdict->verdict));
         give(verdict.release(), std::move(text));
     });
 }

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,15 +23,17 @@ constexpr std::uintmax_t kLargestState = 1 << 16;
 }  // namespace
 
 std::vector<std::string> game_names() {
-    const auto names = games::names_of(games::Game{});
-    return {names.begin(), names.end()};
+    std::vector<std::string> names;
+    for (const games::Game game : games::all_of(games::Game{})) names.emplace_back(name(game));
+    return names;
 }
 
 games::Game game_of(const std::string& name) {
-    const std::vector<std::string> names = game_names();
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (names[i] == name) return static_cast<games::Game>(i);
-    throw UsageError(fmt::format("--game {}: expected one of {}", name, fmt::join(names, ", ")));
+    try {
+        return games::game_named(name);
+    } catch (const std::invalid_argument& refused) {
+        throw UsageError(fmt::format("--game: {}", refused.what()));
+    }
 }
 
 games::State read_state(const std::string& path) {

@@ -15,22 +15,6 @@
 namespace carom::tools {
 
 using Json = nlohmann::ordered_json;
-using games::InHand;
-using games::State;
-
-std::string next_text(const State& state) {
-    if (state.over)
-        return state.winner < 0 ? "the game is over, nobody wins"
-                                : fmt::format("the game is over, player {} wins", state.winner + 1);
-    std::string text = fmt::format("player {} shoots", state.turn + 1);
-    if (state.in_hand == InHand::kAnywhere) text += ", cue ball in hand anywhere";
-    if (state.in_hand == InHand::kHeadString) text += ", cue ball in hand behind the head string";
-    if (state.in_hand == InHand::kD) text += ", cue ball in hand in the D";
-    if (state.game != games::Game::kSnooker) return text;
-    text += state.on == games::BallOn::kColour ? ", any colour on"
-                                               : fmt::format(", {} on", carom::name(state.on));
-    return text + (state.free_ball ? ", free ball" : "");
-}
 
 Json cue_json(const Cue& cue) {
     return {{"speed", cue.speed},

@@ -11,9 +11,6 @@
 
 namespace carom::tools {
 
-/// "player 2 shoots, cue ball in hand anywhere"
-std::string next_text(const games::State& state);
-
 /// A strike: {speed, aim_deg, elevation_deg, offset}.
 nlohmann::ordered_json cue_json(const carom::Cue& cue);
 

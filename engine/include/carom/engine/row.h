@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace carom {
@@ -31,6 +32,10 @@ struct Row {
         return row;
     }
 };
+
+/// A member function: its value is written, and ignored by a reader.
+template <auto kMember>
+constexpr bool kIsComputed = std::is_member_function_pointer_v<decltype(kMember)>;
 
 /// A member: a number, a truth, a text, a choice (field.h), a described type, or a list, an array or an
 /// optional of these.

@@ -1,6 +1,6 @@
 // Rules of games: legal shots, and the outcome of a shot. Pure functions of a state, the balls and a record.
 //
-// book_of() names the published rules of each game.
+// GameInfo names the published rules of each game.
 //
 // Rules about facts that a record does not contain are not judged: feet, touched balls, double hits, pushes,
 // time.
@@ -20,24 +20,17 @@
 
 namespace carom::games {
 
-enum class Game : std::uint8_t {
-    kEightBall,
-    kNineBall,
-    kThreeCushion,
-    kSnooker,
-    kSumToThree,
-    kTenBall,
-    kStraightPool,
-    kFreePyramid,
-    kStraightRail,
-    kOneCushion,
-    kFourBall
-};
-constexpr auto names_of(Game) {
-    return std::array{"eight_ball",    "nine_ball",   "three_cushion", "snooker",
-                      "sum_to_three",  "ten_ball",    "straight_pool", "free_pyramid",
-                      "straight_rail", "one_cushion", "four_ball"};
-}
+struct GameRules;
+/// A game is a pointer to its row, which stands in the file of its rules.
+using Game = const GameRules*;
+using carom::name;
+const char* name(Game game);
+/// All games, in the order of the numbers of carom_game in C.
+std::span<const Game> all_of(Game);
+/// @throws std::invalid_argument listing the known names
+Game game_named(std::string_view name);
+extern const GameRules kEightBall, kNineBall, kThreeCushion, kSnooker, kSumToThree, kTenBall, kStraightPool,
+    kFreePyramid, kStraightRail, kOneCushion, kFourBall;
 
 /// A player's balls in eight-ball.
 enum class Group : std::uint8_t { kOpen, kSolids, kStripes };
@@ -56,7 +49,7 @@ inline constexpr int kMostPoints = 1000000000;
 
 /// A game reads only its own fields.
 struct State {
-    Game game = Game::kEightBall;
+    Game game = &kEightBall;
     int turn = 0;
     bool opening = true;
     InHand in_hand = InHand::kNo;
@@ -75,24 +68,22 @@ struct State {
 constexpr auto rows_of(const State*) {
     return described(
                "State",
-               "The memory of a game between two shots, without the positions of the balls. Players are 0 "
-               "and 1.",
+               "The memory of a game between two shots. Players are 0 and 1; a pair has a value for each.",
                row<&State::game>("game", "The game.").needed(),
                row<&State::turn>("turn", "Whose shot it is.", {0, 1}),
                row<&State::opening>("opening", "The break, or the first shot of a carom game."),
-               row<&State::in_hand>("in_hand", "Where the player may place the cue ball."),
-               row<&State::points>("points", "Of each player; below 0 in straight pool and four-ball only.",
+               row<&State::in_hand>("in_hand", "Of the cue ball: its area."),
+               row<&State::points>("points", "Below 0 in straight pool and four-ball.",
                                    {-kMostPoints, kMostPoints}),
                row<&State::target>("target", "Points that win; 0: no end.", {0, kMostPoints}),
                row<&State::over>("over", "The game is over."),
                row<&State::winner>("winner", "-1: none, or not yet.", {-1, 1}),
-               row<&State::group>("group", "Eight-ball: the balls of each player."),
+               row<&State::group>("group", "Eight-ball."),
                row<&State::may_push_out>("may_push_out", "Nine-ball, ten-ball: the shot after the break."),
-               row<&State::fouls>(
-                   "fouls", "Of each player in a row. Snooker: misses with a clear path to a full ball.",
-                   {0, kMostPoints}),
+               row<&State::fouls>("fouls", "In a row; snooker: misses with a clear path to a full ball.",
+                                  {0, kMostPoints}),
                row<&State::on>("on", "Snooker: the ball on; colour: any, after a red."),
-               row<&State::free_ball>("free_ball", "Snooker: any ball may be nominated as the ball on."),
+               row<&State::free_ball>("free_ball", "Snooker: any ball may be nominated."),
                row<&State::rules>("rules", "Options that are not defaults, such as \"call=eight\"."))
         .made_by_callers();
 }
@@ -103,14 +94,12 @@ void complete(State& state);
 /// as 8 in free pyramid
 State new_game(Game game, int first = 0, int target = 0);
 
-/// The published rules of a game, with their edition.
-const char* book_of(Game game);
-
 struct RuleOption {
-    Game game{};
+    Game game = &kEightBall;
     std::string key;
     std::vector<std::string> values;
     std::string what;
+    bool operator==(const RuleOption&) const = default;
 };
 constexpr auto rows_of(const RuleOption*) {
     return described("RuleOption", "An option of a game's rules.",
@@ -118,7 +107,39 @@ constexpr auto rows_of(const RuleOption*) {
                      row<&RuleOption::values>("values", "The first one is the default."),
                      row<&RuleOption::what>("what", "Its meaning."));
 }
-std::span<const RuleOption> rule_options();
+
+/// A game, without the functions of its rules.
+struct GameInfo {
+    std::string name, title{}, book{}, calls{};
+    bool is_scored = true, has_groups = false, has_safety = false, has_push_out = false;
+    int target = 0, usual_target = 0, balls = 15;
+    std::string table = "nine_foot", start{};
+    std::vector<RuleOption> options{};
+    bool operator==(const GameInfo&) const = default;
+};
+constexpr auto rows_of(const GameInfo*) {
+    return described(
+        "GameInfo", "A game.", row<&GameInfo::name>("name", "In files."),
+        row<&GameInfo::title>("title", "For people."),
+        row<&GameInfo::book>("book", "Its published rules, with their edition."),
+        row<&GameInfo::calls>("calls", "Announcements before a shot."),
+        row<&GameInfo::is_scored>("is_scored", "Players collect points."),
+        row<&GameInfo::has_groups>("has_groups", "Each player has a group of balls."),
+        row<&GameInfo::has_safety>("has_safety", "A safety may be called."),
+        row<&GameInfo::has_push_out>("has_push_out", "A push out may be called."),
+        row<&GameInfo::target>("target", "Points that win, if none are given; 0: no end."),
+        row<&GameInfo::usual_target>("usual_target", "A target to offer; 0: none."),
+        row<&GameInfo::balls>("balls", "Object balls of a full rack."),
+        row<&GameInfo::table>("table", "A table for it: a preset."),
+        row<&GameInfo::start>(
+            "start",
+            "Its first scene, without table and balls. Places are fractions of the width (w) and "
+            "the length (l) of the table; SEED is of the rack."),
+        row<&GameInfo::options>("options", "Of its rules."));
+}
+const GameInfo& info_of(Game game);
+/// Of all games.
+std::vector<RuleOption> rule_options();
 /// Chooses an option of the state's game, such as "call=eight". @throws std::invalid_argument for an unknown
 /// key or value; it lists the known ones
 void set_rule(State& state, std::string_view option);
@@ -149,13 +170,12 @@ struct Legal {
     bool operator==(const Legal&) const = default;
 };
 constexpr auto rows_of(const Legal*) {
-    return described(
-        "Legal", "The rules of the next shot.",
-        row<&Legal::cue_balls>("cue_balls", "Balls that may be struck: one, in free pyramid any."),
-        row<&Legal::first>("first", "Balls that the cue ball may hit first."),
-        row<&Legal::callable>("callable", "Balls that may be called; empty if the game has no calls."),
-        row<&Legal::in_hand>("in_hand", "As in the state."),
-        row<&Legal::may_push_out>("may_push_out", "Whether a push out may be called."));
+    return described("Legal", "The rules of the next shot.",
+                     row<&Legal::cue_balls>("cue_balls", "That may be struck: one, in free pyramid any."),
+                     row<&Legal::first>("first", "That may be hit first."),
+                     row<&Legal::callable>("callable", "That may be called."),
+                     row<&Legal::in_hand>("in_hand", "As in the state."),
+                     row<&Legal::may_push_out>("may_push_out", "A push out may be called."));
 }
 
 /// @param balls ids of the balls on the table. The cue ball may be missing while it is in hand. Ids are those
@@ -208,8 +228,6 @@ constexpr auto names_of(Foul) {
                       "opponent's cue ball hit",
                       "touching ball played into"};
 }
-/// The rule that a foul breaks, such as "WPA 6.1"; "" if the game has no such rule.
-const char* rule_of(Game game, Foul foul);
 
 struct CalledFoul {
     Foul foul = Foul::kNoBallHit;
@@ -231,6 +249,9 @@ constexpr auto rows_of(const Respot*) {
     return described("Respot", "A ball that is respotted.", row<&Respot::ball>("ball", "Its id.").needed(),
                      row<&Respot::place>("place", "[m]").needed());
 }
+
+/// The next shot in words: "player 2 shoots, cue ball in hand anywhere".
+std::string next_text(const State& state);
 
 /// How the game may continue.
 enum class Decision : std::uint8_t {
@@ -255,13 +276,16 @@ struct Option {
     State state;
     std::vector<Respot> respots;
     bool rerack() const { return decision == Decision::kRerack || decision == Decision::kRerackForOther; }
+    std::string text() const { return next_text(state); }
     bool operator==(const Option&) const = default;
 };
 constexpr auto rows_of(const Option*) {
     return described("Option", "A possible continuation of the game.",
                      row<&Option::decision>("decision", "The next step."),
                      row<&Option::state>("state", "Of the next shot."),
-                     row<&Option::respots>("respots", "Balls that are respotted before it."));
+                     row<&Option::respots>("respots", "Before it."),
+                     row<&Option::rerack>("rerack", "The balls are racked again."),
+                     row<&Option::text>("text", "The next shot in words."));
 }
 
 struct Verdict {
@@ -276,13 +300,12 @@ struct Verdict {
 };
 constexpr auto rows_of(const Verdict*) {
     return described("Verdict", "The outcome of a shot.",
-                     row<&Verdict::fouls>("fouls", "In the order of the rules; empty for a fair shot."),
+                     row<&Verdict::fouls>("fouls", "Empty for a fair shot."),
                      row<&Verdict::points>("points", "Scored by the shot."),
                      row<&Verdict::penalty>("penalty", "Snooker: points for the other player."),
                      row<&Verdict::options>(
-                         "options", "At least one. The first one applies unless the chooser picks another."),
-                     row<&Verdict::chooser>(
-                         "chooser", "The player who chooses; -1 if there is one option, or lots decide."));
+                         "options", "At least one; the first applies unless the chooser picks another."),
+                     row<&Verdict::chooser>("chooser", "A player; -1 with one option, or if lots decide."));
 }
 
 /// The outcome of a shot. @param state before it

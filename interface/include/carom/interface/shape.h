@@ -57,7 +57,8 @@ struct Shape {
         Limits limits;
         bool is_needed;
         const Shape& (*shape)();
-        void* (*in)(void* object);
+        void* (*in)(void* object);              ///< null: computed
+        Value (*computed)(const void* object);  ///< or null
     };
 
     Kind kind;
@@ -94,7 +95,8 @@ T read_as(const Value& value, const char* name = nullptr) {
 
 /// The described types, each after those that it contains.
 std::span<const Shape* const> types();
-/// The reference page of the types, and python/carom/_types.py.
+/// The reference page of the types, and the blocks of python/carom/_types.py between "# begin NAME" and "# end
+/// NAME".
 std::string types_page();
 std::string types_for_python();
 
@@ -139,16 +141,30 @@ struct Anything {
     operator T() const;  // NOLINT: an implicit conversion is the purpose
 };
 template <class T, auto kMember>
-using MemberOf = std::remove_cvref_t<decltype(std::declval<T&>().*kMember)>;
-/// Whether the rows are the members of an aggregate in their order, without one more.
-template <class T, auto... kMembers>
-constexpr bool are_all_members(const std::tuple<Row<kMembers>...>&) {
+auto value_in(const T& object) {
+    if constexpr (kIsComputed<kMember>)
+        return (object.*kMember)();
+    else
+        return object.*kMember;
+}
+template <class T, auto kMember>
+using MemberOf = decltype(value_in<T, kMember>(std::declval<const T&>()));
+template <class T, class... Members>
+constexpr bool are_all(std::type_identity<std::tuple<Members...>>) {
     return requires {
-        T{std::declval<MemberOf<T, kMembers>>()...};
+        T{std::declval<Members>()...};
     }
     &&!requires {
-        T{std::declval<MemberOf<T, kMembers>>()..., Anything()};
+        T{std::declval<Members>()..., Anything()};
     };
+}
+/// Whether the rows, except computed ones, are the members of an aggregate in their order, without one more.
+template <class T, auto... kMembers>
+constexpr bool are_all_members(const std::tuple<Row<kMembers>...>&) {
+    using Members =
+        decltype(std::tuple_cat(std::declval<std::conditional_t<kIsComputed<kMembers>, std::tuple<>,
+                                                                std::tuple<MemberOf<T, kMembers>>>>()...));
+    return are_all<T>(std::type_identity<Members>());
 }
 
 template <class T>
@@ -174,12 +190,18 @@ Shape make_shape() {
                 .is_made_by_callers = kAll.is_made_by_callers,
                 .default_value = [] { return value_of(T{}); }};
     each_row<T>([&]<auto kMember>(const Row<kMember>& row) {
-        shape.rows.push_back({row.key,
-                              row.meaning,
-                              {row.range, row.may_be_nan},
-                              row.is_needed,
-                              shape_of<MemberOf<T, kMember>>,
-                              [](void* object) -> void* { return &(at<T>(object).*kMember); }});
+        Shape::Member member{.key = row.key,
+                             .meaning = row.meaning,
+                             .limits = {row.range, row.may_be_nan},
+                             .is_needed = row.is_needed,
+                             .shape = shape_of<MemberOf<T, kMember>>,
+                             .in = nullptr,
+                             .computed = nullptr};
+        if constexpr (kIsComputed<kMember>)
+            member.computed = [](const void* object) { return value_of((at<T>(object).*kMember)()); };
+        else
+            member.in = [](void* object) -> void* { return &(at<T>(object).*kMember); };
+        shape.rows.push_back(member);
     });
     if constexpr (requires(T & t) { complete(t); })
         shape.complete = [](void* object) { complete(at<T>(object)); };
