@@ -108,8 +108,8 @@ std::string types_page() {
         "# Types of the interface\n\nIn JSON (`carom judge --json`, `--state`), JavaScript, and Python's "
         "`carom.games`. Missing keys have defaults.\n";
     for (const Shape* type : types()) {
-        // Each game's row is in its own file.
-        if (type == &shape_of<games::GameInfo>()) continue;
+        // For the interactive page; people read `carom describe games`.
+        if (type == &shape_of<games::GameInfo>() || type == &shape_of<games::RuleOption>()) continue;
         text += fmt::format("\n## {}\n\n{}\n\n| key | value | meaning |\n|---|---|---|\n", type->name,
                             type->meaning);
         for (const Shape::Member& row : type->rows)

@@ -35,13 +35,13 @@ nb::object tuple_of(std::size_t count, Item item) {
     return tuple;
 }
 
-const Shape& item_of(const Shape& shape) {
-    return shape.item != nullptr ? shape.item() : shape;
-}
-
 Value list_from(nb::handle of, const Shape& item) {
     Value list = Value::array();
-    for (const nb::handle each : of) list.push_back(value_from(each, item));
+    try {
+        for (const nb::handle each : of) list.push_back(value_from(each, item));
+    } catch (const nb::python_error&) {
+        return Value::value_t::discarded;
+    }
     return list;
 }
 
@@ -107,15 +107,15 @@ Value value_from(nb::handle of, const Shape& shape) {
                     all[inner.rows[i].key] = value_from(members[i], inner.rows[i].shape());
             return all;
         }
-        return Value(Value::value_t::discarded);
+        return Value::value_t::discarded;
     }
-    if (PySequence_Check(of.ptr()) != 0 || nb::isinstance<nb::list>(of)) return list_from(of, item_of(inner));
+    if (inner.kind == Kind::kList || inner.kind == Kind::kArray) return list_from(of, inner.item());
     // The numbers of numpy.
     if (inner.kind == Kind::kTruth && nb::cast<std::string>(of.type().attr("__name__")).starts_with("bool"))
         return PyObject_IsTrue(of.ptr()) == 1;
     if (PyIndex_Check(of.ptr()) != 0) return whole_from(nb::steal(PyNumber_Index(of.ptr())));
     if (nb::hasattr(of, "__float__")) return nb::cast<double>(nb::steal(PyNumber_Float(of.ptr())));
-    return Value(Value::value_t::discarded);
+    return Value::value_t::discarded;
 }
 
 }  // namespace carom::python

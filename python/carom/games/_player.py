@@ -62,7 +62,7 @@ def advise(
         raise ValueError("best must be at least 1, shots and threads at least 0")
     rows = _carom.advise(state, as_scene(scene)._native, skill, seed, best, shots, threads)
     return [
-        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), *row[6:]) for row in rows]
+        Advice(*row[:5], Cue(*row[5][:3], (row[5][3], row[5][4])), row[6], *row[7:]) for row in rows]
 
 
 class PlayerShot(NamedTuple):

@@ -32,7 +32,8 @@ else:
 
 def all_games() -> list[GameInfo]:
     """Every game, with its book and its options."""
-    return _carom.games()
+    listed: list[GameInfo] = _carom.games()
+    return listed
 
 
 def rule_options() -> list[RuleOption]:
@@ -63,7 +64,8 @@ def new_game(
     Raises ValueError for an unknown game, option or value.
     """
     chosen = tuple(f"{key}={str(value).lower()}" for key, value in (rules or {}).items())
-    return _carom.new_game(State(game, first, target=target, rules=chosen))
+    state: State = _carom.new_game(State(game, first, target=target, rules=chosen))
+    return state
 
 
 @checked
@@ -75,7 +77,8 @@ def legal(state: State, balls: Scene | Sequence[str]) -> Legal:
 
     Raises ValueError if the game is over or no ball is left to play at.
     """
-    return _carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls))
+    allowed: Legal = _carom.legal(state, list(balls.ids if isinstance(balls, Scene) else balls))
+    return allowed
 
 
 @checked

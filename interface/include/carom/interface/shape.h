@@ -95,9 +95,9 @@ T read_as(const Value& value, const char* name = nullptr) {
 
 /// The described types, each after those that it contains.
 std::span<const Shape* const> types();
-/// The reference page of the types, and the blocks of python/carom/_types.py between "# begin NAME" and "# end
-/// NAME".
+/// The reference page of the types.
 std::string types_page();
+/// The blocks of python/carom/_types.py, between "# begin NAME" and "# end NAME".
 std::string types_for_python();
 
 namespace shapes {

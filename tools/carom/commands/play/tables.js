@@ -6,7 +6,8 @@ export const CLOTHS = [["", "as the balls"], ["club", "club"], ["tournament", "t
 export const infoOf = ({page}, name) => page.games?.find((game) => game.name === name) ?? {};
 /** The games for a list, pool first. */
 export const gamesOf = ({page}) => [...page.games]
-  .sort((a, b) => (a.table !== "nine_foot") - (b.table !== "nine_foot")).map(({name, title}) => [name, title]);
+  .sort((a, b) => (a.table !== "nine_foot") - (b.table !== "nine_foot"))
+  .map(({name, title}) => [name, title]);
 /** The table that a game needs; the present one if it is suitable. */
 export function tableOf({table = ""}, preset) {
   const kind = ballsOf(table), present = ballsOf(preset);
