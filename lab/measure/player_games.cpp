@@ -123,7 +123,7 @@ void play(const std::array<Skill, 2>& skills, const std::array<bool, 2>& is_pro,
             fmt::print(
                 "player {}: {}, foretold {:.2f}: {}{}\n", before.turn + 1,
                 words_of(shot.advice, shot.table.table), shot.advice.makes.value, made ? "made" : "missed",
-                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0]));
+                shot.verdict.fouls.empty() ? "" : std::string(", foul: ") + name(shot.verdict.fouls[0].foul));
         if (first) count.breaks += made && !shot.taken.state.over;
         first = false;
         return !alone || made;
