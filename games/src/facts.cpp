@@ -88,6 +88,7 @@ std::string start_of(std::string_view rack, const std::vector<Placed>& balls, st
 
 std::vector<CalledFoul> called(const std::vector<Foul>& fouls) {
     std::vector<CalledFoul> list;
+    list.reserve(fouls.size());
     for (const Foul foul : fouls) list.push_back({foul});
     return list;
 }

@@ -159,6 +159,9 @@ TEST(Interface, NumbersAreNotNarrowed) {
     EXPECT_EQ(sample(R"({"number": 1, "nested": [[true, true], [true, 0]]})"),
               "nested[1][1]: expected true or false");
     EXPECT_EQ(sample("{}"), "number: expected a number");
+    // Python and C++ have such numbers, JSON has not.
+    EXPECT_THROW(read_as<Sample>({{"number", std::nan("")}}), ValueError);
+    EXPECT_THROW(read_as<Sample>({{"number", HUGE_VAL}}), ValueError);
     EXPECT_TRUE(std::isnan(read_as<Sample>(Value::parse(R"({"number": 1, "missing": null})")).missing));
 }
 
